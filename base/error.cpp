@@ -1,0 +1,23 @@
+#include "base/error.h"
+
+namespace emscape {
+
+std::string toString(const FilePlace& place) {
+  std::string text = place.file;
+  if (place.line > 0) {
+    text += ":" + std::to_string(place.line);
+    if (place.column > 0) text += ":" + std::to_string(place.column);
+  }
+  return text;
+}
+
+Error::Error(ErrorCode code, const std::string& message)
+    : std::runtime_error(message), code_(code), message_(message) {}
+
+Error::Error(ErrorCode code, const FilePlace& place, const std::string& message)
+    : std::runtime_error(place.file.empty() ? message : toString(place) + ": " + message),
+      code_(code),
+      place_(place),
+      message_(message) {}
+
+}  // namespace emscape

@@ -1,0 +1,20 @@
+/// Messages of the libraries. A library never prints: the program sets where they go (nowhere by default).
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace emscape {
+
+enum class LogLevel { debug, info, warning };
+
+using LogSink = std::function<void(LogLevel, const std::string&)>;
+
+/// Replaces the receiver of all messages; an empty sink silences them. Safe to call while others log.
+void setLogSink(LogSink sink);
+
+void logDebug(const std::string& message);
+void logInfo(const std::string& message);
+void logWarning(const std::string& message);
+
+}  // namespace emscape

@@ -1,0 +1,19 @@
+/// Parallel loops over all threads that the program allows (oneTBB behind them).
+#pragma once
+
+#include <functional>
+
+namespace emscape {
+
+/// Limits the threads of all later loops; 0 means one per core. Call it once, from the program's start.
+void setThreadLimit(int threads);
+
+/// Threads that loops use now, >= 1.
+int threadCount();
+
+/// Runs body(begin, end) over disjoint pieces of [0, count), each of at least `grain` indices (the last may be
+/// shorter), and returns when all are done. Exceptions of the body reach the caller. Nothing may depend on which piece
+/// runs when: results must not vary with the number of threads.
+void parallelFor(int count, int grain, const std::function<void(int begin, int end)>& body);
+
+}  // namespace emscape

@@ -1,0 +1,16 @@
+/// How libraries tell of long work without printing, and how they are asked to stop.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+
+namespace emscape {
+
+/// Called with the step's name and the part done, 0..1. May be called from any thread, one call at a time.
+using ProgressSink = std::function<void(const std::string& step, double fraction)>;
+
+/// Set from another thread (or a signal) to abort long work at its next checkpoint.
+using StopFlag = std::atomic<bool>;
+
+}  // namespace emscape

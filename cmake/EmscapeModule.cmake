@@ -1,0 +1,28 @@
+# emscape_module(NAME SOURCES ... [LINKS ...] [PRIVATE_LINKS ...])
+# A library emscape_NAME, called emscape::NAME, of one module's sources.
+function(emscape_module name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS")
+  add_library(emscape_${name} ${ARG_SOURCES})
+  add_library(emscape::${name} ALIAS emscape_${name})
+  set_target_properties(emscape_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(emscape_${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
+                                                    "$<INSTALL_INTERFACE:include/emscape>")
+  target_link_libraries(emscape_${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
+  emscape_warnings(emscape_${name})
+endfunction()
+
+# Warnings, as errors if asked for, on a target of our own.
+function(emscape_warnings target)
+  target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
+                                           $<$<BOOL:${EMSCAPE_WERROR}>:-Werror>>)
+endfunction()
+
+# emscape_tests(MODULE SOURCES ... [LINKS ...]): the program MODULE_tests; each of its tests is one of ctest's.
+function(emscape_tests module)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINKS")
+  add_executable(${module}_tests ${ARG_SOURCES})
+  target_link_libraries(${module}_tests PRIVATE emscape::${module} ${ARG_LINKS} GTest::gtest_main GTest::gmock)
+  target_compile_definitions(${module}_tests PRIVATE EMSCAPE_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  emscape_warnings(${module}_tests)
+  gtest_discover_tests(${module}_tests DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${module})
+endfunction()

@@ -1,0 +1,28 @@
+# Options and what holds for every target of the project.
+option(EMSCAPE_TESTS "Build the tests" ON)
+option(EMSCAPE_BENCH "Build the benchmark programs" OFF)
+option(EMSCAPE_WERROR "Treat warnings as errors" ON)
+set(EMSCAPE_SANITIZE "" CACHE STRING "Sanitizer of every target: address, thread or empty")
+
+set(CMAKE_CXX_STANDARD 17)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/bin")
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(EMSCAPE_CCACHE ccache)
+if(EMSCAPE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${EMSCAPE_CCACHE}")
+endif()
+
+if(EMSCAPE_SANITIZE STREQUAL "address")
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+elseif(EMSCAPE_SANITIZE STREQUAL "thread")
+  add_compile_options(-fsanitize=thread)
+  add_link_options(-fsanitize=thread)
+endif()

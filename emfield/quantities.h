@@ -1,0 +1,32 @@
+/// The quantities that the pipeline can produce.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace emscape::emfield {
+
+enum class Quantity {
+  power_density_dbwm2,
+  field_strength_dbuvm,
+  received_power_dbm,
+  snr_db,
+  emitter_count,
+  dominant_emitter,
+};
+
+struct QuantityInfo {
+  Quantity quantity;
+  const char* name;          ///< as in scenario files and volumes
+  const char* unit;          ///< for colour bars; empty for counts and indices
+  const char* description;   ///< one line
+  bool categorical;          ///< indices: nearest sampling, integer grids
+};
+
+/// All quantities, in the order of the enum.
+const std::vector<QuantityInfo>& quantityTable();
+const QuantityInfo& info(Quantity quantity);
+/// @throws Error (bad_input) that lists the allowed names
+Quantity quantityFromName(const std::string& name);
+
+}  // namespace emscape::emfield

@@ -1,0 +1,24 @@
+/// The scenario's time line.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace emscape::scenario {
+
+struct Clock {
+  std::string epoch_utc;   ///< ISO 8601 with Z; empty if the scenario has no epoch
+  double duration_s = 0;
+  double step_s = 1;
+};
+
+/// Times from begin to end, both included if the step meets them; computed as begin + i * step, so that no error adds up.
+std::vector<double> timesOf(double begin_s, double end_s, double step_s);
+/// The whole clock: 0, step, ... duration.
+std::vector<double> timesOf(const Clock& clock);
+/// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T". @throws Error (usage)
+std::vector<double> parseTimes(const std::string& text, const Clock& clock);
+/// ISO 8601 time (UTC, milliseconds) at t_s; empty without an epoch.
+std::string utcAt(const Clock& clock, double t_s);
+
+}  // namespace emscape::scenario

@@ -1,0 +1,69 @@
+/// What radiates, and how a receiver is described.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scenario/antenna.h"
+#include "scenario/scan.h"
+
+namespace emscape::scenario {
+
+enum class EmitterKind { radar, transmitter, jammer };
+enum class Polarization { horizontal, vertical, slant_45, slant_135, circular_right, circular_left };
+/// The propagation models that the scenario schema knows; emfield says which of them it can compute.
+enum class PropagationModel { free_space, horizon, diffraction, two_ray, itm, p528 };
+
+const char* toString(EmitterKind kind);
+const char* toString(Polarization polarization);
+const char* toString(PropagationModel model);
+
+/// Power lost (linear, 0..1) between two polarisations: |<e_t, e_r>|^2; 0 for orthogonal ones.
+double polarizationFactor(Polarization transmit, Polarization receive);
+
+/// A radar's own receiver: what turns power density into signal-to-noise.
+struct RadarReceiver {
+  double noise_figure_db = 0;
+  double bandwidth_hz = 1e6;
+  double losses_db = 0;         ///< receive path, one way; the schema's default is the emitter's losses_db
+  int pulses = 1;
+  double pfa = 1e-6;
+  int swerling = 1;             ///< 0..4
+  double target_rcs_m2 = 1;
+};
+
+/// A receiver placed at every voxel, for received_power_dbm.
+struct ReceiverProfile {
+  std::string name;
+  double gain_dbi = 0;
+  double losses_db = 0;
+  std::optional<Polarization> polarization;   ///< none: matched to every emitter
+  double center_frequency_hz = 0;             ///< 0: tuned to every emitter
+  double bandwidth_hz = 0;                    ///< 0: as wide as the emitter's signal
+};
+
+/// [begin, end) in seconds since the epoch.
+struct TimeInterval {
+  double begin_s = 0;
+  double end_s = 0;
+};
+
+struct Emitter {
+  std::string name;
+  int platform = -1;             ///< index into Scenario::platforms
+  EmitterKind kind = EmitterKind::transmitter;
+  double frequency_hz = 0;
+  double bandwidth_hz = 0;       ///< of the signal; 0: narrower than any receiver
+  double power_w = 0;            ///< peak, at the transmitter's output
+  double losses_db = 0;          ///< transmit path, one way, >= 0
+  Polarization polarization = Polarization::vertical;
+  AntennaPtr antenna;
+  ScanSpec scan;
+  PropagationModel propagation = PropagationModel::horizon;
+  RadarReceiver receiver;        ///< radars only
+  std::vector<TimeInterval> active_s;   ///< empty: always
+};
+
+}  // namespace emscape::scenario

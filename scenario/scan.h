@@ -1,0 +1,42 @@
+/// How an antenna's beam moves.
+#pragma once
+
+#include <vector>
+
+namespace emscape::scenario {
+
+enum class ScanKind { fixed, rotate, sector, raster, dwell_list };
+
+/// One position of an electronically steered beam, held for duration_s.
+struct Dwell {
+  double azimuth_deg = 0;    ///< off the mount's boresight, clockwise
+  double elevation_deg = 0;  ///< off the mount's boresight, upwards
+  double duration_s = 0;
+};
+
+/// Angles in degrees as in the file. The mount's boresight is the platform's heading (level platforms: north-referenced),
+/// turned by azimuth_deg and elevation_deg.
+struct ScanSpec {
+  ScanKind kind = ScanKind::fixed;
+  double azimuth_deg = 0;      ///< fixed: boresight; rotate: at t = 0; sector, raster: centre
+  double elevation_deg = 0;    ///< boresight elevation, upwards
+  double rate_rpm = 0;         ///< rotate: clockwise if positive
+  double width_deg = 0;        ///< sector, raster: full width of the azimuth sweep
+  double rate_deg_s = 0;       ///< sector, raster: azimuth speed
+  double elevation_step_deg = 0;  ///< raster: between bars
+  int bars = 1;                ///< raster
+  std::vector<Dwell> dwells;   ///< dwell_list, repeated for ever
+};
+
+/// Where a beam looks relative to the mount's boresight axes (deg).
+struct BeamDirection {
+  double azimuth_deg = 0;
+  double elevation_deg = 0;
+  /// True: steered electronically, the antenna itself does not turn (dwell_list).
+  bool electronic = false;
+};
+
+/// The beam at t_s seconds since the epoch. Pure: the same t gives the same beam.
+BeamDirection beamAt(const ScanSpec& scan, double t_s);
+
+}  // namespace emscape::scenario

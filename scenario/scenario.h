@@ -1,0 +1,68 @@
+/// A scenario as it is written in a file: what is on the battlefield, where and when.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/geo_frame.h"
+#include "scenario/clock.h"
+#include "scenario/emitter.h"
+#include "scenario/platform.h"
+#include "scenario/terrain.h"
+
+namespace emscape::scenario {
+
+/// The box that the field fills. altitude: x, y centred on the origin, z from the origin's height above mean sea level upwards.
+/// enu: the same, z from the tangent point upwards.
+struct Region {
+  FrameOrigin origin;
+  Vec3d size_m;
+  Dims dims;
+};
+
+struct Atmosphere {
+  double k_factor = 4.0 / 3.0;      ///< effective earth radius over earth radius
+  double pressure_hpa = 1013.25;
+  double temperature_k = 288.15;
+  double vapour_g_m3 = 7.5;
+  double rain_mm_h = 0;
+};
+
+/// A named frequency interval, for combine by band.
+struct Band {
+  std::string name;
+  double begin_hz = 0;
+  double end_hz = 0;
+};
+
+enum class CombineMode { sum, max, per_emitter, per_band };
+
+struct OutputSpec {
+  std::vector<std::string> quantities{"power_density_dbwm2"};   ///< names of the quantity table
+  CombineMode combine = CombineMode::sum;
+  double floor = -120;               ///< lowest value kept, in each quantity's unit
+  double count_threshold_dbwm2 = -90;   ///< emitter_count: emitters above this power density
+};
+
+struct Scenario {
+  std::string name;
+  std::string file;              ///< where it was read
+  std::string hash;              ///< of the file's bytes and of every file it names (hex)
+  Clock clock;
+  Region region;
+  std::optional<TerrainSpec> terrain;
+  Atmosphere atmosphere;
+  std::vector<Platform> platforms;
+  std::vector<Emitter> emitters;
+  std::vector<ReceiverProfile> receivers;   ///< the first is used for received_power_dbm
+  std::vector<Band> bands;
+  OutputSpec output;
+};
+
+/// Where terrain is needed: the region and every platform position, with a margin (deg).
+GeoBox terrainBox(const Scenario& scenario);
+
+}  // namespace emscape::scenario

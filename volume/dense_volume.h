@@ -1,0 +1,40 @@
+/// A scalar field on a grid, in memory.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "volume/grid.h"
+
+namespace emscape::volume {
+
+/// What the values mean. Every file that holds a volume holds these too, as `emscape:*` where it has metadata.
+struct VolumeInfo {
+  std::string quantity;        ///< name with its unit as suffix, for example power_density_dbwm2; names the .vdb grid
+  std::string unit;            ///< for a colour bar, for example dBW/m2; empty for counts
+  double time_s = 0;           ///< since the scenario's epoch
+  std::string time_utc;        ///< ISO 8601, empty if there is no epoch
+  float floor = 0;             ///< value of voxels that hold no field; the background of sparse grids
+  float range_min = 0;         ///< value range of the whole series, floor and masked voxels left out
+  float range_max = 0;
+  bool categorical = false;    ///< indices (dominant_emitter): nearest sampling, int grid in .vdb
+  std::map<std::string, std::string> extra;  ///< further metadata by key: scenario hash, version, warnings
+};
+
+/// Values in dense order. Voxels below ground or without a known field are masked: they hold `info.floor`, are inactive in
+/// .vdb and are never drawn.
+struct DenseVolume {
+  Grid grid;
+  VolumeInfo info;
+  std::vector<float> values;  ///< grid.dims.count() values
+  /// For each column (i, j), i fastest: the lowest k that holds a field; dims.z where none does. Empty: no voxel is masked.
+  std::vector<std::uint16_t> first_valid_k;
+
+  bool isMasked(int i, int j, int k) const {
+    return !first_valid_k.empty() && k < first_valid_k[static_cast<std::size_t>(j) * grid.dims.x + i];
+  }
+};
+
+}  // namespace emscape::volume
