@@ -1,0 +1,20 @@
+/// The ground below a volume, as the renderer takes it.
+#pragma once
+
+#include <vector>
+
+namespace emscape::render {
+
+/// Heights at the posts of a regular grid, bilinear between them, in the volume's frame (m): x east, y north,
+/// heights in the frame's z. Post (i, j) lies at (first_x_m + i * spacing_x_m, first_y_m + j * spacing_y_m).
+/// A NaN is a hole: where the ground is not known the picture shows a hatched pit, never a plain. Drawn
+/// inside the volume's box; edge posts hold for one spacing beyond.
+struct HeightField {
+  int columns = 0;  ///< >= 2
+  int rows = 0;     ///< >= 2
+  double first_x_m = 0, first_y_m = 0;
+  double spacing_x_m = 0, spacing_y_m = 0;  ///< > 0
+  std::vector<float> heights_m;             ///< columns * rows, x fastest, then y
+};
+
+}  // namespace emscape::render

@@ -1,0 +1,47 @@
+/// Which pixels are cast and how the others follow: the patterns of pixel interpolation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/host_device.h"
+#include "render/image.h"
+
+namespace emscape::render {
+
+/// Source pixels: all; x even; (x + y) even; x and y even.
+enum class Pattern { full, columns, checkerboard, quarter };
+const char* toString(Pattern pattern);
+/// @throws Error (usage) that lists the names
+Pattern parsePattern(const std::string& name);
+/// Every pattern, that with the most rays first.
+const std::vector<Pattern>& allPatterns();
+
+/// How missing pixels are interpolated: in premultiplied float, or in 8-bit levels as the paper does (for its
+/// tables).
+enum class Interpolation { float32, bits8 };
+const char* toString(Interpolation interpolation);
+/// "float" or "8bit". @throws Error (usage)
+Interpolation parseInterpolation(const std::string& name);
+
+/// Pixels (first_x + i * step_x, first_y + j * step_y), 0 <= i < columns, 0 <= j < rows: a dense launch casts
+/// one.
+struct Lattice {
+  int first_x = 0, first_y = 0;
+  int step_x = 1, step_y = 1;
+  int columns = 0, rows = 0;
+
+  EMSCAPE_HD long long count() const { return static_cast<long long>(columns) * rows; }
+};
+
+/// The source pixels of a pattern, and those that are left; together they are the image, each pixel once.
+/// Empty lattices are left out.
+std::vector<Lattice> sourceLattices(Pattern pattern, ImageSize size);
+std::vector<Lattice> missingLattices(Pattern pattern, ImageSize size);
+long long pixelCount(const std::vector<Lattice>& lattices);
+
+/// Fills every pixel that is not a source pixel from those that are. An edge pixel with one neighbour copies
+/// it. 8-bit interpolation rounds half up and leaves source pixels as they were cast.
+void interpolate(Pattern pattern, Interpolation interpolation, Image& image);
+
+}  // namespace emscape::render
