@@ -9,6 +9,11 @@
 
 namespace emscape {
 
+/// WGS84: semi-major axis (m, defined) and first eccentricity squared, f (2 - f) with 1/f = 298.257223563
+/// (defined).
+constexpr double kWgs84SemiMajor_m = 6378137.0;
+constexpr double kWgs84EccentricitySquared = (2.0 - 1.0 / 298.257223563) / 298.257223563;
+
 /// A point of the ellipsoid (height 0) as the loops want it.
 struct SurfacePoint {
   Vec3d ecef_m;  ///< foot on the ellipsoid
@@ -19,7 +24,7 @@ struct SurfacePoint {
 /// @accuracy against GeographicLib to 500 km: distance within 1e-4 of itself, azimuth within 0.01 degree
 struct FastGeodesy {
   SurfacePoint station;
-  Vec3d east;   ///< unit vectors at the station
+  Vec3d east;  ///< unit vectors at the station
   Vec3d north;
   double meridian_radius_m = 0;  ///< M at the station
   double prime_radius_m = 0;     ///< N at the station
