@@ -23,6 +23,8 @@ FastGeodesy fastGeodesy(double latitude_deg, double longitude_deg) {
   GeographicLib::Math::sincosd(longitude_deg, sin_longitude, cos_longitude);
   FastGeodesy geodesy;
   geodesy.station = surfacePoint(latitude_deg, longitude_deg);
+  geodesy.latitude_rad = degToRad(latitude_deg);
+  geodesy.longitude_rad = degToRad(wrapLongitude_deg(longitude_deg));
   geodesy.east = {-sin_longitude, cos_longitude, 0.0};
   geodesy.north = {-sin_latitude * cos_longitude, -sin_latitude * sin_longitude, cos_latitude};
   const double w = 1.0 - kWgs84EccentricitySquared * sin_latitude * sin_latitude;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/geo_frame.h"
+#include "scenario/terrain_view.h"
 
 namespace emscape::scenario {
 
@@ -46,6 +47,8 @@ class Terrain {
   /// Height (m, EGM96 mean sea level); NaN over a void or outside the files: missing terrain never looks like sea level.
   /// @param latitude_deg -90..90, longitude_deg any (wrapped)
   virtual double heightMsl_m(double latitude_deg, double longitude_deg) const = 0;
+  /// The same heights for loops, without a virtual call; valid while the terrain lives.
+  virtual TerrainView view() const = 0;
   /// Finest distance between posts (m).
   virtual double postSpacing_m() const = 0;
   /// Posts of the box that are void, and the part of the box (0..1) that no file covers.

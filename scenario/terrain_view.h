@@ -1,0 +1,82 @@
+/// The ground as plain data, for loops on host and device.
+#pragma once
+
+#include <cmath>
+
+#include "base/host_device.h"
+#include "base/units.h"
+
+namespace emscape::scenario {
+
+/// One raster of posts, south row first, west post first; a void is NaN. Rows and columns are counted in
+/// posts as real numbers: post (column, row) lies at (column, row) exactly.
+struct TerrainRaster {
+  const float* heights_msl_m = nullptr;
+  int columns = 0, rows = 0;           ///< >= 2 each
+  double south_rad = 0, west_rad = 0;  ///< of post (0, 0); west within -2 pi..2 pi
+  double posts_per_rad_lat = 0, posts_per_rad_lon = 0;
+  /// Where heights may be asked for, within 0..columns - 1 and 0..rows - 1.
+  double first_column = 0, last_column = 0, first_row = 0, last_row = 0;
+
+  /// How far beyond its limits a point still belongs to the raster (posts): what rounded georeferences may be
+  /// off.
+  static constexpr double kSlack = 1e-3;
+  /// A post with less weight than this does not make its neighbourhood void.
+  static constexpr float kNoWeight = 1e-6f;
+
+  /// Bilinear height (m), NaN outside or if a post with weight is void.
+  EMSCAPE_HD float heightAt(double latitude_rad, double longitude_rad) const {
+    double v = (latitude_rad - south_rad) * posts_per_rad_lat;
+    if (!(v >= first_row - kSlack && v <= last_row + kSlack)) return NAN;
+    double u = (longitude_rad - west_rad) * posts_per_rad_lon;
+    if (!(u >= first_column - kSlack && u <= last_column + kSlack)) {
+      // The same meridian, one or more turns further.
+      const double turn = 2.0 * kPi * posts_per_rad_lon;
+      u -= turn * std::floor((u - first_column + kSlack) / turn);
+      if (!(u <= last_column + kSlack)) return NAN;
+    }
+    u = u < first_column ? first_column : u > last_column ? last_column : u;
+    v = v < first_row ? first_row : v > last_row ? last_row : v;
+    const int i = static_cast<int>(u) < columns - 2 ? static_cast<int>(u) : columns - 2;
+    const int j = static_cast<int>(v) < rows - 2 ? static_cast<int>(v) : rows - 2;
+    const float* south = heights_msl_m + static_cast<long long>(j) * columns + i;
+    const float* north = south + columns;
+    const float x = static_cast<float>(u - i);
+    const float y = static_cast<float>(v - j);
+    const float on_south = south[0] + x * (south[1] - south[0]);
+    const float on_north = north[0] + x * (north[1] - north[0]);
+    const float height = on_south + y * (on_north - on_south);
+    return height == height ? height : besideVoid(south, north, x, y);
+  }
+
+ private:
+  /// The same where a post is void: its height does not matter where it has no weight.
+  EMSCAPE_HD static float besideVoid(const float* south, const float* north, float x, float y) {
+    const float weights[4] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
+    const float posts[4] = {south[0], south[1], north[0], north[1]};
+    float height = 0;
+    for (int k = 0; k < 4; ++k) {
+      if (weights[k] >= kNoWeight) height += weights[k] * posts[k];
+    }
+    return height;
+  }
+};
+
+/// All rasters of a terrain, the finest first. Valid as long as the Terrain that gave it. On a device: copy
+/// the rasters' heights there and point a copy of the array at them.
+struct TerrainView {
+  const TerrainRaster* rasters = nullptr;
+  int count = 0;
+
+  /// Height above mean sea level (m): of the finest raster that has one here; NaN if none has.
+  /// @param latitude_rad -pi/2..pi/2, longitude_rad any
+  EMSCAPE_HD float heightAt(double latitude_rad, double longitude_rad) const {
+    float height = NAN;
+    for (int k = 0; k < count && !(height == height); ++k) {
+      height = rasters[k].heightAt(latitude_rad, longitude_rad);
+    }
+    return height;
+  }
+};
+
+}  // namespace emscape::scenario
