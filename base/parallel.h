@@ -11,8 +11,9 @@ void setThreadLimit(int threads);
 /// Threads that loops use now, >= 1.
 int threadCount();
 
-/// Runs body(begin, end) over disjoint pieces of [0, count), each of at least `grain` indices (the last may be
-/// shorter), and returns when all are done. Exceptions of the body reach the caller. Nothing may depend on which piece
+/// Runs body(begin, end) over disjoint pieces that cover [0, count), and returns when all are done. A loop of
+/// more than `grain` indices (>= 1; less counts as 1) is cut into pieces that are no shorter than about half
+/// of it. An exception of the body reaches the caller. Loops may be nested. Nothing may depend on which piece
 /// runs when: results must not vary with the number of threads.
 void parallelFor(int count, int grain, const std::function<void(int begin, int end)>& body);
 

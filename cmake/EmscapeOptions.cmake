@@ -3,6 +3,16 @@ option(EMSCAPE_TESTS "Build the tests" ON)
 option(EMSCAPE_BENCH "Build the benchmark programs" OFF)
 option(EMSCAPE_WERROR "Treat warnings as errors" ON)
 set(EMSCAPE_SANITIZE "" CACHE STRING "Sanitizer of every target: address, thread or empty")
+set_property(CACHE EMSCAPE_SANITIZE PROPERTY STRINGS "" address thread)
+set(EMSCAPE_CUDA AUTO CACHE STRING "Device code: AUTO (where CUDA is found), ON (required) or OFF")
+set_property(CACHE EMSCAPE_CUDA PROPERTY STRINGS AUTO ON OFF)
+
+# There is no device code yet: AUTO comes out as OFF.
+if(EMSCAPE_CUDA STREQUAL "ON")
+  message(FATAL_ERROR "EMSCAPE_CUDA=ON: this version has no CUDA code; use AUTO or OFF")
+elseif(NOT EMSCAPE_CUDA MATCHES "^(AUTO|OFF)$")
+  message(FATAL_ERROR "EMSCAPE_CUDA=${EMSCAPE_CUDA}: must be AUTO, ON or OFF")
+endif()
 
 set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -15,6 +25,7 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 find_program(EMSCAPE_CCACHE ccache)
+mark_as_advanced(EMSCAPE_CCACHE)
 if(EMSCAPE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   set(CMAKE_CXX_COMPILER_LAUNCHER "${EMSCAPE_CCACHE}")
 endif()
@@ -25,4 +36,13 @@ if(EMSCAPE_SANITIZE STREQUAL "address")
 elseif(EMSCAPE_SANITIZE STREQUAL "thread")
   add_compile_options(-fsanitize=thread)
   add_link_options(-fsanitize=thread)
+elseif(EMSCAPE_SANITIZE)
+  message(FATAL_ERROR "EMSCAPE_SANITIZE=${EMSCAPE_SANITIZE}: must be address, thread or empty")
+endif()
+
+# What the sanitizers must not report lies in each program itself, so that it holds however the program is started.
+if(EMSCAPE_SANITIZE)
+  add_library(emscape_sanitizer_defaults OBJECT "${PROJECT_SOURCE_DIR}/cmake/sanitizer_defaults.cpp")
+  link_libraries(
+    "$<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:$<TARGET_OBJECTS:emscape_sanitizer_defaults>>")
 endif()

@@ -1,0 +1,14 @@
+# The packages that the libraries link; shared by the build and by the installed find_package(emscape).
+list(APPEND CMAKE_MODULE_PATH
+  "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB"  # where Debian keeps these two find modules
+  /usr/share/cmake/geographiclib)
+set(EMSCAPE_DEPENDENCIES TBB GDAL GeographicLib OpenVDB yaml-cpp nlohmann_json fmt PNG)
+
+# emscape_find_dependencies(COMMAND ...): find_package REQUIRED or find_dependency, for each of them.
+macro(emscape_find_dependencies command)
+  set(_emscape_shared_libs "${BUILD_SHARED_LIBS}")
+  foreach(_emscape_package IN LISTS EMSCAPE_DEPENDENCIES)
+    cmake_language(CALL ${command} ${_emscape_package} ${ARGN})
+  endforeach()
+  set(BUILD_SHARED_LIBS "${_emscape_shared_libs}")  # Debian's FindOpenVDB sets it
+endmacro()

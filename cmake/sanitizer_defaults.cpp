@@ -1,0 +1,10 @@
+// Reports that lie in Debian's libraries, not in this project. Read by the sanitizers at the start of every
+// program.
+
+// Debian's libraries are not instrumented: the sanitizer misses how they hand data from thread to thread. Our
+// own loops run on plain threads here (base/parallel.cpp) and are checked in full.
+extern "C" const char* __tsan_default_suppressions() {
+  return "called_from_lib:libtbb.so\n"
+         "called_from_lib:libopenvdb.so\n"
+         "race:openvdb::\n";
+}

@@ -1,0 +1,38 @@
+#include "base/error.h"
+
+#include <gtest/gtest.h>
+
+namespace emscape {
+namespace {
+
+TEST(FilePlace, IsWrittenAsFileLineColumn) {
+  EXPECT_EQ(toString(FilePlace{"a.yaml", 3, 7}), "a.yaml:3:7");
+}
+
+TEST(FilePlace, LeavesOutWhatIsUnknown) {
+  EXPECT_EQ(toString(FilePlace{"a.yaml", 3, 0}), "a.yaml:3");
+  EXPECT_EQ(toString(FilePlace{"a.tif", 0, 0}), "a.tif");
+  EXPECT_EQ(toString(FilePlace{"a.tif", 0, 7}), "a.tif");
+}
+
+TEST(Error, StartsWithThePlace) {
+  const Error error(ErrorCode::bad_input, {"a.yaml", 3, 7}, "gain_dbi is 99");
+  EXPECT_STREQ(error.what(), "a.yaml:3:7: gain_dbi is 99");
+  EXPECT_EQ(error.message(), "gain_dbi is 99");
+  EXPECT_EQ(error.place().line, 3);
+  EXPECT_EQ(error.code(), ErrorCode::bad_input);
+}
+
+TEST(Error, WithoutAPlaceIsTheMessageAlone) {
+  const Error error(ErrorCode::usage, "no such subcommand");
+  EXPECT_STREQ(error.what(), "no such subcommand");
+  EXPECT_STREQ(Error(ErrorCode::usage, FilePlace{}, "no such subcommand").what(), "no such subcommand");
+  EXPECT_TRUE(error.place().file.empty());
+}
+
+TEST(Error, IsCaughtAsAStandardException) {
+  EXPECT_THROW(throw Error(ErrorCode::device, "out of memory"), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace emscape

@@ -1,0 +1,50 @@
+#include "base/log.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace emscape {
+namespace {
+
+/// Collects what is logged while it lives.
+class LogTest : public testing::Test {
+ protected:
+  LogTest() {
+    setLogSink([this](LogLevel level, const std::string& message) { lines_.emplace_back(level, message); });
+  }
+  ~LogTest() override { setLogSink({}); }
+
+  std::vector<std::pair<LogLevel, std::string>> lines_;
+};
+
+TEST_F(LogTest, CarriesLevelAndMessage) {
+  logDebug("fan of 3 emitters");
+  logInfo("terrain read");
+  logWarning("gain outside the table");
+  const std::vector<std::pair<LogLevel, std::string>> expected = {
+      {LogLevel::debug, "fan of 3 emitters"},
+      {LogLevel::info, "terrain read"},
+      {LogLevel::warning, "gain outside the table"}};
+  EXPECT_EQ(lines_, expected);
+}
+
+TEST_F(LogTest, IsSilentWithoutASink) {
+  setLogSink({});
+  logWarning("nobody hears this");
+  EXPECT_TRUE(lines_.empty());
+}
+
+TEST_F(LogTest, TakesMessagesFromManyThreads) {
+  parallelFor(1000, 1, [](int begin, int end) {
+    for (int i = begin; i < end; ++i) logInfo(std::to_string(i));
+  });
+  EXPECT_EQ(lines_.size(), 1000u);
+}
+
+}  // namespace
+}  // namespace emscape
