@@ -6,8 +6,8 @@
 
 namespace emscape::volume {
 
-/// Voxel (i, j, k) has its centre at first_center_m + (i, j, k) * spacing_m in the frame of `frame`, which says where on the
-/// earth it lies. Dense order everywhere: x fastest, then y, then z.
+/// Voxel (i, j, k) has its centre at first_center_m + (i, j, k) * spacing_m in the frame of `frame`, which
+/// says where on the earth it lies. Dense order everywhere: x fastest, then y, then z.
 struct Grid {
   Dims dims;
   Vec3d spacing_m;
@@ -16,9 +16,7 @@ struct Grid {
   /// False for a volume that lies nowhere on the earth (a scan, a raw file): frame then says nothing.
   bool georeferenced = false;
 
-  long long index(int i, int j, int k) const {
-    return (static_cast<long long>(k) * dims.y + j) * dims.x + i;
-  }
+  long long index(int i, int j, int k) const { return (static_cast<long long>(k) * dims.y + j) * dims.x + i; }
   Vec3d center_m(int i, int j, int k) const {
     return {first_center_m.x + i * spacing_m.x, first_center_m.y + j * spacing_m.y,
             first_center_m.z + k * spacing_m.z};
@@ -31,6 +29,8 @@ struct Grid {
 };
 
 bool operator==(const Grid& a, const Grid& b);
-inline bool operator!=(const Grid& a, const Grid& b) { return !(a == b); }
+inline bool operator!=(const Grid& a, const Grid& b) {
+  return !(a == b);
+}
 
 }  // namespace emscape::volume

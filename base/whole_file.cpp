@@ -1,0 +1,170 @@
+#include "base/whole_file.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <system_error>
+
+#include "base/error.h"
+
+namespace emscape {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr char kMarker[] = ".part-";
+
+std::string causeOf(int error_number) {
+  return error_number == 0 ? "the system gives no cause" : std::generic_category().message(error_number);
+}
+
+[[noreturn]] void failWriting(const fs::path& path, const std::string& cause) {
+  throw Error(ErrorCode::other, {path.string()}, "cannot write: " + cause);
+}
+
+/// Opens, fsyncs and closes; folders too, so that a rename in them is on the disk.
+/// @return errno, 0 if all went well
+int syncToDisk(const fs::path& path, int flags) {
+  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  int cause = ::fsync(descriptor) == 0 ? 0 : errno;
+  if (::close(descriptor) != 0 && cause == 0) cause = errno;
+  return cause;
+}
+
+fs::path folderOf(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+/// The process that wrote a temporary, 0 if the name is not one of a temporary.
+long writerOf(const fs::path& path) {
+  const std::string name = path.filename().string();
+  const std::size_t marker = name.rfind(kMarker);
+  if (marker == std::string::npos || marker == 0) return 0;
+  const std::string process = name.substr(marker + std::strlen(kMarker));
+  const bool digits = !process.empty() && process.size() < 10 &&
+                      std::all_of(process.begin(), process.end(),
+                                  [](unsigned char character) { return std::isdigit(character) != 0; });
+  return digits ? std::stol(process) : 0;
+}
+
+/// Renaming over a folder fails late and over a device would replace it, so both are refused before work
+/// begins.
+void checkTarget(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(folderOf(path), ignored)) {
+    failWriting(path, "the folder " + folderOf(path).string() + " does not exist");
+  }
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    failWriting(path, fs::is_directory(status) ? "a folder of that name exists" : "it is not a regular file");
+  }
+}
+
+/// A file under its temporary name; removed unless kept.
+class Temporary {
+ public:
+  explicit Temporary(const OutputFile& file) : path_(temporaryFor(file.path)) {
+    checkTarget(file.path);
+    errno = 0;
+    std::ofstream stream(path_, std::ios::binary | std::ios::trunc);
+    if (!stream) failWriting(file.path, causeOf(errno));
+    stream.exceptions(std::ios::badbit | std::ios::failbit);
+    try {
+      errno = 0;
+      file.write(stream);
+      stream.close();
+    } catch (const std::ios_base::failure&) {
+      const int cause = errno;
+      remove();
+      failWriting(file.path, causeOf(cause));
+    } catch (...) {
+      remove();
+      throw;
+    }
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  ~Temporary() { remove(); }
+
+  const fs::path& path() const { return path_; }
+
+ private:
+  void remove() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+
+  fs::path path_;
+};
+
+}  // namespace
+
+fs::path temporaryFor(const fs::path& path) {
+  fs::path temporary = path;
+  temporary += kMarker + std::to_string(::getpid());
+  return temporary;
+}
+
+bool isTemporary(const fs::path& path) {
+  return writerOf(path) != 0;
+}
+
+void publish(const fs::path& temporary, const fs::path& path) {
+  int cause = syncToDisk(temporary, O_RDONLY);
+  if (cause == 0 && ::rename(temporary.c_str(), path.c_str()) != 0) cause = errno;
+  if (cause != 0) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+    failWriting(path, causeOf(cause));
+  }
+  // Some file systems cannot sync a folder; the file itself is whole under its name all the same.
+  syncToDisk(folderOf(path), O_RDONLY | O_DIRECTORY);
+}
+
+void writeWhole(const std::vector<OutputFile>& files) {
+  std::vector<std::unique_ptr<Temporary>> temporaries;
+  for (const OutputFile& file : files) temporaries.push_back(std::make_unique<Temporary>(file));
+  for (std::size_t i = 0; i < files.size(); ++i) publish(temporaries[i]->path(), files[i].path);
+}
+
+void writeWhole(const fs::path& path, const std::function<void(std::ostream&)>& write) {
+  writeWhole({{path, write}});
+}
+
+int removeStaleTemporaries(const fs::path& folder) {
+  int removed = 0;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const long process = writerOf(entry.path());
+    if (process == 0 || ::kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH) continue;
+    if (fs::remove(entry.path(), error)) ++removed;
+  }
+  return removed;
+}
+
+std::vector<std::uint8_t> readWhole(const fs::path& path) {
+  const auto fail = [&](const std::string& cause) {
+    throw Error(ErrorCode::bad_input, {path.string()}, "cannot read: " + cause);
+  };
+  std::error_code error;
+  if (fs::is_directory(path, error)) fail("it is a folder");
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) fail(causeOf(errno));
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) fail(error.message());
+  std::vector<std::uint8_t> bytes(size);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(stream.gcount()) != size) fail("it ended early");
+  return bytes;
+}
+
+}  // namespace emscape

@@ -1,0 +1,47 @@
+/// Files that appear under their name only when they are whole, and files read whole.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <ostream>
+#include <vector>
+
+namespace emscape {
+
+/// One file to write: `write` fills the stream, which throws on every failure, seeks, and is binary.
+struct OutputFile {
+  std::filesystem::path path;
+  std::function<void(std::ostream&)> write;
+};
+
+/// Writes files that belong together: each beside its final name, flushed to the disk, and only when all are
+/// whole renamed, in the order given. Files of the same name are replaced. On any failure nothing new lies
+/// under a final name and the temporaries are gone; only a killed process leaves one, which isTemporary()
+/// recognises.
+/// @throws Error (other) that names the path and the cause: missing folder, no permission, no space;
+/// exceptions that
+///         `write` throws for reasons of its own pass through
+void writeWhole(const std::vector<OutputFile>& files);
+void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// The name under which a file is written before it is whole, for programs that write it themselves:
+/// NAME.part-PID.
+std::filesystem::path temporaryFor(const std::filesystem::path& path);
+
+/// Brings a temporary that is whole to the disk and under its final name.
+/// @throws Error (other); the temporary is then removed
+void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
+
+/// True for names that temporaryFor() gives.
+bool isTemporary(const std::filesystem::path& path);
+
+/// Removes from a folder the temporaries of processes that no longer run.
+/// @return how many; 0 where the folder does not exist
+int removeStaleTemporaries(const std::filesystem::path& folder);
+
+/// All bytes of a file.
+/// @throws Error (bad_input) that names the path and the cause
+std::vector<std::uint8_t> readWhole(const std::filesystem::path& path);
+
+}  // namespace emscape

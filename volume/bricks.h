@@ -1,0 +1,53 @@
+/// The value range of each small block of a volume, so that a ray caster can step over what it would not
+/// show.
+#pragma once
+
+#include <vector>
+
+#include "base/host_device.h"
+#include "base/vec.h"
+#include "volume/dense_volume.h"
+
+namespace emscape::volume {
+
+/// Least and greatest value; empty (min > max) where a block holds nothing to show.
+struct ValueRange {
+  float min = 0;
+  float max = 0;
+
+  EMSCAPE_HD bool empty() const { return min > max; }
+};
+
+/// Bricks as plain data for host and device; x fastest, then y, then z.
+struct BricksView {
+  const ValueRange* ranges = nullptr;
+  Dims dims;     ///< numbers of bricks
+  int edge = 0;  ///< voxels along a brick's edge
+
+  EMSCAPE_HD ValueRange at(int x, int y, int z) const {
+    return ranges[(static_cast<long long>(z) * dims.y + y) * dims.x + x];
+  }
+};
+
+/// Min-max bricks of a volume. Brick (x, y, z) owns the voxels [x, x + 1) * edge and so on; its range is
+/// taken with an apron of one voxel all around, so that every trilinear sample taken inside the box of its
+/// voxels (which reaches half a voxel beyond their centres) lies within [min, max]. NaN voxels do not count.
+/// Masked voxels count with the floor, as they enter a sample; a brick whose voxels, apron included, are all
+/// masked or all NaN is empty.
+class Bricks {
+ public:
+  /// Computed in parallel. @param edge voxels, >= 1; @throws Error (bad_input) for another edge
+  explicit Bricks(const DenseVolume& volume, int edge = 8);
+
+  /// Computes the ranges anew from a volume of the same dims; memory is kept where the dims allow.
+  void update(const DenseVolume& volume);
+
+  BricksView view() const { return {ranges_.data(), dims_, edge_}; }
+
+ private:
+  int edge_;
+  Dims dims_;
+  std::vector<ValueRange> ranges_;
+};
+
+}  // namespace emscape::volume
