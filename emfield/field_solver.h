@@ -16,30 +16,34 @@ namespace emscape::emfield {
 /// What one volume of the output holds.
 struct Channel {
   Quantity quantity = Quantity::power_density_dbwm2;
-  std::string name;            ///< quantity, with ":" and the emitter's or band's name where it is not the sum of all
-  std::vector<int> emitters;   ///< indices that enter it
+  std::string name;  ///< quantity, with ":" and the emitter's or band's name where it is not the sum of all
+  std::vector<int> emitters;  ///< indices that enter it
 };
 
-/// The channels of a scenario's output: one a quantity, or one a quantity and emitter (combine per_emitter) or band.
+/// The channels of a scenario's output: one a quantity, or one a quantity and emitter (combine per_emitter)
+/// or band.
 /// @param quantities  names; empty: the scenario's own
 /// @throws Error (bad_input)
-std::vector<Channel> channelsOf(const scenario::Scenario& scenario, const std::vector<std::string>& quantities);
+std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
+                                const std::vector<std::string>& quantities);
 
 struct FieldOptions {
-  std::vector<std::string> quantities;   ///< empty: the scenario's
-  bool allow_missing_terrain = false;    ///< true: columns over holes, and those that are seen only across one, are masked
+  std::vector<std::string> quantities;  ///< empty: the scenario's
+  bool allow_missing_terrain =
+      false;  ///< true: columns over holes, and those that are seen only across one, are masked
   /// An emitter that moved less than this keeps its fan and planes (m).
   double move_tolerance_m = 0.5;
-  /// Bound on the per-emitter caches (bytes), 0: none. Emitters that do not fit are computed anew at each update.
+  /// Bound on the per-emitter caches (bytes), 0: none. Emitters that do not fit are computed anew at each
+  /// update.
   std::size_t cache_bytes = 0;
 };
 
 /// What an update did. A frame controller counts `any` as one event.
 struct FieldChanged {
   bool any = false;
-  bool grid = false;                    ///< first update: everything is new
-  std::vector<int> moved;               ///< emitters whose fan and planes were computed anew
-  std::vector<int> turned;              ///< emitters of which only the beam, the power or the activity changed
+  bool grid = false;        ///< first update: everything is new
+  std::vector<int> moved;   ///< emitters whose fan and planes were computed anew
+  std::vector<int> turned;  ///< emitters of which only the beam, the power or the activity changed
 };
 
 /// Milliseconds that the stages of the last update took.
@@ -60,19 +64,26 @@ struct MemoryUse {
 class FieldSolver {
  public:
   /// @param terrain  null: no terrain in the scenario (smooth earth at mean sea level for `horizon`)
-  /// @throws Error (bad_input) where the terrain is missing, naming the place, unless allowed; for a model that is not built
-  FieldSolver(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain, FieldOptions options);
+  /// @throws Error (bad_input) where the terrain is missing, naming the place, unless allowed; for a model
+  /// that is not built
+  FieldSolver(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
+              FieldOptions options);
   ~FieldSolver();
 
   const volume::Grid& grid() const;
   const std::vector<Channel>& channels() const;
-  /// Ground height above mean sea level under the centre of each column (m), i fastest; NaN over holes; empty without terrain.
+  /// Ground height above mean sea level under the centre of each column (m), i fastest; NaN over holes; empty
+  /// without terrain.
   const std::vector<float>& groundHeights_m() const;
 
+  /// Computes the field of a snapshot of the same scenario.
+  /// @throws Error (bad_input) where a path crosses missing terrain, unless allowed; the solver must not be
+  /// used after that
   FieldChanged update(const scenario::Snapshot& snapshot);
 
-  /// The channels' volumes after the last update, in the order of channels(). They are not changed by later updates: a
-  /// caller may keep one while the next is computed. info.range_* are this volume's own; a series sets them for all.
+  /// The channels' volumes after the last update, in the order of channels(). They are not changed by later
+  /// updates: a caller may keep one while the next is computed. info.range_* are this volume's own; a series
+  /// sets them for all.
   const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() const;
 
   StageTimes stageTimes() const;

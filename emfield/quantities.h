@@ -17,10 +17,10 @@ enum class Quantity {
 
 struct QuantityInfo {
   Quantity quantity;
-  const char* name;          ///< as in scenario files and volumes
-  const char* unit;          ///< for colour bars; empty for counts and indices
-  const char* description;   ///< one line
-  bool categorical;          ///< indices: nearest sampling, integer grids
+  const char* name;         ///< as in scenario files and volumes
+  const char* unit;         ///< for colour bars; empty for counts and indices
+  const char* description;  ///< one line
+  bool categorical;         ///< indices: nearest sampling, integer grids
 };
 
 /// All quantities, in the order of the enum.

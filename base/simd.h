@@ -1,0 +1,11 @@
+/// Versions of a function for wider vector units, chosen when the program starts.
+#pragma once
+
+/// Put before a function's definition: g++ compiles it for AVX-512, for AVX2 and for the plain target, with
+/// all that is inlined into it. Off under sanitizers, whose run time is not ready when the choice is made.
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define EMSCAPE_SIMD_CLONES __attribute__((target_clones("arch=skylake-avx512", "arch=haswell", "default")))
+#else
+#define EMSCAPE_SIMD_CLONES
+#endif

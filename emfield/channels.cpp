@@ -1,0 +1,51 @@
+#include <algorithm>
+
+#include "base/error.h"
+#include "emfield/field_solver.h"
+
+namespace emscape::emfield {
+namespace {
+
+using scenario::CombineMode;
+using scenario::EmitterKind;
+
+/// Quantities that are one number for all emitters, whatever the combination.
+bool countsEmitters(Quantity quantity) {
+  return quantity == Quantity::emitter_count || quantity == Quantity::dominant_emitter;
+}
+
+}  // namespace
+
+std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
+                                const std::vector<std::string>& quantities) {
+  std::vector<Channel> channels;
+  for (const std::string& name : quantities.empty() ? scenario.output.quantities : quantities) {
+    const Quantity quantity = quantityFromName(name);
+    std::vector<int> emitters;
+    for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
+      const bool enters = quantity != Quantity::snr_db || scenario.emitters[e].kind == EmitterKind::radar;
+      if (enters) emitters.push_back(static_cast<int>(e));
+    }
+    if (scenario.output.combine == CombineMode::per_emitter && !countsEmitters(quantity)) {
+      for (int e : emitters) channels.push_back({quantity, name + ":" + scenario.emitters[e].name, {e}});
+    } else if (scenario.output.combine == CombineMode::per_band) {
+      if (scenario.bands.empty()) {
+        throw Error(ErrorCode::bad_input, {scenario.file},
+                    "combine 'per_band' needs at least one entry under 'bands'");
+      }
+      for (const scenario::Band& band : scenario.bands) {
+        Channel channel{quantity, name + ":" + band.name, {}};
+        std::copy_if(emitters.begin(), emitters.end(), std::back_inserter(channel.emitters), [&](int e) {
+          const double frequency_hz = scenario.emitters[e].frequency_hz;
+          return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
+        });
+        channels.push_back(channel);
+      }
+    } else {
+      channels.push_back({quantity, name, emitters});
+    }
+  }
+  return channels;
+}
+
+}  // namespace emscape::emfield

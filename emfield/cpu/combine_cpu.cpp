@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <vector>
+
+#include "base/parallel.h"
+#include "base/simd.h"
+#include "emfield/combine.h"
+
+namespace emscape::emfield {
+namespace {
+
+using scenario::PatternKind;
+
+/// A run of voxels along x: `count` columns from `column` on, all at z = t_m.
+struct Row {
+  std::size_t column;
+  int count;
+  float t_m;
+};
+
+template <PatternKind kind>
+__attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  const EmitterBeam local = emitter;
+#pragma omp simd
+  for (int i = 0; i < row.count; ++i) out[i] = powerDensity_wm2<kind>(local, row.column + i, row.t_m);
+}
+
+EMSCAPE_SIMD_CLONES void isotropicRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::isotropic>(emitter, row, out);
+}
+EMSCAPE_SIMD_CLONES void gaussianRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::gaussian>(emitter, row, out);
+}
+EMSCAPE_SIMD_CLONES void separableRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::separable>(emitter, row, out);
+}
+EMSCAPE_SIMD_CLONES void phasedArrayRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::phased_array>(emitter, row, out);
+}
+EMSCAPE_SIMD_CLONES void gridRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::grid>(emitter, row, out);
+}
+
+void powerDensityRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  switch (emitter.pattern.kind) {
+    case PatternKind::isotropic:
+      return isotropicRow(emitter, row, out);
+    case PatternKind::gaussian:
+      return gaussianRow(emitter, row, out);
+    case PatternKind::separable:
+      return separableRow(emitter, row, out);
+    case PatternKind::phased_array:
+      return phasedArrayRow(emitter, row, out);
+    case PatternKind::grid:
+      return gridRow(emitter, row, out);
+  }
+}
+
+EMSCAPE_SIMD_CLONES void reduceRow(Reduction reduction, float weight, int emitter_index,
+                                   const float* power_density_wm2, int count, float* value, float* largest) {
+  switch (reduction) {
+    case Reduction::sum:
+#pragma omp simd
+      for (int i = 0; i < count; ++i)
+        reduce(Reduction::sum, weight, 0, power_density_wm2[i], value[i], nullptr);
+      break;
+    case Reduction::maximum:
+#pragma omp simd
+      for (int i = 0; i < count; ++i)
+        reduce(Reduction::maximum, weight, 0, power_density_wm2[i], value[i], nullptr);
+      break;
+    case Reduction::count:
+#pragma omp simd
+      for (int i = 0; i < count; ++i)
+        reduce(Reduction::count, weight, 0, power_density_wm2[i], value[i], nullptr);
+      break;
+    case Reduction::dominant:
+#pragma omp simd
+      for (int i = 0; i < count; ++i) {
+        reduce(Reduction::dominant, weight, emitter_index, power_density_wm2[i], value[i], largest + i);
+      }
+      break;
+  }
+}
+
+void startRow(const CombineTask& task, std::size_t channel, std::size_t first) {
+  const Accumulator& out = task.accumulators[channel];
+  const ConstAccumulator& from = task.initial[channel];
+  const int count = task.dims.x;
+  if (from.value != nullptr) {
+    std::copy_n(from.value + first, count, out.value + first);
+    if (out.largest != nullptr) std::copy_n(from.largest + first, count, out.largest + first);
+  } else {
+    std::fill_n(out.value + first, count, task.reductions[channel] == Reduction::dominant ? -1.0f : 0.0f);
+    if (out.largest != nullptr) std::fill_n(out.largest + first, count, 0.0f);
+  }
+}
+
+void combineRow(const CombineTask& task, int j, int k, float* power_density_wm2) {
+  const int count = task.dims.x;
+  const std::size_t first = (static_cast<std::size_t>(k) * task.dims.y + j) * count;
+  const Row row{static_cast<std::size_t>(j) * count, count, task.t_m[k]};
+  if (!task.keep) {
+    for (std::size_t c = 0; c < task.accumulators.size(); ++c) {
+      if (task.accumulators[c].value != nullptr) startRow(task, c, first);
+    }
+  }
+  for (const CombineEmitter& emitter : task.emitters) {
+    powerDensityRow(emitter.beam, row, power_density_wm2);
+    for (const ChannelShare& share : emitter.shares) {
+      const Accumulator& out = task.accumulators[share.channel];
+      if (out.value == nullptr) continue;
+      reduceRow(task.reductions[share.channel], share.weight, emitter.emitter_index, power_density_wm2, count,
+                out.value + first, out.largest == nullptr ? nullptr : out.largest + first);
+    }
+  }
+}
+
+}  // namespace
+
+void combineCpu(const CombineTask& task) {
+  parallelFor(task.dims.y, 1, [&](int begin, int end) {
+    std::vector<float> power_density_wm2(task.dims.x);
+    for (int j = begin; j < end; ++j) {
+      for (int k = task.first_row_k == nullptr ? 0 : task.first_row_k[j]; k < task.dims.z; ++k) {
+        combineRow(task, j, k, power_density_wm2.data());
+      }
+    }
+  });
+}
+
+}  // namespace emscape::emfield

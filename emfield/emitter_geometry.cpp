@@ -1,0 +1,92 @@
+#include "emfield/emitter_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "emfield/shadow.h"
+
+namespace emscape::emfield {
+namespace {
+
+/// How far (m) a point of a column may lie from its middle over the ground.
+double leanOf(const GridColumns& columns) {
+  if (!columns.tilted) return 0;
+  const double half_height_m = 0.5 * (columns.t_m.back() - columns.t_m.front());
+  double drift = 0;
+  for (const GridColumn& column : columns.columns) drift = std::max(drift, length(column.foot_drift));
+  return drift * half_height_m;
+}
+
+}  // namespace
+
+void EmitterGeometry::compute(const scenario::EmitterState& state, scenario::PropagationModel model,
+                              double k_factor, const GridColumns& columns, const scenario::Terrain* terrain,
+                              const FanResolution& resolution, Times& times) {
+  Stopwatch watch;
+  const Station station = makeStation(state.position, state.height_msl_m, k_factor);
+  const std::vector<FanCoordinates> coordinates = fanCoordinates(station, columns);
+  locateColumns(station, k_factor, columns, coordinates);
+  shadow_edge_m_.clear();
+  unknown_columns_ = 0;
+  if (model == scenario::PropagationModel::free_space) {
+    times.fan_ms += watch.lap_ms();
+    return;
+  }
+  const TerrainFan fan = makeTerrainFan(station, coordinates, terrain, resolution, leanOf(columns));
+  times.fan_ms += watch.lap_ms();
+  shadow_edge_m_ = shadowEdges(station, columns, coordinates, fan);
+  unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
+                                   [](float edge) { return std::isnan(edge); });
+  times.plane_ms += watch.lap_ms();
+}
+
+void EmitterGeometry::locateColumns(const Station& station, double k_factor, const GridColumns& columns,
+                                    const std::vector<FanCoordinates>& coordinates) {
+  column_count_ = columns.columns.size();
+  arrays_.resize(kArrays * column_count_);
+  float* out[kArrays];
+  for (int a = 0; a < kArrays; ++a) out[a] = arrays_.data() + a * column_count_;
+  const Vec3d& up = station.geodesy.station.up;
+  const double bending_per_m = (1 - 1 / k_factor) / (2 * station.earth_radius_m);
+  parallelFor(static_cast<int>(column_count_), 4096, [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      const GridColumn& column = columns.columns[c];
+      const Vec3d base = column.base_ecef_m - station.ecef_m;
+      const double nearest_t_m = -dot(base, column.axis);
+      const Vec3d offset = base + column.axis * nearest_t_m;
+      const double values[kArrays] = {dot(base, station.geodesy.east),
+                                      dot(base, station.geodesy.north),
+                                      dot(base, up),
+                                      dot(column.axis, station.geodesy.east),
+                                      dot(column.axis, station.geodesy.north),
+                                      dot(column.axis, up),
+                                      dot(offset, offset),
+                                      nearest_t_m,
+                                      coordinates[c].range_m * bending_per_m};
+      for (int a = 0; a < kArrays; ++a) out[a][c] = static_cast<float>(values[a]);
+    }
+  });
+}
+
+ColumnGeometryView EmitterGeometry::view() const {
+  const float* first = arrays_.data();
+  const std::size_t n = column_count_;
+  return {first,         first + n,
+          first + 2 * n, first + 3 * n,
+          first + 4 * n, first + 5 * n,
+          first + 6 * n, first + 7 * n,
+          first + 8 * n, shadow_edge_m_.empty() ? nullptr : shadow_edge_m_.data()};
+}
+
+bool EmitterGeometry::isUnknown(std::size_t column) const {
+  return !shadow_edge_m_.empty() && std::isnan(shadow_edge_m_[column]);
+}
+
+void EmitterGeometry::release() {
+  arrays_ = {};
+  shadow_edge_m_ = {};
+}
+
+}  // namespace emscape::emfield

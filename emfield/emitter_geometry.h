@@ -1,0 +1,65 @@
+/// What the combine stage keeps of an emitter's place: per column of the grid, until the emitter moves.
+#pragma once
+
+#include <vector>
+
+#include "base/host_device.h"
+#include "emfield/terrain_fan.h"
+#include "scenario/emitter.h"
+#include "scenario/snapshot.h"
+
+namespace emscape::emfield {
+
+/// Column arrays as the loops read them, x fastest. In the emitter's east-north-up axes a voxel at z = t lies
+/// at b + t d.
+struct ColumnGeometryView {
+  const float* base_east_m = nullptr;
+  const float* base_north_m = nullptr;
+  const float* base_up_m = nullptr;
+  const float* axis_east = nullptr;
+  const float* axis_north = nullptr;
+  const float* axis_up = nullptr;
+  /// Squared distance (m2) of the emitter from the column's line, and t (m) of the point nearest to it, so
+  /// that the distance squared is offset2 + (t - nearest)^2: no cancellation, however near.
+  const float* offset2_m2 = nullptr;
+  const float* nearest_t_m = nullptr;
+  /// How much the refracted ray starts above the straight line: added to the tangent of the elevation.
+  const float* bending = nullptr;
+  /// Voxels below this z (m) are in shadow; null: the model has no shadow. NaN: unknown.
+  const float* shadow_edge_m = nullptr;
+};
+
+/// Stages 1 and 2 of one emitter.
+class EmitterGeometry {
+ public:
+  /// Milliseconds that the two stages took.
+  struct Times {
+    double fan_ms = 0, plane_ms = 0;
+  };
+
+  /// @param terrain  null: smooth earth
+  void compute(const scenario::EmitterState& state, scenario::PropagationModel model, double k_factor,
+               const GridColumns& columns, const scenario::Terrain* terrain, const FanResolution& resolution,
+               Times& times);
+
+  ColumnGeometryView view() const;
+  /// Columns whose path crosses missing terrain.
+  long long unknownColumns() const { return unknown_columns_; }
+  bool isUnknown(std::size_t column) const;
+
+  static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
+  std::size_t bytes() const { return (arrays_.size() + shadow_edge_m_.size()) * sizeof(float); }
+  void release();
+
+ private:
+  void locateColumns(const Station& station, double k_factor, const GridColumns& columns,
+                     const std::vector<FanCoordinates>& coordinates);
+
+  static constexpr int kArrays = 9;
+  std::size_t column_count_ = 0;
+  std::vector<float> arrays_;  ///< kArrays x column_count_
+  std::vector<float> shadow_edge_m_;
+  long long unknown_columns_ = 0;
+};
+
+}  // namespace emscape::emfield

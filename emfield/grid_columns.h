@@ -1,0 +1,46 @@
+/// The columns of a grid as they stand on the earth; the same for every emitter.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/geo_frame.h"
+#include "base/vec.h"
+#include "scenario/terrain.h"
+#include "volume/grid.h"
+
+namespace emscape::emfield {
+
+/// One column of voxels: the line base + t * axis, where t is the frame's z (m).
+struct GridColumn {
+  Vec3d base_ecef_m;       ///< at t = 0
+  Vec3d axis;              ///< unit vector of growing t
+  Vec3d foot_ecef_m;       ///< point of the ellipsoid below t = 0
+  Vec3d foot_drift;        ///< how the foot moves per metre of t; zero in the altitude frame
+  double height_msl_m[3];  ///< height above mean sea level = h0 + h1 t + h2 t^2
+};
+
+/// Heights of a column's points above mean sea level at t (m).
+inline double heightMsl_m(const GridColumn& column, double t_m) {
+  return column.height_msl_m[0] + t_m * (column.height_msl_m[1] + t_m * column.height_msl_m[2]);
+}
+
+/// All columns of a grid, x fastest. Immutable once made.
+struct GridColumns {
+  Dims dims;
+  bool tilted = false;  ///< columns lean against the vertical (enu frame)
+  std::vector<GridColumn> columns;
+  std::vector<float> t_m;           ///< z of each layer
+  std::vector<float> ground_msl_m;  ///< ground below each column (m); NaN over holes; empty without terrain
+  std::vector<std::uint16_t>
+      first_valid_k;  ///< lowest layer whose centre is not below ground; dims.z over holes
+  long long hole_columns = 0;
+  /// A column over a hole, for messages; -1 if there is none.
+  long long first_hole = -1;
+};
+
+/// @param terrain  null: nothing is below ground
+/// @accuracy enu: heights along a column within 1 mm, its foot within 1 m, for regions to 500 km
+GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* terrain);
+
+}  // namespace emscape::emfield

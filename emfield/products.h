@@ -1,0 +1,57 @@
+/// Stage 4: from accumulators to the quantities that a volume holds.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/fast_math.h"
+#include "base/host_device.h"
+#include "base/vec.h"
+#include "emfield/combine.h"
+#include "emfield/field_solver.h"
+
+namespace emscape::emfield {
+
+/// How a channel's accumulator becomes its quantity: decibels = scale * 10 log10(accumulator) + offset, or
+/// the accumulator itself.
+struct ProductScale {
+  bool decibels = true;
+  float scale = 1;
+  float offset_db = 0;
+  float floor = -120;  ///< lowest value kept
+};
+
+EMSCAPE_HD inline float productValue(const ProductScale& product, float accumulator) {
+  if (!product.decibels) return accumulator;
+  const float value = product.scale * fastRatioToDb(accumulator) + product.offset_db;
+  return accumulator > 0 && value > product.floor ? value : product.floor;
+}
+
+/// How a channel is made: its reduction, each emitter's weight in it, and its scale.
+struct ChannelRecipe {
+  Reduction reduction = Reduction::sum;
+  ProductScale product;
+  std::vector<float> weights;  ///< in the order of Channel::emitters
+};
+
+/// @throws Error (bad_input) if the scenario lacks what the quantity needs (a receiver, a radar)
+ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario);
+
+/// Values of one channel.
+struct ProductTask {
+  Dims dims;
+  ProductScale product;
+  const float* accumulator = nullptr;
+  const std::uint16_t* first_valid_k = nullptr;  ///< per column; null: all voxels are valid
+  float* values = nullptr;
+};
+
+/// Smallest and largest value of the valid voxels above the floor; lowest > highest where there are none.
+struct ValueRange {
+  float lowest = 0, highest = 0;
+};
+
+ValueRange productCpu(const ProductTask& task);
+
+}  // namespace emscape::emfield

@@ -1,0 +1,36 @@
+#include "emfield/quantities.h"
+
+#include "base/error.h"
+
+namespace emscape::emfield {
+
+const std::vector<QuantityInfo>& quantityTable() {
+  static const std::vector<QuantityInfo> kTable{
+      {Quantity::power_density_dbwm2, "power_density_dbwm2", "dBW/m2", "radiated power density", false},
+      {Quantity::field_strength_dbuvm, "field_strength_dbuvm", "dBuV/m", "RMS electric field strength",
+       false},
+      {Quantity::received_power_dbm, "received_power_dbm", "dBm", "power at the scenario's first receiver",
+       false},
+      {Quantity::snr_db, "snr_db", "dB", "single-pulse signal-to-noise of the best radar for its target",
+       false},
+      {Quantity::emitter_count, "emitter_count", "", "emitters above the count threshold", false},
+      {Quantity::dominant_emitter, "dominant_emitter", "",
+       "index of the emitter with the largest power density", true},
+  };
+  return kTable;
+}
+
+const QuantityInfo& info(Quantity quantity) {
+  return quantityTable()[static_cast<std::size_t>(quantity)];
+}
+
+Quantity quantityFromName(const std::string& name) {
+  std::string names;
+  for (const QuantityInfo& entry : quantityTable()) {
+    if (name == entry.name) return entry.quantity;
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw Error(ErrorCode::bad_input, "unknown quantity '" + name + "'; one of " + names);
+}
+
+}  // namespace emscape::emfield

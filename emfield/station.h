@@ -1,0 +1,28 @@
+/// An emitter's place as the geometry of the pipeline wants it.
+#pragma once
+
+#include "base/fast_geodesy.h"
+#include "base/geo_frame.h"
+
+namespace emscape::emfield {
+
+/// Immutable once made.
+struct Station {
+  FastGeodesy geodesy;
+  Vec3d ecef_m;
+  double height_msl_m = 0;
+  double earth_radius_m = 0;            ///< Gaussian radius of curvature below the station
+  double effective_earth_radius_m = 0;  ///< k times that
+};
+
+inline Station makeStation(const GeodeticPosition& position, double height_msl_m, double k_factor) {
+  Station station;
+  station.geodesy = fastGeodesy(position.latitude_deg, position.longitude_deg);
+  station.ecef_m = toEcef(position);
+  station.height_msl_m = height_msl_m;
+  station.earth_radius_m = std::sqrt(station.geodesy.meridian_radius_m * station.geodesy.prime_radius_m);
+  station.effective_earth_radius_m = k_factor * station.earth_radius_m;
+  return station;
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,152 @@
+#include "emfield/terrain_fan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+
+namespace emscape::emfield {
+namespace {
+
+/// Azimuths between which all columns lie.
+struct Sector {
+  double first_rad = 0;
+  double width_rad = 2 * kPi;
+  bool full_circle = true;
+};
+
+constexpr double kWidestSector_rad = 0.9 * kPi;
+
+Sector sectorOf(const std::vector<FanCoordinates>& coordinates, double margin_m) {
+  const double reference = coordinates[coordinates.size() / 2].azimuth_rad;
+  double lowest = 0, highest = 0, nearest_m = std::numeric_limits<double>::infinity();
+  for (const FanCoordinates& point : coordinates) {
+    const double offset = std::remainder(point.azimuth_rad - reference, 2 * kPi);
+    lowest = std::min(lowest, offset);
+    highest = std::max(highest, offset);
+    nearest_m = std::min(nearest_m, point.range_m);
+  }
+  if (!(nearest_m > 2 * margin_m)) return {};
+  const double margin_rad = std::asin(margin_m / nearest_m);
+  lowest -= margin_rad;
+  highest += margin_rad;
+  if (highest - lowest > kWidestSector_rad) return {};
+  return {reference + lowest, highest - lowest, false};
+}
+
+/// Heights of one azimuth. Positions are exact at every kStride-th sample and linear between: over so short a
+/// piece the geodesic leaves its chord by less than a metre, except near the poles.
+class ProfileReader {
+ public:
+  ProfileReader(const Station& station, const scenario::TerrainView& terrain, double range_step_m)
+      : station_(station), terrain_(terrain), range_step_m_(range_step_m) {
+    const double latitude_rad = std::asin(station.geodesy.station.up.z);
+    stride_ = std::abs(latitude_rad) < kPolarLatitude_rad
+                  ? std::max(1, static_cast<int>(kChord_m / range_step_m))
+                  : 1;
+  }
+
+  void read(double azimuth_rad, int count, float* height_msl_m) const {
+    const double sine = std::sin(azimuth_rad), cosine = std::cos(azimuth_rad);
+    FastDirect begin = fastDirect(station_.geodesy, sine, cosine, 0);
+    for (int first = 0; first < count; first += stride_) {
+      const FastDirect end = fastDirect(station_.geodesy, sine, cosine, (first + stride_) * range_step_m_);
+      const double latitude_step = (end.latitude_rad - begin.latitude_rad) / stride_;
+      const double longitude_step =
+          std::remainder(end.longitude_rad - begin.longitude_rad, 2 * kPi) / stride_;
+      const int last = std::min(count, first + stride_);
+      for (int i = first; i < last; ++i) {
+        height_msl_m[i] = terrain_.heightAt(begin.latitude_rad + (i - first) * latitude_step,
+                                            begin.longitude_rad + (i - first) * longitude_step);
+      }
+      begin = end;
+    }
+  }
+
+ private:
+  static constexpr double kPolarLatitude_rad = degToRad(80.0);
+  static constexpr double kChord_m = 800;
+
+  const Station& station_;
+  const scenario::TerrainView& terrain_;
+  double range_step_m_;
+  int stride_ = 1;
+};
+
+}  // namespace
+
+std::vector<FanCoordinates> fanCoordinates(const Station& station, const GridColumns& columns) {
+  std::vector<FanCoordinates> result(columns.columns.size());
+  const double middle_m = 0.5 * (columns.t_m.front() + columns.t_m.back());
+  parallelFor(static_cast<int>(result.size()), 4096, [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      const GridColumn& column = columns.columns[c];
+      result[c] = fanCoordinates(station, column.foot_ecef_m + column.foot_drift * middle_m);
+    }
+  });
+  return result;
+}
+
+double TerrainFan::azimuthIndex(double azimuth_rad) const {
+  if (azimuth_count == 1) return 0;
+  double offset = std::remainder(azimuth_rad - first_azimuth_rad, 2 * kPi);
+  if (offset < 0) offset = full_circle ? offset + 2 * kPi : 0;
+  const double index = offset / azimuth_step_rad;
+  return index < azimuth_count ? index : (full_circle ? 0 : azimuth_count - 1);
+}
+
+FanResolution fanResolution(const volume::Grid& grid, const scenario::Terrain* terrain) {
+  const double voxel_m = std::min(grid.spacing_m.x, grid.spacing_m.y);
+  if (terrain == nullptr) return {voxel_m, voxel_m / 2};
+  const double post_m = terrain->postSpacing_m();
+  return {std::max(post_m, voxel_m / 8), std::max(post_m / 2, voxel_m / 16)};
+}
+
+TerrainFan makeTerrainFan(const Station& station, const std::vector<FanCoordinates>& coordinates,
+                          const scenario::Terrain* terrain, const FanResolution& resolution, double lean_m) {
+  double farthest_m = 0;
+  for (const FanCoordinates& point : coordinates) farthest_m = std::max(farthest_m, point.range_m);
+  farthest_m += lean_m;
+
+  TerrainFan fan;
+  fan.range_step_m = resolution.range_m;
+  fan.range_count = static_cast<int>(std::ceil(farthest_m / fan.range_step_m)) + 1;
+  if (terrain == nullptr) {
+    fan.azimuth_count = 1;
+    fan.height_msl_m.assign(fan.range_count, 0.0f);
+    fan.used_ranges.assign(1, fan.range_count);
+    return fan;
+  }
+
+  const Sector sector = sectorOf(coordinates, lean_m);
+  const double finest_rad = resolution.arc_m / std::max(farthest_m, resolution.arc_m);
+  const int intervals = std::max(8, static_cast<int>(std::ceil(sector.width_rad / finest_rad)));
+  fan.full_circle = sector.full_circle;
+  fan.first_azimuth_rad = sector.first_rad;
+  fan.azimuth_step_rad = sector.width_rad / intervals;
+  fan.azimuth_count = sector.full_circle ? intervals : intervals + 1;
+
+  fan.used_ranges.assign(fan.azimuth_count, lean_m > 0 ? fan.range_count : 0);
+  for (const FanCoordinates& point : coordinates) {
+    const int azimuth = static_cast<int>(fan.azimuthIndex(point.azimuth_rad));
+    const int used =
+        std::min(fan.range_count, static_cast<int>(std::ceil(point.range_m / fan.range_step_m)) + 1);
+    for (int a : {azimuth, fan.next(azimuth)}) fan.used_ranges[a] = std::max(fan.used_ranges[a], used);
+  }
+
+  fan.height_msl_m.resize(static_cast<std::size_t>(fan.azimuth_count) * fan.range_count);
+  const scenario::TerrainView view = terrain->view();
+  const ProfileReader reader(station, view, fan.range_step_m);
+  parallelFor(fan.azimuth_count, 8, [&](int begin, int end) {
+    for (int a = begin; a < end; ++a) {
+      float* profile = fan.height_msl_m.data() + static_cast<std::size_t>(a) * fan.range_count;
+      reader.read(fan.first_azimuth_rad + a * fan.azimuth_step_rad, fan.used_ranges[a], profile);
+      std::fill(profile + fan.used_ranges[a], profile + fan.range_count,
+                std::numeric_limits<float>::quiet_NaN());
+    }
+  });
+  return fan;
+}
+
+}  // namespace emscape::emfield

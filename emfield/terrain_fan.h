@@ -1,0 +1,52 @@
+/// Stage 1: terrain heights along azimuths from an emitter, read once from the elevation model.
+#pragma once
+
+#include <vector>
+
+#include "emfield/fan_coordinates.h"
+#include "scenario/terrain.h"
+
+namespace emscape::emfield {
+
+/// Azimuths first_azimuth_rad + a * azimuth_step_rad, ranges i * range_step_m. Immutable once made.
+struct TerrainFan {
+  double first_azimuth_rad = 0;
+  double azimuth_step_rad = 0;
+  int azimuth_count = 0;
+  bool full_circle = false;  ///< the azimuth after the last one is the first
+  double range_step_m = 0;
+  int range_count = 0;
+  /// Height above mean sea level (m), azimuth_count x range_count, range fastest; NaN over missing terrain
+  /// and beyond used_ranges.
+  std::vector<float> height_msl_m;
+  /// For each azimuth the number of ranges that a column of the grid lies behind; 0: none.
+  std::vector<int> used_ranges;
+
+  const float* profile(int azimuth) const {
+    return height_msl_m.data() + static_cast<std::size_t>(azimuth) * range_count;
+  }
+  /// Fractional azimuth index, 0 <= index < azimuth_count; the neighbours of floor(index) are next().
+  double azimuthIndex(double azimuth_rad) const;
+  int next(int azimuth) const {
+    return azimuth + 1 < azimuth_count ? azimuth + 1 : (full_circle ? 0 : azimuth);
+  }
+};
+
+/// Distances between the samples of a fan: the azimuths' at the farthest column, and along a range (m).
+struct FanResolution {
+  double arc_m = 0;
+  double range_m = 0;
+};
+
+/// Resolution at which no post of the terrain is passed over, but no finer than an eighth (along a range: a
+/// sixteenth) of a voxel.
+FanResolution fanResolution(const volume::Grid& grid, const scenario::Terrain* terrain);
+
+/// The fan that reaches every column: a full circle, or the sector that holds the grid for a station well
+/// outside it.
+/// @param terrain  null: a smooth earth at mean sea level, one azimuth serves all
+/// @param lean_m  how far (m) a point may lie off its column's middle; 0 for upright columns
+TerrainFan makeTerrainFan(const Station& station, const std::vector<FanCoordinates>& coordinates,
+                          const scenario::Terrain* terrain, const FanResolution& resolution, double lean_m);
+
+}  // namespace emscape::emfield

@@ -1,0 +1,256 @@
+// What the solver computes anew, what it keeps, and what it says of it.
+
+#include "emfield/field_solver.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/units.h"
+#include "tests/emfield/test_scenario.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr double kLatitude_deg = 12, kLongitude_deg = 34;
+
+scenario::Emitter rotatingRadar(const std::string& name) {
+  scenario::Emitter radar = plainEmitter(name, 0);
+  radar.kind = scenario::EmitterKind::radar;
+  radar.antenna = scenario::makeGaussian(30, 5, 10, -40);
+  radar.scan.kind = scenario::ScanKind::rotate;
+  radar.scan.rate_rpm = 10;
+  radar.propagation = scenario::PropagationModel::horizon;
+  return radar;
+}
+
+/// A rotating radar, a jammer on a track, a transmitter that is switched on from second 3 on, and a second
+/// transmitter.
+std::shared_ptr<scenario::Scenario> battlefield() {
+  auto scenario =
+      emptyScenario(FrameKind::altitude, kLatitude_deg, kLongitude_deg, {40e3, 40e3, 4000}, {20, 22, 10});
+  addEmitter(*scenario, {kLatitude_deg + 0.05, kLongitude_deg, 300}, rotatingRadar("radar"));
+
+  scenario::Emitter jammer = plainEmitter("jammer", 0);
+  jammer.kind = scenario::EmitterKind::jammer;
+  jammer.propagation = scenario::PropagationModel::horizon;
+  addEmitter(*scenario, {kLatitude_deg, kLongitude_deg - 0.1, 500}, jammer);
+  scenario::TrackPoint end = scenario->platforms.back().track.front();
+  end.t_s = 10;
+  end.position.longitude_deg += 0.02;
+  scenario->platforms.back().track.push_back(end);
+
+  scenario::Emitter radio = plainEmitter("radio", 0);
+  radio.active_s = {{3, 100}};
+  addEmitter(*scenario, {kLatitude_deg - 0.1, kLongitude_deg + 0.1, 200}, radio);
+  addEmitter(*scenario, {kLatitude_deg + 0.1, kLongitude_deg + 0.1, 200}, plainEmitter("beacon", 0));
+  return scenario;
+}
+
+std::vector<float> freshValues(const std::shared_ptr<scenario::Scenario>& scenario, double t_s) {
+  FieldSolver solver(scenario, nullptr, {});
+  solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
+  return solver.volumes().front()->values;
+}
+
+void expectSameField(const std::vector<float>& a, const std::vector<float>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t v = 0; v < a.size(); ++v)
+    ASSERT_NEAR(a[v], b[v], 2e-5 + 1e-6 * std::abs(b[v])) << "voxel " << v;
+}
+
+TEST(FieldSolver, SaysWhatMovedAndWhatTurned) {
+  const auto scenario = battlefield();
+  FieldSolver solver(scenario, nullptr, {});
+  const FieldChanged first = solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  EXPECT_TRUE(first.any);
+  EXPECT_TRUE(first.grid);
+
+  const FieldChanged second = solver.update(scenario::snapshotAt(scenario, nullptr, 1));
+  EXPECT_TRUE(second.any);
+  EXPECT_FALSE(second.grid);
+  EXPECT_THAT(second.moved, ElementsAre(1));
+  EXPECT_THAT(second.turned, ElementsAre(0));
+
+  const FieldChanged switched_on = solver.update(scenario::snapshotAt(scenario, nullptr, 3));
+  EXPECT_THAT(switched_on.moved, ElementsAre(1, 2));
+
+  const FieldChanged again = solver.update(scenario::snapshotAt(scenario, nullptr, 3));
+  EXPECT_FALSE(again.any);
+}
+
+TEST(FieldSolver, KeepsTheGeometryOfAnEmitterThatMovedLessThanTheTolerance) {
+  const auto scenario = battlefield();
+  FieldOptions options;
+  options.move_tolerance_m = 1e5;
+  FieldSolver solver(scenario, nullptr, options);
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  EXPECT_THAT(solver.update(scenario::snapshotAt(scenario, nullptr, 1)).moved, IsEmpty());
+}
+
+TEST(FieldSolver, UpdatesGiveTheFieldThatAFreshSolverComputes) {
+  for (const auto combine : {scenario::CombineMode::sum, scenario::CombineMode::max}) {
+    for (const char* quantity : {"power_density_dbwm2", "snr_db", "emitter_count", "dominant_emitter"}) {
+      SCOPED_TRACE(quantity);
+      const auto scenario = battlefield();
+      scenario->output.combine = combine;
+      scenario->output.quantities = {quantity};
+      FieldSolver solver(scenario, nullptr, {});
+      for (double t_s : {0.0, 0.5, 1.0, 2.9, 3.0, 3.5, 4.0, 4.5, 9.0, 0.0}) {
+        solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
+        expectSameField(solver.volumes().front()->values, freshValues(scenario, t_s));
+      }
+    }
+  }
+}
+
+TEST(FieldSolver, AMemoryBoundChangesTimesAndNotTheField) {
+  const auto scenario = battlefield();
+  FieldOptions options;
+  options.cache_bytes = 20 * 22 * 40 * 2 + 1;
+  FieldSolver bounded(scenario, nullptr, options);
+  for (double t_s : {0.0, 1.0, 3.0, 3.5}) {
+    bounded.update(scenario::snapshotAt(scenario, nullptr, t_s));
+    expectSameField(bounded.volumes().front()->values, freshValues(scenario, t_s));
+  }
+  EXPECT_EQ(bounded.memoryUse().uncached_emitters, 2);
+}
+
+TEST(FieldSolver, DoesNotDependOnTheNumberOfThreads) {
+  const auto scenario = battlefield();
+  setThreadLimit(1);
+  const auto one = freshValues(scenario, 4);
+  setThreadLimit(0);
+  EXPECT_EQ(one, freshValues(scenario, 4));
+}
+
+TEST(FieldSolver, LeavesAVolumeAloneThatACallerKeeps) {
+  const auto scenario = battlefield();
+  FieldSolver solver(scenario, nullptr, {});
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  const auto kept = solver.volumes().front();
+  const auto values = kept->values;
+  for (double t_s : {1.0, 2.0, 3.0}) solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
+  EXPECT_EQ(kept->values, values);
+  EXPECT_EQ(kept->info.time_s, 0);
+}
+
+TEST(FieldSolver, MakesOneVolumeAnEmitterOrABand) {
+  const auto scenario = battlefield();
+  scenario->output.combine = scenario::CombineMode::per_emitter;
+  scenario->output.quantities = {"power_density_dbwm2", "emitter_count"};
+  EXPECT_THAT(channelsOf(*scenario, {}), SizeIs(5));
+  EXPECT_EQ(channelsOf(*scenario, {})[1].name, "power_density_dbwm2:jammer");
+  scenario->output.combine = scenario::CombineMode::per_band;
+  EXPECT_THROW(channelsOf(*scenario, {}), Error);
+  scenario->bands = {{"L", 1e9, 2e9}, {"S", 2e9, 4e9}};
+  scenario->emitters[0].frequency_hz = 3e9;
+  const auto channels = channelsOf(*scenario, {"power_density_dbwm2"});
+  ASSERT_THAT(channels, SizeIs(2));
+  EXPECT_THAT(channels[0].emitters, ElementsAre(1, 2, 3));
+  EXPECT_THAT(channels[1].emitters, ElementsAre(0));
+}
+
+TEST(FieldSolver, OnlyTheChannelsOfAChangedEmitterAreNew) {
+  const auto scenario = battlefield();
+  scenario->output.combine = scenario::CombineMode::per_emitter;
+  FieldSolver solver(scenario, nullptr, {});
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  const auto before = solver.volumes();
+  solver.update(scenario::snapshotAt(scenario, nullptr, 1));
+  EXPECT_NE(solver.volumes()[0], before[0]) << "the radar turned";
+  EXPECT_EQ(solver.volumes()[3], before[3]) << "the beacon did not";
+}
+
+TEST(FieldSolver, TheDominantEmitterIsTheNearestOfEqualOnes) {
+  auto scenario = emptyScenario(FrameKind::altitude, 0, 0, {20e3, 20e3, 2000}, {20, 20, 4});
+  addEmitter(*scenario, {0, -0.05, 500}, plainEmitter("west", 0));
+  addEmitter(*scenario, {0, 0.05, 500}, plainEmitter("east", 0));
+  scenario->output.quantities = {"dominant_emitter"};
+  const auto volume = solve(scenario);
+  for (int j = 0; j < 20; ++j) {
+    for (int i = 0; i < 20; ++i) EXPECT_EQ(valueAt(*volume, i, j, 1), i < 10 ? 0 : 1);
+  }
+  EXPECT_TRUE(volume->info.categorical);
+  EXPECT_EQ(volume->info.extra.at("labels"), "west\neast");
+}
+
+TEST(FieldSolver, ReceivedPowerKnowsPolarisationAndBandwidth) {
+  auto scenario = emptyScenario(FrameKind::altitude, 0, 0, {20e3, 20e3, 2000}, {20, 20, 4});
+  scenario::Emitter emitter = plainEmitter("radio", 0);
+  emitter.bandwidth_hz = 4e6;
+  addEmitter(*scenario, {0, 0, 500}, emitter);
+  scenario->output.quantities = {"received_power_dbm"};
+  scenario->receivers = {{"receiver", 0, 0, std::nullopt, 0, 0}};
+  const float matched = valueAt(*solve(scenario), 3, 3, 1);
+  scenario->receivers[0].bandwidth_hz = 1e6;
+  EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, -10 * std::log10(4.0), 1e-4);
+  scenario->receivers[0] = {"receiver", 3, 1, scenario::Polarization::slant_45, 0, 0};
+  EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, 2 - 10 * std::log10(2.0), 1e-4);
+  scenario->receivers[0] = {"receiver", 0, 0, scenario::Polarization::horizontal, 0, 0};
+  EXPECT_EQ(valueAt(*solve(scenario), 3, 3, 1), scenario->output.floor);
+  scenario->receivers[0] = {"receiver", 0, 0, std::nullopt, 2e9, 1e6};
+  EXPECT_EQ(valueAt(*solve(scenario), 3, 3, 1), scenario->output.floor) << "another frequency";
+}
+
+TEST(FieldSolver, LaunchAnglesAreTheRefractedRays) {
+  // A beam as narrow as the bending: at 200 km a level target is seen 200 km / 2 a (1 - 1/k) above the
+  // straight line.
+  auto scenario = emptyScenario(FrameKind::enu, 0, 0, {402e3, 6e3, 2000}, {201, 3, 2});
+  const volume::Grid grid = gridOf(scenario->region);
+  const GeodeticPosition site = GeoFrame(grid.frame).toGeodetic(grid.center_m(100, 1, 0));
+  scenario::Emitter emitter = plainEmitter("radar", 0);
+  emitter.antenna = scenario::makeGaussian(30, 2, 2, -80);
+  emitter.scan.azimuth_deg = 90;
+  addEmitter(*scenario, site, emitter);
+  const double distance_m = 200e3;
+  const double boresight_db = 60 - 10 * std::log10(4 * kPi * distance_m * distance_m);
+  const double raised_deg = radToDeg(distance_m / (2 * 6356.75e3) * 0.25);
+  const double loss_db = 4 * 10 * std::log10(2.0) * raised_deg * raised_deg / 4;
+  EXPECT_NEAR(valueAt(*solve(scenario), 200, 1, 0), boresight_db - loss_db, 0.005);
+  scenario->atmosphere.k_factor = 1;
+  EXPECT_NEAR(valueAt(*solve(scenario), 200, 1, 0), boresight_db, 1e-4);
+}
+
+TEST(FieldSolver, CountsAndMarksTheNearField) {
+  auto scenario = emptyScenario(FrameKind::altitude, 0, 0, {2e3, 2e3, 1000}, {20, 20, 10});
+  scenario::Emitter emitter = plainEmitter("dish", 0);
+  emitter.frequency_hz = 1e10;
+  emitter.antenna = scenario::makeSinc(45, 0.8, 0.8, -60);
+  addEmitter(*scenario, {0, 0, 500}, emitter);
+  FieldSolver solver(scenario, nullptr, {});
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  EXPECT_THAT(solver.warnings(), ElementsAre(HasSubstr("'dish': voxels nearer than its far field")));
+  EXPECT_THAT(solver.volumes().front()->info.extra.at("near_field"), HasSubstr("dish: "));
+}
+
+TEST(FieldSolver, RefusesWhatItCannotCompute) {
+  const auto scenario = battlefield();
+  const auto messageOf = [&](const FieldOptions& options) -> std::string {
+    try {
+      FieldSolver solver(scenario, nullptr, options);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  FieldOptions options;
+  options.quantities = {"power"};
+  EXPECT_THAT(messageOf(options), HasSubstr("unknown quantity 'power'; one of power_density_dbwm2, "));
+  options.quantities = {"received_power_dbm"};
+  EXPECT_THAT(messageOf(options), HasSubstr("needs an entry under 'receivers'"));
+  scenario->emitters[1].propagation = scenario::PropagationModel::itm;
+  EXPECT_THAT(messageOf({}), HasSubstr("emitter 'jammer': propagation 'itm' cannot be computed"));
+}
+
+}  // namespace
+}  // namespace emscape::emfield

@@ -1,0 +1,193 @@
+// Shadows of the model `horizon` against a walk along every ray over real terrain.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "base/geoid.h"
+#include "base/units.h"
+#include "emfield/field_solver.h"
+#include "scenario/terrain.h"
+#include "tests/emfield/test_scenario.h"
+#include "tests/reference_dir.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using test::referenceFile;
+
+/// The terrain along the geodesic to a point of the ground, sampled densely, and the straight rays above it
+/// on the k-factor earth in polar coordinates: 1 / r = (sin(psi - theta) / r1 + sin(theta) / r2) / sin(psi).
+class RayWalk {
+ public:
+  RayWalk(const scenario::Terrain* terrain, const GeodeticPosition& site, double site_msl_m,
+          const GeodeticPosition& target)
+      : site_radius_m_(kEarth_m + site_msl_m) {
+    const GeodesicInverse path =
+        geodesicInverse(site.latitude_deg, site.longitude_deg, target.latitude_deg, target.longitude_deg);
+    angle_ = path.distance_m / kEarth_m;
+    const int steps = static_cast<int>(path.distance_m / kStep_m);
+    for (int s = 1; s < steps; ++s) {
+      const double along_m = path.distance_m * s / steps;
+      const GeodeticPosition point =
+          geodesicDirect(site.latitude_deg, site.longitude_deg, path.azimuth_rad, along_m);
+      angles_.push_back(along_m / kEarth_m);
+      heights_m_.push_back(
+          terrain == nullptr ? 0 : terrain->heightMsl_m(point.latitude_deg, point.longitude_deg));
+    }
+  }
+
+  bool isLit(double target_msl_m) const {
+    const double target_radius_m = kEarth_m + target_msl_m;
+    for (std::size_t s = 0; s < angles_.size(); ++s) {
+      const double inverse =
+          (std::sin(angle_ - angles_[s]) / site_radius_m_ + std::sin(angles_[s]) / target_radius_m) /
+          std::sin(angle_);
+      if (heights_m_[s] > 1 / inverse - kEarth_m) return false;
+    }
+    return true;
+  }
+
+ private:
+  static constexpr double kEarth_m = 6371000.0 * 4 / 3;
+  static constexpr double kStep_m = 10;
+
+  double site_radius_m_;
+  double angle_ = 0;
+  std::vector<double> angles_, heights_m_;
+};
+
+struct Tally {
+  int lit = 0, dark = 0, near_edge = 0, wrong = 0;
+};
+
+/// Holds every voxel of the solved volume against the walk, but those within half a voxel of the shadow's
+/// edge: where the walk's answer is not the same half a voxel up, down, or to the sides.
+Tally compareWithWalk(const volume::DenseVolume& volume, const scenario::Terrain* terrain,
+                      const GeodeticPosition& site, double site_msl_m) {
+  const volume::Grid& grid = volume.grid;
+  const GeoFrame frame(grid.frame);
+  const Vec3d half = grid.spacing_m * 0.5;
+  const Vec3d offsets[] = {{0, 0, 0}, {half.x, 0, 0}, {-half.x, 0, 0}, {0, half.y, 0}, {0, -half.y, 0}};
+  Tally tally;
+  for (int j = 0; j < grid.dims.y; ++j) {
+    for (int i = 0; i < grid.dims.x; ++i) {
+      std::vector<RayWalk> walks;
+      for (const Vec3d& offset : offsets) {
+        walks.emplace_back(terrain, site, site_msl_m, frame.toGeodetic(grid.center_m(i, j, 0) + offset));
+      }
+      for (int k = 0; k < grid.dims.z; ++k) {
+        if (volume.isMasked(i, j, k)) continue;
+        const double height_m = grid.center_m(i, j, k).z;
+        const bool is_lit = walks[0].isLit(height_m);
+        bool is_near_edge =
+            walks[0].isLit(height_m - half.z) != is_lit || walks[0].isLit(height_m + half.z) != is_lit;
+        for (std::size_t w = 1; w < walks.size(); ++w)
+          is_near_edge = is_near_edge || walks[w].isLit(height_m) != is_lit;
+        if (is_near_edge) {
+          ++tally.near_edge;
+          continue;
+        }
+        ++(is_lit ? tally.lit : tally.dark);
+        if ((valueAt(volume, i, j, k) > volume.info.floor) != is_lit) ++tally.wrong;
+      }
+    }
+  }
+  return tally;
+}
+
+scenario::TerrainPtr whiteMountains(const scenario::Scenario& scenario) {
+  const auto file = referenceFile("dem/N44W072.hgt");
+  if (!file) return nullptr;
+  scenario::TerrainSpec spec;
+  spec.files = {*file};
+  spec.places = {{*file}};
+  return scenario::Terrain::load(spec, scenario::terrainBox(scenario));
+}
+
+Tally tallyOver(double site_latitude_deg, double site_longitude_deg, double antenna_agl_m, bool* is_skipped) {
+  auto scenario = emptyScenario(FrameKind::altitude, 44.45, -71.45, {48e3, 40e3, 3000}, {24, 20, 30});
+  const auto terrain = whiteMountains(*scenario);
+  *is_skipped = terrain == nullptr;
+  if (terrain == nullptr) return {};
+  const double site_msl_m = terrain->heightMsl_m(site_latitude_deg, site_longitude_deg) + antenna_agl_m;
+  GeodeticPosition site{site_latitude_deg, site_longitude_deg, 0};
+  site.height_ellipsoid_m = site_msl_m + geoidUndulation_m(site.latitude_deg, site.longitude_deg);
+  scenario::Emitter emitter = plainEmitter("radar", 0);
+  emitter.propagation = scenario::PropagationModel::horizon;
+  addEmitter(*scenario, site, emitter);
+  return compareWithWalk(*solve(scenario, terrain), terrain.get(), site, site_msl_m);
+}
+
+TEST(Shadow, StandsWhereAWalkAlongEachRayPutsIt) {
+  // A valley, a slope and a summit of the White Mountains; one site outside the region.
+  const double sites[][3] = {
+      {44.42, -71.68, 12}, {44.30, -71.33, 20}, {44.2706, -71.3033, 5}, {44.55, -71.80, 30}};
+  for (const auto& site : sites) {
+    SCOPED_TRACE(::testing::Message() << site[0] << ", " << site[1]);
+    bool is_skipped = false;
+    const Tally tally = tallyOver(site[0], site[1], site[2], &is_skipped);
+    if (is_skipped) GTEST_SKIP() << "reference elevation data are absent";
+    EXPECT_EQ(tally.wrong, 0) << tally.lit << " lit, " << tally.dark << " dark, " << tally.near_edge
+                              << " near the edge";
+    EXPECT_GT(tally.lit, 2000);
+    EXPECT_GT(tally.dark, 200);
+  }
+}
+
+TEST(Shadow, OfTheSmoothEarthBeginsAtTheRadioHorizon) {
+  auto scenario = emptyScenario(FrameKind::altitude, 10, 20, {240e3, 6e3, 1500}, {120, 3, 30});
+  const GeodeticPosition site{10, 20, 50 + geoidUndulation_m(10, 20)};
+  scenario::Emitter emitter = plainEmitter("radar", 0);
+  emitter.propagation = scenario::PropagationModel::horizon;
+  addEmitter(*scenario, site, emitter);
+  const auto volume = solve(scenario);
+  const Tally tally = compareWithWalk(*volume, nullptr, site, 50);
+  EXPECT_EQ(tally.wrong, 0);
+  EXPECT_GT(tally.dark, 1000);
+  // Closed form: two horizons of sqrt(2 k a h).
+  const double earth_m = 2 * 6371000.0 * 4 / 3;
+  for (int k = 0; k < 30; k += 7) {
+    const double horizon_m = std::sqrt(earth_m * 50) + std::sqrt(earth_m * volume->grid.center_m(0, 0, k).z);
+    for (int i = 0; i < 120; ++i) {
+      const double x_m = std::abs(volume->grid.center_m(i, 1, k).x);
+      if (std::abs(x_m - horizon_m) < 1500) continue;
+      EXPECT_EQ(valueAt(*volume, i, 1, k) > volume->info.floor, x_m < horizon_m) << x_m << " m, layer " << k;
+    }
+  }
+}
+
+TEST(Shadow, InTheTangentPlaneFrameIsTheSameShadow) {
+  auto scenario = emptyScenario(FrameKind::enu, 44.45, -71.45, {24e3, 20e3, 2500}, {24, 20, 25});
+  const auto terrain = whiteMountains(*scenario);
+  if (terrain == nullptr) GTEST_SKIP() << "reference elevation data are absent";
+  const double site_msl_m = terrain->heightMsl_m(44.42, -71.5) + 15;
+  const GeodeticPosition site{44.42, -71.5, site_msl_m + geoidUndulation_m(44.42, -71.5)};
+  scenario::Emitter emitter = plainEmitter("radar", 0);
+  emitter.propagation = scenario::PropagationModel::horizon;
+  addEmitter(*scenario, site, emitter);
+  const auto leaning = solve(scenario, terrain);
+  const GeoFrame frame(leaning->grid.frame);
+  int dark = 0, wrong = 0;
+  for (int j = 0; j < 20; ++j) {
+    for (int i = 0; i < 24; ++i) {
+      for (int k = 0; k < 25; k += 3) {
+        if (leaning->isMasked(i, j, k)) continue;
+        const Vec3d place = leaning->grid.center_m(i, j, k);
+        const RayWalk walk(terrain.get(), site, site_msl_m, frame.toGeodetic(place));
+        const double height_m = frame.heightMsl_m(place);
+        const bool is_lit = walk.isLit(height_m);
+        if (walk.isLit(height_m - 50) != walk.isLit(height_m + 50)) continue;
+        dark += is_lit ? 0 : 1;
+        wrong += (valueAt(*leaning, i, j, k) > leaning->info.floor) != is_lit ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(dark, 50);
+  EXPECT_EQ(wrong, 0);
+}
+
+}  // namespace
+}  // namespace emscape::emfield
