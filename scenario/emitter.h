@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
+#include "base/error.h"
 #include "scenario/antenna.h"
 #include "scenario/scan.h"
 
@@ -20,17 +22,17 @@ const char* toString(EmitterKind kind);
 const char* toString(Polarization polarization);
 const char* toString(PropagationModel model);
 
-/// Power lost (linear, 0..1) between two polarisations: |<e_t, e_r>|^2; 0 for orthogonal ones.
+/// Part of the power (0..1) that passes between two polarisations: |<e_t, e_r>|^2; 0 for orthogonal ones.
 double polarizationFactor(Polarization transmit, Polarization receive);
 
 /// A radar's own receiver: what turns power density into signal-to-noise.
 struct RadarReceiver {
   double noise_figure_db = 0;
   double bandwidth_hz = 1e6;
-  double losses_db = 0;         ///< receive path, one way; the schema's default is the emitter's losses_db
+  double losses_db = 0;  ///< receive path, one way; the schema's default is the emitter's losses_db
   int pulses = 1;
   double pfa = 1e-6;
-  int swerling = 1;             ///< 0..4
+  int swerling = 1;  ///< 0..4
   double target_rcs_m2 = 1;
 };
 
@@ -39,9 +41,9 @@ struct ReceiverProfile {
   std::string name;
   double gain_dbi = 0;
   double losses_db = 0;
-  std::optional<Polarization> polarization;   ///< none: matched to every emitter
-  double center_frequency_hz = 0;             ///< 0: tuned to every emitter
-  double bandwidth_hz = 0;                    ///< 0: as wide as the emitter's signal
+  std::optional<Polarization> polarization;  ///< none: matched to every emitter
+  double center_frequency_hz = 0;            ///< 0: tuned to every emitter
+  double bandwidth_hz = 0;                   ///< 0: as wide as the emitter's signal
 };
 
 /// [begin, end) in seconds since the epoch.
@@ -52,18 +54,19 @@ struct TimeInterval {
 
 struct Emitter {
   std::string name;
-  int platform = -1;             ///< index into Scenario::platforms
+  int platform = -1;  ///< index into Scenario::platforms
   EmitterKind kind = EmitterKind::transmitter;
   double frequency_hz = 0;
-  double bandwidth_hz = 0;       ///< of the signal; 0: narrower than any receiver
-  double power_w = 0;            ///< peak, at the transmitter's output
-  double losses_db = 0;          ///< transmit path, one way, >= 0
+  double bandwidth_hz = 0;  ///< of the signal; 0: narrower than any receiver
+  double power_w = 0;       ///< peak, at the transmitter's output
+  double losses_db = 0;     ///< transmit path, one way, >= 0
   Polarization polarization = Polarization::vertical;
   AntennaPtr antenna;
   ScanSpec scan;
   PropagationModel propagation = PropagationModel::horizon;
-  RadarReceiver receiver;        ///< radars only
-  std::vector<TimeInterval> active_s;   ///< empty: always
+  RadarReceiver receiver;              ///< radars only
+  std::vector<TimeInterval> active_s;  ///< empty: always
+  FilePlace place;                     ///< where the scenario describes it
 };
 
 }  // namespace emscape::scenario
