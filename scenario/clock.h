@@ -1,24 +1,33 @@
 /// The scenario's time line.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace emscape::scenario {
 
 struct Clock {
-  std::string epoch_utc;   ///< ISO 8601 with Z; empty if the scenario has no epoch
+  std::string epoch_utc;  ///< ISO 8601 with Z; empty if the scenario has no epoch
   double duration_s = 0;
   double step_s = 1;
 };
 
-/// Times from begin to end, both included if the step meets them; computed as begin + i * step, so that no error adds up.
+/// Milliseconds from 1970-01-01T00:00:00Z to an ISO 8601 time "YYYY-MM-DDTHH:MM:SS[.fraction]Z"
+/// (years 1..9999, no leap seconds, the fraction cut to milliseconds); none if the text is no such time.
+std::optional<std::int64_t> parseUtc_ms(const std::string& text);
+
+/// Times from begin to end, both included if the step meets them; computed as begin + i * step, so that no
+/// error adds up.
+/// @throws Error (usage) if a value is not finite, end < begin, step <= 0, or there are more than 10^7 times
 std::vector<double> timesOf(double begin_s, double end_s, double step_s);
 /// The whole clock: 0, step, ... duration.
 std::vector<double> timesOf(const Clock& clock);
 /// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T". @throws Error (usage)
 std::vector<double> parseTimes(const std::string& text, const Clock& clock);
 /// ISO 8601 time (UTC, milliseconds) at t_s; empty without an epoch.
+/// @throws Error (bad_input) if the epoch is no time
 std::string utcAt(const Clock& clock, double t_s);
 
 }  // namespace emscape::scenario

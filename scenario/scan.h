@@ -6,6 +6,7 @@
 namespace emscape::scenario {
 
 enum class ScanKind { fixed, rotate, sector, raster, dwell_list };
+const char* toString(ScanKind kind);
 
 /// One position of an electronically steered beam, held for duration_s.
 struct Dwell {
@@ -14,21 +15,23 @@ struct Dwell {
   double duration_s = 0;
 };
 
-/// Angles in degrees as in the file. The mount's boresight is the platform's heading (level platforms: north-referenced),
-/// turned by azimuth_deg and elevation_deg.
+/// Angles in degrees as in the file. The mount's boresight is the platform's heading (level platforms:
+/// north-referenced), turned by azimuth_deg and elevation_deg.
 struct ScanSpec {
   ScanKind kind = ScanKind::fixed;
-  double azimuth_deg = 0;      ///< fixed: boresight; rotate: at t = 0; sector, raster: centre
-  double elevation_deg = 0;    ///< boresight elevation, upwards
-  double rate_rpm = 0;         ///< rotate: clockwise if positive
-  double width_deg = 0;        ///< sector, raster: full width of the azimuth sweep
-  double rate_deg_s = 0;       ///< sector, raster: azimuth speed
+  double azimuth_deg = 0;         ///< fixed: boresight; rotate: at t = 0; sector, raster: centre
+  double elevation_deg = 0;       ///< boresight elevation, upwards; raster: centre of the bars
+  double rate_rpm = 0;            ///< rotate: clockwise if positive
+  double width_deg = 0;           ///< sector, raster: full width of the azimuth sweep
+  double rate_deg_s = 0;          ///< sector, raster: azimuth speed
   double elevation_step_deg = 0;  ///< raster: between bars
-  int bars = 1;                ///< raster
-  std::vector<Dwell> dwells;   ///< dwell_list, repeated for ever
+  int bars = 1;                   ///< raster
+  std::vector<Dwell> dwells;      ///< dwell_list, repeated for ever
 };
 
-/// Where a beam looks relative to the mount's boresight axes (deg).
+/// Where a beam looks (deg): relative to the platform's axes where the antenna turns; relative to the mount's
+/// boresight, which azimuth_deg and elevation_deg of the scan have turned, where the beam is steered
+/// (dwell_list).
 struct BeamDirection {
   double azimuth_deg = 0;
   double elevation_deg = 0;
@@ -36,7 +39,10 @@ struct BeamDirection {
   bool electronic = false;
 };
 
-/// The beam at t_s seconds since the epoch. Pure: the same t gives the same beam.
+/// The beam at t_s seconds since the epoch. Pure: the same t gives the same beam; no error adds up over time.
+/// rotate: azimuth in 0..360. sector: back and forth, from the left end at t = 0. raster: the same sweeps,
+/// each one bar higher than the last, then again from the lowest. dwell_list: durations and t count in whole
+/// nanoseconds, so that a dwell ends exactly where the next begins.
 BeamDirection beamAt(const ScanSpec& scan, double t_s);
 
 }  // namespace emscape::scenario

@@ -15,8 +15,8 @@
 
 namespace emscape::scenario {
 
-/// The box that the field fills. altitude: x, y centred on the origin, z from the origin's height above mean sea level upwards.
-/// enu: the same, z from the tangent point upwards.
+/// The box that the field fills. altitude: x, y centred on the origin, z from the origin's height above mean
+/// sea level upwards. enu: the same, z from the tangent point upwards.
 struct Region {
   FrameOrigin origin;
   Vec3d size_m;
@@ -24,7 +24,7 @@ struct Region {
 };
 
 struct Atmosphere {
-  double k_factor = 4.0 / 3.0;      ///< effective earth radius over earth radius
+  double k_factor = 4.0 / 3.0;  ///< effective earth radius over earth radius
   double pressure_hpa = 1013.25;
   double temperature_k = 288.15;
   double vapour_g_m3 = 7.5;
@@ -39,30 +39,34 @@ struct Band {
 };
 
 enum class CombineMode { sum, max, per_emitter, per_band };
+const char* toString(CombineMode mode);
 
 struct OutputSpec {
-  std::vector<std::string> quantities{"power_density_dbwm2"};   ///< names of the quantity table
+  std::vector<std::string> quantities{"power_density_dbwm2"};  ///< names of the quantity table
   CombineMode combine = CombineMode::sum;
-  double floor = -120;               ///< lowest value kept, in each quantity's unit
-  double count_threshold_dbwm2 = -90;   ///< emitter_count: emitters above this power density
+  double floor = -120;                 ///< lowest value kept, in each quantity's unit
+  double count_threshold_dbwm2 = -90;  ///< emitter_count: emitters above this power density
 };
 
 struct Scenario {
   std::string name;
-  std::string file;              ///< where it was read
-  std::string hash;              ///< of the file's bytes and of every file it names (hex)
+  std::string file;  ///< where it was read
+  /// FNV-1a (64 bits, hex) of the bytes of the file and of the track and antenna files it names; of elevation
+  /// files, only of the name and the size.
+  std::string hash;
   Clock clock;
   Region region;
   std::optional<TerrainSpec> terrain;
   Atmosphere atmosphere;
   std::vector<Platform> platforms;
   std::vector<Emitter> emitters;
-  std::vector<ReceiverProfile> receivers;   ///< the first is used for received_power_dbm
+  std::vector<ReceiverProfile> receivers;  ///< the first is used for received_power_dbm
   std::vector<Band> bands;
   OutputSpec output;
 };
 
-/// Where terrain is needed: the region and every platform position, with a margin (deg).
+/// Where terrain is needed: the region, every platform's way and the ground between them, with a margin of 2
+/// km. A box that holds a pole spans all longitudes.
 GeoBox terrainBox(const Scenario& scenario);
 
 }  // namespace emscape::scenario

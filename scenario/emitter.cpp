@@ -1,0 +1,37 @@
+#include "scenario/emitter.h"
+
+#include <complex>
+
+namespace emscape::scenario {
+
+const char* toString(EmitterKind kind) {
+  static constexpr const char* kNames[] = {"radar", "transmitter", "jammer"};
+  return kNames[static_cast<int>(kind)];
+}
+
+const char* toString(Polarization polarization) {
+  static constexpr const char* kNames[] = {"horizontal", "vertical",       "slant_45",
+                                           "slant_135",  "circular_right", "circular_left"};
+  return kNames[static_cast<int>(polarization)];
+}
+
+const char* toString(PropagationModel model) {
+  static constexpr const char* kNames[] = {"free_space", "horizon", "diffraction", "two_ray", "itm", "p528"};
+  return kNames[static_cast<int>(model)];
+}
+
+double polarizationFactor(Polarization transmit, Polarization receive) {
+  // Jones vectors (horizontal, vertical) without the factor sqrt(1/2) of the mixed ones, which norm()
+  // restores.
+  struct Jones {
+    std::complex<double> horizontal, vertical;
+  };
+  static const Jones kJones[] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}, {1, {0, -1}}, {1, {0, 1}}};
+  const Jones& t = kJones[static_cast<int>(transmit)];
+  const Jones& r = kJones[static_cast<int>(receive)];
+  const auto norm = [](const Jones& j) { return std::norm(j.horizontal) + std::norm(j.vertical); };
+  return std::norm(t.horizontal * std::conj(r.horizontal) + t.vertical * std::conj(r.vertical)) /
+         (norm(t) * norm(r));
+}
+
+}  // namespace emscape::scenario

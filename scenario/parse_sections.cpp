@@ -1,0 +1,219 @@
+#include "scenario/parse_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "base/units.h"
+#include "scenario/antenna_shapes.h"
+#include "scenario/schema_check.h"
+
+namespace emscape::scenario {
+
+namespace {
+
+constexpr std::size_t kLargestNamedFile = std::size_t{64} << 20;
+
+/// Gain (dBi) of an aperture antenna by its half-power beamwidths; a beam as wide as that of a dipole or
+/// wider has 0 dBi.
+/// @see W. L. Stutzman, G. A. Thiele, Antenna Theory and Design: G = 26000 / (az el) in degrees, for
+/// practical antennas
+double gainOfBeamwidths_dbi(double azimuth_deg, double elevation_deg) {
+  return std::max(ratioToDb(26000.0 / (azimuth_deg * elevation_deg)), 0.0);
+}
+
+/// Gain (dBi) of a filled planar array on boresight: 4 pi A / lambda^2.
+double gainOfArray_dbi(int columns, int rows, double spacing_wavelengths) {
+  return ratioToDb(4 * kPi * columns * rows * spacing_wavelengths * spacing_wavelengths);
+}
+
+AntennaPtr makeAntenna(const Section& section, const ParseContext& context) {
+  const double azimuth_deg = section.number("beamwidth_az_deg"),
+               elevation_deg = section.number("beamwidth_el_deg");
+  const double side_lobe_db = section.number("side_lobe_db");
+  const auto gainOr = [&](double fallback_dbi) {
+    return section.optionalNumber("gain_dbi").value_or(fallback_dbi);
+  };
+  switch (section.choice<AntennaForm>("pattern")) {
+    case AntennaForm::isotropic:
+      return makeIsotropic(section.number("gain_dbi"));
+    case AntennaForm::gaussian:
+      return makeGaussian(gainOr(gainOfBeamwidths_dbi(azimuth_deg, elevation_deg)), azimuth_deg,
+                          elevation_deg, side_lobe_db);
+    case AntennaForm::sinc:
+      return makeSinc(gainOr(gainOfBeamwidths_dbi(azimuth_deg, elevation_deg)), azimuth_deg, elevation_deg,
+                      side_lobe_db);
+    case AntennaForm::cosecant2:
+      return makeCosecant2(section.number("gain_dbi"), azimuth_deg, elevation_deg,
+                           section.number("max_elevation_deg"), side_lobe_db);
+    case AntennaForm::phased_array: {
+      const int columns = section.integer("columns"), rows = section.integer("rows");
+      const double spacing_wavelengths = section.number("spacing_wavelengths");
+      return makePhasedArray(gainOr(gainOfArray_dbi(columns, rows, spacing_wavelengths)), columns, rows,
+                             spacing_wavelengths, section.number("element_exponent"));
+    }
+    case AntennaForm::file:
+      return readAntenna(context.resolve(section.text("file")),
+                         gainOr(std::numeric_limits<double>::quiet_NaN()));
+    case AntennaForm::cuts:
+      return readCsvCuts(context.resolve(section.text("azimuth_file")),
+                         context.resolve(section.text("elevation_file")), section.number("gain_dbi"));
+  }
+  return nullptr;
+}
+
+ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context) {
+  ScanSpec scan;
+  scan.kind = section.has("kind") ? section.choice<ScanKind>("kind") : ScanKind::fixed;
+  scan.azimuth_deg = section.number("azimuth_deg");
+  scan.elevation_deg = section.number("elevation_deg");
+  scan.rate_rpm = section.number("rate_rpm");
+  scan.width_deg = section.number("width_deg");
+  scan.rate_deg_s = section.number("rate_deg_s");
+  scan.elevation_step_deg = section.number("elevation_step_deg");
+  scan.bars = std::max(section.integer("bars"), 1);
+  const double highest_deg = std::abs(scan.elevation_deg) + (scan.bars - 1) / 2.0 * scan.elevation_step_deg;
+  if (highest_deg > 90) {
+    context.problems.addError(section.placeOf("bars"),
+                              fmt::format("the bars reach {} deg of elevation, outside the "
+                                          "allowed -90 to 90 deg",
+                                          highest_deg));
+  }
+  for (const Section& item : section.sections("dwells")) {
+    const Dwell dwell{item.number("azimuth_deg"), item.number("elevation_deg"), item.number("duration_s")};
+    scan.dwells.push_back(dwell);
+    if (steers_electronically && std::abs(dwell.azimuth_deg) >= 90) {
+      context.problems.addError(
+          item.placeOf("azimuth_deg"),
+          fmt::format("'azimuth_deg' is {}: a phased array is steered within less than 90 deg of its "
+                      "boresight",
+                      dwell.azimuth_deg));
+    }
+  }
+  return scan;
+}
+
+std::vector<TimeInterval> parseActive(const Section& section, ParseContext& context) {
+  std::vector<TimeInterval> intervals;
+  const auto lists = section.numberLists("active_s");
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    if (lists[i].size() != 2) continue;
+    intervals.push_back({lists[i][0], lists[i][1]});
+    if (lists[i][0] >= lists[i][1]) {
+      context.problems.addError(
+          section.placeOf("active_s", i),
+          fmt::format("the interval from {} s to {} s ends before it begins", lists[i][0], lists[i][1]));
+    }
+  }
+  return intervals;
+}
+
+RadarReceiver parseReceiver(const Section& section, double losses_db) {
+  RadarReceiver receiver;
+  receiver.noise_figure_db = section.number("noise_figure_db");
+  receiver.bandwidth_hz = section.number("bandwidth_hz");
+  receiver.losses_db = section.optionalNumber("losses_db").value_or(losses_db);
+  receiver.pulses = section.integer("pulses");
+  receiver.pfa = section.number("pfa");
+  receiver.swerling = section.integer("swerling");
+  receiver.target_rcs_m2 = section.number("target_rcs_m2");
+  return receiver;
+}
+
+}  // namespace
+
+std::string ParseContext::resolve(const std::string& name) const {
+  return (std::filesystem::path(file).parent_path() / std::filesystem::path(name))
+      .lexically_normal()
+      .string();
+}
+
+std::optional<std::string> ParseContext::readNamed(const Section& section, const std::string& key) {
+  const std::string name = section.text(key);
+  if (name.empty()) return std::nullopt;
+  try {
+    std::string bytes = readWholeFile(resolve(name), kLargestNamedFile);
+    hash.add(bytes);
+    return bytes;
+  } catch (const Error& error) {
+    problems.addError(section.placeOf(key), fmt::format("'{}': {}: {}", key, resolve(name), error.message()));
+    return std::nullopt;
+  }
+}
+
+Platform parsePlatform(const Section& section, ParseContext& context) {
+  Platform platform;
+  platform.name = section.text("name");
+  platform.place = section.place();
+  if (section.has("track")) {
+    const Section track = section.section("track");
+    if (const auto bytes = context.readNamed(track, "file")) {
+      platform.track_file = context.resolve(track.text("file"));
+      platform.track = parseTrack(platform.track_file, *bytes, track.placeOf("file"), context.problems);
+    }
+    return platform;
+  }
+  const Section position = section.section("position"), attitude = section.section("attitude");
+  TrackPoint point;
+  point.position.latitude_deg = position.number("latitude_deg");
+  point.position.longitude_deg = position.number("longitude_deg");
+  point.position.height_msl_m = position.optionalNumber("height_msl_m");
+  point.position.height_agl_m = position.optionalNumber("height_agl_m");
+  point.position.height_ellipsoid_m = position.optionalNumber("height_ellipsoid_m");
+  platform.track = {point};
+  platform.attitude = {attitude.number("heading_deg"), attitude.number("pitch_deg"),
+                       attitude.number("roll_deg")};
+  return platform;
+}
+
+AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
+  bool readable = true;
+  for (const char* key : {"file", "azimuth_file", "elevation_file"}) {
+    readable = (!section.has(key) || context.readNamed(section, key)) && readable;
+  }
+  if (!readable || !section.sound()) return nullptr;
+  try {
+    return makeAntenna(section, context);
+  } catch (const Error& error) {
+    const FilePlace place = error.place().file.empty() ? section.place() : error.place();
+    context.problems.addErrorElsewhere(section.place(), place, error.message());
+    return nullptr;
+  }
+}
+
+Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
+  Emitter emitter;
+  emitter.name = section.text("name");
+  emitter.place = section.place();
+  const std::string carrier = section.text("platform");
+  const auto found = std::find_if(platforms.begin(), platforms.end(),
+                                  [&](const Platform& platform) { return platform.name == carrier; });
+  if (found != platforms.end()) {
+    emitter.platform = static_cast<int>(found - platforms.begin());
+  } else if (!carrier.empty()) {
+    std::vector<std::string> names;
+    for (const Platform& platform : platforms) names.push_back(platform.name);
+    context.problems.addError(section.placeOf("platform"), fmt::format("there is no platform '{}'{}", carrier,
+                                                                       didYouMean(carrier, names)));
+  }
+  emitter.kind = section.choice<EmitterKind>("kind");
+  emitter.frequency_hz = section.number("frequency_hz");
+  emitter.bandwidth_hz = section.number("bandwidth_hz");
+  emitter.power_w = section.number("power_w");
+  emitter.losses_db = section.number("losses_db");
+  emitter.polarization = section.choice<Polarization>("polarization");
+  emitter.propagation = section.choice<PropagationModel>("propagation");
+  const Section antenna = section.section("antenna");
+  if (section.has("antenna")) emitter.antenna = parseAntenna(antenna, context);
+  emitter.scan = parseScan(section.section("scan"),
+                           antenna.choice<AntennaForm>("pattern") == AntennaForm::phased_array, context);
+  if (section.has("receiver"))
+    emitter.receiver = parseReceiver(section.section("receiver"), emitter.losses_db);
+  emitter.active_s = parseActive(section, context);
+  return emitter;
+}
+
+}  // namespace emscape::scenario

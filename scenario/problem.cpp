@@ -1,0 +1,41 @@
+#include "scenario/problem.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace emscape::scenario {
+
+void ProblemList::addError(const FilePlace& place, const std::string& message) {
+  add(place, {place, Severity::error, message});
+}
+
+void ProblemList::addWarning(const FilePlace& place, const std::string& message) {
+  add(place, {place, Severity::warning, message});
+}
+
+void ProblemList::addErrorElsewhere(const FilePlace& named_at, const FilePlace& place,
+                                    const std::string& message) {
+  add(named_at, {place, Severity::error, message});
+}
+
+void ProblemList::add(const FilePlace& order, Problem problem) {
+  entries_.push_back({std::move(problem), order.line, order.column});
+}
+
+bool ProblemList::hasErrors() const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [](const Entry& entry) { return entry.problem.severity == Severity::error; });
+}
+
+std::vector<Problem> ProblemList::inOrder() const {
+  std::vector<Entry> sorted = entries_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+  });
+  std::vector<Problem> problems;
+  for (Entry& entry : sorted) problems.push_back(std::move(entry.problem));
+  return problems;
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,509 @@
+#include "scenario/schema.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "scenario/scenario.h"
+
+namespace emscape::scenario {
+
+namespace {
+
+using nlohmann::json;
+
+ValueSpec number(const std::string& unit = "") {
+  ValueSpec spec;
+  spec.type = ValueType::number;
+  spec.unit = unit;
+  return spec;
+}
+
+ValueSpec simple(ValueType type) {
+  ValueSpec spec;
+  spec.type = type;
+  return spec;
+}
+
+ValueSpec textOf(ValueType type, int most_characters) {
+  ValueSpec spec = simple(type);
+  spec.fewest_items = 1;
+  spec.most_items = most_characters;
+  return spec;
+}
+
+ValueSpec choice(std::vector<std::string> choices) {
+  ValueSpec spec = simple(ValueType::choice);
+  spec.choices = std::move(choices);
+  return spec;
+}
+
+/// The names of an enumeration that counts from 0 to `last`.
+template <class Enum>
+ValueSpec choiceUpTo(Enum last) {
+  std::vector<std::string> names;
+  for (int i = 0; i <= static_cast<int>(last); ++i) names.emplace_back(toString(static_cast<Enum>(i)));
+  return choice(std::move(names));
+}
+
+ValueSpec object(const ObjectSpec& fields) {
+  ValueSpec spec = simple(ValueType::object);
+  spec.object = &fields;
+  return spec;
+}
+
+ValueSpec listOf(const ValueSpec& item, int fewest, int most) {
+  ValueSpec spec = simple(ValueType::list);
+  spec.item = std::make_shared<ValueSpec>(item);
+  spec.fewest_items = fewest;
+  spec.most_items = most;
+  return spec;
+}
+
+using Variants = std::vector<std::string>;
+
+KeySpec required(std::string name, ValueSpec value, std::string description, Variants only_for = {}) {
+  return {std::move(name), std::move(value), true, nullptr, std::move(description), std::move(only_for)};
+}
+
+KeySpec optional(std::string name, ValueSpec value, std::string description, Variants only_for = {}) {
+  return {std::move(name), std::move(value), false, nullptr, std::move(description), std::move(only_for)};
+}
+
+KeySpec byDefault(std::string name, ValueSpec value, json default_value, std::string description,
+                  Variants only_for = {}) {
+  return {std::move(name),          std::move(value),       false,
+          std::move(default_value), std::move(description), std::move(only_for)};
+}
+
+const ValueSpec kInteger = simple(ValueType::integer);
+const ValueSpec kName = textOf(ValueType::text, 200);
+const ValueSpec kFile = textOf(ValueType::file, 4096);
+const ValueSpec kLatitude = number("deg").from(-90).to(90);
+const ValueSpec kLongitude = number("deg").from(-180).to(180);
+const ValueSpec kHeight = number("m").from(-12000).to(100000);
+const ValueSpec kHeightAboveGround = number("m").from(0).to(100000);
+const ValueSpec kAngle = number("deg").from(-360).to(360);
+const ValueSpec kElevation = number("deg").from(-90).to(90);
+const ValueSpec kTime = number("s").from(0).to(1e8);
+const ValueSpec kFrequency = number("Hz").from(1e6).to(1e12);
+const ValueSpec kBandwidth = number("Hz").above(0).to(1e11);
+const ValueSpec kLoss = number("dB").from(0).to(100);
+const ValueSpec kGain = number("dBi").from(-50).to(80);
+constexpr int kMostItems = 10000;
+
+const ObjectSpec& originSpec() {
+  static const ObjectSpec spec{
+      "origin",
+      "",
+      {
+          required("latitude_deg", kLatitude, "geodetic, WGS84"),
+          required("longitude_deg", kLongitude, "WGS84, positive eastwards"),
+          byDefault("height_msl_m", kHeight, 0.0, "bottom of the region, above EGM96 mean sea level"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& regionSpec() {
+  static const ObjectSpec spec{
+      "region",
+      "",
+      {
+          required("origin", object(originSpec()), "centre of the region's bottom"),
+          byDefault("frame", choice({toString(FrameKind::altitude), toString(FrameKind::enu)}), "altitude",
+                    "altitude: x east and y north along the ground, z above mean sea level; enu: a Cartesian "
+                    "box tangent "
+                    "at the origin"),
+          required("size_m", listOf(number("m").above(0).to(4e6), 3, 3), "extent along x, y and z"),
+          required("dims", listOf(kInteger.from(2).to(4096), 3, 3),
+                   "voxels along x, y and z; at most 2^31 in all"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& terrainSpec() {
+  static const ObjectSpec spec{
+      "terrain",
+      "",
+      {
+          required("files", listOf(kFile, 1, kMostItems),
+                   "elevation files (HGT, DTED, GeoTIFF, VRT), relative to the scenario's folder"),
+          byDefault("vertical_datum", choice({"egm96", "ellipsoid"}), "egm96",
+                    "what the files' heights count from"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& atmosphereSpec() {
+  static const ObjectSpec spec{
+      "atmosphere",
+      "",
+      {
+          byDefault("k_factor", number().from(0.5).to(10), Atmosphere{}.k_factor,
+                    "effective earth radius over earth radius"),
+          byDefault("pressure_hpa", number("hPa").from(300).to(1100), Atmosphere{}.pressure_hpa,
+                    "at sea level"),
+          byDefault("temperature_k", number("K").from(180).to(340), Atmosphere{}.temperature_k,
+                    "at sea level"),
+          byDefault("vapour_g_m3", number("g/m3").from(0).to(100), Atmosphere{}.vapour_g_m3, "water vapour"),
+          byDefault("rain_mm_h", number("mm/h").from(0).to(200), Atmosphere{}.rain_mm_h, "rain rate"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+KeySpec latitudeKey() {
+  return required("latitude_deg", kLatitude, "geodetic, WGS84");
+}
+KeySpec longitudeKey() {
+  return required("longitude_deg", kLongitude, "WGS84, positive eastwards");
+}
+KeySpec heightMslKey() {
+  return optional("height_msl_m", kHeight, "above EGM96 mean sea level");
+}
+KeySpec heightAglKey() {
+  return optional("height_agl_m", kHeightAboveGround,
+                  "above the ground; above mean sea level without terrain");
+}
+
+const ObjectSpec& positionSpec() {
+  static const ObjectSpec spec{"position",
+                               "",
+                               {latitudeKey(), longitudeKey(), heightMslKey(), heightAglKey(),
+                                optional("height_ellipsoid_m", kHeight, "above the WGS84 ellipsoid")},
+                               {{"height_msl_m", "height_agl_m", "height_ellipsoid_m"}},
+                               {}};
+  return spec;
+}
+
+KeySpec headingKey(json default_value) {
+  return byDefault("heading_deg", kAngle, std::move(default_value), "clockwise from true north");
+}
+KeySpec pitchKey() {
+  return byDefault("pitch_deg", kElevation, 0.0, "nose up");
+}
+KeySpec rollKey() {
+  return byDefault("roll_deg", kAngle, 0.0, "right wing down");
+}
+
+const ObjectSpec& attitudeSpec() {
+  static const ObjectSpec spec{"attitude", "", {headingKey(0.0), pitchKey(), rollKey()}, {}, {}};
+  return spec;
+}
+
+const ObjectSpec& trackSpec() {
+  static const ObjectSpec spec{
+      "track",
+      "",
+      {required("file", kFile,
+                "CSV with a header line: t_s, latitude_deg, longitude_deg, height_msl_m or height_agl_m and, "
+                "if wanted, "
+                "heading_deg, pitch_deg, roll_deg; relative to the scenario's folder")},
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& platformSpec() {
+  static const ObjectSpec spec{
+      "platform",
+      "",
+      {
+          required("name", kName, "by which emitters name it"),
+          optional("position", object(positionSpec()), "of a fixed site"),
+          optional("attitude", object(attitudeSpec()), "of a fixed site; level and north by default"),
+          optional("track", object(trackSpec()), "of a moving platform"),
+      },
+      {{"position", "track"}},
+      {{"attitude", "position"}}};
+  return spec;
+}
+
+const ObjectSpec& antennaSpec() {
+  const Variants beams{"gaussian", "sinc", "cosecant2"};
+  static const ObjectSpec spec{
+      "antenna",
+      "pattern",
+      {
+          required("pattern", choiceUpTo(AntennaForm::cuts),
+                   "shape of the beam; file: MSI/PLN or a CSV grid; cuts: two CSV cuts"),
+          byDefault("gain_dbi", kGain, 0.0, "at the maximum", {"isotropic"}),
+          optional("gain_dbi", kGain,
+                   "at the maximum; by default 26000 / (beamwidths in degrees), at least 0 dBi",
+                   {"gaussian", "sinc"}),
+          optional("gain_dbi", kGain,
+                   "at the maximum; by default 4 pi times the aperture in square wavelengths",
+                   {"phased_array"}),
+          optional("gain_dbi", kGain, "at the maximum; by default the file's own, which only MSI/PLN has",
+                   {"file"}),
+          required("gain_dbi", kGain, "at the maximum", {"cosecant2", "cuts"}),
+          required("beamwidth_az_deg", number("deg").above(0).to(360), "between half-power points", beams),
+          required("beamwidth_el_deg", number("deg").above(0).to(180), "between half-power points", beams),
+          byDefault("side_lobe_db", number("dB").from(-100).to(0), -40.0,
+                    "level relative to the maximum below which the pattern does not fall", beams),
+          byDefault("max_elevation_deg", number("deg").above(0).to(90), 40.0,
+                    "where the cosecant-squared part ends", {"cosecant2"}),
+          required("columns", kInteger.from(1).to(1024), "elements in azimuth", {"phased_array"}),
+          required("rows", kInteger.from(1).to(1024), "elements in elevation", {"phased_array"}),
+          byDefault("spacing_wavelengths", number().from(0.1).to(1), 0.5, "between elements",
+                    {"phased_array"}),
+          byDefault("element_exponent", number().from(0).to(10), 0.5,
+                    "an element's amplitude is the cosine off boresight to this power", {"phased_array"}),
+          required("file", kFile, "relative to the scenario's folder", {"file"}),
+          required("azimuth_file", kFile, "CSV: azimuth_deg, attenuation_db", {"cuts"}),
+          required("elevation_file", kFile, "CSV: elevation_deg, attenuation_db", {"cuts"}),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& dwellSpec() {
+  static const ObjectSpec spec{
+      "dwell",
+      "",
+      {
+          required("azimuth_deg", number("deg").from(-180).to(180), "off the boresight, clockwise"),
+          required("elevation_deg", kElevation, "off the boresight, upwards"),
+          required("duration_s", number("s").from(1e-6).to(1e6), "whole nanoseconds"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& scanSpec() {
+  const Variants sweeps{"sector", "raster"};
+  static const ObjectSpec spec{
+      "scan",
+      "kind",
+      {
+          required("kind", choiceUpTo(ScanKind::dwell_list), "how the beam moves"),
+          byDefault(
+              "azimuth_deg", kAngle, 0.0,
+              "off the platform's heading, clockwise: boresight; rotate: at t = 0; sector, raster: centre"),
+          byDefault("elevation_deg", kElevation, 0.0,
+                    "of the boresight, upwards; raster: centre of the bars"),
+          required("rate_rpm", number("rpm").from(-6000).to(6000), "clockwise if positive", {"rotate"}),
+          required("width_deg", number("deg").above(0).to(360), "whole azimuth sweep", sweeps),
+          required("rate_deg_s", number("deg/s").above(0).to(1e5), "azimuth speed", sweeps),
+          required("elevation_step_deg", number("deg").above(0).to(90), "between bars", {"raster"}),
+          required("bars", kInteger.from(1).to(1000), "sweeps stacked, from the lowest upwards", {"raster"}),
+          required("dwells", listOf(object(dwellSpec()), 1, kMostItems), "repeated for ever", {"dwell_list"}),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& radarReceiverSpec() {
+  static const ObjectSpec spec{
+      "radar receiver",
+      "",
+      {
+          required("noise_figure_db", number("dB").from(0).to(60), "referred to 290 K"),
+          required("bandwidth_hz", kBandwidth, "of the noise"),
+          optional("losses_db", kLoss, "receive path; by default the emitter's losses_db"),
+          byDefault("pulses", kInteger.from(1).to(1e6), RadarReceiver{}.pulses, "integrated on a target"),
+          byDefault("pfa", number().above(0).to(0.5), RadarReceiver{}.pfa, "probability of false alarm"),
+          byDefault("swerling", kInteger.from(0).to(4), RadarReceiver{}.swerling,
+                    "case of target fluctuation"),
+          byDefault("target_rcs_m2", number("m2").above(0).to(1e9), RadarReceiver{}.target_rcs_m2,
+                    "radar cross section"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& emitterSpec() {
+  static const ObjectSpec spec{
+      "emitter",
+      "kind",
+      {
+          required("name", kName, "on pictures and in volumes"),
+          required("platform", kName, "name of the platform that carries it"),
+          required("kind", choiceUpTo(EmitterKind::jammer), "what it is"),
+          required("frequency_hz", kFrequency, "carrier"),
+          byDefault("bandwidth_hz", number("Hz").from(0).to(1e11), Emitter{}.bandwidth_hz,
+                    "of the signal; 0: narrower than any receiver"),
+          required("power_w", number("W").above(0).to(1e12), "peak, at the transmitter's output"),
+          byDefault("losses_db", kLoss, Emitter{}.losses_db, "transmit path, one way"),
+          byDefault("polarization", choiceUpTo(Polarization::circular_left), toString(Emitter{}.polarization),
+                    "of the transmitted wave"),
+          required("antenna", object(antennaSpec()), "pattern and gain"),
+          optional("scan", object(scanSpec()),
+                   "how the beam moves; by default it is fixed along the heading"),
+          byDefault("propagation", choiceUpTo(PropagationModel::p528), toString(Emitter{}.propagation),
+                    "model of the path loss"),
+          required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
+          optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMostItems),
+                   "[begin, end) of the times at which it radiates; always by default"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& receiverSpec() {
+  static const ObjectSpec spec{
+      "receiver",
+      "",
+      {
+          required("name", kName, ""),
+          byDefault("gain_dbi", kGain, ReceiverProfile{}.gain_dbi, "in every direction"),
+          byDefault("losses_db", kLoss, ReceiverProfile{}.losses_db, "between antenna and receiver"),
+          optional("polarization", choiceUpTo(Polarization::circular_left),
+                   "by default that of each emitter"),
+          optional("center_frequency_hz", kFrequency, "by default that of each emitter"),
+          optional("bandwidth_hz", kBandwidth, "by default as wide as each emitter's signal"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& bandSpec() {
+  static const ObjectSpec spec{"band",
+                               "",
+                               {
+                                   required("name", kName, ""),
+                                   required("begin_hz", kFrequency, "included"),
+                                   required("end_hz", kFrequency, "excluded"),
+                               },
+                               {},
+                               {}};
+  return spec;
+}
+
+const ObjectSpec& outputSpec() {
+  static const ObjectSpec spec{
+      "output",
+      "",
+      {
+          byDefault("quantities",
+                    listOf(choice({"power_density_dbwm2", "field_strength_dbuvm", "received_power_dbm",
+                                   "snr_db", "emitter_count", "dominant_emitter", "detection_probability",
+                                   "jammer_to_signal_db"}),
+                           1, kMostItems)
+                        .distinct(),
+                    OutputSpec{}.quantities, "what the volumes hold"),
+          byDefault("combine", choiceUpTo(CombineMode::per_band), toString(OutputSpec{}.combine),
+                    "how emitters are put together"),
+          byDefault("floor", number().from(-1000).to(1000), OutputSpec{}.floor,
+                    "lowest value kept, in each quantity's unit"),
+          byDefault("count_threshold_dbwm2", number("dBW/m2").from(-1000).to(1000),
+                    OutputSpec{}.count_threshold_dbwm2, "emitter_count counts emitters above it"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+}  // namespace
+
+ValueSpec ValueSpec::from(double lowest) const {
+  ValueSpec spec = *this;
+  spec.minimum = lowest;
+  return spec;
+}
+
+ValueSpec ValueSpec::above(double bound) const {
+  ValueSpec spec = from(bound);
+  spec.minimum_excluded = true;
+  return spec;
+}
+
+ValueSpec ValueSpec::to(double highest) const {
+  ValueSpec spec = *this;
+  spec.maximum = highest;
+  return spec;
+}
+
+ValueSpec ValueSpec::distinct() const {
+  ValueSpec spec = *this;
+  spec.items_differ = true;
+  return spec;
+}
+
+const KeySpec* ObjectSpec::find(const std::string& key, const std::string* variant) const {
+  for (const KeySpec& row : keys) {
+    const bool applies = row.only_for.empty() || variant == nullptr ||
+                         std::find(row.only_for.begin(), row.only_for.end(), *variant) != row.only_for.end();
+    if (row.name == key && applies) return &row;
+  }
+  return nullptr;
+}
+
+const char* toString(AntennaForm form) {
+  static constexpr const char* kNames[] = {"isotropic",    "gaussian", "sinc", "cosecant2",
+                                           "phased_array", "file",     "cuts"};
+  return kNames[static_cast<int>(form)];
+}
+
+const ObjectSpec& scenarioSpec() {
+  static const ObjectSpec spec{
+      "scenario",
+      "",
+      {
+          required("schema_version", kInteger.from(1).to(1), "of this format"),
+          required("name", kName, "of the scenario"),
+          optional("epoch", simple(ValueType::timestamp), "the time of t = 0, UTC"),
+          byDefault("duration_s", kTime, Clock{}.duration_s, "of the scenario"),
+          byDefault("step_s", number("s").from(1e-6).to(1e8), Clock{}.step_s,
+                    "between volumes; at most 10^7 in all"),
+          required("region", object(regionSpec()), "the box that the field fills"),
+          optional("terrain", object(terrainSpec()),
+                   "the ground; by default a smooth earth at mean sea level"),
+          optional("atmosphere", object(atmosphereSpec()), "what the waves travel through"),
+          required("platforms", listOf(object(platformSpec()), 1, kMostItems).distinct(),
+                   "what carries emitters"),
+          required("emitters", listOf(object(emitterSpec()), 1, kMostItems).distinct(), "what radiates"),
+          optional("receivers", listOf(object(receiverSpec()), 1, kMostItems).distinct(),
+                   "placed at every voxel for received_power_dbm, which takes the first"),
+          optional("bands", listOf(object(bandSpec()), 1, kMostItems).distinct(), "for combine per_band"),
+          optional("output", object(outputSpec()), "what is computed"),
+      },
+      {},
+      {}};
+  return spec;
+}
+
+const ObjectSpec& trackRowSpec() {
+  static const ObjectSpec spec{
+      "track file",
+      "",
+      {required("t_s", number("s").from(-1e8).to(1e8), "since the epoch"), latitudeKey(), longitudeKey(),
+       heightMslKey(), heightAglKey(), headingKey(nullptr), pitchKey(), rollKey()},
+      {{"height_msl_m", "height_agl_m"}},
+      {}};
+  return spec;
+}
+
+const std::string& unitOf(const ValueSpec& value) {
+  return value.item ? unitOf(*value.item) : value.unit;
+}
+
+std::string stemOf(const KeySpec& key) {
+  const auto letters = [](const std::string& text) {
+    std::string kept;
+    for (const char c : text) {
+      if (c != '_' && c != '/') kept += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    }
+    return kept;
+  };
+  const std::string unit = letters(unitOf(key.value));
+  for (std::size_t bar = key.name.find('_'); !unit.empty() && bar != std::string::npos;
+       bar = key.name.find('_', bar + 1)) {
+    if (letters(key.name.substr(bar)) == unit) return key.name.substr(0, bar);
+  }
+  return key.name;
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,63 @@
+/// Values of an object of a document, read by the table of the format.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scenario/document.h"
+#include "scenario/schema.h"
+
+namespace emscape::scenario {
+
+/// One object of the file. Reading a value that is missing gives the table's default; reading one that is
+/// faulty, which checkObject() has told already, gives 0, empty text or an empty list. Asking for a key that
+/// the table does not have is a programming error (std::logic_error). Valid as long as the document, the
+/// table and `file`.
+class Section {
+ public:
+  /// @param node  null for an object that is not there: everything has its default
+  Section(const std::string& file, const DocumentNode* node, const ObjectSpec& spec);
+
+  /// Whether the key is given, with a value of the right type.
+  bool has(const std::string& key) const;
+  /// Whether checkObject() finds nothing wrong.
+  bool sound() const;
+
+  double number(const std::string& key) const;
+  std::optional<double> optionalNumber(const std::string& key) const;
+  int integer(const std::string& key) const;
+  std::string text(const std::string& key) const;  ///< text, timestamp, file
+  /// The value of a choice whose order in the table is the enumeration's.
+  template <class Enum>
+  Enum choice(const std::string& key) const {
+    return static_cast<Enum>(choiceIndex(key));
+  }
+
+  Section section(const std::string& key) const;
+  std::vector<Section> sections(const std::string& key) const;  ///< list of objects
+  std::vector<double> numbers(
+      const std::string& key) const;  ///< list of numbers; shorter than it should be if faulty
+  std::vector<std::string> texts(const std::string& key) const;
+  std::vector<std::vector<double>> numberLists(const std::string& key) const;
+
+  /// Where the object stands.
+  FilePlace place() const;
+  /// Where the key's value stands; where the object stands if it is not given.
+  FilePlace placeOf(const std::string& key) const;
+  /// Where an item of the key's list stands.
+  FilePlace placeOf(const std::string& key, std::size_t item) const;
+
+ private:
+  const KeySpec& row(const std::string& key) const;
+  const DocumentNode* find(const std::string& key) const;
+  int choiceIndex(const std::string& key) const;
+  FilePlace placeAt(const TextPosition& position) const { return {*file_, position.line, position.column}; }
+
+  const std::string* file_;
+  const DocumentNode* node_;
+  const ObjectSpec* spec_;
+  std::string variant_;  ///< the discriminator's value; empty: none or faulty
+};
+
+}  // namespace emscape::scenario

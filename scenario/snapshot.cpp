@@ -1,0 +1,129 @@
+#include "scenario/snapshot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/geoid.h"
+#include "base/units.h"
+
+namespace emscape::scenario {
+
+namespace {
+
+constexpr double kGroundTolerance_m = 1e-3;
+
+std::string whereAndWhen(const Platform& platform, const SitePosition& at, double t_s) {
+  return fmt::format("platform '{}' at t = {} s ({:.6f}, {:.6f} deg)", platform.name, t_s, at.latitude_deg,
+                     at.longitude_deg);
+}
+
+/// Ground (m above mean sea level) below a platform: 0 without terrain, NaN where the terrain is missing.
+double groundHeight_m(const Scenario& scenario, const Terrain* terrain, const SitePosition& at) {
+  if (!scenario.terrain) return 0;
+  return terrain == nullptr ? std::nan("") : terrain->heightMsl_m(at.latitude_deg, at.longitude_deg);
+}
+
+PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Platform& platform,
+                      double t_s) {
+  const TrackPoint point = pointAt(platform, t_s);
+  const SitePosition& at = point.position;
+  const double undulation_m = geoidUndulation_m(at.latitude_deg, at.longitude_deg);
+  const double ground_m = groundHeight_m(scenario, terrain, at);
+  PlatformState state;
+  if (at.height_agl_m) {
+    if (std::isnan(ground_m)) {
+      throw Error(
+          ErrorCode::bad_input, platform.place,
+          fmt::format("{}: its height is given above ground, but {}", whereAndWhen(platform, at, t_s),
+                      terrain == nullptr ? "the terrain was not loaded"
+                                         : "the terrain is missing there (a void, or outside the files)"));
+    }
+    state.height_msl_m = ground_m + *at.height_agl_m;
+  } else {
+    state.height_msl_m = at.height_msl_m ? *at.height_msl_m : *at.height_ellipsoid_m - undulation_m;
+  }
+  if (ground_m - state.height_msl_m > kGroundTolerance_m) {
+    throw Error(
+        ErrorCode::bad_input, platform.place,
+        fmt::format(
+            "{} lies {:.1f} m below {}: it is at {:.1f} m, the ground at {:.1f} m above mean sea level",
+            whereAndWhen(platform, at, t_s), ground_m - state.height_msl_m,
+            scenario.terrain ? "ground" : "the smooth earth that stands for the missing terrain",
+            state.height_msl_m, ground_m));
+  }
+  state.position = {at.latitude_deg, wrapLongitude_deg(at.longitude_deg), state.height_msl_m + undulation_m};
+  state.attitude = {point.heading_deg.value_or(0), point.pitch_deg.value_or(0), point.roll_deg.value_or(0)};
+  return state;
+}
+
+/// Turns two vectors of an orthonormal pair within their plane: a towards b.
+void turn(Vec3d& a, Vec3d& b, double angle_deg) {
+  const double c = std::cos(degToRad(angle_deg)), s = std::sin(degToRad(angle_deg));
+  const Vec3d turned_a = a * c + b * s;
+  b = b * c - a * s;
+  a = turned_a;
+}
+
+/// Azimuth about the pose's own vertical axis, then elevation about its new right.
+void aim(BeamPose& pose, double azimuth_deg, double elevation_deg) {
+  turn(pose.forward, pose.right, azimuth_deg);
+  turn(pose.forward, pose.up, elevation_deg);
+}
+
+BeamPose poseAt(const Attitude& attitude, const Emitter& emitter, double t_s) {
+  // North, east, up, turned by yaw, then pitch, then roll.
+  BeamPose pose;
+  pose.forward = {0, 1, 0};
+  pose.right = {1, 0, 0};
+  pose.up = {0, 0, 1};
+  aim(pose, attitude.heading_deg, attitude.pitch_deg);
+  turn(pose.up, pose.right, attitude.roll_deg);
+
+  const BeamDirection beam = beamAt(emitter.scan, t_s);
+  if (!beam.electronic) {
+    aim(pose, beam.azimuth_deg, beam.elevation_deg);
+    return pose;
+  }
+  aim(pose, emitter.scan.azimuth_deg, emitter.scan.elevation_deg);
+  if (emitter.antenna && emitter.antenna->view().kind == PatternKind::phased_array) {
+    const double azimuth_rad = degToRad(beam.azimuth_deg), elevation_rad = degToRad(beam.elevation_deg);
+    pose.steer_u = std::sin(azimuth_rad) * std::cos(elevation_rad);
+    pose.steer_v = std::sin(elevation_rad);
+  } else {
+    aim(pose, beam.azimuth_deg, beam.elevation_deg);
+  }
+  return pose;
+}
+
+bool isActive(const Emitter& emitter, double t_s) {
+  return emitter.active_s.empty() ||
+         std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [t_s](const TimeInterval& interval) {
+           return t_s >= interval.begin_s && t_s < interval.end_s;
+         });
+}
+
+}  // namespace
+
+Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s) {
+  Snapshot snapshot;
+  snapshot.time_s = t_s;
+  snapshot.time_utc = utcAt(scenario->clock, t_s);
+  snapshot.scenario = scenario;
+  for (const Platform& platform : scenario->platforms) {
+    snapshot.platforms.push_back(stateAt(*scenario, terrain, platform, t_s));
+  }
+  for (const Emitter& emitter : scenario->emitters) {
+    const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(emitter.platform)];
+    EmitterState state;
+    state.active = isActive(emitter, t_s);
+    state.position = carrier.position;
+    state.height_msl_m = carrier.height_msl_m;
+    state.beam = poseAt(carrier.attitude, emitter, t_s);
+    snapshot.emitters.push_back(state);
+  }
+  return snapshot;
+}
+
+}  // namespace emscape::scenario

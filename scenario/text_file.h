@@ -1,0 +1,35 @@
+/// Reads text files that people wrote: whole, of bounded size, and UTF-8.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "base/error.h"
+
+namespace emscape::scenario {
+
+/// The bytes of a regular file.
+/// @throws Error (bad_input) if there is none, if it cannot be read or if it is larger than limit_bytes
+std::string readWholeFile(const std::string& file, std::size_t limit_bytes);
+
+/// Takes a byte order mark off and checks that the rest is UTF-8 text without control characters.
+/// @throws Error (bad_input) with the place of the first byte that is not
+std::string checkedUtf8(const std::string& file, std::string bytes);
+
+/// Characters (code points) of UTF-8 text.
+std::size_t characterCount(std::string_view text);
+
+/// FNV-1a, 64 bits, over all that was added: tells whether inputs changed; no protection against forgery.
+class ContentHash {
+ public:
+  void add(std::string_view bytes);
+  /// 16 hexadecimal digits.
+  std::string hex() const;
+
+ private:
+  std::uint64_t state_ = 14695981039346656037ull;
+};
+
+}  // namespace emscape::scenario
