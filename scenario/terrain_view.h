@@ -24,29 +24,46 @@ struct TerrainRaster {
   /// A post with less weight than this does not make its neighbourhood void.
   static constexpr float kNoWeight = 1e-6f;
 
-  /// Bilinear height (m), NaN outside or if a post with weight is void.
-  EMSCAPE_HD float heightAt(double latitude_rad, double longitude_rad) const {
-    double v = (latitude_rad - south_rad) * posts_per_rad_lat;
-    if (!(v >= first_row - kSlack && v <= last_row + kSlack)) return NAN;
-    double u = (longitude_rad - west_rad) * posts_per_rad_lon;
-    if (!(u >= first_column - kSlack && u <= last_column + kSlack)) {
-      // The same meridian, one or more turns further.
-      const double turn = 2.0 * kPi * posts_per_rad_lon;
-      u -= turn * std::floor((u - first_column + kSlack) / turn);
-      if (!(u <= last_column + kSlack)) return NAN;
+  /// Brings a point to posts, within the limits. False if it lies beyond them.
+  EMSCAPE_HD bool limit(double& column, double& row) const {
+    if (!(column >= first_column - kSlack && column <= last_column + kSlack && row >= first_row - kSlack &&
+          row <= last_row + kSlack)) {
+      return false;
     }
-    u = u < first_column ? first_column : u > last_column ? last_column : u;
-    v = v < first_row ? first_row : v > last_row ? last_row : v;
-    const int i = static_cast<int>(u) < columns - 2 ? static_cast<int>(u) : columns - 2;
-    const int j = static_cast<int>(v) < rows - 2 ? static_cast<int>(v) : rows - 2;
+    column = column < first_column ? first_column : column > last_column ? last_column : column;
+    row = row < first_row ? first_row : row > last_row ? last_row : row;
+    return true;
+  }
+
+  /// The point as real numbers of posts; false if it lies outside the raster.
+  EMSCAPE_HD bool locate(double latitude_rad, double longitude_rad, double& column, double& row) const {
+    row = (latitude_rad - south_rad) * posts_per_rad_lat;
+    column = (longitude_rad - west_rad) * posts_per_rad_lon;
+    if (limit(column, row)) return true;
+    // The same meridian, some turns further.
+    const double turn = 2.0 * kPi * posts_per_rad_lon;
+    column -= turn * std::floor((column - first_column + kSlack) / turn);
+    return limit(column, row);
+  }
+
+  /// Bilinear height (m) between posts, at a point within the limits; NaN if a post with weight is void.
+  EMSCAPE_HD float heightAtPost(double column, double row) const {
+    const int i = static_cast<int>(column) < columns - 2 ? static_cast<int>(column) : columns - 2;
+    const int j = static_cast<int>(row) < rows - 2 ? static_cast<int>(row) : rows - 2;
     const float* south = heights_msl_m + static_cast<long long>(j) * columns + i;
     const float* north = south + columns;
-    const float x = static_cast<float>(u - i);
-    const float y = static_cast<float>(v - j);
+    const float x = static_cast<float>(column - i);
+    const float y = static_cast<float>(row - j);
     const float on_south = south[0] + x * (south[1] - south[0]);
     const float on_north = north[0] + x * (north[1] - north[0]);
     const float height = on_south + y * (on_north - on_south);
     return height == height ? height : besideVoid(south, north, x, y);
+  }
+
+  /// Bilinear height (m); NaN outside, or if a post with weight is void.
+  EMSCAPE_HD float heightAt(double latitude_rad, double longitude_rad) const {
+    double column, row;
+    return locate(latitude_rad, longitude_rad, column, row) ? heightAtPost(column, row) : NAN;
   }
 
  private:
