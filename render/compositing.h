@@ -1,6 +1,7 @@
 /// How the samples of a ray become a pixel: one small functor a mode, plain data for host and device.
 #pragma once
 
+#include <cmath>
 #include <string>
 
 #include "base/host_device.h"
@@ -12,5 +13,93 @@ enum class CompositingMode { dvr, mida, mip };
 const char* toString(CompositingMode mode);
 /// @throws Error (usage) that lists the names
 CompositingMode parseCompositingMode(const std::string& name);
+
+/// Opacity (of one reference step) after `steps` of them: 1 - (1 - a)^steps. @param opacity 0..1, steps > 0
+EMSCAPE_HD inline float opacityOver(float opacity, float steps) {
+  return opacity >= 1.0F ? 1.0F : 1.0F - std::pow(1.0F - opacity, steps);
+}
+/// A sample of one step, cut to a part of it. @param sample premultiplied; part 0..1
+EMSCAPE_HD inline Rgba shortened(const Rgba& sample, float part) {
+  return sample.a > 0.0F ? sample * (opacityOver(sample.a, part) / sample.a) : sample;
+}
+
+/// A transfer function as a table over normalised values f in 0..1. Plain data.
+struct TransferView {
+  const Rgba* samples = nullptr;    ///< premultiplied, opacity corrected for the sampling step
+  const Rgba* projected = nullptr;  ///< premultiplied, opacity relative to the function's largest: for maximum projection
+  int last = 0;                     ///< index of the last entry
+  float lowest = 0;                 ///< the value at f = 0
+  float scale = 0;                  ///< f per unit of the value
+
+  /// f of a value, clamped to 0..1; NaN is 0.
+  EMSCAPE_HD float normalized(float value) const {
+    const float f = (value - lowest) * scale;
+    return f > 0.0F ? (f < 1.0F ? f : 1.0F) : 0.0F;
+  }
+  EMSCAPE_HD int index(float f) const { return static_cast<int>(f * static_cast<float>(last) + 0.5F); }
+};
+
+/// What every compositor offers: samples come front to back; `f` is normalised, `sample` premultiplied and corrected for its length.
+///   add(f, sample)                          takes one sample
+///   canSkip(brick_highest_f, transparent)   whether samples up to that f, all transparent if so said, change nothing
+///   done()                                  whether no later sample can matter (any more than the early termination allows)
+///   result(transfer)                        the ray's colour, premultiplied
+/// `volume_highest_f` is the largest f that any sample can have.
+
+constexpr float kOpaqueEnough = 0.99F;
+
+/// Direct volume rendering: emission and absorption.
+struct DvrCompositor {
+  bool exact = false;
+  Rgba sum;
+
+  EMSCAPE_HD DvrCompositor(bool exact_cast, float /*gamma*/, float /*volume_highest_f*/) : exact(exact_cast) {}
+  EMSCAPE_HD void add(float /*f*/, const Rgba& sample) { sum = over(sum, sample); }
+  EMSCAPE_HD bool canSkip(float /*brick_highest_f*/, bool transparent) const { return transparent; }
+  EMSCAPE_HD bool done() const { return !exact && sum.a > kOpaqueEnough; }
+  EMSCAPE_HD Rgba result(const TransferView& /*transfer*/) const { return sum; }
+};
+
+/// Maximum intensity projection: the colour of the largest value, its opacity relative to the function's largest.
+struct MipCompositor {
+  float volume_highest = 1;
+  float highest = -1;
+
+  EMSCAPE_HD MipCompositor(bool /*exact_cast*/, float /*gamma*/, float volume_highest_f)
+      : volume_highest(volume_highest_f) {}
+  EMSCAPE_HD void add(float f, const Rgba& /*sample*/) { highest = f > highest ? f : highest; }
+  EMSCAPE_HD bool canSkip(float brick_highest_f, bool /*transparent*/) const { return brick_highest_f <= highest; }
+  EMSCAPE_HD bool done() const { return highest >= volume_highest; }
+  EMSCAPE_HD Rgba result(const TransferView& transfer) const {
+    return highest >= 0.0F ? transfer.projected[transfer.index(highest)] : Rgba{};
+  }
+};
+
+/// Maximum intensity difference accumulation (Bruckner and Groeller 2009): a new maximum fades what lies before it. gamma = -1 is
+/// DVR, 0 is MIDA; above 0 the picture blends towards MIP.
+struct MidaCompositor {
+  float gamma = 0;
+  bool exact = false;
+  MipCompositor mip;
+  Rgba sum;
+
+  EMSCAPE_HD MidaCompositor(bool exact_cast, float gamma_value, float volume_highest_f)
+      : gamma(gamma_value), exact(exact_cast), mip(exact_cast, gamma_value, volume_highest_f) {}
+  EMSCAPE_HD void add(float f, const Rgba& sample) {
+    const float before = mip.highest > 0.0F ? mip.highest : 0.0F;
+    const float delta = f > before ? f - before : 0.0F;
+    mip.add(f, sample);
+    const float beta = 1.0F - delta * (1.0F + (gamma < 0.0F ? gamma : 0.0F));
+    const float through = 1.0F - beta * sum.a;
+    sum = sum * beta + sample * through;
+  }
+  EMSCAPE_HD bool canSkip(float brick_highest_f, bool transparent) const {
+    return transparent && mip.canSkip(brick_highest_f, transparent);
+  }
+  EMSCAPE_HD bool done() const { return !exact && sum.a > kOpaqueEnough && mip.done(); }
+  EMSCAPE_HD Rgba result(const TransferView& transfer) const {
+    return gamma <= 0.0F ? sum : sum * (1.0F - gamma) + mip.result(transfer) * gamma;
+  }
+};
 
 }  // namespace emscape::render

@@ -1,0 +1,17 @@
+#include "render/compositing.h"
+
+#include "render/names.h"
+
+namespace emscape::render {
+namespace {
+
+constexpr Named<CompositingMode> kModes[] = {
+    {CompositingMode::dvr, "dvr"}, {CompositingMode::mida, "mida"}, {CompositingMode::mip, "mip"}};
+
+}  // namespace
+
+const char* toString(CompositingMode mode) { return nameOf(kModes, mode); }
+
+CompositingMode parseCompositingMode(const std::string& name) { return parseName(kModes, "mode", name); }
+
+}  // namespace emscape::render

@@ -1,0 +1,73 @@
+/// The ground as a surface that rays hit: plain data with a hierarchy of largest heights, single source for host and device.
+///
+/// The ground is a solid block: below its heights down to a base plane, inside the volume's box. Where a post is unknown the block has a
+/// pit down to the base, hatched. Its sides are drawn plain.
+#pragma once
+
+#include <vector>
+
+#include "base/host_device.h"
+#include "base/vec.h"
+#include "render/camera.h"
+#include "render/height_field.h"
+#include "render/image.h"
+#include "volume/grid.h"
+
+namespace emscape::render {
+
+/// Where a ray meets the ground.
+struct GroundHit {
+  bool found = false;
+  double distance = 0;   ///< along the ray
+  Rgba color;
+};
+
+/// Positions are in the volume's index space; *post space* counts x and y in posts.
+struct GroundView {
+  static constexpr int kMaxLevels = 16;
+
+  const float* heights = nullptr;     ///< columns * rows posts, index space z; NaN: unknown. Null: no ground
+  const Rgba* colors = nullptr;       ///< shaded colour of each post
+  const float* highest[kMaxLevels] = {};  ///< level 0: largest height of each cell; level n: of 2^n x 2^n cells
+  int level_columns[kMaxLevels] = {};
+  int levels = 0;
+  int columns = 0, rows = 0;
+  double scale_x = 1, scale_y = 1;    ///< posts per voxel
+  double first_x = 0, first_y = 0;    ///< index space position of post (0, 0)
+  Vec3d lower, upper;                 ///< of the block, index space; lower.z is the base
+  float hatch_period = 8;             ///< posts between the lines of a pit's hatching
+
+  /// The first point of the block on a ray between two distances.
+  EMSCAPE_HD GroundHit firstHit(const Vec3d& origin, const Vec3d& direction, double begin, double end) const;
+
+ private:
+  struct PostRay;   // the ray in post space from `begin` on
+  EMSCAPE_HD bool hitsCell(const PostRay& ray, int i, int j, float enter, float leave, float& distance,
+                           Rgba& color) const;
+  EMSCAPE_HD Rgba surfaceColor(int i, int j, float x, float y) const;
+  EMSCAPE_HD Rgba wallColor(float z, float x, float y) const;
+  EMSCAPE_HD Rgba pitColor(float x, float y) const;
+};
+
+/// The ground of a scene, prepared: shaded posts and the hierarchy.
+class GroundSurface {
+ public:
+  /// @throws Error (bad_input) if the field is malformed (sizes, spacing, number of heights)
+  GroundSurface(const HeightField& field, const volume::Grid& grid, const SceneBox& box);
+
+  GroundView view() const;
+
+ private:
+  void crop(const HeightField& field, const volume::Grid& grid);
+  void shade(const volume::Grid& grid, const SceneBox& box);
+  void buildHierarchy();
+
+  GroundView view_;
+  std::vector<float> heights_;
+  std::vector<Rgba> colors_;
+  std::vector<std::vector<float>> highest_;
+};
+
+}  // namespace emscape::render
+
+#include "render/ground_impl.h"

@@ -1,0 +1,135 @@
+/// Casting one pixel of a scene: single source for host and device over plain data.
+///
+/// Rays live in *index space*, where voxel (i, j, k) has its centre at (i, j, k): there every voxel is a unit cube, and lengths along
+/// a ray are in voxels whatever the spacing and the vertical exaggeration. A ray crosses the box of voxels, -0.5 .. dims - 0.5 along
+/// each axis; it is cut into pieces of one step from where it enters, the last one shorter, and sampled in the middle of each piece
+/// with the opacity of the piece's length. Homogeneous fog so is exact for every step. No jitter: a pixel depends on its
+/// coordinates and the scene alone.
+#pragma once
+
+#include "base/host_device.h"
+#include "base/vec.h"
+#include "render/compositing.h"
+#include "render/ground.h"
+#include "render/image.h"
+#include "render/volume_view.h"
+
+namespace emscape::render {
+
+/// A ray in index space: the direction has unit length, so that its parameter counts voxels.
+struct Ray {
+  Vec3d origin;
+  Vec3d direction;
+};
+
+/// A camera in index space.
+struct CameraView {
+  Vec3d eye;
+  Vec3d forward, right, up;   ///< of one unit of length; not orthogonal where voxels are not cubes
+  double half_height = 1;
+  double shift_x = 0, shift_y = 0;
+  bool orthographic = false;
+  ImageSize size;
+
+  EMSCAPE_HD Ray ray(int x, int y) const {
+    const double plane_x = ((2.0 * (x + 0.5) - size.width) / size.height + shift_x) * half_height;
+    const double plane_y = (1.0 - 2.0 * (y + 0.5) / size.height + shift_y) * half_height;
+    const Vec3d offset = right * plane_x + up * plane_y;
+    if (orthographic) return {eye + offset, normalized(forward)};
+    return {eye, normalized(forward + offset)};
+  }
+};
+
+/// The part of a ray in a box: empty where end <= begin. Never begins behind the origin.
+struct RayInterval {
+  double begin = 0, end = 0;
+};
+
+/// One axis' share of a box test. Rays that lie in a face count as outside.
+EMSCAPE_HD inline void clipAxis(double origin, double direction, double lower, double upper, RayInterval& interval) {
+  if (direction == 0.0) {
+    if (!(origin > lower && origin < upper)) interval.end = interval.begin;
+    return;
+  }
+  const double to_lower = (lower - origin) / direction;
+  const double to_upper = (upper - origin) / direction;
+  const double enter = direction > 0.0 ? to_lower : to_upper;
+  const double leave = direction > 0.0 ? to_upper : to_lower;
+  if (enter > interval.begin) interval.begin = enter;
+  if (leave < interval.end) interval.end = leave;
+}
+
+EMSCAPE_HD inline RayInterval clip(const Ray& ray, const Vec3d& lower, const Vec3d& upper) {
+  RayInterval interval{0.0, 1e300};
+  clipAxis(ray.origin.x, ray.direction.x, lower.x, upper.x, interval);
+  clipAxis(ray.origin.y, ray.direction.y, lower.y, upper.y, interval);
+  clipAxis(ray.origin.z, ray.direction.z, lower.z, upper.z, interval);
+  return interval;
+}
+
+/// A scene ready to be cast. Sampler: TrilinearSampler or NearestSampler; Compositor: see compositing.h.
+struct RaycastTask {
+  CameraView camera;
+  VolumeView volume;
+  TransferView transfer;
+  SkipView skip;
+  GroundView ground;
+  float step_voxels = 1;
+  float mida_gamma = 0;
+  float volume_highest_f = 1;
+  bool exact = false;
+
+  template <class Compositor, class Sampler>
+  EMSCAPE_HD Rgba castPixel(int x, int y) const {
+    const Ray ray = camera.ray(x, y);
+    RayInterval inside = clip(ray, volume.lower(), volume.upper());
+    GroundHit hit;
+    if (ground.heights != nullptr) {
+      const RayInterval over_ground = clip(ray, ground.lower, ground.upper);
+      if (over_ground.end > over_ground.begin) {
+        hit = ground.firstHit(ray.origin, ray.direction, over_ground.begin, over_ground.end);
+        if (hit.found && hit.distance < inside.end) inside.end = hit.distance;
+      }
+    }
+    Compositor compositor(exact, mida_gamma, volume_highest_f);
+    if (inside.end > inside.begin) {
+      march<Compositor, Sampler>(vecCast<float>(ray.origin + ray.direction * inside.begin),
+                                 vecCast<float>(ray.direction), static_cast<float>(inside.end - inside.begin),
+                                 compositor);
+    }
+    const Rgba front = compositor.result(transfer);
+    return hit.found ? over(front, hit.color) : front;
+  }
+
+  /// @param start  where the ray enters; `length` voxels of it are sampled
+  template <class Compositor, class Sampler>
+  EMSCAPE_HD void march(const Vec3f& start, const Vec3f& direction, float length, Compositor& compositor) const {
+    const int whole = static_cast<int>(length / step_voxels);
+    int next_brick = 0;   // the first sample that may lie in another brick than the last one looked at
+    for (int n = 0; n < whole; ++n) {
+      const Vec3f position = start + direction * ((static_cast<float>(n) + 0.5F) * step_voxels);
+      if (n >= next_brick && skip.ranges != nullptr) {
+        const BrickStep brick = skip.at(volume, position, direction);
+        const float samples = brick.leave / step_voxels;
+        next_brick = n + 1 + (samples < static_cast<float>(whole) ? static_cast<int>(samples) : whole);
+        if (compositor.canSkip(transfer.normalized(brick.highest), brick.transparent)) {
+          n = next_brick - 1;
+          continue;
+        }
+      }
+      float value = 0;
+      if (!Sampler::sample(volume, position, value)) continue;
+      const float f = transfer.normalized(value);
+      compositor.add(f, transfer.samples[transfer.index(f)]);
+      if (compositor.done()) return;
+    }
+    const float rest = length - static_cast<float>(whole) * step_voxels;
+    if (!(rest > 0.0F)) return;
+    float value = 0;
+    if (!Sampler::sample(volume, start + direction * (length - 0.5F * rest), value)) return;
+    const float f = transfer.normalized(value);
+    compositor.add(f, shortened(transfer.samples[transfer.index(f)], rest / step_voxels));
+  }
+};
+
+}  // namespace emscape::render

@@ -1,0 +1,159 @@
+#include "render/reconstruction.h"
+
+#include "base/parallel.h"
+#include "render/names.h"
+
+namespace emscape::render {
+namespace {
+
+constexpr Named<Pattern> kPatterns[] = {{Pattern::full, "full"},
+                                        {Pattern::columns, "columns"},
+                                        {Pattern::checkerboard, "checkerboard"},
+                                        {Pattern::quarter, "quarter"}};
+constexpr Named<Interpolation> kInterpolations[] = {{Interpolation::float32, "float"}, {Interpolation::bits8, "8bit"}};
+
+constexpr int kRowGrain = 16;
+
+Lattice lattice(ImageSize size, int first_x, int first_y, int step_x, int step_y) {
+  return {first_x,
+          first_y,
+          step_x,
+          step_y,
+          (size.width - first_x + step_x - 1) / step_x,
+          (size.height - first_y + step_y - 1) / step_y};
+}
+
+std::vector<Lattice> withoutEmpty(const std::vector<Lattice>& lattices) {
+  std::vector<Lattice> kept;
+  for (const Lattice& l : lattices) {
+    if (l.columns > 0 && l.rows > 0) kept.push_back(l);
+  }
+  return kept;
+}
+
+float mean8(float a, float b) { return static_cast<float>((quantized(a) + quantized(b) + 1) / 2) / 255.0F; }
+float copy8(float a) { return static_cast<float>(quantized(a)) / 255.0F; }
+
+/// The two ways to fill a pixel, by kind of arithmetic.
+struct FloatArithmetic {
+  static Rgba mean(const Rgba& p, const Rgba& q) { return (p + q) * 0.5F; }
+  static Rgba copy(const Rgba& p) { return p; }
+};
+struct Bits8Arithmetic {
+  static Rgba mean(const Rgba& p, const Rgba& q) {
+    return {mean8(p.r, q.r), mean8(p.g, q.g), mean8(p.b, q.b), mean8(p.a, q.a)};
+  }
+  static Rgba copy(const Rgba& p) { return {copy8(p.r), copy8(p.g), copy8(p.b), copy8(p.a)}; }
+};
+
+/// Fills every second pixel of a row from its left and right neighbours, starting at first_x (0 or 1).
+template <class Arithmetic>
+void fillRow(Image& image, int y, int first_x) {
+  const int width = image.size.width;
+  Rgba* row = &image.at(0, y);
+  for (int x = first_x; x < width; x += 2) {
+    const bool has_left = x > 0;
+    const bool has_right = x + 1 < width;
+    if (has_left && has_right) {
+      row[x] = Arithmetic::mean(row[x - 1], row[x + 1]);
+    } else if (has_left || has_right) {
+      row[x] = Arithmetic::copy(row[has_left ? x - 1 : x + 1]);
+    }
+  }
+}
+
+/// Fills the even pixels of an odd row from the rows above and below.
+template <class Arithmetic>
+void fillFromRowsBeside(Image& image, int y) {
+  const bool has_below = y + 1 < image.size.height;
+  for (int x = 0; x < image.size.width; x += 2) {
+    image.at(x, y) = has_below ? Arithmetic::mean(image.at(x, y - 1), image.at(x, y + 1))
+                               : Arithmetic::copy(image.at(x, y - 1));
+  }
+}
+
+/// A checkerboard's odd row may consist of one missing pixel alone: it has neighbours only above and below.
+template <class Arithmetic>
+void fillSingleColumn(Image& image) {
+  for (int y = 1; y < image.size.height; y += 2) fillFromRowsBeside<Arithmetic>(image, y);
+}
+
+template <class Arithmetic>
+void interpolateWith(Pattern pattern, Image& image) {
+  const int height = image.size.height;
+  if (pattern == Pattern::quarter) {
+    parallelFor(height / 2, kRowGrain, [&](int begin, int end) {
+      for (int j = begin; j < end; ++j) fillFromRowsBeside<Arithmetic>(image, 2 * j + 1);
+    });
+  }
+  if (pattern == Pattern::checkerboard && image.size.width == 1) {
+    fillSingleColumn<Arithmetic>(image);
+    return;
+  }
+  parallelFor(height, kRowGrain, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      const bool starts_left = pattern == Pattern::checkerboard && y % 2 == 1;
+      fillRow<Arithmetic>(image, y, starts_left ? 0 : 1);
+    }
+  });
+}
+
+}  // namespace
+
+const char* toString(Pattern pattern) { return nameOf(kPatterns, pattern); }
+Pattern parsePattern(const std::string& name) { return parseName(kPatterns, "ray pattern", name); }
+
+const std::vector<Pattern>& allPatterns() {
+  static const std::vector<Pattern> patterns{Pattern::full, Pattern::columns, Pattern::checkerboard, Pattern::quarter};
+  return patterns;
+}
+
+const char* toString(Interpolation interpolation) { return nameOf(kInterpolations, interpolation); }
+Interpolation parseInterpolation(const std::string& name) {
+  return parseName(kInterpolations, "interpolation", name);
+}
+
+std::vector<Lattice> sourceLattices(Pattern pattern, ImageSize size) {
+  switch (pattern) {
+    case Pattern::full:
+      return withoutEmpty({lattice(size, 0, 0, 1, 1)});
+    case Pattern::columns:
+      return withoutEmpty({lattice(size, 0, 0, 2, 1)});
+    case Pattern::checkerboard:
+      return withoutEmpty({lattice(size, 0, 0, 2, 2), lattice(size, 1, 1, 2, 2)});
+    case Pattern::quarter:
+      return withoutEmpty({lattice(size, 0, 0, 2, 2)});
+  }
+  return {};
+}
+
+std::vector<Lattice> missingLattices(Pattern pattern, ImageSize size) {
+  switch (pattern) {
+    case Pattern::full:
+      return {};
+    case Pattern::columns:
+      return withoutEmpty({lattice(size, 1, 0, 2, 1)});
+    case Pattern::checkerboard:
+      return withoutEmpty({lattice(size, 1, 0, 2, 2), lattice(size, 0, 1, 2, 2)});
+    case Pattern::quarter:
+      return withoutEmpty({lattice(size, 1, 0, 2, 2), lattice(size, 0, 1, 2, 2), lattice(size, 1, 1, 2, 2)});
+  }
+  return {};
+}
+
+long long pixelCount(const std::vector<Lattice>& lattices) {
+  long long count = 0;
+  for (const Lattice& l : lattices) count += l.count();
+  return count;
+}
+
+void interpolate(Pattern pattern, Interpolation interpolation, Image& image) {
+  if (pattern == Pattern::full || image.size.count() == 0) return;
+  if (interpolation == Interpolation::float32) {
+    interpolateWith<FloatArithmetic>(pattern, image);
+  } else {
+    interpolateWith<Bits8Arithmetic>(pattern, image);
+  }
+}
+
+}  // namespace emscape::render

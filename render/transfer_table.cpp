@@ -1,0 +1,70 @@
+#include "render/transfer_table.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+
+namespace emscape::render {
+namespace {
+
+constexpr int kEntries = 4096;
+constexpr double kMostCategories = 65536;
+
+Rgba premultiplied(const Rgb& color, double opacity) {
+  const float a = static_cast<float>(opacity);
+  return {color.r * a, color.g * a, color.b * a, a};
+}
+
+}  // namespace
+
+TransferTable::TransferTable(const TransferFunction& function, double step_voxels) {
+  if (function.opacities.empty()) throw Error(ErrorCode::other, "transfer function without points");
+  int entries = kEntries;
+  lowest_ = function.lowest();
+  highest_ = function.highest();
+  if (function.categorical) {
+    lowest_ = -1;   // none
+    highest_ = std::clamp(std::floor(highest_ + 0.5), 0.0, kMostCategories);
+    entries = static_cast<int>(highest_ - lowest_) + 1;
+  }
+  std::vector<double> opacities;
+  double largest = 0;
+  const double spacing = (highest_ - lowest_) / (entries - 1);
+  for (int i = 0; i < entries; ++i) {
+    opacities.push_back(function.opacity(lowest_ + i * spacing));
+    largest = std::max(largest, opacities.back());
+  }
+  visible_before_.push_back(0);
+  for (int i = 0; i < entries; ++i) {
+    const double opacity = opacities[static_cast<std::size_t>(i)];
+    const Rgb color = function.color(lowest_ + i * spacing);
+    samples_.push_back(premultiplied(color, 1 - std::pow(1 - opacity, step_voxels)));
+    projected_.push_back(premultiplied(color, largest > 0 ? opacity / largest : 0));
+    visible_before_.push_back(visible_before_.back() + (samples_.back().a > 0 ? 1 : 0));
+  }
+}
+
+TransferView TransferTable::view() const {
+  return {samples_.data(), projected_.data(), static_cast<int>(samples_.size()) - 1, static_cast<float>(lowest_),
+          static_cast<float>(1.0 / (highest_ - lowest_))};
+}
+
+std::vector<std::uint8_t> TransferTable::transparentBricks(const volume::BricksView& bricks) const {
+  const TransferView table = view();
+  std::vector<std::uint8_t> transparent(static_cast<std::size_t>(bricks.dims.count()));
+  for (std::size_t i = 0; i < transparent.size(); ++i) {
+    const volume::ValueRange range = bricks.ranges[i];
+    if (range.empty()) {
+      transparent[i] = 1;
+      continue;
+    }
+    // One entry more on each side: interpolation may round a little beyond its operands.
+    const int first = std::max(table.index(table.normalized(range.min)) - 1, 0);
+    const int last = std::min(table.index(table.normalized(range.max)) + 1, table.last);
+    transparent[i] = visible_before_[static_cast<std::size_t>(last) + 1] == visible_before_[static_cast<std::size_t>(first)];
+  }
+  return transparent;
+}
+
+}  // namespace emscape::render

@@ -1,0 +1,133 @@
+/// A volume as the ray caster reads it: plain data, sampling, and the bricks that need no sampling.
+#pragma once
+
+#include <cstdint>
+
+#include "base/host_device.h"
+#include "base/vec.h"
+#include "volume/bricks.h"
+
+namespace emscape::render {
+
+/// Values where they lie. Positions are in index space: voxel (i, j, k) has its centre at (i, j, k).
+struct VolumeView {
+  const float* values = nullptr;
+  Dims dims;
+  const std::uint16_t* first_valid_k = nullptr;  ///< null: no voxel is masked
+  int masked_below = 0;                          ///< no voxel of a layer from here up is masked
+
+  EMSCAPE_HD Vec3d lower() const { return {-0.5, -0.5, -0.5}; }
+  EMSCAPE_HD Vec3d upper() const { return {dims.x - 0.5, dims.y - 0.5, dims.z - 0.5}; }
+  EMSCAPE_HD bool isMasked(int i, int j, int k) const {
+    return k < masked_below && k < first_valid_k[static_cast<long long>(j) * dims.x + i];
+  }
+  EMSCAPE_HD float at(int i, int j, int k) const {
+    return values[(static_cast<long long>(k) * dims.y + j) * dims.x + i];
+  }
+};
+
+/// A position along one axis, held inside the centres of the outer voxels, and the cell of two voxels around it.
+struct CellPosition {
+  int low = 0, high = 0;
+  float fraction = 0;
+
+  EMSCAPE_HD CellPosition(float position, int count) {
+    const float last = static_cast<float>(count - 1);
+    const float held = position > 0.0F ? (position < last ? position : last) : 0.0F;
+    low = static_cast<int>(held);
+    high = low + 1 < count ? low + 1 : low;
+    fraction = held - static_cast<float>(low);
+  }
+  EMSCAPE_HD int nearest() const { return fraction < 0.5F ? low : high; }
+};
+
+EMSCAPE_HD inline float lerp(float a, float b, float fraction) { return a + fraction * (b - a); }
+
+/// Trilinear between voxel centres. Nothing is drawn where the nearest voxel is masked. Elsewhere a masked corner of the cell takes the
+/// value of the corner above it or, if that is masked too, of the sample's nearest voxel: what lies below ground never bleeds
+/// into the air. NaN draws nothing.
+struct TrilinearSampler {
+  EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
+    const CellPosition x(position.x, volume.dims.x);
+    const CellPosition y(position.y, volume.dims.y);
+    const CellPosition z(position.z, volume.dims.z);
+    const long long row = volume.dims.x;
+    const long long layer = row * volume.dims.y;
+    const float* lower = volume.values + z.low * layer;
+    const float* upper = volume.values + z.high * layer;
+    const long long c00 = y.low * row + x.low;
+    const long long c10 = y.low * row + x.high;
+    const long long c01 = y.high * row + x.low;
+    const long long c11 = y.high * row + x.high;
+    float low[4] = {lower[c00], lower[c10], lower[c01], lower[c11]};
+    float high[4] = {upper[c00], upper[c10], upper[c01], upper[c11]};
+    if (z.low < volume.masked_below) {
+      if (volume.isMasked(x.nearest(), y.nearest(), z.nearest())) return false;
+      const float substitute = volume.at(x.nearest(), y.nearest(), z.nearest());
+      const long long columns[4] = {c00, c10, c01, c11};
+      for (int c = 0; c < 4; ++c) {
+        const int first_valid = volume.first_valid_k[columns[c]];
+        if (z.high < first_valid) high[c] = substitute;
+        if (z.low < first_valid) low[c] = high[c];
+      }
+    }
+    const float below = lerp(lerp(low[0], low[1], x.fraction), lerp(low[2], low[3], x.fraction), y.fraction);
+    const float above = lerp(lerp(high[0], high[1], x.fraction), lerp(high[2], high[3], x.fraction), y.fraction);
+    value = lerp(below, above, z.fraction);
+    return value == value;
+  }
+};
+
+/// The value of the nearest voxel, for indices. Masked voxels and NaN draw nothing.
+struct NearestSampler {
+  EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
+    const int i = CellPosition(position.x, volume.dims.x).nearest();
+    const int j = CellPosition(position.y, volume.dims.y).nearest();
+    const int k = CellPosition(position.z, volume.dims.z).nearest();
+    if (volume.isMasked(i, j, k)) return false;
+    value = volume.at(i, j, k);
+    return value == value;
+  }
+};
+
+/// What a ray finds of the brick around a position.
+struct BrickStep {
+  float highest = 0;        ///< largest value of a sample in it
+  bool transparent = false; ///< no sample in it has any opacity
+  float leave = 0;          ///< voxels along the ray that surely stay in it
+};
+
+/// Min-max bricks and, for the transfer function in force, which of them are transparent.
+struct SkipView {
+  const volume::ValueRange* ranges = nullptr;  ///< null: nothing is skipped
+  const std::uint8_t* transparent = nullptr;
+  Dims dims;
+  int edge = 8;
+
+  /// Brick along one axis and the distance to its far face; the outer bricks reach to infinity.
+  EMSCAPE_HD int along(float position, float direction, int voxels, int bricks, float& leave) const {
+    const int brick = CellPosition(position, voxels).low / edge;
+    const bool forward = direction > 0.0F;
+    if (direction == 0.0F || (forward ? brick + 1 >= bricks : brick <= 0)) return brick;
+    const float face = static_cast<float>((forward ? brick + 1 : brick) * edge);
+    const float distance = (face - position) / direction;
+    if (distance < leave) leave = distance;
+    return brick;
+  }
+
+  EMSCAPE_HD BrickStep at(const VolumeView& volume, const Vec3f& position, const Vec3f& direction) const {
+    // Samples nearer to a face than rounding can tell apart are looked at anew.
+    constexpr float kFaceMargin = 1e-3F;
+    float leave = 1e9F;
+    const int x = along(position.x, direction.x, volume.dims.x, dims.x, leave);
+    const int y = along(position.y, direction.y, volume.dims.y, dims.y, leave);
+    const int z = along(position.z, direction.z, volume.dims.z, dims.z, leave);
+    const long long brick = (static_cast<long long>(z) * dims.y + y) * dims.x + x;
+    const float sure = leave - kFaceMargin;
+    // Interpolation may round a little beyond its operands.
+    const float rounding = (ranges[brick].max - ranges[brick].min) * 1e-6F;
+    return {ranges[brick].max + rounding, transparent[brick] != 0, sure > 0.0F ? sure : 0.0F};
+  }
+};
+
+}  // namespace emscape::render
