@@ -4,6 +4,7 @@
 #include <gdal_priv.h>
 #include <ogr_srs_api.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -63,7 +64,7 @@ class GeoidGrid {
   double undulation_m(double latitude_deg, double longitude_deg) const {
     const double u =
         (longitude_deg - 360.0 * std::floor((longitude_deg + 180.0) / 360.0) + 180.0) * kPostsPerDegree;
-    const double v = (std::fmin(std::fmax(latitude_deg, -90.0), 90.0) + 90.0) * kPostsPerDegree;
+    const double v = (std::clamp(latitude_deg, -90.0, 90.0) + 90.0) * kPostsPerDegree;
     if (!(u >= 0.0 && u <= kColumns && v >= 0.0)) return std::nan("");
     const int column = std::min(static_cast<int>(u), kColumns - 1);
     const int row = std::min(static_cast<int>(v), kRows - 2);
