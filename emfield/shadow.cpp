@@ -15,13 +15,13 @@ class SlopePlanes {
  public:
   SlopePlanes(const HorizonGeometry<float>& geometry, const TerrainFan& fan)
       : geometry_(geometry), fan_(fan), slopes_(fan.height_msl_m.size()) {
-    std::vector<RangeTerms<float>> ranges(fan.range_count);
-    for (int i = 0; i < fan.range_count; ++i) ranges[i] = geometry.termsAt(i * fan.range_step_m);
+    std::vector<RangeTerms<float>> ranges(fan.rangeCount());
+    for (int i = 0; i < fan.rangeCount(); ++i) ranges[i] = geometry.termsAt(fan.ranges_m[i]);
     parallelFor(fan.azimuth_count, 8, [&](int begin, int end) {
       for (int a = begin; a < end; ++a) {
         if (fan.used_ranges[a] == 0) continue;
         grazingSlopes(geometry, fan.profile(a), ranges.data(), fan.used_ranges[a],
-                      slopes_.data() + static_cast<std::size_t>(a) * fan.range_count);
+                      slopes_.data() + static_cast<std::size_t>(a) * fan.rangeCount());
       }
     });
   }
@@ -31,8 +31,7 @@ class SlopePlanes {
     const double position = fan_.azimuthIndex(point.azimuth_rad);
     const int azimuth = static_cast<int>(position);
     const float weight = static_cast<float>(position - azimuth);
-    const int before = std::clamp(static_cast<int>(std::ceil(point.range_m / fan_.range_step_m)) - 1, 0,
-                                  fan_.range_count - 1);
+    const int before = fan_.lastBefore(point.range_m);
     if (before == 0) return -std::numeric_limits<float>::infinity();
     const RangeTerms<float> range = geometry_.termsAt(point.range_m);
     const float left = geometry_.heightOn(slope(azimuth, before), range);
@@ -42,7 +41,7 @@ class SlopePlanes {
 
  private:
   float slope(int azimuth, int range) const {
-    return slopes_[static_cast<std::size_t>(azimuth) * fan_.range_count + range];
+    return slopes_[static_cast<std::size_t>(azimuth) * fan_.rangeCount() + range];
   }
 
   HorizonGeometry<float> geometry_;

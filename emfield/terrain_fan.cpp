@@ -35,43 +35,49 @@ Sector sectorOf(const std::vector<FanCoordinates>& coordinates, double margin_m)
   return {reference + lowest, highest - lowest, false};
 }
 
-/// Heights of one azimuth. Positions are exact at every kStride-th sample and linear between: over so short a
-/// piece the geodesic leaves its chord by less than a metre, except near the poles.
+/// From 0 beyond the farthest range: every few metres at first, then in proportion to the range, then evenly.
+std::vector<double> fanRanges(double farthest_m, double even_step_m) {
+  constexpr double kNearestStep_m = 2, kGrowth = 0.1;
+  std::vector<double> ranges{0};
+  while (ranges.back() < farthest_m) {
+    const double step_m = std::min(even_step_m, std::max(kNearestStep_m, kGrowth * ranges.back()));
+    ranges.push_back(ranges.back() + step_m);
+  }
+  return ranges;
+}
+
+/// Heights of one azimuth. Positions are exact at knots and linear between: over so short a piece the
+/// geodesic leaves its chord by less than a metre, except near the poles.
 class ProfileReader {
  public:
-  ProfileReader(const Station& station, const scenario::TerrainView& terrain, double range_step_m)
-      : station_(station), terrain_(terrain), range_step_m_(range_step_m) {
-    const double latitude_rad = std::asin(station.geodesy.station.up.z);
-    stride_ = std::abs(latitude_rad) < kPolarLatitude_rad
-                  ? std::max(1, static_cast<int>(kChord_m / range_step_m))
-                  : 1;
-  }
+  ProfileReader(const Station& station, const scenario::TerrainView& terrain)
+      : station_(station),
+        terrain_(terrain),
+        chord_m_(std::abs(std::asin(station.geodesy.station.up.z)) < degToRad(80.0) ? 800 : 10) {}
 
-  void read(double azimuth_rad, int count, float* height_msl_m) const {
+  void read(double azimuth_rad, const std::vector<double>& ranges_m, int count, float* height_msl_m) const {
     const double sine = std::sin(azimuth_rad), cosine = std::cos(azimuth_rad);
-    FastDirect begin = fastDirect(station_.geodesy, sine, cosine, 0);
-    for (int first = 0; first < count; first += stride_) {
-      const FastDirect end = fastDirect(station_.geodesy, sine, cosine, (first + stride_) * range_step_m_);
-      const double latitude_step = (end.latitude_rad - begin.latitude_rad) / stride_;
-      const double longitude_step =
-          std::remainder(end.longitude_rad - begin.longitude_rad, 2 * kPi) / stride_;
-      const int last = std::min(count, first + stride_);
-      for (int i = first; i < last; ++i) {
-        height_msl_m[i] = terrain_.heightAt(begin.latitude_rad + (i - first) * latitude_step,
-                                            begin.longitude_rad + (i - first) * longitude_step);
+    double knot_m = 0;
+    FastDirect knot;
+    double latitude_slope = 0, longitude_slope = 0;
+    for (int i = 0; i < count; ++i) {
+      if (i == 0 || ranges_m[i] > knot_m + chord_m_) {
+        knot_m = ranges_m[i];
+        knot = fastDirect(station_.geodesy, sine, cosine, knot_m);
+        const FastDirect next = fastDirect(station_.geodesy, sine, cosine, knot_m + chord_m_);
+        latitude_slope = (next.latitude_rad - knot.latitude_rad) / chord_m_;
+        longitude_slope = std::remainder(next.longitude_rad - knot.longitude_rad, 2 * kPi) / chord_m_;
       }
-      begin = end;
+      const double beyond_m = ranges_m[i] - knot_m;
+      height_msl_m[i] = terrain_.heightAt(knot.latitude_rad + beyond_m * latitude_slope,
+                                          knot.longitude_rad + beyond_m * longitude_slope);
     }
   }
 
  private:
-  static constexpr double kPolarLatitude_rad = degToRad(80.0);
-  static constexpr double kChord_m = 800;
-
   const Station& station_;
   const scenario::TerrainView& terrain_;
-  double range_step_m_;
-  int stride_ = 1;
+  double chord_m_;
 };
 
 }  // namespace
@@ -96,6 +102,11 @@ double TerrainFan::azimuthIndex(double azimuth_rad) const {
   return index < azimuth_count ? index : (full_circle ? 0 : azimuth_count - 1);
 }
 
+int TerrainFan::lastBefore(double range_m) const {
+  const auto first_not_before = std::lower_bound(ranges_m.begin(), ranges_m.end(), range_m);
+  return std::max(0, static_cast<int>(first_not_before - ranges_m.begin()) - 1);
+}
+
 FanResolution fanResolution(const volume::Grid& grid, const scenario::Terrain* terrain) {
   const double voxel_m = std::min(grid.spacing_m.x, grid.spacing_m.y);
   if (terrain == nullptr) return {voxel_m, voxel_m / 2};
@@ -110,12 +121,11 @@ TerrainFan makeTerrainFan(const Station& station, const std::vector<FanCoordinat
   farthest_m += lean_m;
 
   TerrainFan fan;
-  fan.range_step_m = resolution.range_m;
-  fan.range_count = static_cast<int>(std::ceil(farthest_m / fan.range_step_m)) + 1;
+  fan.ranges_m = fanRanges(farthest_m, resolution.range_m);
   if (terrain == nullptr) {
     fan.azimuth_count = 1;
-    fan.height_msl_m.assign(fan.range_count, 0.0f);
-    fan.used_ranges.assign(1, fan.range_count);
+    fan.height_msl_m.assign(fan.rangeCount(), 0.0f);
+    fan.used_ranges.assign(1, fan.rangeCount());
     return fan;
   }
 
@@ -127,22 +137,22 @@ TerrainFan makeTerrainFan(const Station& station, const std::vector<FanCoordinat
   fan.azimuth_step_rad = sector.width_rad / intervals;
   fan.azimuth_count = sector.full_circle ? intervals : intervals + 1;
 
-  fan.used_ranges.assign(fan.azimuth_count, lean_m > 0 ? fan.range_count : 0);
+  fan.used_ranges.assign(fan.azimuth_count, lean_m > 0 ? fan.rangeCount() : 0);
   for (const FanCoordinates& point : coordinates) {
     const int azimuth = static_cast<int>(fan.azimuthIndex(point.azimuth_rad));
-    const int used =
-        std::min(fan.range_count, static_cast<int>(std::ceil(point.range_m / fan.range_step_m)) + 1);
+    const int used = fan.lastBefore(point.range_m) + 1;
     for (int a : {azimuth, fan.next(azimuth)}) fan.used_ranges[a] = std::max(fan.used_ranges[a], used);
   }
 
-  fan.height_msl_m.resize(static_cast<std::size_t>(fan.azimuth_count) * fan.range_count);
+  fan.height_msl_m.resize(static_cast<std::size_t>(fan.azimuth_count) * fan.rangeCount());
   const scenario::TerrainView view = terrain->view();
-  const ProfileReader reader(station, view, fan.range_step_m);
+  const ProfileReader reader(station, view);
   parallelFor(fan.azimuth_count, 8, [&](int begin, int end) {
     for (int a = begin; a < end; ++a) {
-      float* profile = fan.height_msl_m.data() + static_cast<std::size_t>(a) * fan.range_count;
-      reader.read(fan.first_azimuth_rad + a * fan.azimuth_step_rad, fan.used_ranges[a], profile);
-      std::fill(profile + fan.used_ranges[a], profile + fan.range_count,
+      float* profile = fan.height_msl_m.data() + static_cast<std::size_t>(a) * fan.rangeCount();
+      reader.read(fan.first_azimuth_rad + a * fan.azimuth_step_rad, fan.ranges_m, fan.used_ranges[a],
+                  profile);
+      std::fill(profile + fan.used_ranges[a], profile + fan.rangeCount(),
                 std::numeric_limits<float>::quiet_NaN());
     }
   });

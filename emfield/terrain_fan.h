@@ -8,23 +8,26 @@
 
 namespace emscape::emfield {
 
-/// Azimuths first_azimuth_rad + a * azimuth_step_rad, ranges i * range_step_m. Immutable once made.
+/// Azimuths first_azimuth_rad + a * azimuth_step_rad, the same ranges along each. Immutable once made.
 struct TerrainFan {
   double first_azimuth_rad = 0;
   double azimuth_step_rad = 0;
   int azimuth_count = 0;
   bool full_circle = false;  ///< the azimuth after the last one is the first
-  double range_step_m = 0;
-  int range_count = 0;
-  /// Height above mean sea level (m), azimuth_count x range_count, range fastest; NaN over missing terrain
+  /// From 0 (the station) outwards: dense near it, where a few metres of ground hide much of the sky.
+  std::vector<double> ranges_m;
+  /// Height above mean sea level (m), azimuth_count x rangeCount(), range fastest; NaN over missing terrain
   /// and beyond used_ranges.
   std::vector<float> height_msl_m;
   /// For each azimuth the number of ranges that a column of the grid lies behind; 0: none.
   std::vector<int> used_ranges;
 
   const float* profile(int azimuth) const {
-    return height_msl_m.data() + static_cast<std::size_t>(azimuth) * range_count;
+    return height_msl_m.data() + static_cast<std::size_t>(azimuth) * rangeCount();
   }
+  int rangeCount() const { return static_cast<int>(ranges_m.size()); }
+  /// Index of the last sample nearer than a range; 0 if there is none.
+  int lastBefore(double range_m) const;
   /// Fractional azimuth index, 0 <= index < azimuth_count; the neighbours of floor(index) are next().
   double azimuthIndex(double azimuth_rad) const;
   int next(int azimuth) const {
@@ -32,7 +35,8 @@ struct TerrainFan {
   }
 };
 
-/// Distances between the samples of a fan: the azimuths' at the farthest column, and along a range (m).
+/// Distances between the samples of a fan: the azimuths' at the farthest column, and along a range away from
+/// the station (m).
 struct FanResolution {
   double arc_m = 0;
   double range_m = 0;
