@@ -1,0 +1,92 @@
+/// Tables of patterns and the antennas that are made of them.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "scenario/antenna.h"
+
+namespace emscape::scenario {
+
+/// Signed amplitude by an angle (rad) or a direction cosine.
+using Shape = std::function<double(double)>;
+
+/// Most intervals of a table of one variable: 1 MiB of floats.
+constexpr int kMostIntervals = 1 << 18;
+
+/// A shape sampled evenly over -half_span..half_span, both ends and 0 among the samples.
+struct ShapeTable {
+  Shape shape;
+  double half_span = 0;
+  std::vector<float> values;  ///< odd number
+
+  int count() const { return static_cast<int>(values.size()); }
+};
+/// @param largest_step  > 0; met up to kMostIntervals intervals
+ShapeTable tabulate(Shape shape, double half_span, double largest_step);
+/// The same with samples at every one of the angles (deg), if they are multiples of 0.0001 degree and the
+/// intervals suffice.
+ShapeTable tabulate(Shape shape, double half_span, const std::vector<double>& angles_deg);
+
+/// Intervals, an even number up to `most`, that divide a span (deg) so that every angle (deg, counted from
+/// the span's middle) is an end of one; `most` itself if there is no such number or the angles are no
+/// multiples of 0.0001 degree.
+int intervalsThatMeet(const std::vector<double>& angles_deg, double span_deg, int most);
+
+/// Distance between the half-power points to both sides of a table's maximum, in the unit of half_span; 2
+/// half_span if there are none on either side.
+/// @param closed  the table's ends are one place (azimuth)
+double halfPowerWidth(const std::vector<float>& values, double half_span, bool closed);
+
+/// Azimuth and elevation of a direction (forward, right, up); azimuth 0 at the poles.
+struct Angles {
+  double azimuth_rad;
+  double elevation_rad;
+};
+Angles patternAngles(const Vec3d& direction);
+
+/// azimuth shape * elevation shape, not below side_lobe_amplitude.
+class SeparableAntenna : public Antenna {
+ public:
+  SeparableAntenna(ShapeTable azimuth, ShapeTable elevation, double side_lobe_amplitude);
+  PatternView view() const override;
+  double amplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override;
+
+ private:
+  ShapeTable azimuth_, elevation_;
+  double side_lobe_amplitude_;
+};
+
+/// Rows of elevation from -90 to 90 degrees, azimuth fastest from -180 to 180; bilinear in amplitude.
+class GridAntenna : public Antenna {
+ public:
+  /// @param amplitudes  azimuth_count * elevation_count, both odd and at least 3
+  GridAntenna(std::vector<float> amplitudes, int azimuth_count, int elevation_count);
+  PatternView view() const override;
+  double amplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override;
+
+ private:
+  std::vector<float> amplitudes_;
+  int azimuth_count_, elevation_count_;
+};
+
+/// Most intervals of a grid in azimuth, and twice as many as in elevation: 0.1 degree, 26 MB.
+constexpr int kMostGridIntervals = 3600;
+
+/// A grid that has entries at every one of the angles (as intervalsThatMeet), with beamwidths measured
+/// through its maximum.
+/// @param amplitude_at  of azimuth and elevation (deg)
+AntennaPtr makeGridAntenna(const std::function<double(double, double)>& amplitude_at,
+                           const std::vector<double>& azimuths_deg, const std::vector<double>& elevations_deg,
+                           double gain_dbi, const std::string& name);
+
+/// Completes an antenna: gain, beamwidths, and a description that names them.
+AntennaPtr describedAntenna(const std::shared_ptr<Antenna>& antenna, double gain_dbi, double beamwidth_az_deg,
+                            double beamwidth_el_deg, const std::string& name);
+
+/// @throws Error (bad_input) unless -100 <= gain_dbi <= 100
+void requireGain(double gain_dbi);
+/// @throws Error (bad_input) unless low <= value <= high; names the value, the range and the unit
+void requireWithin(const char* name, double value, double low, double high, const char* unit);
+
+}  // namespace emscape::scenario

@@ -1,0 +1,53 @@
+/// Lines, fields and numbers of antenna files.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/error.h"
+
+namespace emscape::scenario {
+
+/// A piece of a line. line and column (bytes) count from 1.
+struct TextField {
+  std::string_view text;
+  int line = 0;
+  int column = 0;
+};
+
+/// The text of an antenna file, read whole, up to 64 MiB.
+class AntennaText {
+ public:
+  /// @throws Error (bad_input) if the file cannot be read or is not text (holds a zero byte)
+  explicit AntennaText(const std::string& file);
+  AntennaText(const AntennaText&) = delete;
+  AntennaText& operator=(const AntennaText&) = delete;
+
+  const std::string& file() const { return file_; }
+  /// The lines that say something, without blanks at their ends; lines end in LF, CRLF or CR. Empty ones and
+  /// those that begin with # are left out.
+  const std::vector<TextField>& lines() const { return lines_; }
+  /// The place of a field, for an Error.
+  FilePlace place(const TextField& field) const { return {file_, field.line, field.column}; }
+
+ private:
+  std::string file_;
+  std::string text_;
+  std::vector<TextField> lines_;
+};
+
+/// The words of a line, separated by blanks and tabs.
+std::vector<TextField> wordsOf(const TextField& line);
+/// The cells of a line, separated by commas, without blanks at their ends; empty ones stay.
+std::vector<TextField> cellsOf(const TextField& line);
+/// The part of a field from byte `offset` on, without blanks at its ends.
+TextField restOf(const TextField& field, std::size_t offset);
+
+/// A finite decimal number that fills the whole text.
+std::optional<double> numberIn(std::string_view text);
+/// Case of ASCII letters only.
+std::string upperCase(std::string_view text);
+
+}  // namespace emscape::scenario
