@@ -16,6 +16,10 @@ endfunction()
 function(emscape_warnings target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
                                            $<$<BOOL:${EMSCAPE_WERROR}>:-Werror>>)
+  if(EMSCAPE_SANITIZE)
+    # the sanitizers' own code makes GCC see uninitialised values in the standard headers
+    target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+  endif()
 endfunction()
 
 # emscape_tests(MODULE SOURCES ... [LINKS ...]): the program MODULE_tests; each of its tests is one of ctest's.
