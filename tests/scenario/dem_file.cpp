@@ -1,0 +1,84 @@
+#include "tests/scenario/dem_file.h"
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+namespace emscape::test {
+namespace {
+
+OGRSpatialReference spatialReference(const std::string& crs) {
+  OGRSpatialReference reference;
+  if (reference.SetFromUserInput(crs.c_str()) != OGRERR_NONE) throw std::runtime_error("no such CRS: " + crs);
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+}  // namespace
+
+void DemFile::write(const std::filesystem::path& path) const {
+  GDALAllRegister();
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  std::unique_ptr<GDALDataset> dataset(
+      driver->Create(path.c_str(), columns, rows, bands, GDT_Float32, nullptr));
+  if (!dataset) throw std::runtime_error("cannot write " + path.string());
+  // Before the transform: GDAL writes the latter as the former asks for.
+  if (is_point) dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_POINT);
+  if (!crs.empty()) {
+    const OGRSpatialReference reference = spatialReference(crs);
+    dataset->SetSpatialRef(&reference);
+  }
+  std::array<double, 6> corners = transform;
+  if (corners != std::array<double, 6>{}) dataset->SetGeoTransform(corners.data());
+  GDALRasterBand* band = dataset->GetRasterBand(1);
+  if (nodata) band->SetNoDataValue(*nodata);
+  if (!unit.empty()) band->SetUnitType(unit.c_str());
+  if (scale != 1) band->SetScale(scale);
+  if (offset != 0) band->SetOffset(offset);
+  std::vector<float> line(static_cast<std::size_t>(columns));
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      line[static_cast<std::size_t>(column)] = static_cast<float>(value(column, row));
+    }
+    if (band->RasterIO(GF_Write, 0, row, columns, 1, line.data(), columns, 1, GDT_Float32, 0, 0, nullptr) !=
+        CE_None) {
+      throw std::runtime_error("cannot write " + path.string());
+    }
+  }
+  for (int other = 2; other <= bands; ++other) dataset->GetRasterBand(other)->Fill(12345);
+}
+
+DemFile geographicDem(double west_deg, double north_deg, double step_deg, int columns, int rows,
+                      const std::function<double(double, double)>& height) {
+  DemFile file;
+  file.columns = columns;
+  file.rows = rows;
+  file.transform = {west_deg, step_deg, 0, north_deg, 0, -step_deg};
+  file.value = [=](int column, int row) {
+    return height(north_deg - (row + 0.5) * step_deg, west_deg + (column + 0.5) * step_deg);
+  };
+  return file;
+}
+
+DemFile geographicPointDem(double west_deg, double north_deg, double step_deg, int columns, int rows,
+                           const std::function<double(double, double)>& height) {
+  DemFile file =
+      geographicDem(west_deg - 0.5 * step_deg, north_deg + 0.5 * step_deg, step_deg, columns, rows, height);
+  file.is_point = true;
+  return file;
+}
+
+std::array<double, 2> projected(const std::string& crs, double latitude_deg, double longitude_deg) {
+  const OGRSpatialReference to = spatialReference(crs), from = spatialReference("EPSG:4326");
+  const std::unique_ptr<OGRCoordinateTransformation> transformation(
+      OGRCreateCoordinateTransformation(&from, &to));
+  double x = longitude_deg, y = latitude_deg;
+  if (!transformation || !transformation->Transform(1, &x, &y))
+    throw std::runtime_error("cannot project to " + crs);
+  return {x, y};
+}
+
+}  // namespace emscape::test

@@ -1,0 +1,39 @@
+/// Elevation files for tests, written by GDAL.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace emscape::test {
+
+/// A GeoTIFF of 32-bit floats to be written. Values are of pixels: column from the west, row from the north
+/// (unless the transform says otherwise).
+struct DemFile {
+  int columns = 0, rows = 0;
+  std::array<double, 6> transform{};  ///< GDAL's: corners of pixels to the CRS
+  std::function<double(int column, int row)> value;
+  std::string crs = "EPSG:4326";  ///< empty: none
+  bool is_point = false;
+  std::optional<double> nodata;
+  std::string unit;
+  double scale = 1, offset = 0;
+  int bands = 1;  ///< all but the first hold 12345
+
+  void write(const std::filesystem::path& path) const;
+};
+
+/// A pixel-is-area file of longitudes and latitudes: `height(latitude_deg, longitude_deg)` at the pixels'
+/// centres.
+DemFile geographicDem(double west_deg, double north_deg, double step_deg, int columns, int rows,
+                      const std::function<double(double latitude_deg, double longitude_deg)>& height);
+/// The same as pixel-is-point: the outer posts lie on the corner given.
+DemFile geographicPointDem(double west_deg, double north_deg, double step_deg, int columns, int rows,
+                           const std::function<double(double latitude_deg, double longitude_deg)>& height);
+
+/// A CRS's coordinates (east, north) of a point of WGS84.
+std::array<double, 2> projected(const std::string& crs, double latitude_deg, double longitude_deg);
+
+}  // namespace emscape::test

@@ -1,0 +1,354 @@
+/// What elevation files hold and how they fail: units, projections, faults.
+#include <gdal_priv.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/units.h"
+#include "scenario/terrain.h"
+#include "tests/scenario/dem_file.h"
+
+namespace emscape::scenario {
+namespace {
+
+using test::DemFile;
+using test::geographicDem;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+
+double flat(double, double) {
+  return 100;
+}
+
+class TerrainFileTest : public testing::Test {
+ protected:
+  TerrainFileTest() {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ =
+        std::filesystem::path(testing::TempDir()) / (std::string("emscape_terrain_file_") + info->name());
+    std::filesystem::create_directories(folder_);
+  }
+  ~TerrainFileTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string write(const std::string& name, const DemFile& file) const {
+    file.write(folder_ / name);
+    return (folder_ / name).string();
+  }
+
+  /// The message of loading a file over a box; nothing may be printed meanwhile.
+  std::string problemOf(const std::string& file, const FilePlace& place = {}) const {
+    testing::internal::CaptureStderr();
+    testing::internal::CaptureStdout();
+    std::string message;
+    try {
+      Terrain::load({{file}, {place}, VerticalDatum::egm96}, {49, 50, 10, 11});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_input);
+      message = error.what();
+    }
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+    EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+    return message;
+  }
+
+  std::filesystem::path folder_;
+};
+
+TerrainPtr load(const std::vector<std::string>& files, const GeoBox& box) {
+  return Terrain::load({files, {}, VerticalDatum::egm96}, box);
+}
+
+// --- units
+// --------------------------------------------------------------------------------------------------------
+
+TEST_F(TerrainFileTest, FeetBecomeMetres) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.unit = "ft";
+  EXPECT_NEAR(load({write("ft.tif", file)}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 30.48, 1e-4);
+  EXPECT_THAT(Terrain::describe((folder_ / "ft.tif").string()).notes,
+              Contains(HasSubstr("'ft' are converted")));
+  file.unit = "US survey foot";
+  EXPECT_NEAR(load({write("us.tif", file)}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100 * 1200 / 3937.0,
+              1e-4);
+}
+
+TEST_F(TerrainFileTest, ScaleAndOffsetAreAppliedBeforeTheUnit) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.scale = 0.5;
+  file.offset = -20;
+  file.unit = "ft";
+  EXPECT_NEAR(load({write("a.tif", file)}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 30 * 0.3048, 1e-4);
+}
+
+TEST_F(TerrainFileTest, AnUnknownUnitIsAnError) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.unit = "fathom";
+  EXPECT_THAT(problemOf(write("a.tif", file)),
+              AllOf(HasSubstr("a.tif"), HasSubstr("'fathom'"), HasSubstr("m, ft")));
+}
+
+TEST_F(TerrainFileTest, OfSeveralBandsTheFirstHoldsHeights) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.bands = 3;
+  const auto path = write("a.tif", file);
+  EXPECT_EQ(load({path}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100);
+  EXPECT_THAT(Terrain::describe(path).notes, Contains(HasSubstr("3 bands")));
+}
+
+// --- projections
+// --------------------------------------------------------------------------------------------------
+
+/// Easting and northing as a height: what lies at the wrong place shows.
+double ramp(double east_m, double north_m) {
+  return 0.01 * (east_m - 500e3) + 0.02 * (north_m - 5500e3) + 1000;
+}
+
+DemFile rampDem(const std::string& crs, double west_m, double north_m, double step_m, int columns, int rows) {
+  DemFile file;
+  file.crs = crs;
+  file.columns = columns;
+  file.rows = rows;
+  file.transform = {west_m, step_m, 0, north_m, 0, -step_m};
+  file.value = [=](int column, int row) {
+    return ramp(west_m + (column + 0.5) * step_m, north_m - (row + 0.5) * step_m);
+  };
+  return file;
+}
+
+TEST_F(TerrainFileTest, ProjectedPostsLieWhereTheProjectionPutsThem) {
+  const std::string utm = "EPSG:32632";
+  const auto file = write("utm.tif", rampDem(utm, 480e3, 5520e3, 50, 800, 800));
+  const TerrainPtr terrain = load({file}, {49.5, 49.8, 8.8, 9.2});
+  EXPECT_NEAR(terrain->postSpacing_m(), 50, 0.1);
+  EXPECT_EQ(terrain->uncoveredFraction(), 0);
+  for (double latitude_deg : {49.5, 49.612, 49.7789}) {
+    for (double longitude_deg : {8.8, 8.91, 9.0, 9.1234}) {
+      const auto [east_m, north_m] = test::projected(utm, latitude_deg, longitude_deg);
+      EXPECT_NEAR(terrain->heightMsl_m(latitude_deg, longitude_deg), ramp(east_m, north_m), 0.02);
+    }
+  }
+  EXPECT_TRUE(std::isnan(terrain->heightMsl_m(49.0, 9.0)));
+}
+
+TEST_F(TerrainFileTest, HeightsGoOnBetweenProjectedTiles) {
+  const std::string utm = "EPSG:32632";
+  const auto west = write("w.tif", rampDem(utm, 490e3, 5510e3, 50, 200, 400));
+  const auto east = write("e.tif", rampDem(utm, 500e3, 5510e3, 50, 200, 400));
+  const TerrainPtr terrain = load({west, east}, {49.6, 49.7, 8.9, 9.1});
+  EXPECT_EQ(terrain->view().count, 1);
+  for (double longitude_deg = 8.995; longitude_deg < 9.005; longitude_deg += 1e-4) {
+    const auto [east_m, north_m] = test::projected(utm, 49.65, longitude_deg);
+    ASSERT_NEAR(terrain->heightMsl_m(49.65, longitude_deg), ramp(east_m, north_m), 0.02) << longitude_deg;
+  }
+}
+
+TEST_F(TerrainFileTest, HeightsGoOnBetweenZones) {
+  const auto height = [](double latitude_deg, double longitude_deg) {
+    return 100 * latitude_deg + 50 * longitude_deg;
+  };
+  std::vector<std::string> files;
+  for (const char* crs : {"EPSG:32632", "EPSG:32633"}) {
+    // The common border is longitude 12; each zone's file reaches over it a little.
+    const auto [x, y] = test::projected(crs, 50, 12);
+    DemFile file = rampDem(crs, 0, 0, 100, 400, 400);
+    const bool western = std::string(crs) == "EPSG:32632";
+    file.transform = {x - (western ? 38e3 : 2e3), 100, 0, y + 20e3, 0, -100};
+    // Linear in the plane, and so close to linear in degrees that a seam would show: taken at the border's
+    // scale.
+    const auto [x_east, y_east] = test::projected(crs, 50, 12.1);
+    const auto [x_north, y_north] = test::projected(crs, 50.1, 12);
+    const double a = (x_east - x) / 0.1, b = (x_north - x) / 0.1, c = (y_east - y) / 0.1,
+                 d = (y_north - y) / 0.1;
+    file.value = [=, transform = file.transform](int column, int row) {
+      const double u = transform[0] + (column + 0.5) * 100 - x, v = transform[3] - (row + 0.5) * 100 - y;
+      const double determinant = a * d - b * c;
+      return height(50 + (a * v - c * u) / determinant, 12 + (d * u - b * v) / determinant);
+    };
+    files.push_back(write(std::string(crs).substr(5) + ".tif", file));
+  }
+  const TerrainPtr terrain = load(files, {49.95, 50.05, 11.8, 12.2});
+  EXPECT_EQ(terrain->uncoveredFraction(), 0);
+  double last_m = terrain->heightMsl_m(50, 11.9);
+  for (double longitude_deg = 11.9001; longitude_deg < 12.1; longitude_deg += 1e-4) {
+    const double height_m = terrain->heightMsl_m(50, longitude_deg);
+    ASSERT_NEAR(height_m - last_m, 50e-4, 0.15) << longitude_deg;
+    last_m = height_m;
+  }
+}
+
+TEST_F(TerrainFileTest, APolarProjectionCoversThePole) {
+  const std::string polar = "EPSG:3031";
+  DemFile file;
+  file.crs = polar;
+  file.columns = file.rows = 200;
+  file.transform = {-500e3, 5000, 0, 500e3, 0, -5000};
+  file.value = [](int column, int row) { return 2000 + 5 * (column - 99.5) + 3 * (row - 99.5); };
+  const auto path = write("pole.tif", file);
+  const auto expected = [&](double latitude_deg, double longitude_deg) {
+    const auto [x, y] = test::projected(polar, latitude_deg, longitude_deg);
+    return 2000 + 5 * x / 5000 - 3 * y / 5000;
+  };
+  const TerrainPtr terrain = load({path}, {-90, -87, -180, 180});
+  EXPECT_EQ(terrain->uncoveredFraction(), 0);
+  for (double longitude_deg = -180; longitude_deg <= 180; longitude_deg += 22.5) {
+    for (double latitude_deg : {-87.2, -88.5, -89.7, -90.0}) {
+      EXPECT_NEAR(terrain->heightMsl_m(latitude_deg, longitude_deg), expected(latitude_deg, longitude_deg),
+                  0.1);
+    }
+  }
+  const TerrainPtr across = load({path}, {-89, -88, 170, 190});
+  EXPECT_EQ(across->uncoveredFraction(), 0);
+  EXPECT_NEAR(across->heightMsl_m(-88.5, 180.02), expected(-88.5, -179.98), 0.1);
+}
+
+TEST_F(TerrainFileTest, VoidsOfAProjectedFileStayVoid) {
+  DemFile file = rampDem("EPSG:32632", 490e3, 5510e3, 50, 400, 400);
+  file.nodata = -9999;
+  const auto [east_m, north_m] = test::projected(file.crs, 49.65, 9.0);
+  file.value = [east = (east_m - 490e3) / 50, south = (5510e3 - north_m) / 50](int column, int row) {
+    return std::hypot(column + 0.5 - east, row + 0.5 - south) < 20 ? -9999 : 100;
+  };
+  const TerrainPtr terrain = load({write("a.tif", file)}, {49.6, 49.7, 8.9, 9.1});
+  EXPECT_TRUE(std::isnan(terrain->heightMsl_m(49.65, 9.0)));
+  EXPECT_TRUE(std::isnan(terrain->heightMsl_m(49.658, 9.0)));
+  EXPECT_EQ(terrain->heightMsl_m(49.66, 9.05), 100);
+  EXPECT_GT(terrain->voidPosts(), 0);
+  EXPECT_EQ(terrain->uncoveredFraction(), 0);
+  EXPECT_EQ(terrain->lowest_m(), 100);
+}
+
+TEST_F(TerrainFileTest, AnotherDatumIsBroughtToWgs84) {
+  const std::string nad27 = "EPSG:4267";
+  const auto height = [](double latitude_deg, double longitude_deg) {
+    return 1e5 * (latitude_deg - 36) - 1e5 * (longitude_deg + 84);
+  };
+  DemFile file = geographicDem(-84.1, 36.1, 0.0002, 1000, 1000, height);
+  file.crs = nad27;
+  const TerrainPtr terrain = load({write("a.tif", file)}, {35.95, 36.05, -84.05, -83.95});
+  const auto [longitude_deg, latitude_deg] = test::projected(nad27, 36.0, -84.0);
+  ASSERT_GT(std::abs(longitude_deg + 84) + std::abs(latitude_deg - 36), 5e-5) << "the datums differ here";
+  EXPECT_NEAR(terrain->heightMsl_m(36, -84), height(latitude_deg, longitude_deg), 0.5);
+}
+
+TEST_F(TerrainFileTest, AVirtualMosaicIsReadWhereTheBoxIs) {
+  const auto west = write("w.tif", geographicDem(10, 50, 0.01, 100, 100, flat));
+  std::ofstream(folder_ / "m.vrt") << R"(<VRTDataset rasterXSize="3600" rasterYSize="100"><SRS>EPSG:4326</SRS>
+    <GeoTransform>10, 0.01, 0, 50, 0, -0.01</GeoTransform>
+    <VRTRasterBand dataType="Float32" band="1"><NoDataValue>-9999</NoDataValue>
+      <SimpleSource><SourceFilename relativeToVRT="1">w.tif</SourceFilename><SourceBand>1</SourceBand>
+        <SrcRect xOff="0" yOff="0" xSize="100" ySize="100"/><DstRect xOff="0" yOff="0" xSize="100" ySize="100"/>
+      </SimpleSource></VRTRasterBand></VRTDataset>)";
+  const TerrainPtr terrain = load({(folder_ / "m.vrt").string()}, {49.2, 49.8, 10.5, 11.5});
+  EXPECT_EQ(terrain->heightMsl_m(49.5, 10.7), 100);
+  EXPECT_TRUE(std::isnan(terrain->heightMsl_m(49.5, 11.2)));
+  EXPECT_LT(terrain->view().rasters[0].columns, 110);
+}
+
+// --- what a file says of itself
+// -----------------------------------------------------------------------------------
+
+TEST_F(TerrainFileTest, DescribeTellsWhatTheFileHolds) {
+  DemFile file = geographicDem(10, 50, 0.1, 20, 10, flat);
+  file.nodata = -1;
+  file.value = [](int column, int row) { return column == 3 ? -1 : 10 * row + column; };
+  const TerrainFileInfo info = Terrain::describe(write("a.tif", file));
+  EXPECT_EQ(info.format, "GeoTIFF");
+  EXPECT_EQ(info.crs, "WGS 84 (EPSG:4326)");
+  EXPECT_EQ(info.columns, 20);
+  EXPECT_EQ(info.rows, 10);
+  EXPECT_TRUE(info.pixel_is_area);
+  EXPECT_NEAR(info.box.south_deg, 49, 1e-9);
+  EXPECT_NEAR(info.box.north_deg, 50, 1e-9);
+  EXPECT_NEAR(info.box.west_deg, 10, 1e-9);
+  EXPECT_NEAR(info.box.east_deg, 12, 1e-9);
+  EXPECT_NEAR(info.post_spacing_lat_deg, 0.1, 1e-9);
+  EXPECT_NEAR(info.post_spacing_lon_deg, 0.1, 1e-9);
+  EXPECT_EQ(info.lowest_m, 0);
+  EXPECT_EQ(info.highest_m, 109);
+  EXPECT_EQ(info.void_posts, 10);
+  EXPECT_TRUE(info.notes.empty());
+  EXPECT_TRUE(std::isnan(Terrain::describe(info.file, false).highest_m));
+}
+
+TEST_F(TerrainFileTest, DescribePlacesAProjectedFileOnTheEarth) {
+  const auto file = write("utm.tif", rampDem("EPSG:32632", 480e3, 5520e3, 50, 800, 800));
+  const TerrainFileInfo info = Terrain::describe(file);
+  EXPECT_THAT(info.crs, HasSubstr("UTM zone 32N"));
+  EXPECT_NEAR(info.post_spacing_lat_deg, 50 / 111.2e3, 1e-6);
+  EXPECT_NEAR(info.post_spacing_lon_deg, 50 / 111.2e3 / std::cos(degToRad(49.66)), 1e-5);
+  EXPECT_NEAR(info.box.west_deg, 8.72, 0.02);
+  EXPECT_NEAR(info.box.north_deg, 49.83, 0.02);
+  EXPECT_THAT(info.notes, Contains(HasSubstr("UTM zone 32N")));
+}
+
+// --- faults
+// -------------------------------------------------------------------------------------------------------
+
+TEST_F(TerrainFileTest, AMissingFileIsNamed) {
+  const std::string file = (folder_ / "none.tif").string();
+  EXPECT_EQ(problemOf(file), "elevation file " + file + ": no such file");
+  EXPECT_EQ(problemOf(file, {"s.yaml", 7, 12}), "s.yaml:7:12: elevation file " + file + ": no such file");
+}
+
+TEST_F(TerrainFileTest, WhatIsNoRasterIsRefused) {
+  std::ofstream(folder_ / "notes.tif") << "not a raster";
+  EXPECT_THAT(problemOf((folder_ / "notes.tif").string()),
+              AllOf(HasSubstr("notes.tif"), HasSubstr("not a raster")));
+  EXPECT_THAT(problemOf(folder_.string()), HasSubstr("not a raster"));
+  std::ofstream(folder_ / "empty.dt1").flush();
+  EXPECT_THAT(problemOf((folder_ / "empty.dt1").string()), HasSubstr("not a raster"));
+}
+
+TEST_F(TerrainFileTest, ATruncatedFileIsAnErrorAndNotSeaLevel) {
+  const auto path = write("a.tif", geographicDem(10, 50, 0.001, 1000, 1000, flat));
+  std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+  EXPECT_THAT(problemOf(path), AllOf(HasSubstr("a.tif: rows "), HasSubstr("cannot be read")));
+  EXPECT_THROW(Terrain::describe(path), Error);
+}
+
+TEST_F(TerrainFileTest, WithoutAPlaceOnTheEarthAFileIsRefused) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.crs = "";
+  EXPECT_THAT(problemOf(write("a.tif", file)), HasSubstr("has no coordinate reference system"));
+  file.transform = {};
+  EXPECT_THAT(problemOf(write("b.tif", file)), HasSubstr("has no georeference"));
+  file.transform = {0, 1, 0, 0, 0, -1};
+  file.crs = "LOCAL_CS[\"building site\",UNIT[\"metre\",1]]";
+  EXPECT_THAT(problemOf(write("c.tif", file)), HasSubstr("cannot be brought to latitude and longitude"));
+}
+
+TEST_F(TerrainFileTest, ComplexNumbersAreNoHeights) {
+  GDALAllRegister();
+  const std::string path = (folder_ / "a.tif").string();
+  GDALClose(
+      GetGDALDriverManager()->GetDriverByName("GTiff")->Create(path.c_str(), 4, 4, 1, GDT_CFloat32, nullptr));
+  EXPECT_THAT(problemOf(path), HasSubstr("complex numbers"));
+}
+
+TEST_F(TerrainFileTest, ABoxThatIsNoneIsRefused) {
+  for (const GeoBox& box : {GeoBox{1, 0, 0, 1}, GeoBox{0, 91, 0, 1}, GeoBox{0, 1, 10, 9},
+                            GeoBox{0, 1, 0, 361}, GeoBox{std::nan(""), 1, 0, 1}}) {
+    EXPECT_THROW(load({}, box), Error);
+  }
+}
+
+TEST_F(TerrainFileTest, ARegionOfTooManyPostsIsRefusedBeforeItIsRead) {
+  std::ofstream(folder_ / "world.vrt")
+      << R"(<VRTDataset rasterXSize="1296000" rasterYSize="648000"><SRS>EPSG:4326</SRS>
+    <GeoTransform>-180, 0.000277777777777778, 0, 90, 0, -0.000277777777777778</GeoTransform>
+    <VRTRasterBand dataType="Int16" band="1"/></VRTDataset>)";
+  try {
+    load({(folder_ / "world.vrt").string()}, {-80, 80, -180, 180});
+    FAIL() << "was read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("world.vrt"), HasSubstr("posts"), HasSubstr("smaller region")));
+  }
+}
+
+}  // namespace
+}  // namespace emscape::scenario
