@@ -22,7 +22,7 @@ constexpr double kLeastDistance = 0.01;
 constexpr double kLargestDistance = 1000;
 constexpr double kLargestExaggeration = 20;
 /// The drawn box is to be at least this high, relative to its longer side.
-constexpr double kHeightWanted = 0.36;
+constexpr double kHeightWanted = 0.32;
 
 // --- text form ---
 
@@ -33,7 +33,9 @@ struct NumberKey {
   void (*set)(CameraSpec&, double);
 };
 
-Vec3d& orNew(std::optional<Vec3d>& position) { return position ? *position : position.emplace(); }
+Vec3d& orNew(std::optional<Vec3d>& position) {
+  return position ? *position : position.emplace();
+}
 
 constexpr double kFar_m = 1e9;
 const std::vector<NumberKey>& commonKeys() {
@@ -89,7 +91,8 @@ void setKey(CameraSpec& spec, const std::string& text, const std::string& key, c
       char* end = nullptr;
       const double number = std::strtod(value.c_str(), &end);
       if (value.empty() || *end != '\0' || !(number >= known.least && number <= known.largest)) {
-        refuse(text, fmt::format("{} '{}': expected a number {}..{}", key, value, known.least, known.largest));
+        refuse(text,
+               fmt::format("{} '{}': expected a number {}..{}", key, value, known.least, known.largest));
       }
       known.set(spec, number);
       return;
@@ -113,7 +116,9 @@ struct Axes {
   Vec3d forward, right, up;
 };
 
-Axes axesOf(const Vec3d& forward, const Vec3d& right) { return {forward, right, cross(right, forward)}; }
+Axes axesOf(const Vec3d& forward, const Vec3d& right) {
+  return {forward, right, cross(right, forward)};
+}
 
 Axes orbitAxes(double azimuth_deg, double elevation_deg) {
   const double azimuth = degToRad(azimuth_deg);
@@ -134,12 +139,14 @@ std::array<Vec3d, 8> cornersOf(const SceneBox& box) {
   const Vec3d high = box.drawnUpper_m();
   std::array<Vec3d, 8> corners;
   for (std::size_t i = 0; i < 8; ++i) {
-    corners[i] = {(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y, (i & 4) != 0 ? high.z : low.z};
+    corners[i] = {(i & 1) != 0 ? high.x : low.x, (i & 2) != 0 ? high.y : low.y,
+                  (i & 4) != 0 ? high.z : low.z};
   }
   return corners;
 }
 
-/// What the box covers of the plane at one unit before the eye (perspective), or of the plane through it (orthographic).
+/// What the box covers of the plane at one unit before the eye (perspective), or of the plane through it
+/// (orthographic).
 struct Extent {
   double least_x = 1e300, largest_x = -1e300, least_y = 1e300, largest_y = -1e300;
   bool in_front = true;
@@ -176,7 +183,8 @@ FreeArea freeArea(ImageSize size, const FrameMargins& margins) {
 
 /// How many times too large the box is for the free area when half_height is the scale.
 double overflowOf(const Extent& extent, const FreeArea& area, double half_height) {
-  return std::max((extent.largest_x - extent.least_x) / area.width, (extent.largest_y - extent.least_y) / area.height) /
+  return std::max((extent.largest_x - extent.least_x) / area.width,
+                  (extent.largest_y - extent.least_y) / area.height) /
          half_height;
 }
 
@@ -197,7 +205,8 @@ double fittingDistance_m(const SceneBox& box, const Axes& axes, const Vec3d& tar
   return far;
 }
 
-void fitOrbit(Camera& camera, const SceneBox& box, const Axes& axes, const Vec3d& target, const FreeArea& area) {
+void fitOrbit(Camera& camera, const SceneBox& box, const Axes& axes, const Vec3d& target,
+              const FreeArea& area) {
   if (camera.projection == Projection::perspective) {
     camera.eye_m = target - axes.forward * fittingDistance_m(box, axes, target, area, camera.half_height);
   } else {
@@ -216,7 +225,7 @@ double niceVerticalExaggeration(const volume::Grid& grid) {
   const Vec3d size = grid.upper_m() - grid.lower_m();
   const double wanted = kHeightWanted * std::max(size.x, size.y) / size.z;
   for (double nice : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0}) {
-    if (nice >= wanted * 0.8) return nice;
+    if (nice >= wanted) return nice;
   }
   return kLargestExaggeration;
 }
@@ -256,11 +265,13 @@ CameraSpec parseCamera(const std::string& text) {
 }
 
 std::string toString(const CameraSpec& spec) {
-  std::string text = spec.kind == CameraSpec::Kind::orbit
-                         ? fmt::format("orbit:azimuth_deg={},elevation_deg={}", spec.azimuth_deg, spec.elevation_deg)
-                         : fmt::format("lookat:eye_x_m={},eye_y_m={},eye_z_m={}", spec.eye_m->x, spec.eye_m->y,
-                                       spec.eye_m->z);
-  if (spec.kind == CameraSpec::Kind::orbit && spec.distance) text += fmt::format(",distance={}", *spec.distance);
+  std::string text =
+      spec.kind == CameraSpec::Kind::orbit
+          ? fmt::format("orbit:azimuth_deg={},elevation_deg={}", spec.azimuth_deg, spec.elevation_deg)
+          : fmt::format("lookat:eye_x_m={},eye_y_m={},eye_z_m={}", spec.eye_m->x, spec.eye_m->y,
+                        spec.eye_m->z);
+  if (spec.kind == CameraSpec::Kind::orbit && spec.distance)
+    text += fmt::format(",distance={}", *spec.distance);
   if (spec.target_m) {
     text += fmt::format(",target_x_m={},target_y_m={},target_z_m={}", spec.target_m->x, spec.target_m->y,
                         spec.target_m->z);

@@ -10,8 +10,12 @@ constexpr Named<CompositingMode> kModes[] = {
 
 }  // namespace
 
-const char* toString(CompositingMode mode) { return nameOf(kModes, mode); }
+const char* toString(CompositingMode mode) {
+  return nameOf(kModes, mode);
+}
 
-CompositingMode parseCompositingMode(const std::string& name) { return parseName(kModes, "mode", name); }
+CompositingMode parseCompositingMode(const std::string& name) {
+  return parseName(kModes, "mode", name);
+}
 
 }  // namespace emscape::render

@@ -25,11 +25,12 @@ EMSCAPE_HD inline Rgba shortened(const Rgba& sample, float part) {
 
 /// A transfer function as a table over normalised values f in 0..1. Plain data.
 struct TransferView {
-  const Rgba* samples = nullptr;    ///< premultiplied, opacity corrected for the sampling step
-  const Rgba* projected = nullptr;  ///< premultiplied, opacity relative to the function's largest: for maximum projection
-  int last = 0;                     ///< index of the last entry
-  float lowest = 0;                 ///< the value at f = 0
-  float scale = 0;                  ///< f per unit of the value
+  const Rgba* samples = nullptr;  ///< premultiplied, opacity corrected for the sampling step
+  const Rgba* projected =
+      nullptr;       ///< premultiplied, opacity relative to the function's largest: for maximum projection
+  int last = 0;      ///< index of the last entry
+  float lowest = 0;  ///< the value at f = 0
+  float scale = 0;   ///< f per unit of the value
 
   /// f of a value, clamped to 0..1; NaN is 0.
   EMSCAPE_HD float normalized(float value) const {
@@ -39,11 +40,12 @@ struct TransferView {
   EMSCAPE_HD int index(float f) const { return static_cast<int>(f * static_cast<float>(last) + 0.5F); }
 };
 
-/// What every compositor offers: samples come front to back; `f` is normalised, `sample` premultiplied and corrected for its length.
+/// What every compositor offers: samples come front to back; `f` is normalised, `sample` premultiplied and
+/// corrected for its length.
 ///   add(f, sample)                          takes one sample
-///   canSkip(brick_highest_f, transparent)   whether samples up to that f, all transparent if so said, change nothing
-///   done()                                  whether no later sample can matter (any more than the early termination allows)
-///   result(transfer)                        the ray's colour, premultiplied
+///   canSkip(brick_highest_f, transparent)   whether samples up to that f, all transparent if so said, change
+///   nothing done()                                  whether no later sample can matter (any more than the
+///   early termination allows) result(transfer)                        the ray's colour, premultiplied
 /// `volume_highest_f` is the largest f that any sample can have.
 
 constexpr float kOpaqueEnough = 0.99F;
@@ -53,14 +55,16 @@ struct DvrCompositor {
   bool exact = false;
   Rgba sum;
 
-  EMSCAPE_HD DvrCompositor(bool exact_cast, float /*gamma*/, float /*volume_highest_f*/) : exact(exact_cast) {}
+  EMSCAPE_HD DvrCompositor(bool exact_cast, float /*gamma*/, float /*volume_highest_f*/)
+      : exact(exact_cast) {}
   EMSCAPE_HD void add(float /*f*/, const Rgba& sample) { sum = over(sum, sample); }
   EMSCAPE_HD bool canSkip(float /*brick_highest_f*/, bool transparent) const { return transparent; }
   EMSCAPE_HD bool done() const { return !exact && sum.a > kOpaqueEnough; }
   EMSCAPE_HD Rgba result(const TransferView& /*transfer*/) const { return sum; }
 };
 
-/// Maximum intensity projection: the colour of the largest value, its opacity relative to the function's largest.
+/// Maximum intensity projection: the colour of the largest value, its opacity relative to the function's
+/// largest.
 struct MipCompositor {
   float volume_highest = 1;
   float highest = -1;
@@ -68,15 +72,17 @@ struct MipCompositor {
   EMSCAPE_HD MipCompositor(bool /*exact_cast*/, float /*gamma*/, float volume_highest_f)
       : volume_highest(volume_highest_f) {}
   EMSCAPE_HD void add(float f, const Rgba& /*sample*/) { highest = f > highest ? f : highest; }
-  EMSCAPE_HD bool canSkip(float brick_highest_f, bool /*transparent*/) const { return brick_highest_f <= highest; }
+  EMSCAPE_HD bool canSkip(float brick_highest_f, bool /*transparent*/) const {
+    return brick_highest_f <= highest;
+  }
   EMSCAPE_HD bool done() const { return highest >= volume_highest; }
   EMSCAPE_HD Rgba result(const TransferView& transfer) const {
     return highest >= 0.0F ? transfer.projected[transfer.index(highest)] : Rgba{};
   }
 };
 
-/// Maximum intensity difference accumulation (Bruckner and Groeller 2009): a new maximum fades what lies before it. gamma = -1 is
-/// DVR, 0 is MIDA; above 0 the picture blends towards MIP.
+/// Maximum intensity difference accumulation (Bruckner and Groeller 2009): a new maximum fades what lies
+/// before it. gamma = -1 is DVR, 0 is MIDA; above 0 the picture blends towards MIP.
 struct MidaCompositor {
   float gamma = 0;
   bool exact = false;

@@ -44,20 +44,22 @@ Rgba tintOf(float relative_height) {
 float hillShade(float slope_x, float slope_y) {
   const Vec3f light = normalized(Vec3f{-1.0F, 1.0F, 1.3F});
   const float lit = dot(normalized(Vec3f{-slope_x, -slope_y, 1.0F}), light);
-  const float relative = std::max(0.0F, lit) / light.z;   // 1 on level ground
+  const float relative = std::max(0.0F, lit) / light.z;  // 1 on level ground
   return std::min(1.3F, 0.32F + 0.68F * relative);
 }
 
 void check(const HeightField& field) {
   if (field.columns < 2 || field.rows < 2 || !(field.spacing_x_m > 0) || !(field.spacing_y_m > 0)) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("height field of {} x {} posts, {} x {} m apart: expected at least 2 x 2 and a spacing above 0",
-                            field.columns, field.rows, field.spacing_x_m, field.spacing_y_m));
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format(
+            "height field of {} x {} posts, {} x {} m apart: expected at least 2 x 2 and a spacing above 0",
+            field.columns, field.rows, field.spacing_x_m, field.spacing_y_m));
   }
   const long long posts = static_cast<long long>(field.columns) * field.rows;
   if (posts != static_cast<long long>(field.heights_m.size())) {
-    throw Error(ErrorCode::bad_input, fmt::format("height field of {} x {} posts holds {} heights", field.columns,
-                                                  field.rows, field.heights_m.size()));
+    throw Error(ErrorCode::bad_input, fmt::format("height field of {} x {} posts holds {} heights",
+                                                  field.columns, field.rows, field.heights_m.size()));
   }
 }
 
@@ -69,8 +71,9 @@ PostRange cover(double first_m, double spacing_m, double lower_m, double upper_m
   const double first = std::floor((lower_m - first_m) / spacing_m);
   const double last = std::max(first + 1, std::ceil((upper_m - first_m) / spacing_m));
   if (std::abs(first) > 1e9 || last - first >= kLargestPosts) {
-    throw Error(ErrorCode::bad_input, fmt::format("height field with posts {} m apart is too fine for a box of {} m",
-                                                  spacing_m, upper_m - lower_m));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("height field with posts {} m apart is too fine for a box of {} m", spacing_m,
+                            upper_m - lower_m));
   }
   return {static_cast<int>(first), static_cast<int>(last - first) + 1};
 }
@@ -96,8 +99,9 @@ void GroundSurface::crop(const HeightField& field, const volume::Grid& grid) {
   const PostRange x = cover(field.first_x_m, field.spacing_x_m, lower.x, upper.x);
   const PostRange y = cover(field.first_y_m, field.spacing_y_m, lower.y, upper.y);
   if (static_cast<double>(x.count) * y.count > kLargestPosts) {
-    throw Error(ErrorCode::bad_input, fmt::format("ground of {} x {} posts below the volume: at most {} are drawn",
-                                                  x.count, y.count, kLargestPosts));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("ground of {} x {} posts below the volume: at most {} are drawn", x.count,
+                            y.count, kLargestPosts));
   }
   view_.columns = x.count;
   view_.rows = y.count;
@@ -113,7 +117,8 @@ void GroundSurface::crop(const HeightField& field, const volume::Grid& grid) {
     for (int i = 0; i < x.count; ++i) {
       const int from_column = heldPost(x.first + i, field.columns);
       if (from_row < 0 || from_column < 0) continue;
-      const float height_m = field.heights_m[static_cast<std::size_t>(from_row) * field.columns + from_column];
+      const float height_m =
+          field.heights_m[static_cast<std::size_t>(from_row) * field.columns + from_column];
       if (!std::isfinite(height_m)) continue;
       const float z = static_cast<float>((height_m - grid.first_center_m.z) / grid.spacing_m.z);
       heights_[static_cast<std::size_t>(j) * x.count + i] = z;
@@ -140,7 +145,8 @@ void GroundSurface::shade(const volume::Grid& grid, const SceneBox& box) {
   for (float z : heights_) lowest = z < lowest ? z : lowest;
   const float range = std::max(static_cast<float>(view_.upper.z) - lowest, 1e-6F);
   const auto height = [&](int i, int j) {
-    return heights_[static_cast<std::size_t>(std::clamp(j, 0, rows - 1)) * columns + std::clamp(i, 0, columns - 1)];
+    return heights_[static_cast<std::size_t>(std::clamp(j, 0, rows - 1)) * columns +
+                    std::clamp(i, 0, columns - 1)];
   };
   const auto slope = [](float before, float after, double spacing) {
     const float rise = after - before;

@@ -1,7 +1,8 @@
-/// The ground as a surface that rays hit: plain data with a hierarchy of largest heights, single source for host and device.
+/// The ground as a surface that rays hit: plain data with a hierarchy of largest heights, single source for
+/// host and device.
 ///
-/// The ground is a solid block: below its heights down to a base plane, inside the volume's box. Where a post is unknown the block has a
-/// pit down to the base, hatched. Its sides are drawn plain.
+/// The ground is a solid block: below its heights down to a base plane, inside the volume's box. Where a post
+/// is unknown the block has a pit down to the base, hatched. Its sides are drawn plain.
 #pragma once
 
 #include <vector>
@@ -18,7 +19,7 @@ namespace emscape::render {
 /// Where a ray meets the ground.
 struct GroundHit {
   bool found = false;
-  double distance = 0;   ///< along the ray
+  double distance = 0;  ///< along the ray
   Rgba color;
 };
 
@@ -26,22 +27,23 @@ struct GroundHit {
 struct GroundView {
   static constexpr int kMaxLevels = 16;
 
-  const float* heights = nullptr;     ///< columns * rows posts, index space z; NaN: unknown. Null: no ground
-  const Rgba* colors = nullptr;       ///< shaded colour of each post
-  const float* highest[kMaxLevels] = {};  ///< level 0: largest height of each cell; level n: of 2^n x 2^n cells
+  const float* heights = nullptr;  ///< columns * rows posts, index space z; NaN: unknown. Null: no ground
+  const Rgba* colors = nullptr;    ///< shaded colour of each post
+  const float* highest[kMaxLevels] =
+      {};  ///< level 0: largest height of each cell; level n: of 2^n x 2^n cells
   int level_columns[kMaxLevels] = {};
   int levels = 0;
   int columns = 0, rows = 0;
-  double scale_x = 1, scale_y = 1;    ///< posts per voxel
-  double first_x = 0, first_y = 0;    ///< index space position of post (0, 0)
-  Vec3d lower, upper;                 ///< of the block, index space; lower.z is the base
-  float hatch_period = 8;             ///< posts between the lines of a pit's hatching
+  double scale_x = 1, scale_y = 1;  ///< posts per voxel
+  double first_x = 0, first_y = 0;  ///< index space position of post (0, 0)
+  Vec3d lower, upper;               ///< of the block, index space; lower.z is the base
+  float hatch_period = 8;           ///< posts between the lines of a pit's hatching
 
   /// The first point of the block on a ray between two distances.
   EMSCAPE_HD GroundHit firstHit(const Vec3d& origin, const Vec3d& direction, double begin, double end) const;
 
  private:
-  struct PostRay;   // the ray in post space from `begin` on
+  struct PostRay;  // the ray in post space from `begin` on
   EMSCAPE_HD bool hitsCell(const PostRay& ray, int i, int j, float enter, float leave, float& distance,
                            Rgba& color) const;
   EMSCAPE_HD Rgba surfaceColor(int i, int j, float x, float y) const;

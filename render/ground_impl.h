@@ -22,7 +22,9 @@ EMSCAPE_HD inline float distanceTo(float value, float a, float b) {
   const float to_b = std::fabs(value - b);
   return to_a < to_b ? to_a : to_b;
 }
-EMSCAPE_HD inline Rgba grey(float level) { return {level, level, level, 1.0F}; }
+EMSCAPE_HD inline Rgba grey(float level) {
+  return {level, level, level, 1.0F};
+}
 
 /// Distance along a ray to the far face of the cells first .. first + count along one axis.
 EMSCAPE_HD inline float leaveAxis(float position, float direction, int first, int count) {
@@ -66,10 +68,10 @@ EMSCAPE_HD inline Rgba GroundView::pitColor(float x, float y) const {
   return part < 0.5F ? ground_detail::grey(0.16F) : Rgba{0.62F, 0.30F, 0.28F, 1.0F};
 }
 
-EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, float enter, float leave, float& distance,
-                                            Rgba& color) const {
+EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, float enter, float leave,
+                                            float& distance, Rgba& color) const {
   using namespace ground_detail;
-  constexpr float kRounding = 1e-3F;   // voxels; below it a ray is on the surface, not in a wall
+  constexpr float kRounding = 1e-3F;  // voxels; below it a ray is on the surface, not in a wall
   const float* post = heights + static_cast<long long>(j) * columns + i;
   const float h00 = post[0];
   const float slope_x = post[1] - h00;
@@ -79,7 +81,7 @@ EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, fl
   const float y = held(ray.y + ray.dy * enter - static_cast<float>(j), 0.0F, 1.0F);
   const float z = ray.z + ray.dz * enter;
   const float base = static_cast<float>(lower.z);
-  if (!(twist == twist)) {   // a pit: nothing but its floor
+  if (!(twist == twist)) {  // a pit: nothing but its floor
     const bool enters_floor = z <= base;
     if (!enters_floor && !(ray.dz < 0.0F && z + ray.dz * (leave - enter) <= base)) return false;
     distance = enters_floor ? enter : enter + (base - z) / ray.dz;
@@ -90,9 +92,11 @@ EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, fl
   if (above <= -kRounding) {
     distance = enter;
     const float west = held(static_cast<float>(i), static_cast<float>((lower.x - first_x) * scale_x), 1e9F);
-    const float east = held(static_cast<float>(i + 1), -1e9F, static_cast<float>((upper.x - first_x) * scale_x));
+    const float east =
+        held(static_cast<float>(i + 1), -1e9F, static_cast<float>((upper.x - first_x) * scale_x));
     const float south = held(static_cast<float>(j), static_cast<float>((lower.y - first_y) * scale_y), 1e9F);
-    const float north = held(static_cast<float>(j + 1), -1e9F, static_cast<float>((upper.y - first_y) * scale_y));
+    const float north =
+        held(static_cast<float>(j + 1), -1e9F, static_cast<float>((upper.y - first_y) * scale_y));
     color = wallColor(z, distanceTo(ray.x + ray.dx * enter, west, east),
                       distanceTo(ray.y + ray.dy * enter, south, north));
     return true;

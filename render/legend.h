@@ -24,6 +24,7 @@ struct Legend {
   std::string quantity;  ///< as written: "Power density"
   std::string unit;      ///< "dBW/m²"; may be empty
   TransferFunction function;
+  bool whole_numbers = false;        ///< counts: no ticks between
   std::vector<Category> categories;  ///< categorical volumes: those to be listed
 };
 

@@ -1,10 +1,11 @@
 /// Casting one pixel of a scene: single source for host and device over plain data.
 ///
-/// Rays live in *index space*, where voxel (i, j, k) has its centre at (i, j, k): there every voxel is a unit cube, and lengths along
-/// a ray are in voxels whatever the spacing and the vertical exaggeration. A ray crosses the box of voxels, -0.5 .. dims - 0.5 along
-/// each axis; it is cut into pieces of one step from where it enters, the last one shorter, and sampled in the middle of each piece
-/// with the opacity of the piece's length. Homogeneous fog so is exact for every step. No jitter: a pixel depends on its
-/// coordinates and the scene alone.
+/// Rays live in *index space*, where voxel (i, j, k) has its centre at (i, j, k): there every voxel is a unit
+/// cube, and lengths along a ray are in voxels whatever the spacing and the vertical exaggeration. A ray
+/// crosses the box of voxels, -0.5 .. dims - 0.5 along each axis; it is cut into pieces of one step from
+/// where it enters, the last one shorter, and sampled in the middle of each piece with the opacity of the
+/// piece's length. Homogeneous fog so is exact for every step. No jitter: a pixel depends on its coordinates
+/// and the scene alone.
 #pragma once
 
 #include "base/host_device.h"
@@ -25,7 +26,7 @@ struct Ray {
 /// A camera in index space.
 struct CameraView {
   Vec3d eye;
-  Vec3d forward, right, up;   ///< of one unit of length; not orthogonal where voxels are not cubes
+  Vec3d forward, right, up;  ///< of one unit of length; not orthogonal where voxels are not cubes
   double half_height = 1;
   double shift_x = 0, shift_y = 0;
   bool orthographic = false;
@@ -46,7 +47,8 @@ struct RayInterval {
 };
 
 /// One axis' share of a box test. Rays that lie in a face count as outside.
-EMSCAPE_HD inline void clipAxis(double origin, double direction, double lower, double upper, RayInterval& interval) {
+EMSCAPE_HD inline void clipAxis(double origin, double direction, double lower, double upper,
+                                RayInterval& interval) {
   if (direction == 0.0) {
     if (!(origin > lower && origin < upper)) interval.end = interval.begin;
     return;
@@ -103,9 +105,10 @@ struct RaycastTask {
 
   /// @param start  where the ray enters; `length` voxels of it are sampled
   template <class Compositor, class Sampler>
-  EMSCAPE_HD void march(const Vec3f& start, const Vec3f& direction, float length, Compositor& compositor) const {
+  EMSCAPE_HD void march(const Vec3f& start, const Vec3f& direction, float length,
+                        Compositor& compositor) const {
     const int whole = static_cast<int>(length / step_voxels);
-    int next_brick = 0;   // the first sample that may lie in another brick than the last one looked at
+    int next_brick = 0;  // the first sample that may lie in another brick than the last one looked at
     for (int n = 0; n < whole; ++n) {
       const Vec3f position = start + direction * ((static_cast<float>(n) + 0.5F) * step_voxels);
       if (n >= next_brick && skip.ranges != nullptr) {

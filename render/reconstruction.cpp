@@ -10,7 +10,8 @@ constexpr Named<Pattern> kPatterns[] = {{Pattern::full, "full"},
                                         {Pattern::columns, "columns"},
                                         {Pattern::checkerboard, "checkerboard"},
                                         {Pattern::quarter, "quarter"}};
-constexpr Named<Interpolation> kInterpolations[] = {{Interpolation::float32, "float"}, {Interpolation::bits8, "8bit"}};
+constexpr Named<Interpolation> kInterpolations[] = {{Interpolation::float32, "float"},
+                                                    {Interpolation::bits8, "8bit"}};
 
 constexpr int kRowGrain = 16;
 
@@ -31,8 +32,12 @@ std::vector<Lattice> withoutEmpty(const std::vector<Lattice>& lattices) {
   return kept;
 }
 
-float mean8(float a, float b) { return static_cast<float>((quantized(a) + quantized(b) + 1) / 2) / 255.0F; }
-float copy8(float a) { return static_cast<float>(quantized(a)) / 255.0F; }
+float mean8(float a, float b) {
+  return static_cast<float>((quantized(a) + quantized(b) + 1) / 2) / 255.0F;
+}
+float copy8(float a) {
+  return static_cast<float>(quantized(a)) / 255.0F;
+}
 
 /// The two ways to fill a pixel, by kind of arithmetic.
 struct FloatArithmetic {
@@ -100,15 +105,22 @@ void interpolateWith(Pattern pattern, Image& image) {
 
 }  // namespace
 
-const char* toString(Pattern pattern) { return nameOf(kPatterns, pattern); }
-Pattern parsePattern(const std::string& name) { return parseName(kPatterns, "ray pattern", name); }
+const char* toString(Pattern pattern) {
+  return nameOf(kPatterns, pattern);
+}
+Pattern parsePattern(const std::string& name) {
+  return parseName(kPatterns, "ray pattern", name);
+}
 
 const std::vector<Pattern>& allPatterns() {
-  static const std::vector<Pattern> patterns{Pattern::full, Pattern::columns, Pattern::checkerboard, Pattern::quarter};
+  static const std::vector<Pattern> patterns{Pattern::full, Pattern::columns, Pattern::checkerboard,
+                                             Pattern::quarter};
   return patterns;
 }
 
-const char* toString(Interpolation interpolation) { return nameOf(kInterpolations, interpolation); }
+const char* toString(Interpolation interpolation) {
+  return nameOf(kInterpolations, interpolation);
+}
 Interpolation parseInterpolation(const std::string& name) {
   return parseName(kInterpolations, "interpolation", name);
 }

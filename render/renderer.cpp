@@ -22,8 +22,8 @@ void requireRange(const char* name, double value, double least, double largest) 
 
 /// Drawn positions to the index space of a grid, axis by axis.
 struct IndexSpace {
-  Vec3d origin_m;    ///< drawn position of the centre of voxel (0, 0, 0)
-  Vec3d spacing_m;   ///< of voxels as drawn
+  Vec3d origin_m;   ///< drawn position of the centre of voxel (0, 0, 0)
+  Vec3d spacing_m;  ///< of voxels as drawn
 
   IndexSpace(const volume::Grid& grid, const SceneBox& box)
       : origin_m(box.toDrawn(grid.first_center_m)), spacing_m(grid.spacing_m) {
@@ -56,9 +56,10 @@ int maskedBelow(const volume::DenseVolume& volume) {
 
 void checkVolume(const volume::DenseVolume& volume) {
   const Dims& dims = volume.grid.dims;
-  if (dims.x < 1 || dims.y < 1 || dims.z < 1 || dims.count() != static_cast<long long>(volume.values.size())) {
-    throw Error(ErrorCode::bad_input, fmt::format("volume of {} x {} x {} voxels holds {} values", dims.x, dims.y,
-                                                  dims.z, volume.values.size()));
+  if (dims.x < 1 || dims.y < 1 || dims.z < 1 ||
+      dims.count() != static_cast<long long>(volume.values.size())) {
+    throw Error(ErrorCode::bad_input, fmt::format("volume of {} x {} x {} voxels holds {} values", dims.x,
+                                                  dims.y, dims.z, volume.values.size()));
   }
 }
 
@@ -172,7 +173,9 @@ void Renderer::setTransferFunction(const TransferFunction& function) {
   impl_->table.reset();
 }
 
-void Renderer::setCamera(const Camera& camera) { impl_->camera = camera; }
+void Renderer::setCamera(const Camera& camera) {
+  impl_->camera = camera;
+}
 
 void Renderer::setSettings(const RenderSettings& settings) {
   requireRange("step (voxels)", settings.step_voxels, 0.05, 10);
@@ -183,10 +186,18 @@ void Renderer::setSettings(const RenderSettings& settings) {
   impl_->settings = settings;
 }
 
-const RenderSettings& Renderer::settings() const { return impl_->settings; }
-const TransferFunction& Renderer::transferFunction() const { return impl_->function; }
-const Camera& Renderer::camera() const { return impl_->camera; }
-SceneBox Renderer::sceneBox() const { return impl_->box(); }
+const RenderSettings& Renderer::settings() const {
+  return impl_->settings;
+}
+const TransferFunction& Renderer::transferFunction() const {
+  return impl_->function;
+}
+const Camera& Renderer::camera() const {
+  return impl_->camera;
+}
+SceneBox Renderer::sceneBox() const {
+  return impl_->box();
+}
 
 bool Renderer::isHidden(const Vec3d& frame_m) const {
   if (!impl_->height_field) return false;

@@ -54,7 +54,8 @@ class Reader {
     std::set<std::string> seen;
     for (const auto& entry : node) {
       const std::string key = scalar(entry.first);
-      if (known.count(key) == 0) fail(entry.first, fmt::format("unknown key '{}': expected {}", key, fmt::join(known, ", ")));
+      if (known.count(key) == 0)
+        fail(entry.first, fmt::format("unknown key '{}': expected {}", key, fmt::join(known, ", ")));
       if (!seen.insert(key).second) fail(entry.first, fmt::format("key '{}' is given twice", key));
     }
   }
@@ -105,7 +106,8 @@ class Reader {
     const std::string unit = scalar(unit_node);
     if (relative_) fail(unit_node, "a unit is given, but the domain is relative");
     if (unit != info_.unit) {
-      fail(unit_node, fmt::format("unit '{}' is not that of the volume: {} is in '{}'", unit, info_.quantity, info_.unit));
+      fail(unit_node, fmt::format("unit '{}' is not that of the volume: {} is in '{}'", unit, info_.quantity,
+                                  info_.unit));
     }
   }
 
@@ -116,13 +118,15 @@ class Reader {
     const double at =
         relative_ ? info_.range_min + range * number(node, 0, 1, "at") : number(node, -1e30, 1e30, "at");
     if (before != nullptr && (may_repeat ? at < *before : at <= *before)) {
-      fail(node, fmt::format("at {}: points must {}", scalar(node), may_repeat ? "not decrease" : "increase"));
+      fail(node,
+           fmt::format("at {}: points must {}", scalar(node), may_repeat ? "not decrease" : "increase"));
     }
     return at;
   }
 
   void requirePoints(const YAML::Node& list, const char* what) const {
-    if (!list.IsSequence() || list.size() == 0) fail(list, fmt::format("{}: expected a list of points", what));
+    if (!list.IsSequence() || list.size() == 0)
+      fail(list, fmt::format("{}: expected a list of points", what));
   }
 
   void readOpacity(const YAML::Node& list, TransferFunction& function) const {
@@ -166,9 +170,11 @@ class Reader {
 TransferFunction parseTransferFunction(const std::string& text, const std::string& file,
                                        const volume::VolumeInfo& info) {
   if (info.categorical) {
-    throw Error(ErrorCode::bad_input, {file, 0, 0},
-                fmt::format("{} is categorical: its categories have their own colours, a transfer function does not apply",
-                            info.quantity));
+    throw Error(
+        ErrorCode::bad_input, {file, 0, 0},
+        fmt::format(
+            "{} is categorical: its categories have their own colours, a transfer function does not apply",
+            info.quantity));
   }
   return Reader(file, info).read(text);
 }

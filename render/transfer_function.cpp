@@ -28,28 +28,84 @@ ColorMap equidistant(const char* name, const std::vector<unsigned>& colors) {
   return map;
 }
 
-/// viridis and inferno: N. Smith and S. van der Walt, dedicated to the public domain (CC0), each 16th colour of 256. cividis: J. Nunez,
-/// C. Anderton, R. Renslow, PLOS ONE 13(7), 2018 (CC0). diverging: the blues and reds of Okabe and Ito's palette about a light grey.
+/// viridis and inferno: N. Smith and S. van der Walt, dedicated to the public domain (CC0), each 16th colour
+/// of 256. cividis: J. Nunez, C. Anderton, R. Renslow, PLOS ONE 13(7), 2018 (CC0). diverging: the blues and
+/// reds of Okabe and Ito's palette about a light grey.
 const std::vector<ColorMap>& colorMaps() {
   static const std::vector<ColorMap> maps{
-      equidistant("viridis", {0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26828e, 0x21918c,
-                              0x1fa088, 0x28ae80, 0x3fbc73, 0x5ec962, 0x84d44b, 0xaddc30, 0xd8e219, 0xfde725}),
-      equidistant("cividis", {0x00224e, 0x002e6a, 0x1a386f, 0x32436d, 0x434e6c, 0x535a6d, 0x61656f, 0x6f7073, 0x7d7c78,
-                              0x8c8878, 0x9b9476, 0xaba072, 0xbcae6c, 0xcdbb63, 0xdec958, 0xf0d846, 0xfee838}),
-      equidistant("inferno", {0x000004, 0x0b0724, 0x210c4a, 0x3d0965, 0x57106e, 0x71196e, 0x8a226a, 0xa32c61, 0xbc3754,
-                              0xd24644, 0xe45a31, 0xf1731d, 0xf98e09, 0xfcac11, 0xf9cb35, 0xf2ea69, 0xfcffa4}),
-      equidistant("diverging", {0x004f7c, 0x0072b2, 0x56b4e9, 0xbcdff2, 0xf2f2f0, 0xf5d3a0, 0xe69f00, 0xd55e00, 0x8f3f00})};
+      equidistant("viridis",
+                  {0x440154, 0x48186a, 0x472d7b, 0x424086, 0x3b528b, 0x33638d, 0x2c728e, 0x26828e, 0x21918c,
+                   0x1fa088, 0x28ae80, 0x3fbc73, 0x5ec962, 0x84d44b, 0xaddc30, 0xd8e219, 0xfde725}),
+      equidistant("cividis",
+                  {0x00224e, 0x002e6a, 0x1a386f, 0x32436d, 0x434e6c, 0x535a6d, 0x61656f, 0x6f7073, 0x7d7c78,
+                   0x8c8878, 0x9b9476, 0xaba072, 0xbcae6c, 0xcdbb63, 0xdec958, 0xf0d846, 0xfee838}),
+      equidistant("inferno",
+                  {0x000004, 0x0b0724, 0x210c4a, 0x3d0965, 0x57106e, 0x71196e, 0x8a226a, 0xa32c61, 0xbc3754,
+                   0xd24644, 0xe45a31, 0xf1731d, 0xf98e09, 0xfcac11, 0xf9cb35, 0xf2ea69, 0xfcffa4}),
+      equidistant("diverging", {0x004f7c, 0x0072b2, 0x56b4e9, 0xbcdff2, 0xf2f2f0, 0xf5d3a0, 0xe69f00,
+                                0xd55e00, 0x8f3f00})};
   return maps;
 }
 
 /// Okabe and Ito, Color Universal Design (2008), without black.
 constexpr unsigned kCategoryColors[] = {0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442, 0x0072b2, 0xd55e00, 0xcc79a7};
 
-/// Opacity of the default function, over the series' range and of one reference step. Low values stay clear so that the strong
-/// field is seen through the weak one around it.
-constexpr TransferFunction::OpacityPoint kDefaultOpacity[] = {
-    {0.0, 0.0}, {0.2, 0.0}, {0.45, 0.004}, {0.7, 0.018}, {0.9, 0.07}, {1.0, 0.16}};
+/// Opacity (of one reference step) of the default function where a part of all values lies below; the last is
+/// the largest value.
+struct QuantileOpacity {
+  double quantile, opacity;
+};
+constexpr QuantileOpacity kQuantileOpacity[] = {{0.5, 0.0},    {0.8, 0.0025}, {0.93, 0.008}, {0.98, 0.025},
+                                                {0.995, 0.07}, {0.999, 0.14}, {0.9999, 0.3}};
+/// What of the weakest values the colours leave out.
+constexpr double kColorsFrom = 0.3;
+/// Values that the quantiles are taken from, about.
+constexpr long long kQuantileSample = 200000;
+
+/// The same over the range of the values, where nothing else is known.
+constexpr TransferFunction::OpacityPoint kRangeOpacity[] = {{0.0, 0.0},   {0.2, 0.0},  {0.45, 0.004},
+                                                            {0.7, 0.018}, {0.9, 0.07}, {1.0, 0.16}};
 constexpr double kCategoryOpacity = 0.03;
+
+TransferFunction namedDefault(const volume::VolumeInfo& info) {
+  TransferFunction function;
+  function.name = "default";
+  function.unit = info.unit;
+  function.categorical = info.categorical;
+  return function;
+}
+
+std::vector<TransferFunction::ColorPoint> colorsOver(const ColorMap& map, double lowest, double highest) {
+  std::vector<TransferFunction::ColorPoint> colors;
+  for (const ColorMap::Point& point : map.points) {
+    colors.push_back({lowest + (highest - lowest) * point.at, point.color});
+  }
+  return colors;
+}
+
+/// Values that hold a field, evenly picked, in ascending order.
+std::vector<float> sortedSample(const volume::DenseVolume& volume) {
+  const Dims& dims = volume.grid.dims;
+  // Odd, so that picking does not follow the rows of a grid with an even number of columns.
+  const long long stride = std::max(1LL, dims.count() / kQuantileSample) | 1LL;
+  std::vector<float> values;
+  for (long long i = 0; i < dims.count(); i += stride) {
+    const float value = volume.values[static_cast<std::size_t>(i)];
+    const int column = static_cast<int>(i % (static_cast<long long>(dims.x) * dims.y));
+    const int k = static_cast<int>(i / (static_cast<long long>(dims.x) * dims.y));
+    if (!std::isfinite(value) || value == volume.info.floor) continue;
+    if (volume.isMasked(column % dims.x, column / dims.x, k)) continue;
+    values.push_back(value);
+  }
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+/// A power of ten, or five of it, that is about a twentieth of a range.
+double roundUnit(double range) {
+  const double power = std::pow(10.0, std::floor(std::log10(range / 10)));
+  return range / power >= 50 ? 5 * power : power;
+}
 
 }  // namespace
 
@@ -57,13 +113,15 @@ Rgb parseColor(const std::string& text) {
   const bool well_formed = text.size() == 7 && text[0] == '#' &&
                            text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
   if (!well_formed) {
-    throw Error(ErrorCode::bad_input, fmt::format("colour '{}': expected \"#rrggbb\" in hexadecimal digits", text));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("colour '{}': expected \"#rrggbb\" in hexadecimal digits", text));
   }
   return rgbOf(static_cast<unsigned>(std::stoul(text.substr(1), nullptr, 16)));
 }
 
 Rgb ColorMap::at(double position) const {
-  const auto above = std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.at > position; });
+  const auto above =
+      std::find_if(points.begin(), points.end(), [&](const Point& p) { return p.at > position; });
   if (above == points.begin()) return points.front().color;
   if (above == points.end()) return points.back().color;
   const Point& below = *(above - 1);
@@ -117,22 +175,39 @@ double TransferFunction::highest() const {
 }
 
 TransferFunction defaultTransferFunction(const volume::VolumeInfo& info) {
-  TransferFunction function;
-  function.name = "default";
-  function.unit = info.unit;
-  function.categorical = info.categorical;
+  TransferFunction function = namedDefault(info);
   const double lowest = info.range_min;
   const double range = info.range_max > info.range_min ? double{info.range_max} - info.range_min : 1.0;
   if (info.categorical) {
     function.opacities = {{lowest, kCategoryOpacity}, {lowest + range, kCategoryOpacity}};
     return function;
   }
-  for (const ColorMap::Point& point : colorMap("viridis").points) {
-    function.colors.push_back({lowest + range * point.at, point.color});
-  }
-  for (const TransferFunction::OpacityPoint& point : kDefaultOpacity) {
+  function.colors = colorsOver(colorMap("viridis"), lowest, lowest + range);
+  for (const TransferFunction::OpacityPoint& point : kRangeOpacity) {
     function.opacities.push_back({lowest + range * point.at, point.opacity});
   }
+  return function;
+}
+
+TransferFunction defaultTransferFunction(const volume::DenseVolume& volume) {
+  const std::vector<float> values = sortedSample(volume);
+  if (volume.info.categorical || values.empty()) return defaultTransferFunction(volume.info);
+  const auto quantile = [&](double part) {
+    return double{values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))]};
+  };
+  const double weakest = quantile(kColorsFrom);
+  const double strongest = quantile(std::prev(std::end(kQuantileOpacity))->quantile);
+  if (!(strongest > weakest)) return defaultTransferFunction(volume.info);
+  const double unit = roundUnit(strongest - weakest);
+  const double lowest = std::floor(weakest / unit) * unit;
+  const double highest = std::ceil(strongest / unit) * unit;
+  TransferFunction function = namedDefault(volume.info);
+  function.colors = colorsOver(colorMap("viridis"), lowest, highest);
+  function.opacities.push_back({lowest, 0});
+  for (const QuantileOpacity& point : kQuantileOpacity) {
+    function.opacities.push_back({quantile(point.quantile), point.opacity});
+  }
+  function.opacities.push_back({highest, function.opacities.back().opacity});
   return function;
 }
 

@@ -61,8 +61,12 @@ struct TransferFunction {
   double highest() const;
 };
 
-/// A sensible function for a volume: viridis over info.range_*, opacity rising from nothing; the palette
-/// where it is categorical.
+/// A sensible function for a volume: viridis, opacity rising from nothing, both by how frequent the values
+/// are, so that the common weak field stays clear and the rare strong one shows; the palette where it is
+/// categorical. Round numbers at both ends. For a series take one function of one of its volumes, so that
+/// colours mean the same throughout.
+TransferFunction defaultTransferFunction(const volume::DenseVolume& volume);
+/// The same where only the range of the values is known.
 TransferFunction defaultTransferFunction(const volume::VolumeInfo& info);
 
 /// Reads a transfer function (JSON or YAML) for a volume.

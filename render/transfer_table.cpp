@@ -24,7 +24,7 @@ TransferTable::TransferTable(const TransferFunction& function, double step_voxel
   lowest_ = function.lowest();
   highest_ = function.highest();
   if (function.categorical) {
-    lowest_ = -1;   // none
+    lowest_ = -1;  // none
     highest_ = std::clamp(std::floor(highest_ + 0.5), 0.0, kMostCategories);
     entries = static_cast<int>(highest_ - lowest_) + 1;
   }
@@ -46,8 +46,8 @@ TransferTable::TransferTable(const TransferFunction& function, double step_voxel
 }
 
 TransferView TransferTable::view() const {
-  return {samples_.data(), projected_.data(), static_cast<int>(samples_.size()) - 1, static_cast<float>(lowest_),
-          static_cast<float>(1.0 / (highest_ - lowest_))};
+  return {samples_.data(), projected_.data(), static_cast<int>(samples_.size()) - 1,
+          static_cast<float>(lowest_), static_cast<float>(1.0 / (highest_ - lowest_))};
 }
 
 std::vector<std::uint8_t> TransferTable::transparentBricks(const volume::BricksView& bricks) const {
@@ -62,7 +62,8 @@ std::vector<std::uint8_t> TransferTable::transparentBricks(const volume::BricksV
     // One entry more on each side: interpolation may round a little beyond its operands.
     const int first = std::max(table.index(table.normalized(range.min)) - 1, 0);
     const int last = std::min(table.index(table.normalized(range.max)) + 1, table.last);
-    transparent[i] = visible_before_[static_cast<std::size_t>(last) + 1] == visible_before_[static_cast<std::size_t>(first)];
+    transparent[i] = visible_before_[static_cast<std::size_t>(last) + 1] ==
+                     visible_before_[static_cast<std::size_t>(first)];
   }
   return transparent;
 }

@@ -10,7 +10,8 @@
 
 namespace emscape::render {
 
-/// Samples a transfer function at equidistant values; a categorical one has one entry a category and one for none.
+/// Samples a transfer function at equidistant values; a categorical one has one entry a category and one for
+/// none.
 /// @accuracy colours and opacities are those of a value within 1/8190 of the function's interval
 class TransferTable {
  public:
@@ -23,7 +24,7 @@ class TransferTable {
  private:
   std::vector<Rgba> samples_;
   std::vector<Rgba> projected_;
-  std::vector<int> visible_before_;   ///< how many entries before each have an opacity
+  std::vector<int> visible_before_;  ///< how many entries before each have an opacity
   double lowest_ = 0;
   double highest_ = 1;
 };

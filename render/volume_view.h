@@ -26,7 +26,8 @@ struct VolumeView {
   }
 };
 
-/// A position along one axis, held inside the centres of the outer voxels, and the cell of two voxels around it.
+/// A position along one axis, held inside the centres of the outer voxels, and the cell of two voxels around
+/// it.
 struct CellPosition {
   int low = 0, high = 0;
   float fraction = 0;
@@ -41,11 +42,13 @@ struct CellPosition {
   EMSCAPE_HD int nearest() const { return fraction < 0.5F ? low : high; }
 };
 
-EMSCAPE_HD inline float lerp(float a, float b, float fraction) { return a + fraction * (b - a); }
+EMSCAPE_HD inline float lerp(float a, float b, float fraction) {
+  return a + fraction * (b - a);
+}
 
-/// Trilinear between voxel centres. Nothing is drawn where the nearest voxel is masked. Elsewhere a masked corner of the cell takes the
-/// value of the corner above it or, if that is masked too, of the sample's nearest voxel: what lies below ground never bleeds
-/// into the air. NaN draws nothing.
+/// Trilinear between voxel centres. Nothing is drawn where the nearest voxel is masked. Elsewhere a masked
+/// corner of the cell takes the value of the corner above it or, if that is masked too, of the sample's
+/// nearest voxel: what lies below ground never bleeds into the air. NaN draws nothing.
 struct TrilinearSampler {
   EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
     const CellPosition x(position.x, volume.dims.x);
@@ -72,7 +75,8 @@ struct TrilinearSampler {
       }
     }
     const float below = lerp(lerp(low[0], low[1], x.fraction), lerp(low[2], low[3], x.fraction), y.fraction);
-    const float above = lerp(lerp(high[0], high[1], x.fraction), lerp(high[2], high[3], x.fraction), y.fraction);
+    const float above =
+        lerp(lerp(high[0], high[1], x.fraction), lerp(high[2], high[3], x.fraction), y.fraction);
     value = lerp(below, above, z.fraction);
     return value == value;
   }
@@ -92,9 +96,9 @@ struct NearestSampler {
 
 /// What a ray finds of the brick around a position.
 struct BrickStep {
-  float highest = 0;        ///< largest value of a sample in it
-  bool transparent = false; ///< no sample in it has any opacity
-  float leave = 0;          ///< voxels along the ray that surely stay in it
+  float highest = 0;         ///< largest value of a sample in it
+  bool transparent = false;  ///< no sample in it has any opacity
+  float leave = 0;           ///< voxels along the ray that surely stay in it
 };
 
 /// Min-max bricks and, for the transfer function in force, which of them are transparent.

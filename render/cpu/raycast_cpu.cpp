@@ -7,7 +7,8 @@
 namespace emscape::render {
 namespace {
 
-/// Pixels of a lattice along a tile's side: small enough that neighbouring rays share what they read, and that a stop is heeded soon.
+/// Pixels of a lattice along a tile's side: small enough that neighbouring rays share what they read, and
+/// that a stop is heeded soon.
 constexpr int kTile = 16;
 
 template <class Compositor, class Sampler>
@@ -40,8 +41,8 @@ CastTile tileOf(CompositingMode mode) {
 
 }  // namespace
 
-bool castCpu(const RaycastTask& task, CompositingMode mode, bool nearest, const Lattice& lattice, Image& image,
-             const StopFlag* stop) {
+bool castCpu(const RaycastTask& task, CompositingMode mode, bool nearest, const Lattice& lattice,
+             Image& image, const StopFlag* stop) {
   const CastTile cast = nearest ? tileOf<NearestSampler>(mode) : tileOf<TrilinearSampler>(mode);
   const int tile_columns = (lattice.columns + kTile - 1) / kTile;
   const int tile_rows = (lattice.rows + kTile - 1) / kTile;

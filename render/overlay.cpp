@@ -1,0 +1,145 @@
+#include "render/overlay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "render/names.h"
+#include "render/overlay_parts.h"
+
+namespace emscape::render {
+namespace {
+
+constexpr Named<Theme> kThemes[] = {{Theme::dark, "dark"}, {Theme::light, "light"}};
+
+// Lengths at 1200 x 900.
+constexpr double kMargin = 26;
+constexpr double kTitle = 23;
+constexpr double kCompassRadius = 40;
+constexpr double kSmallestUnit = 0.62;
+
+/// The cast picture before a drawn one; the only quantisation of what was cast.
+Image8 castOver(const Image& cast, const Image8& behind) {
+  Image8 result;
+  result.size = cast.size;
+  result.rgba.resize(behind.rgba.size());
+  parallelFor(cast.size.height, 16, [&](int begin, int end) {
+    for (std::size_t i = static_cast<std::size_t>(begin) * cast.size.width;
+         i < static_cast<std::size_t>(end) * cast.size.width; ++i) {
+      const std::uint8_t* b = &behind.rgba[4 * i];
+      const Rgba back = Rgba{static_cast<float>(b[0]), static_cast<float>(b[1]), static_cast<float>(b[2]),
+                             static_cast<float>(b[3])} *
+                        (1.0F / 255.0F);
+      const Rgba pixel = over(cast.pixels[i], back);
+      result.rgba[4 * i] = quantized(pixel.r);
+      result.rgba[4 * i + 1] = quantized(pixel.g);
+      result.rgba[4 * i + 2] = quantized(pixel.b);
+      result.rgba[4 * i + 3] = quantized(pixel.a);
+    }
+  });
+  return result;
+}
+
+void drawTexts(Canvas& canvas, const Style& style, const Annotations& annotations) {
+  const double left = kMargin * style.unit;
+  const double right = canvas.size().width - left;
+  const double top = (kMargin + 0.3 * kTitle) * style.unit;
+  const double second = top + 1.25 * kTitle * style.unit;
+  const double title_px = kTitle * style.unit;
+  const Ink rim = style.rimInk();
+  canvas.textWithRim(annotations.title, {left, top}, title_px, style.textInk(), rim, Align::left,
+                     Weight::bold);
+  canvas.textWithRim(annotations.subtitle, {left, second}, style.text_px, style.mutedInk(), rim);
+  canvas.textWithRim(annotations.time, {right, top}, title_px, style.textInk(), rim, Align::right,
+                     Weight::bold);
+  canvas.textWithRim(annotations.time_utc, {right, second}, style.text_px, style.mutedInk(), rim,
+                     Align::right);
+}
+
+void drawFooter(Canvas& canvas, const Style& style, const SceneBox& box, const Annotations& annotations,
+                std::vector<Rect>& taken) {
+  const double bottom = canvas.size().height - 0.7 * kMargin * style.unit;
+  double left = kMargin * style.unit;
+  std::string text;
+  if (box.vertical_exaggeration != 1) text = fmt::format("heights × {:g}", box.vertical_exaggeration);
+  if (!annotations.note.empty()) text += (text.empty() ? "" : "   ·   ") + annotations.note;
+  canvas.textWithRim(text, {left, bottom}, style.small_px, style.mutedInk(), style.rimInk());
+  const Rect extent = canvas.textBox(text, style.small_px);
+  taken.push_back({left, bottom - extent.height / 2, extent.width, extent.height});
+}
+
+}  // namespace
+
+Theme parseTheme(const std::string& name) {
+  return parseName(kThemes, "theme", name);
+}
+
+Style::Style(ImageSize size, Theme theme) {
+  unit = std::max(kSmallestUnit, std::min(size.width / 1200.0, size.height / 900.0));
+  text_px *= unit;
+  small_px *= unit;
+  if (theme == Theme::dark) {
+    background_top = parseColor("#10141b");
+    background_bottom = parseColor("#1d242f");
+    text = parseColor("#f2f4f7");
+    muted = parseColor("#a9b3c0");
+    rim = parseColor("#0b0e13");
+  } else {
+    background_top = parseColor("#fbfcfd");
+    background_bottom = parseColor("#e3e8ee");
+    text = parseColor("#14181f");
+    muted = parseColor("#4d5866");
+    rim = parseColor("#fbfcfd");
+  }
+}
+
+bool Projector::project(const Vec3d& frame_m, Point2& point) const {
+  const Projected projected = render::project(camera, size, box.toDrawn(frame_m));
+  point = {projected.x + 0.5, projected.y + 0.5};
+  return projected.in_front;
+}
+
+FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
+  const Style style(size, annotations.theme);
+  const double axis_px = annotations.axes ? 52 * style.unit : 0;
+  const double side_px = 20 * style.unit + axis_px;
+  const bool has_texts = !annotations.title.empty() || !annotations.time.empty();
+  FrameMargins margins;
+  margins.left = side_px / size.width;
+  margins.right =
+      (annotations.legend ? legendWidth(style, *annotations.legend) + 0.3 * axis_px : side_px) / size.width;
+  margins.top = (has_texts ? (kMargin + 2.4 * kTitle) * style.unit : side_px) / size.height;
+  margins.bottom = (1.1 * kMargin * style.unit + axis_px) / size.height;
+  return margins;
+}
+
+Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
+               const HiddenTest& hidden) {
+  const Style style(cast.size, annotations.theme);
+  const Projector projector{camera, box, cast.size};
+  Canvas canvas(cast.size);
+  canvas.gradient(style.background_top, style.background_bottom);
+  if (annotations.axes) drawFarEdges(canvas, style, projector);
+  canvas.setPixels(castOver(cast, canvas.pixels()));
+  std::vector<Rect> taken;
+  if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
+  if (annotations.georeferenced) {
+    const double reach = (kMargin + kCompassRadius + 10) * style.unit;
+    const Point2 center{reach, canvas.size().height - reach - 14 * style.unit};
+    drawCompass(canvas, style, camera, center, kCompassRadius * style.unit);
+    taken.push_back({center.x - reach / 2, center.y - reach / 2, reach, reach});
+  }
+  drawFooter(canvas, style, box, annotations, taken);
+  if (annotations.legend) {
+    drawLegend(canvas, style, *annotations.legend);
+    const double width = legendWidth(style, *annotations.legend);
+    taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
+  }
+  drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
+  drawTexts(canvas, style, annotations);
+  return canvas.pixels();
+}
+
+}  // namespace emscape::render
