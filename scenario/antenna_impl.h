@@ -77,10 +77,12 @@ EMSCAPE_HD inline float gridAmplitude(const PatternView& pattern, const Vec3f& d
   const PatternAngles angles = anglesOf(direction);
   const TablePlace azimuth = placeInTable(angles.azimuth_rad, float(kPi), pattern.azimuth_count);
   const TablePlace elevation = placeInTable(angles.elevation_rad, float(kPi / 2), pattern.elevation_count);
-  const int row = elevation.index * pattern.azimuth_count;
-  return std::fabs(mix(atPlace(pattern.grid_table + row, azimuth),
-                       atPlace(pattern.grid_table + row + pattern.azimuth_count, azimuth),
-                       elevation.fraction));
+  // One index of 32 bits, not an offset pointer a lane: so the look-ups become gathers.
+  const int corner = elevation.index * pattern.azimuth_count + azimuth.index;
+  const int above = corner + pattern.azimuth_count;
+  const float* table = pattern.grid_table;
+  return std::fabs(mix(mix(table[corner], table[corner + 1], azimuth.fraction),
+                       mix(table[above], table[above + 1], azimuth.fraction), elevation.fraction));
 }
 
 }  // namespace antenna_detail
