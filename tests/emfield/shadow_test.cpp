@@ -28,12 +28,13 @@ class RayWalk {
     const GeodesicInverse path =
         geodesicInverse(site.latitude_deg, site.longitude_deg, target.latitude_deg, target.longitude_deg);
     angle_ = path.distance_m / kEarth_m;
+    const double step_m = terrain == nullptr ? kKnot_m : kStep_m;
     // Exact every kKnot_m, on the chord between: it leaves the geodesic by less than a centimetre.
     GeodeticPosition from = geodesicDirect(site.latitude_deg, site.longitude_deg, path.azimuth_rad, 0);
     for (double knot_m = 0; knot_m < path.distance_m; knot_m += kKnot_m) {
       const GeodeticPosition to =
           geodesicDirect(site.latitude_deg, site.longitude_deg, path.azimuth_rad, knot_m + kKnot_m);
-      for (double beyond_m = kStep_m; beyond_m <= kKnot_m; beyond_m += kStep_m) {
+      for (double beyond_m = step_m; beyond_m <= kKnot_m; beyond_m += step_m) {
         if (knot_m + beyond_m >= path.distance_m) break;
         const double part = beyond_m / kKnot_m;
         const double angle = (knot_m + beyond_m) / kEarth_m;
