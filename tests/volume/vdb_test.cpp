@@ -1,0 +1,257 @@
+#include "volume/vdb.h"
+
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include "tests/volume/sample_volumes.h"
+
+namespace emscape::volume {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace test;
+
+TEST(Vdb, GivesBackAFieldExactly) {
+  TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume();
+  writeVdb(folder / "a.vdb", {&volume});
+  expectSame(readVdb(folder / "a.vdb"), volume);
+}
+
+TEST(Vdb, GivesBackACategoricalVolumeExactly) {
+  TemporaryFolder folder;
+  const DenseVolume volume = categoricalVolume();
+  writeVdb(folder / "a.vdb", {&volume});
+  expectSame(readVdb(folder / "a.vdb"), volume);
+}
+
+TEST(Vdb, GivesBackAVolumeWithoutMaskAndPlace) {
+  TemporaryFolder folder;
+  const DenseVolume volume = plainVolume();
+  writeVdb(folder / "a.vdb", {&volume});
+  expectSame(readVdb(folder / "a.vdb"), volume);
+}
+
+TEST(Vdb, GivesBackAVolumeWithoutAnyField) {
+  TemporaryFolder folder;
+  DenseVolume volume = fieldVolume();
+  std::fill(volume.values.begin(), volume.values.end(), volume.info.floor);
+  writeVdb(folder / "a.vdb", {&volume});
+  expectSame(readVdb(folder / "a.vdb"), volume);
+}
+
+TEST(Vdb, HoldsSeveralQuantitiesAndReadsTheNamedOne) {
+  TemporaryFolder folder;
+  const DenseVolume power = fieldVolume(), emitter = categoricalVolume();
+  writeVdb(folder / "a.vdb", {&power, &emitter});
+  expectSame(readVdb(folder / "a.vdb"), power);
+  expectSame(readVdb(folder / "a.vdb", "dominant_emitter"), emitter);
+  const std::vector<DenseVolume> descriptions = describeVdb(folder / "a.vdb");
+  ASSERT_EQ(descriptions.size(), 2U);
+  expectSameInfo(descriptions[0], power);
+  expectSameInfo(descriptions[1], emitter);
+  EXPECT_THAT(errorOf([&] { readVdb(folder / "a.vdb", "snr_db"); }),
+              HasSubstr("a.vdb: no grid \"snr_db\"; the file holds power_density_dbwm2, dominant_emitter"));
+}
+
+TEST(Vdb, LooksAsStatedToOpenVdb) {
+  TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume();
+  writeVdb(folder / "a.vdb", {&volume});
+  openvdb::initialize();
+  openvdb::io::File file((folder / "a.vdb").string());
+  file.open();
+  const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("power_density_dbwm2"));
+  EXPECT_EQ(grid->getGridClass(), openvdb::GRID_FOG_VOLUME);
+  EXPECT_EQ(grid->background(), -120.F);
+  EXPECT_EQ(grid->metaValue<std::string>("emscape:unit"), "dBW/m2");
+  EXPECT_EQ(grid->metaValue<double>("emscape:time_s"), 1.1);
+  EXPECT_EQ(grid->metaValue<std::string>("emscape:scenario_hash"), "0123abcd");
+  EXPECT_EQ(grid->metaValue<std::string>("emscape:frame"), "enu");
+  EXPECT_EQ(grid->metaValue<double>("emscape:origin_longitude_deg"), -84.25);
+  EXPECT_EQ(grid->metaValue<openvdb::Vec3i>("emscape:dims"), openvdb::Vec3i(21, 17, 18));
+  auto voxel = grid->getConstAccessor();
+  for (int k = 0; k < 18; ++k) {
+    for (int j = 0; j < 17; ++j) {
+      for (int i = 0; i < 21; ++i) {
+        const float value = volume.values[static_cast<std::size_t>(volume.grid.index(i, j, k))];
+        ASSERT_EQ(voxel.isValueOn({i, j, k}), !volume.isMasked(i, j, k) && value != -120.F);
+        const openvdb::Vec3d world = grid->indexToWorld(openvdb::Coord(i, j, k));
+        const Vec3d center = volume.grid.center_m(i, j, k);
+        ASSERT_NEAR(world.x(), center.x, 1e-9);
+        ASSERT_NEAR(world.y(), center.y, 1e-9);
+        ASSERT_NEAR(world.z(), center.z, 1e-9);
+      }
+    }
+  }
+  // The block of one value is one tile, not 512 voxels.
+  EXPECT_EQ(grid->tree().activeTileCount(), 1U);
+}
+
+class ForeignVdb : public ::testing::Test {
+ protected:
+  ForeignVdb() { openvdb::initialize(); }
+  void write(const openvdb::GridBase::Ptr& grid,
+             std::uint32_t compression = openvdb::io::COMPRESS_ACTIVE_MASK) {
+    openvdb::io::File file(path_.string());
+    file.setCompression(compression);
+    file.write(openvdb::GridCPtrVec{grid});
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_ / "foreign.vdb";
+};
+
+openvdb::FloatGrid::Ptr cloud() {
+  auto grid = openvdb::FloatGrid::create(0.25F);
+  grid->setName("density");
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
+  grid->tree().setValueOn({-20, 3, -5000}, 1.5F);
+  grid->tree().setValueOn({-11, 9, -4990}, -2.F);
+  return grid;
+}
+
+TEST_F(ForeignVdb, IsReadOverTheBoxOfItsActiveVoxels) {
+  for (const std::uint32_t compression : {0U, 1U, 2U, 3U, 4U, 6U}) {
+    write(cloud(), compression);
+    const DenseVolume volume = readVdb(path_);
+    EXPECT_EQ(volume.grid.dims, (Dims{10, 7, 11}));
+    EXPECT_EQ(volume.grid.first_center_m, (Vec3d{-10, 1.5, -2500}));
+    EXPECT_EQ(volume.grid.spacing_m, (Vec3d{0.5, 0.5, 0.5}));
+    EXPECT_FALSE(volume.grid.georeferenced);
+    EXPECT_EQ(volume.info.quantity, "density");
+    EXPECT_EQ(volume.info.floor, 0.25F);
+    EXPECT_EQ(volume.info.range_min, -2.F);
+    EXPECT_EQ(volume.info.range_max, 1.5F);
+    EXPECT_EQ(volume.values.front(), 1.5F);
+    EXPECT_EQ(volume.values.back(), -2.F);
+    EXPECT_EQ(volume.values[1], 0.25F);
+  }
+}
+
+TEST_F(ForeignVdb, MayBeSavedAsHalf) {
+  auto grid = cloud();
+  grid->setSaveFloatAsHalf(true);
+  for (const std::uint32_t compression : {0U, 2U, 6U, 3U}) {
+    write(grid, compression);
+    const DenseVolume volume = readVdb(path_);
+    EXPECT_EQ(volume.values.front(), 1.5F);
+    EXPECT_EQ(volume.values.back(), -2.F);
+  }
+}
+
+TEST_F(ForeignVdb, MayHoldDoublesOrIntegers) {
+  auto doubles = openvdb::DoubleGrid::create(0);
+  doubles->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(40)), 0.1);
+  write(doubles);
+  const DenseVolume volume = readVdb(path_);
+  EXPECT_EQ(volume.grid.dims, (Dims{41, 41, 41}));
+  EXPECT_EQ(volume.values[1000], 0.1F);
+  EXPECT_FALSE(volume.info.categorical);
+  auto integers = openvdb::Int64Grid::create(0);
+  integers->tree().setValueOn({1, 2, 3}, 7);
+  write(integers);
+  EXPECT_EQ(readVdb(path_).values, std::vector<float>{7.F});
+  EXPECT_TRUE(readVdb(path_).info.categorical);
+}
+
+TEST_F(ForeignVdb, MayBeALevelSetWhichIsReadAsDistances) {
+  write(openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(5.F, openvdb::Vec3f(0), 1.F));
+  const DenseVolume volume = readVdb(path_);
+  const Dims dims = volume.grid.dims;
+  const auto center = static_cast<std::size_t>(volume.grid.index(dims.x / 2, dims.y / 2, dims.z / 2));
+  EXPECT_EQ(volume.values[center], -3.F);
+  EXPECT_EQ(volume.info.floor, 3.F);
+}
+
+TEST_F(ForeignVdb, MayShareATreeBetweenGrids) {
+  const auto first = cloud();
+  const auto second = openvdb::FloatGrid::create(*static_cast<const openvdb::GridBase*>(first.get()));
+  second->setTree(first->treePtr());
+  second->setName("second");
+  second->setTransform(openvdb::math::Transform::createLinearTransform(2.0));
+  openvdb::io::File(path_.string()).write(openvdb::GridCPtrVec{first, second});
+  const DenseVolume volume = readVdb(path_, "second");
+  EXPECT_EQ(volume.values.back(), -2.F);
+  EXPECT_EQ(volume.grid.spacing_m.x, 2.0);
+}
+
+TEST_F(ForeignVdb, MayBeWrittenAsAStreamAndHoldGridsOfOneName) {
+  auto other = cloud();
+  other->tree().setValueOn({-20, 3, -5000}, 9.F);
+  std::ofstream stream(path_, std::ios::binary);
+  openvdb::io::Stream(stream).write(openvdb::GridCPtrVec{cloud(), other});
+  stream.close();
+  EXPECT_EQ(readVdb(path_).values.front(), 1.5F);
+  EXPECT_EQ(readVdb(path_, "density[1]").values.front(), 9.F);
+}
+
+TEST_F(ForeignVdb, OfAnotherTypeIsRefusedByName) {
+  write(openvdb::Vec3SGrid::create());
+  EXPECT_THAT(errorOf([&] { readVdb(path_); }),
+              HasSubstr("Tree_vec3s_5_4_3; float, double, int32 and int64 grids can be read"));
+}
+
+TEST_F(ForeignVdb, WithoutActiveVoxelsIsRefused) {
+  write(openvdb::FloatGrid::create());
+  EXPECT_THAT(errorOf([&] { readVdb(path_); }), HasSubstr("no active voxels"));
+}
+
+TEST_F(ForeignVdb, TooSparseToBeDenseIsRefused) {
+  auto grid = cloud();
+  grid->tree().setValueOn({2000, 2000, -4000}, 1.F);
+  write(grid);
+  EXPECT_THAT(errorOf([&] { readVdb(path_); }), HasSubstr("too sparse"));
+  grid->tree().setValueOn({100000, 0, 0}, 1.F);
+  write(grid);
+  EXPECT_THAT(errorOf([&] { readVdb(path_); }), HasSubstr("foreign.vdb: dims"));
+}
+
+TEST_F(ForeignVdb, ThatKeptOurMetadataWithOtherVoxelsIsReadAsForeign) {
+  const DenseVolume volume = fieldVolume();
+  writeVdb(path_, {&volume});
+  openvdb::io::File file(path_.string());
+  file.open(false);
+  const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("power_density_dbwm2"));
+  file.close();
+  grid->tree().setValueOn({-1, 0, 0}, 5.F);
+  write(grid);
+  const DenseVolume read = readVdb(path_);
+  EXPECT_EQ(read.values[static_cast<std::size_t>(read.grid.index(0, 0, 0))], 5.F);
+  EXPECT_EQ(read.grid.dims.x, volume.grid.dims.x + 1);
+  EXPECT_FALSE(read.grid.georeferenced);
+}
+
+TEST(Vdb, SurvivesDamage) {
+  TemporaryFolder folder;
+  const DenseVolume power = fieldVolume(), emitter = categoricalVolume();
+  writeVdb(folder / "a.vdb", {&power, &emitter});
+  survivesDamage(folder / "a.vdb", [&] { readVdb(folder / "a.vdb", "dominant_emitter"); });
+}
+
+TEST_F(ForeignVdb, SurvivesDamageWhateverTheCompression) {
+  for (const std::uint32_t compression : {0U, 3U, 6U}) {
+    write(openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(6.F, openvdb::Vec3f(0), 1.F), compression);
+    survivesDamage(path_, [&] { readVdb(path_); });
+  }
+}
+
+TEST(Vdb, RefusesWhatIsNotOne) {
+  TemporaryFolder folder;
+  writeBytes(folder / "a.vdb", std::vector<std::uint8_t>(100, 'x'));
+  EXPECT_THAT(errorOf([&] { readVdb(folder / "a.vdb"); }), HasSubstr("a.vdb: no OpenVDB file"));
+  EXPECT_THAT(errorOf([&] { readVdb(folder / "none.vdb"); }),
+              HasSubstr("none.vdb: cannot read: No such file"));
+}
+
+TEST(Vdb, RefusesCategoricalValuesThatAreNoIndices) {
+  TemporaryFolder folder;
+  DenseVolume volume = categoricalVolume();
+  volume.values[5] = 0.5F;
+  EXPECT_THAT(errorOf([&] { writeVdb(folder / "a.vdb", {&volume}); }), HasSubstr("0.500000 is no index"));
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace emscape::volume

@@ -1,0 +1,311 @@
+#include <openvdb/io/io.h>
+#include <openvdb/tools/Dense.h>
+
+#include <boost/iostreams/device/array.hpp>
+#include <boost/iostreams/stream.hpp>
+#include <cmath>
+
+#include "base/log.h"
+#include "base/whole_file.h"
+#include "volume/statistics.h"
+#include "volume/vdb.h"
+#include "volume/vdb_grid.h"
+#include "volume/vdb_layout.h"
+
+namespace emscape::volume {
+namespace {
+
+/// A file of another program may be so sparse that its box is huge; beyond this many voxels the active ones
+/// must fill at least one in kSparsest, else the file is more likely damaged than sparse.
+constexpr long long kAlwaysAllowedVoxels = 1LL << 27;
+constexpr long long kSparsest = 1000;
+
+/// A file's bytes from the reader's position on, as a stream for OpenVDB. Reading beyond the end throws.
+class MemoryStream : public boost::iostreams::stream<boost::iostreams::array_source> {
+ public:
+  explicit MemoryStream(const ByteReader& reader)
+      : stream(reinterpret_cast<const char*>(reader.here()), reader.left()) {
+    exceptions(std::ios::badbit | std::ios::failbit | std::ios::eofbit);
+  }
+};
+
+struct GridEntry {
+  VdbDescriptor descriptor;
+  std::uint32_t compression = 0;
+  VdbMetadata metadata;
+  openvdb::math::Transform::Ptr transform;
+  std::uint64_t tree = 0;  ///< offset of the tree
+};
+
+class VdbFile {
+ public:
+  explicit VdbFile(const std::filesystem::path& path)
+      : bytes_(readWhole(path)), reader_(path.string(), bytes_.data(), bytes_.size()) {
+    initializeOpenVdb();
+    header_ = readVdbHeader(reader_);
+    for (int i = 0; i < header_.grid_count; ++i) {
+      const GridEntry& entry = entries_.emplace_back(readEntry());
+      if (header_.has_offsets) {
+        reader_.seek(entry.descriptor.end, "the next grid");
+      } else if (i + 1 < header_.grid_count && entry.descriptor.instance_parent.empty()) {
+        walkTree(entry);
+      }
+    }
+    if (entries_.empty()) fail("the file holds no grid");
+  }
+
+  const std::vector<GridEntry>& entries() const { return entries_; }
+
+  const GridEntry& find(const std::string& name) const {
+    if (name.empty()) return entries_.front();
+    std::string names;
+    for (const GridEntry& entry : entries_) {
+      if (entry.descriptor.name == name) return entry;
+      names += (names.empty() ? "" : ", ") + entry.descriptor.name;
+    }
+    fail("no grid \"" + name + "\"; the file holds " + names);
+  }
+
+  /// The grid with its tree, all of it checked before OpenVDB reads it.
+  openvdb::GridBase::Ptr load(const GridEntry& entry) {
+    const GridEntry& owner = ownerOfTree(entry);
+    reader_.seek(owner.tree, "tree");
+    walkTree(owner);
+    reader_.seek(owner.tree, "tree");
+    MemoryStream stream(reader_);
+    prepare(stream, owner.compression);
+    const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(owner.descriptor.type);
+    grid->setSaveFloatAsHalf(owner.descriptor.half);
+    grid->readTopology(stream);
+    grid->readBuffers(stream);
+    grid->setTransform(entry.transform);
+    return grid;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorCode::bad_input, {reader_.file()}, what);
+  }
+
+ private:
+  GridEntry readEntry() {
+    GridEntry entry;
+    entry.descriptor = readVdbDescriptor(reader_, header_);
+    entry.compression = reader_.value<std::uint32_t>("compression");
+    entry.metadata = readVdbMetadata(reader_);
+    ByteReader ahead = reader_;
+    ahead.text("type of transform");
+    MemoryStream stream(reader_);
+    prepare(stream, entry.compression);
+    entry.transform = openvdb::math::Transform::createLinearTransform();
+    entry.transform->read(stream);
+    reader_.take(static_cast<std::uint64_t>(stream.tellg()), "transform");
+    entry.tree = reader_.position();
+    return entry;
+  }
+
+  void prepare(std::istream& stream, std::uint32_t compression) const {
+    openvdb::io::setVersion(stream, openvdb::VersionId(header_.library_major, header_.library_minor),
+                            header_.file_version);
+    openvdb::io::setDataCompression(stream, compression);
+  }
+
+  void walkTree(const GridEntry& entry) {
+    const std::optional<VdbVoxel> voxel = vdbVoxelOf(entry.descriptor.type);
+    if (!voxel) {
+      fail("grid " + entry.descriptor.name + " is of type " + entry.descriptor.type +
+           "; float, double, int32 and int64 grids can be read");
+    }
+    walkVdbTree(reader_, *voxel, entry.descriptor.half, entry.compression);
+  }
+
+  const GridEntry& ownerOfTree(const GridEntry& entry) const {
+    const std::string& parent = entry.descriptor.instance_parent;
+    if (parent.empty()) return entry;
+    for (const GridEntry& other : entries_) {
+      if (other.descriptor.unique_name == parent && other.descriptor.instance_parent.empty()) return other;
+    }
+    fail("grid " + entry.descriptor.name + " shares the tree of a grid that is not in the file");
+  }
+
+  std::vector<std::uint8_t> bytes_;
+  ByteReader reader_;
+  VdbHeader header_;
+  std::vector<GridEntry> entries_;
+};
+
+/// What the metadata say; a file of another program leaves dims 0 and most else at its default.
+DenseVolume volumeOf(const GridEntry& entry) {
+  const VdbMetadata& metadata = entry.metadata;
+  const auto text = [&](const char* key) { return metaText(metadata, std::string("emscape:") + key); };
+  const auto number = [&](const char* key) { return metaNumber(metadata, std::string("emscape:") + key); };
+  DenseVolume volume;
+  VolumeInfo& info = volume.info;
+  info.quantity =
+      text("quantity").value_or(entry.descriptor.name.empty() ? "density" : entry.descriptor.name);
+  info.unit = text("unit").value_or("");
+  info.time_s = number("time_s").value_or(0);
+  info.time_utc = text("time_utc").value_or("");
+  info.floor = static_cast<float>(number("floor").value_or(0));
+  info.range_min = static_cast<float>(number("range_min").value_or(0));
+  info.range_max = static_cast<float>(number("range_max").value_or(0));
+  info.categorical = number("categorical").value_or(0) != 0;
+  static const char* const kOwn[] = {"emscape:quantity", "emscape:unit", "emscape:time_utc", "emscape:frame"};
+  for (const auto& [key, value] : metadata) {
+    const bool own = std::find(std::begin(kOwn), std::end(kOwn), key) != std::end(kOwn);
+    if (key.rfind("emscape:", 0) == 0 && value.type == "string" && !own)
+      info.extra[key.substr(8)] = value.bytes;
+  }
+  if (const auto dims = metaInts(metadata, "emscape:dims")) {
+    volume.grid.dims = {dims->x, dims->y, dims->z};
+    checkDims(volume.grid.dims, {});
+  }
+  const auto frame = text("frame");
+  const auto latitude_deg = number("origin_latitude_deg"), longitude_deg = number("origin_longitude_deg"),
+             height_msl_m = number("origin_height_msl_m");
+  if (frame && latitude_deg && longitude_deg && height_msl_m) {
+    volume.grid.georeferenced = true;
+    volume.grid.frame.kind = *frame == toString(FrameKind::enu) ? FrameKind::enu : FrameKind::altitude;
+    volume.grid.frame.latitude_deg = *latitude_deg;
+    volume.grid.frame.longitude_deg = *longitude_deg;
+    volume.grid.frame.height_msl_m = *height_msl_m;
+  }
+  return volume;
+}
+
+/// Brings the transform's scale and the centre of the voxel `first` to the volume's grid.
+void placeGrid(DenseVolume& volume, const openvdb::math::Transform& transform, const openvdb::Coord& first,
+               const VdbFile& file) {
+  if (!transform.isLinear()) file.fail("grid " + volume.info.quantity + ": its transform is not linear");
+  const openvdb::Vec3d spacing = transform.voxelSize();
+  const openvdb::Vec3d center = transform.indexToWorld(first);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]) || !std::isfinite(center[axis])) {
+      file.fail("grid " + volume.info.quantity +
+                ": its transform has no positive, finite voxel size and place");
+    }
+  }
+  volume.grid.spacing_m = {spacing.x(), spacing.y(), spacing.z()};
+  volume.grid.first_center_m = {center.x(), center.y(), center.z()};
+}
+
+bool isOurs(const DenseVolume& description) {
+  return description.grid.dims.count() > 0;
+}
+
+void readMask(DenseVolume& volume, const GridEntry& entry, const VdbFile& file) {
+  const auto found = entry.metadata.find("emscape:first_valid_k");
+  if (found == entry.metadata.end()) return;
+  const std::string& bytes = found->second.bytes;
+  if (bytes.size() % sizeof(std::uint16_t) != 0)
+    file.fail("emscape:first_valid_k has an odd number of bytes");
+  volume.first_valid_k.resize(bytes.size() / sizeof(std::uint16_t));
+  std::memcpy(volume.first_valid_k.data(), bytes.data(), bytes.size());
+}
+
+void checkSparseness(const Dims& dims, openvdb::Index64 active, const VdbFile& file) {
+  checkDims(dims, {});
+  if (dims.count() > kAlwaysAllowedVoxels &&
+      static_cast<double>(dims.count()) > double(kSparsest) * double(active)) {
+    file.fail("the active voxels' box holds " + std::to_string(dims.count()) + " voxels, of which only " +
+              std::to_string(active) + " are active: too sparse to be made dense");
+  }
+}
+
+openvdb::CoordBBox boxOf(const Dims& dims) {
+  return {openvdb::Coord(0, 0, 0), openvdb::Coord(dims.x - 1, dims.y - 1, dims.z - 1)};
+}
+
+/// The values of `box` into a volume whose grid and info are set.
+template <class GridType>
+void copyValues(const GridType& grid, const openvdb::CoordBBox& box, DenseVolume& volume) {
+  volume.values.resize(static_cast<std::size_t>(volume.grid.dims.count()));
+  openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> dense(box, volume.values.data());
+  openvdb::tools::copyToDense(grid.tree(), dense);
+}
+
+template <class GridType>
+bool makeDense(const openvdb::GridBase& base, const GridEntry& entry, const VdbFile& file,
+               DenseVolume& volume) {
+  const auto* grid = dynamic_cast<const GridType*>(&base);
+  if (grid == nullptr) return false;
+  const openvdb::CoordBBox active = grid->evalActiveVoxelBoundingBox();
+  const std::string who = "grid " + entry.descriptor.name;
+  if (isOurs(volume) && !active.empty() && !boxOf(volume.grid.dims).isInside(active)) {
+    logWarning(
+        who +
+        ": its active voxels lie outside the dims in its metadata, which another program must have kept; "
+        "it is read as that program's");
+    volume = DenseVolume();
+    volume.info.quantity = entry.descriptor.name;
+  }
+  const bool ours = isOurs(volume);
+  if (!ours && active.empty()) file.fail(who + " has no active voxels and does not say its dims");
+  const openvdb::CoordBBox box = ours ? boxOf(volume.grid.dims) : active;
+  if (!ours) {
+    const openvdb::Coord size = active.dim();
+    volume.grid.dims = {size.x(), size.y(), size.z()};
+    volume.info.floor = static_cast<float>(grid->background());
+    volume.info.categorical = std::is_integral_v<typename GridType::ValueType>;
+    checkSparseness(volume.grid.dims, grid->activeVoxelCount(), file);
+  }
+  placeGrid(volume, grid->transform(), box.min(), file);
+  copyValues(*grid, box, volume);
+  if (ours) readMask(volume, entry, file);
+  checkVolume(volume, {});
+  if (!ours) setRangeFromValues(volume);
+  return true;
+}
+
+/// Names the file in whatever goes wrong inside, OpenVDB's exceptions and exhausted memory included.
+template <class Body>
+auto withFileNamed(const std::filesystem::path& path, const Body& body) {
+  try {
+    return body();
+  } catch (const Error& error) {
+    if (!error.place().file.empty()) throw;
+    throw Error(error.code(), {path.string()}, error.message());
+  } catch (const std::exception& error) {
+    throw Error(ErrorCode::bad_input, {path.string()},
+                std::string("OpenVDB cannot read it: ") + error.what());
+  }
+}
+
+DenseVolume readGrid(VdbFile& file, const GridEntry& entry) {
+  DenseVolume volume = volumeOf(entry);
+  const openvdb::GridBase::Ptr grid = file.load(entry);
+  makeDense<openvdb::FloatGrid>(*grid, entry, file, volume) ||
+      makeDense<openvdb::Int32Grid>(*grid, entry, file, volume) ||
+      makeDense<openvdb::DoubleGrid>(*grid, entry, file, volume) ||
+      makeDense<openvdb::Int64Grid>(*grid, entry, file, volume);
+  return volume;
+}
+
+}  // namespace
+
+DenseVolume readVdb(const std::filesystem::path& path, const std::string& grid_name) {
+  return withFileNamed(path, [&] {
+    VdbFile file(path);
+    return readGrid(file, file.find(grid_name));
+  });
+}
+
+std::vector<DenseVolume> describeVdb(const std::filesystem::path& path) {
+  return withFileNamed(path, [&] {
+    VdbFile file(path);
+    std::vector<DenseVolume> descriptions;
+    for (const GridEntry& entry : file.entries()) {
+      DenseVolume volume = volumeOf(entry);
+      if (isOurs(volume)) {
+        placeGrid(volume, *entry.transform, openvdb::Coord(0, 0, 0), file);
+      } else {
+        volume = readGrid(file, entry);
+        volume.values.clear();
+        volume.values.shrink_to_fit();
+      }
+      descriptions.push_back(std::move(volume));
+    }
+    return descriptions;
+  });
+}
+
+}  // namespace emscape::volume
