@@ -1,0 +1,33 @@
+/// What the subcommands share: the global options and how a subcommand joins the parser.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+namespace emscape::app {
+
+/// Options that every subcommand takes, before or after its name.
+struct GlobalOptions {
+  std::string backend = "auto";
+  int threads = 0;  ///< 0: one per core
+  bool json = false;
+  bool quiet = false;
+};
+
+/// Runs the subcommand that was chosen; returns the exit status.
+using Action = std::function<int()>;
+
+// Each adds its subcommand to the parser and sets `action` when the parser meets it.
+void addValidate(CLI::App& app, const GlobalOptions& global, Action& action);
+void addInfo(CLI::App& app, const GlobalOptions& global, Action& action);
+void addSimulate(CLI::App& app, const GlobalOptions& global, Action& action);
+void addRender(CLI::App& app, const GlobalOptions& global, Action& action);
+void addBench(CLI::App& app, const GlobalOptions& global, Action& action);
+
+/// Decides where the work runs, and says so once.
+/// @return the name for reports: "cpu"
+/// @throws Error (usage) for an unknown name, Error (device) if `cuda` is asked for and cannot be had
+std::string chooseBackend(const GlobalOptions& global);
+
+}  // namespace emscape::app

@@ -1,0 +1,70 @@
+#include "apps/emscape/field_series.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+
+#include "apps/emscape/interrupt.h"
+#include "base/error.h"
+
+namespace emscape::app {
+
+void ValueRange::add(const ValueRange& other) {
+  if (other.empty() || std::isnan(other.min) || std::isnan(other.max)) return;
+  *this = empty() ? other : ValueRange{std::min(min, other.min), std::max(max, other.max)};
+}
+
+ValueRange parseRange(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  ValueRange range;
+  if (colon == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, colon), range.min) ||
+      !CLI::detail::lexical_cast(text.substr(colon + 1), range.max) || !std::isfinite(range.min) ||
+      !std::isfinite(range.max) || range.min >= range.max) {
+    throw Error(ErrorCode::usage, "--range '" + text + "' must be MIN:MAX, two numbers with MIN < MAX");
+  }
+  return range;
+}
+
+FieldSeries::FieldSeries(LoadedScenario input, std::vector<double> times_s,
+                         const emfield::FieldOptions& options)
+    : input_(std::move(input)),
+      times_s_(std::move(times_s)),
+      solver_(input_.scenario, input_.terrain, options) {}
+
+scenario::Snapshot FieldSeries::snapshot(int step) const {
+  return scenario::snapshotAt(input_.scenario, input_.terrain.get(), time_s(step));
+}
+
+void FieldSeries::update(int step) {
+  stopIfInterrupted();
+  solver_.update(snapshot(step));
+}
+
+std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<void(int)>& done) {
+  std::vector<ValueRange> ranges(channels().size());
+  for (int step = 0; step < count(); step += stride) {
+    update(step);
+    for (std::size_t c = 0; c < ranges.size(); ++c) {
+      const volume::VolumeInfo& info = solver_.volumes()[c]->info;
+      ranges[c].add({info.range_min, info.range_max});
+    }
+    done(step + 1);
+  }
+  return ranges;
+}
+
+std::vector<std::shared_ptr<const volume::DenseVolume>> FieldSeries::compute(
+    int step, const std::vector<ValueRange>& ranges) {
+  update(step);
+  std::vector<std::shared_ptr<const volume::DenseVolume>> volumes;
+  for (std::size_t c = 0; c < channels().size(); ++c) {
+    auto copy = std::make_shared<volume::DenseVolume>(*solver_.volumes()[c]);
+    const ValueRange range = ranges[c].empty() ? ValueRange{copy->info.floor, copy->info.floor} : ranges[c];
+    copy->info.range_min = range.min;
+    copy->info.range_max = range.max;
+    volumes.push_back(std::move(copy));
+  }
+  return volumes;
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,60 @@
+/// A scenario's field over a list of times.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/emscape/inputs.h"
+#include "emfield/field_solver.h"
+#include "scenario/snapshot.h"
+#include "volume/dense_volume.h"
+
+namespace emscape::app {
+
+/// Smallest and largest value of a channel over a series; empty if min > max.
+struct ValueRange {
+  float min = 0;
+  float max = -1;
+
+  bool empty() const { return min > max; }
+  void add(const ValueRange& other);
+};
+
+/// Parses "MIN:MAX", MIN < MAX. @throws Error (usage)
+ValueRange parseRange(const std::string& text);
+
+class FieldSeries {
+ public:
+  FieldSeries(LoadedScenario input, std::vector<double> times_s, const emfield::FieldOptions& options);
+
+  int count() const { return static_cast<int>(times_s_.size()); }
+  double time_s(int step) const { return times_s_[static_cast<std::size_t>(step)]; }
+  const std::vector<emfield::Channel>& channels() const { return solver_.channels(); }
+  const LoadedScenario& input() const { return input_; }
+  scenario::Snapshot snapshot(int step) const;
+
+  /// Computes steps to learn the range of each channel over them.
+  /// @param stride  every so many steps; 1: the range of the whole series
+  /// @param done    called after each step with the number of the next
+  /// @throws Interrupted
+  std::vector<ValueRange> findRanges(int stride, const std::function<void(int)>& done);
+
+  /// The channels' volumes at a step; info.range_* as given, one range a channel.
+  /// @throws Interrupted
+  std::vector<std::shared_ptr<const volume::DenseVolume>> compute(int step,
+                                                                  const std::vector<ValueRange>& ranges);
+
+  /// Those of the solver so far.
+  std::vector<std::string> warnings() const { return solver_.warnings(); }
+
+ private:
+  void update(int step);
+
+  LoadedScenario input_;
+  std::vector<double> times_s_;
+  emfield::FieldSolver solver_;
+};
+
+}  // namespace emscape::app

@@ -1,0 +1,156 @@
+#include "apps/emscape/frame_source.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "apps/emscape/interrupt.h"
+#include "apps/emscape/scene.h"
+#include "apps/emscape/volume_input.h"
+#include "base/error.h"
+
+namespace emscape::app {
+namespace {
+
+std::vector<double> timesOf(const FrameSelection& selection, const scenario::Clock& clock) {
+  if (selection.first_only) return {0.0};
+  return selection.times.empty() ? scenario::timesOf(clock) : scenario::parseTimes(selection.times, clock);
+}
+
+/// The one quantity that is needed: "snr_db" of the channel "snr_db:search radar".
+emfield::FieldOptions fieldOptionsOf(const FrameSelection& selection, const scenario::Scenario& scenario) {
+  emfield::FieldOptions options;
+  options.quantities = {selection.quantity.empty()
+                            ? scenario.output.quantities.front()
+                            : selection.quantity.substr(0, selection.quantity.find(':'))};
+  options.allow_missing_terrain = selection.allow_missing_terrain;
+  return options;
+}
+
+/// A scenario's frames, computed as they are asked for.
+class ComputedFrames : public FrameSource {
+ public:
+  ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const GlobalOptions& global)
+      : series_(input, timesOf(selection, input.scenario->clock), fieldOptionsOf(selection, *input.scenario)),
+        channel_(channelOf(selection.quantity)) {
+    if (selection.range) {
+      ranges_.assign(series_.channels().size(), *selection.range);
+      return;
+    }
+    constexpr int kMostSteps =
+        24;  // beams come round: a part of the steps shows the range well enough for colours
+    ProgressBar progress(global, "value range", count());
+    ranges_ = series_.findRanges((count() + kMostSteps - 1) / kMostSteps,
+                                 [&progress](int done) { progress.show(done); });
+  }
+
+  int count() const override { return series_.count(); }
+  Frame frame(int index) override {
+    const std::shared_ptr<const volume::DenseVolume> volume = series_.compute(index, ranges_)[channel_];
+    return {volume, markersOf(series_.snapshot(index), series_.input().terrain.get(), volume->grid)};
+  }
+  std::string name() const override { return series_.input().scenario->name; }
+  const LoadedScenario* scene() const override { return &series_.input(); }
+  std::vector<std::string> warnings() const override { return series_.warnings(); }
+
+ private:
+  std::size_t channelOf(const std::string& name) const {
+    if (name.find(':') == std::string::npos) return 0;
+    std::string names;
+    for (std::size_t c = 0; c < series_.channels().size(); ++c) {
+      if (series_.channels()[c].name == name) return c;
+      names += (c == 0 ? "" : ", ") + series_.channels()[c].name;
+    }
+    throw Error(ErrorCode::usage,
+                fmt::format("--quantity '{}': there is no such channel; there are {}", name, names));
+  }
+
+  FieldSeries series_;
+  const std::size_t channel_;
+  std::vector<ValueRange> ranges_;
+};
+
+/// Volumes from files.
+class StoredFrames : public FrameSource {
+ public:
+  explicit StoredFrames(const FrameSelection& selection)
+      : quantity_(selection.quantity), range_(selection.range), files_(seriesOf(selection.input, quantity_)) {
+    if (!selection.scenario.empty()) scene_ = loadScenarioWithTerrain(selection.scenario);
+    if (selection.first_only) {
+      files_.resize(1);
+    } else if (!selection.times.empty()) {
+      files_ = nearest(scenario::parseTimes(selection.times, clockOfFiles()));
+    }
+    namespace fs = std::filesystem;
+    const fs::path input = selection.input;
+    name_ = scene_ ? scene_->scenario->name
+                   : (input.has_filename() ? input : input.parent_path()).stem().string();
+  }
+
+  int count() const override { return static_cast<int>(files_.size()); }
+  Frame frame(int index) override {
+    stopIfInterrupted();
+    auto volume = std::make_shared<volume::DenseVolume>(
+        readVolume(files_[static_cast<std::size_t>(index)].file, quantity_));
+    if (range_) {
+      volume->info.range_min = range_->min;
+      volume->info.range_max = range_->max;
+    }
+    Frame frame{volume, {}};
+    if (scene_ && volume->grid.georeferenced) {
+      const scenario::Snapshot snapshot =
+          scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), volume->info.time_s);
+      frame.markers = markersOf(snapshot, scene_->terrain.get(), volume->grid);
+    }
+    return frame;
+  }
+  std::string name() const override { return name_; }
+  const LoadedScenario* scene() const override { return scene_ ? &*scene_ : nullptr; }
+  std::vector<std::string> warnings() const override { return {}; }
+
+ private:
+  /// The time line of the files, for times on the command line that say no step.
+  scenario::Clock clockOfFiles() const {
+    scenario::Clock clock;
+    clock.duration_s = files_.back().time_s;
+    if (files_.size() > 1)
+      clock.step_s = (files_.back().time_s - files_.front().time_s) / static_cast<double>(files_.size() - 1);
+    if (clock.step_s <= 0) clock.step_s = 1;
+    return clock;
+  }
+
+  std::vector<VolumeFile> nearest(const std::vector<double>& times_s) const {
+    std::vector<VolumeFile> chosen;
+    for (const double time_s : times_s) {
+      chosen.push_back(
+          *std::min_element(files_.begin(), files_.end(), [time_s](const VolumeFile& a, const VolumeFile& b) {
+            return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);
+          }));
+    }
+    return chosen;
+  }
+
+  std::string quantity_;
+  const std::optional<ValueRange> range_;
+  std::vector<VolumeFile> files_;
+  std::optional<LoadedScenario> scene_;
+  std::string name_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const GlobalOptions& global) {
+  switch (inputKindOf(selection.input)) {
+    case InputKind::scenario:
+      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input), selection, global);
+    case InputKind::volume:
+      return std::make_unique<StoredFrames>(selection);
+    default:
+      throw Error(ErrorCode::usage,
+                  selection.input + " is neither a scenario nor a volume; 'emscape info' says what it holds");
+  }
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,53 @@
+/// What is drawn, one instant after another: a scenario as it is computed, or volumes from files.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/emscape/console.h"
+#include "apps/emscape/field_series.h"
+#include "render/height_field.h"
+#include "render/legend.h"
+#include "render/overlay.h"
+#include "volume/dense_volume.h"
+
+namespace emscape::app {
+
+/// One instant.
+struct Frame {
+  std::shared_ptr<const volume::DenseVolume> volume;
+  std::vector<render::Marker> markers;
+};
+
+/// What to draw of an input.
+struct FrameSelection {
+  std::string input;                ///< scenario or volume file, .pvd, folder of volumes
+  std::string quantity;             ///< empty: the first
+  std::string times;                ///< as on the command line; empty: all
+  bool first_only = false;          ///< without times: the first alone
+  std::optional<ValueRange> range;  ///< of the colours; none: that of the series
+  std::string scenario;             ///< beside volumes: whose ground and emitters are drawn; may be empty
+  bool allow_missing_terrain = false;
+};
+
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  virtual int count() const = 0;
+  /// The frame with index 0..count() - 1. @throws Error, Interrupted
+  virtual Frame frame(int index) = 0;
+
+  /// For titles and names of files.
+  virtual std::string name() const = 0;
+  /// The scenario that the pictures show; null without one.
+  virtual const LoadedScenario* scene() const = 0;
+  /// What the models have to say about the frames so far.
+  virtual std::vector<std::string> warnings() const = 0;
+};
+
+/// @throws Error (usage, bad_input)
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const GlobalOptions& global);
+
+}  // namespace emscape::app

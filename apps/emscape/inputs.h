@@ -1,0 +1,26 @@
+/// Input files of the subcommands: what kind a file is, and scenarios with their ground.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "scenario/scenario.h"
+#include "scenario/terrain.h"
+
+namespace emscape::app {
+
+enum class InputKind { scenario, volume, elevation, antenna };
+
+/// Guesses by the file's ending; a .json or .csv file is looked into.
+/// @throws Error (bad_input) if the file cannot be read or its kind is not known
+InputKind inputKindOf(const std::string& file);
+
+/// A scenario and the ground that it names; terrain is null if it names none.
+struct LoadedScenario {
+  std::shared_ptr<const scenario::Scenario> scenario;
+  scenario::TerrainPtr terrain;
+};
+/// @throws Error (bad_input) that lists all that is wrong
+LoadedScenario loadScenarioWithTerrain(const std::string& file);
+
+}  // namespace emscape::app

@@ -1,0 +1,118 @@
+/// emscape: the electromagnetic environment of a scenario, computed, written and drawn from the command line.
+#include <fmt/core.h>
+
+#include <csignal>
+#include <exception>
+#include <new>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/interrupt.h"
+#include "apps/emscape/version.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "base/parallel.h"
+
+namespace emscape::app {
+namespace {
+
+constexpr const char* kFooter = R"(
+Examples:
+  emscape validate scenarios/jacksboro.yaml
+  emscape simulate scenarios/jacksboro.yaml -o out --format vdb,vti --times 0:10:0.5
+  emscape render scenarios/jacksboro.yaml -o jacksboro.mp4 --size 1280x720
+  emscape info out/jacksboro_0001.vdb --json
+
+Exit status: 0 done, 1 another error, 2 usage, 3 bad input, 4 device, 5 a check failed,
+128 + N stopped by signal N (130 after Ctrl-C; finished files stay).)";
+
+void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
+  app.add_option("--backend", global.backend, "Where to compute: auto, cpu or cuda")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  app.add_option("--threads", global.threads, "Threads to use; 0: one per core")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app.add_flag("--json", global.json, "The result, machine-readable, alone on standard output");
+  app.add_flag("--quiet,-q", global.quiet, "Neither progress nor messages, only warnings and errors");
+}
+
+/// Parses; returns an exit status if there is nothing to run.
+int parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return -1;
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n",
+               error.what());
+    return static_cast<int>(ErrorCode::usage);
+  }
+}
+
+int fail(ErrorCode code, const std::string& message) {
+  fmt::print(stderr, "emscape: error: {}\n", message);
+  return static_cast<int>(code);
+}
+
+int run(const Action& action) {
+  try {
+    return action();
+  } catch (const Interrupted& interrupted) {
+    fmt::print(stderr, "emscape: stopped by signal {}; finished files stay\n", interrupted.signal);
+    return 128 + interrupted.signal;
+  } catch (const Error& error) {
+    return fail(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::other, "out of memory; use fewer voxels (region.dims), channels or --cache-mib");
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::other, error.what());
+  } catch (...) {
+    return fail(ErrorCode::other, "unknown exception");
+  }
+}
+
+}  // namespace
+
+std::string chooseBackend(const GlobalOptions& global) {
+  if (global.backend == "cuda") {
+    throw Error(ErrorCode::device,
+                "--backend cuda: this build of emscape has no CUDA; use --backend cpu or auto");
+  }
+  if (global.backend == "auto") logInfo("running on the CPU: this build has no CUDA");
+  return "cpu";
+}
+
+int emscapeMain(int argc, char** argv) {
+  CLI::App app(
+      "Computes the electromagnetic environment of a scenario as a volume that changes with time, and shows "
+      "it.",
+      "emscape");
+  app.footer(kFooter);
+  app.set_version_flag("--version", std::string("emscape ") + kVersion);
+  app.require_subcommand(1);
+  app.option_defaults()->always_capture_default();
+
+  GlobalOptions global;
+  Action action;
+  addGlobalOptions(app, global);
+  addValidate(app, global, action);
+  addInfo(app, global, action);
+  addSimulate(app, global, action);
+  addRender(app, global, action);
+  addBench(app, global, action);
+
+  if (const int status = parse(app, argc, argv); status >= 0) return status;
+  installLog(global);
+  setThreadLimit(global.threads);
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is an error of the write, told like any other
+  catchInterrupts();
+  return run(action);
+}
+
+}  // namespace emscape::app
+
+int main(int argc, char** argv) {
+  return emscape::app::emscapeMain(argc, argv);
+}

@@ -1,0 +1,225 @@
+/// emscape render: pictures and videos of a scenario or of volumes.
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/frame_source.h"
+#include "apps/emscape/picture_sink.h"
+#include "apps/emscape/scene.h"
+#include "base/log.h"
+#include "base/stopwatch.h"
+#include "render/renderer.h"
+
+namespace emscape::app {
+namespace {
+
+struct RenderOptions {
+  FrameSelection selection;
+  std::vector<std::string> outputs;
+  std::string size = "1280x720";
+  std::string mode = "dvr";
+  std::string rays = "auto";
+  std::string interpolate = "float";
+  std::string camera = "orbit";
+  std::string transfer;
+  std::string range;
+  std::string theme = "dark";
+  double step_voxels = 1;
+  double mida_gamma = 0;
+  double exaggeration = 0;
+  double frames_per_s = 10;
+  bool exact = false;
+  bool show_terrain = true;
+  bool show_emitters = true;
+};
+
+/// Files are not in a hurry: `auto` casts every pixel.
+render::Pattern patternOf(const std::string& rays) {
+  return rays == "auto" ? render::Pattern::full : render::parsePattern(rays);
+}
+
+/// Draws frames of one scene; camera and colours stay as they were fitted to the first.
+class Painter {
+ public:
+  Painter(const RenderOptions& options, const FrameSource& source)
+      : options_(options),
+        source_(source),
+        size_(render::parseImageSize(options.size)),
+        pattern_(patternOf(options.rays)),
+        interpolation_(render::parseInterpolation(options.interpolate)),
+        camera_(render::parseCamera(options.camera)) {
+    render::RenderSettings settings;
+    settings.mode = render::parseCompositingMode(options.mode);
+    settings.step_voxels = options.step_voxels;
+    settings.mida_gamma = options.mida_gamma;
+    settings.exact = options.exact;
+    settings.vertical_exaggeration = options.exaggeration;
+    renderer_.setSettings(settings);
+    annotations_.title = source.name();
+    annotations_.theme = render::parseTheme(options.theme);
+    annotations_.note = fmt::format("{}, {} rays, step {:g} voxel", options.mode, render::toString(pattern_),
+                                    options.step_voxels);
+  }
+
+  render::ImageSize size() const { return size_; }
+  double castMilliseconds() const { return cast_ms_; }
+
+  render::Image8 paint(const Frame& frame) {
+    const volume::DenseVolume& volume = *frame.volume;
+    renderer_.setVolume(frame.volume);
+    annotations_.time = fmt::format("t = {:g} s", volume.info.time_s);
+    annotations_.time_utc = volume.info.time_utc;
+    if (options_.show_emitters) annotations_.markers = frame.markers;
+    if (!fitted_) fitTo(volume);
+    render::FrameReport report;
+    const render::Image cast = renderer_.render(size_, pattern_, interpolation_, &report);
+    cast_ms_ += report.cast.ms + report.interpolate_ms;
+    return render::compose(cast, renderer_.camera(), renderer_.sceneBox(), annotations_,
+                           [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
+  }
+
+ private:
+  void fitTo(const volume::DenseVolume& volume) {
+    const LoadedScenario* scene = source_.scene();
+    const render::TransferFunction function =
+        options_.transfer.empty() ? render::defaultTransferFunction(volume.info)
+                                  : render::readTransferFunction(options_.transfer, volume.info);
+    renderer_.setTransferFunction(function);
+    if (options_.show_terrain && scene && scene->terrain) {
+      renderer_.setHeightField(heightFieldOf(*scene->terrain, volume.grid));
+    }
+    annotations_.georeferenced = volume.grid.georeferenced;
+    annotations_.legend = render::legendOf(volume.info, function);
+    if (scene && volume.info.categorical) annotations_.legend->categories = categoriesOf(*scene->scenario);
+    renderer_.setCamera(render::makeCamera(camera_, renderer_.sceneBox(), size_,
+                                           render::overlayMargins(size_, annotations_)));
+    fitted_ = true;
+  }
+
+  const RenderOptions& options_;
+  const FrameSource& source_;
+  const render::ImageSize size_;
+  const render::Pattern pattern_;
+  const render::Interpolation interpolation_;
+  const render::CameraSpec camera_;
+  render::Renderer renderer_;
+  render::Annotations annotations_;
+  bool fitted_ = false;
+  double cast_ms_ = 0;
+};
+
+bool isOnePicture(const std::vector<std::string>& outputs) {
+  return std::all_of(outputs.begin(), outputs.end(), [](const std::string& output) {
+    return std::filesystem::path(output).extension() == ".png";
+  });
+}
+
+int renderPictures(RenderOptions options, const GlobalOptions& global) {
+  const std::string device = chooseBackend(global);
+  if (!options.range.empty()) options.selection.range = parseRange(options.range);
+  options.selection.first_only = options.selection.times.empty() && isOnePicture(options.outputs);
+  const std::unique_ptr<FrameSource> source = openFrameSource(options.selection, global);
+  Painter painter(options, *source);
+  std::vector<std::unique_ptr<PictureSink>> sinks;
+  for (const std::string& output : options.outputs) {
+    sinks.push_back(
+        makePictureSink(output, source->name(), source->count(), painter.size(), options.frames_per_s));
+  }
+
+  Stopwatch watch;
+  {
+    ProgressBar progress(global, "drawing", source->count());
+    for (int index = 0; index < source->count(); ++index) {
+      const render::Image8 picture = painter.paint(source->frame(index));
+      for (const auto& sink : sinks) sink->add(index + 1, picture);
+      progress.show(index + 1);
+    }
+  }
+  for (const auto& sink : sinks) sink->finish();
+  for (const std::string& warning : source->warnings()) logWarning(warning);
+
+  const double seconds = watch.lap_ms() / 1000;
+  if (global.json) {
+    printJson({{"device", device},
+               {"size", {painter.size().width, painter.size().height}},
+               {"mode", options.mode},
+               {"frames", source->count()},
+               {"outputs", options.outputs},
+               {"cast_ms", painter.castMilliseconds()},
+               {"seconds", seconds}});
+  } else {
+    logInfo(fmt::format("{} picture{} in {:.1f} s: {}", source->count(), source->count() == 1 ? "" : "s",
+                        seconds, fmt::format("{}", fmt::join(options.outputs, ", "))));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void addRender(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command = app.add_subcommand("render", "Draw a scenario or volumes: pictures, video");
+  command->fallthrough();
+  command->footer(R"(
+A scenario is computed and drawn without files between. Volumes are drawn as they are; --scenario adds the ground and the
+emitters of the scenario that they came from.
+
+Examples:
+  emscape render scenarios/jacksboro.yaml -o now.png --times 30
+  emscape render scenarios/jacksboro.yaml -o film.mp4 -o frames --times 0:120:0.5 --camera orbit:azimuth_deg=200
+  emscape render out/jacksboro.pvd -o film.mp4 --scenario scenarios/jacksboro.yaml
+  emscape render engine_256x256x110_uint8.raw -o engine.png --mode mida)");
+  auto options = std::make_shared<RenderOptions>();
+  command
+      ->add_option("INPUT", options->selection.input,
+                   "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes")
+      ->required();
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "NAME.png, NAME.mp4 or a folder for frames; may be given several times")
+      ->required();
+  command->add_option("--size", options->size, "Picture size in pixels, WxH");
+  command->add_option("--mode", options->mode, "How samples become a pixel")
+      ->check(CLI::IsMember({"dvr", "mida", "mip"}));
+  command->add_option("--rays", options->rays, "Pixels that are cast, the rest interpolated; auto: all")
+      ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter"}));
+  command->add_option("--interpolate", options->interpolate, "Precision of interpolated pixels")
+      ->check(CLI::IsMember({"float", "8bit"}));
+  command->add_option("--camera", options->camera,
+                      "orbit:azimuth_deg=..,elevation_deg=..,distance=..,fov_deg=.. or "
+                      "lookat:eye_x_m=..,..,target_x_m=..,..");
+  command->add_option("--transfer", options->transfer,
+                      "Colours and opacities (JSON); default: fitted to the value range");
+  command->add_option(
+      "--times", options->selection.times,
+      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: all steps, for a .png alone the first");
+  command->add_option("--quantity", options->selection.quantity,
+                      "Quantity or channel to draw; default: the first");
+  command->add_option("--range", options->range, "MIN:MAX of the colours; default: the range of the series");
+  command->add_option("--scenario", options->selection.scenario,
+                      "Scenario whose ground and emitters are drawn with volumes");
+  command
+      ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--step", options->step_voxels, "Distance of samples, in voxels")
+      ->check(CLI::Range(0.05, 10.0));
+  command->add_option("--mida-gamma", options->mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
+      ->check(CLI::Range(-1.0, 1.0));
+  command->add_option("--theme", options->theme, "Background")->check(CLI::IsMember({"dark", "light"}));
+  command->add_option("--fps", options->frames_per_s, "Frames a second of a video")
+      ->check(CLI::Range(0.1, 240.0));
+  command->add_flag("--exact", options->exact, "No early end of rays");
+  command->add_option("--terrain", options->show_terrain, "Draw the ground: on or off");
+  command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off");
+  command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,
+                    "Compute although elevation data is missing; the holes are drawn as such");
+  command->callback([options, &global, &action] {
+    action = [options, &global] { return renderPictures(*options, global); };
+  });
+}
+
+}  // namespace emscape::app

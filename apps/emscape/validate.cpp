@@ -1,0 +1,136 @@
+/// emscape validate: all that is wrong with a scenario and the files it names.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/interrupt.h"
+#include "base/geo_frame.h"
+#include "emfield/field_solver.h"
+#include "scenario/scenario_yaml.h"
+#include "scenario/snapshot.h"
+
+namespace emscape::app {
+namespace {
+
+using scenario::Problem;
+using scenario::Severity;
+
+/// Where a problem without a place of its own is put: at the top of the scenario.
+Problem problemOf(const Error& error, const std::string& scenario_file) {
+  const FilePlace place = error.place().file.empty() ? FilePlace{scenario_file, 0, 0} : error.place();
+  return {place, Severity::error, error.message()};
+}
+
+/// Columns of the region whose centre has no known ground.
+void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& terrain,
+                   std::vector<Problem>& problems) {
+  const volume::Grid grid = emfield::gridOf(scenario.region);
+  const GeoFrame frame(grid.frame);
+  long long missing = 0;
+  GeodeticPosition first;
+  for (int j = 0; j < grid.dims.y; ++j) {
+    for (int i = 0; i < grid.dims.x; ++i) {
+      const GeodeticPosition place = frame.toGeodetic(grid.center_m(i, j, 0));
+      if (!std::isnan(terrain.heightMsl_m(place.latitude_deg, place.longitude_deg))) continue;
+      if (missing++ == 0) first = place;
+    }
+  }
+  if (missing == 0) return;
+  const FilePlace place =
+      scenario.terrain->places.empty() ? FilePlace{scenario.file, 0, 0} : scenario.terrain->places.front();
+  problems.push_back(
+      {place, Severity::error,
+       fmt::format("the elevation files leave {} of the region's {} columns without a height, the first at "
+                   "latitude {:.5f}, longitude {:.5f} deg; allowed only with --allow-missing-terrain",
+                   missing, static_cast<long long>(grid.dims.x) * grid.dims.y, first.latitude_deg,
+                   first.longitude_deg)});
+}
+
+/// Every step of the clock can be laid out: no platform below the ground or over a hole.
+void checkSteps(const std::shared_ptr<const scenario::Scenario>& scenario, const scenario::Terrain* terrain,
+                std::vector<Problem>& problems) {
+  const std::vector<double> times = scenario::timesOf(scenario->clock);
+  int failed = 0;
+  for (const double time_s : times) {
+    stopIfInterrupted();
+    try {
+      scenario::snapshotAt(scenario, terrain, time_s);
+    } catch (const Error& error) {
+      if (failed++ == 0) problems.push_back(problemOf(error, scenario->file));
+    }
+  }
+  if (failed > 1)
+    problems.back().message += fmt::format(" (and {} of {} steps like it)", failed, times.size());
+}
+
+/// What can be said only once the scenario is read: the ground, the quantities, the models, every step.
+void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std::vector<Problem>& problems) {
+  try {
+    const scenario::TerrainPtr terrain =
+        scenario->terrain ? scenario::Terrain::load(*scenario->terrain, scenario::terrainBox(*scenario))
+                          : nullptr;
+    if (terrain) checkCoverage(*scenario, *terrain, problems);
+    checkSteps(scenario, terrain.get(), problems);
+    emfield::FieldOptions options;
+    options.allow_missing_terrain = true;  // told above
+    emfield::FieldSolver(scenario, terrain, options);
+  } catch (const Error& error) {
+    problems.push_back(problemOf(error, scenario->file));
+  }
+}
+
+const char* toString(Severity severity) {
+  return severity == Severity::error ? "error" : "warning";
+}
+
+int validate(const std::string& file, const GlobalOptions& global) {
+  scenario::ParseResult result = scenario::parseScenario(file);
+  if (result.scenario) checkMeaning(result.scenario, result.problems);
+  const bool ok = std::none_of(result.problems.begin(), result.problems.end(),
+                               [](const Problem& problem) { return problem.severity == Severity::error; });
+
+  if (global.json) {
+    Json problems = Json::array();
+    for (const Problem& problem : result.problems) {
+      problems.push_back({{"file", problem.place.file},
+                          {"line", problem.place.line},
+                          {"column", problem.place.column},
+                          {"severity", toString(problem.severity)},
+                          {"message", problem.message}});
+    }
+    printJson({{"ok", ok}, {"problems", problems}});
+  } else {
+    for (const Problem& problem : result.problems) {
+      fmt::print("{}: {}: {}\n", emscape::toString(problem.place), toString(problem.severity),
+                 problem.message);
+    }
+    if (ok && !global.quiet) fmt::print("{}: ok\n", file);
+  }
+  return ok ? 0 : static_cast<int>(ErrorCode::bad_input);
+}
+
+}  // namespace
+
+void addValidate(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command = app.add_subcommand("validate", "Check a scenario and every file it names");
+  command->fallthrough();
+  command->footer(R"(
+All faults are told at once, each as file:line:column: error: message. Besides the files themselves it is checked that the
+elevation files cover the region and that no platform is below the ground at any step.
+
+Examples:
+  emscape validate scenarios/jacksboro.yaml
+  emscape validate mine.yaml --json        {"ok", "problems": [{"file", "line", "column", "severity", "message"}]}
+
+Exit status: 0 without errors (warnings do not count), 3 otherwise.)");
+  auto file = std::make_shared<std::string>();
+  command->add_option("SCENARIO", *file, "Scenario (YAML or JSON)")->required();
+  command->callback(
+      [file, &global, &action] { action = [file, &global] { return validate(*file, global); }; });
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,144 @@
+// What every subcommand has in common: usage, exit status, standard output.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr int kUsage = 2, kBadInput = 3, kDevice = 4;
+
+int lines(const std::string& text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+TEST(CommandLine, HelpAndVersionAreNoErrors) {
+  for (const char* subcommand : {"validate", "info", "simulate", "render", "bench"}) {
+    const ProgramResult help = run({subcommand, "--help"});
+    EXPECT_EQ(help.status, 0) << subcommand;
+    EXPECT_THAT(help.out, HasSubstr("Usage: emscape")) << subcommand;
+  }
+  EXPECT_THAT(run({"--help"}).out, HasSubstr("Exit status"));
+  EXPECT_THAT(run({"--version"}).out, StartsWith("emscape "));
+}
+
+TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {
+  const std::string quick = shippedScenario("quick.yaml");
+  const TemporaryFolder folder;
+  const std::vector<Arguments> wrong{
+      {},
+      {"explode"},
+      {"validate"},
+      {"simulate", quick},
+      {"simulate", quick, "-o", folder / "x", "--format", "docx"},
+      {"simulate", quick, "-o", folder / "x", "--times", "5:1:1"},
+      {"simulate", quick, "-o", folder / "x", "--times", "now"},
+      {"simulate", quick, "-o", folder / "x", "--range", "5:1"},
+      {"simulate", quick, "-o", folder / "x", "--resume", "--force"},
+      {"render", quick, "-o", folder / "x.png", "--size", "0x10"},
+      {"render", quick, "-o", folder / "x.png", "--camera", "orbit:azimuth=3"},
+      {"render", quick, "-o", folder / "x.gif"},
+      {"render", quick, "-o", folder / "x.png", "--times", "0:4:1"},
+      {"validate", quick, "--threads", "-1"},
+      {"validate", quick, "--backend", "abacus"},
+      {"bench", "field", quick, "--repeats", "0"},
+  };
+  for (const Arguments& arguments : wrong) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, kUsage) << testing::PrintToString(arguments) << result.err;
+    EXPECT_THAT(result.err, StartsWith("emscape: error: ")) << testing::PrintToString(arguments);
+    EXPECT_EQ(result.out, "") << testing::PrintToString(arguments);
+  }
+  EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
+}
+
+TEST(CommandLine, ADeviceThatCannotBeHadIsOneLineWithStatus4) {
+  const TemporaryFolder folder;
+  const std::string quick = shippedScenario("quick.yaml");
+  for (const Arguments& arguments :
+       {Arguments{"simulate", quick, "-o", folder / "x"}, Arguments{"bench", "field", quick},
+        Arguments{"render", quick, "-o", folder / "x.png"}}) {
+    Arguments with_backend = arguments;
+    with_backend.insert(with_backend.end(), {"--backend", "cuda"});
+    const ProgramResult result = run(with_backend);
+    EXPECT_EQ(result.status, kDevice);
+    EXPECT_EQ(lines(result.err), 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("--backend cuda"));
+  }
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(CommandLine, AutoSaysOnceWhyItRunsOnTheCpuAndQuietDoesNot) {
+  const TemporaryFolder folder;
+  const Arguments arguments{"simulate", shippedScenario("quick.yaml"), "-o", folder / "a", "--times", "0"};
+  EXPECT_THAT(run(arguments).err, HasSubstr("running on the CPU"));
+  Arguments quiet = arguments;
+  quiet.insert(quiet.end(), {"--force", "--quiet"});
+  EXPECT_EQ(run(quiet).err, "");
+}
+
+TEST(CommandLine, AMissingInputIsToldWithItsName) {
+  const TemporaryFolder folder;
+  const std::string missing = folder / "missing.yaml";
+  for (const Arguments& arguments :
+       {Arguments{"simulate", missing, "-o", folder / "x"}, Arguments{"info", missing},
+        Arguments{"render", missing, "-o", folder / "x.png"}, Arguments{"bench", "field", missing}}) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, kBadInput) << result.err;
+    EXPECT_THAT(result.err, StartsWith("emscape: error: "));
+    EXPECT_THAT(result.err, HasSubstr("missing.yaml"));
+  }
+  EXPECT_EQ(run({"validate", missing}).status, kBadInput);
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(CommandLine, JsonIsAloneOnStandardOutput) {
+  const TemporaryFolder folder;
+  const std::string quick = shippedScenario("quick.yaml");
+  const std::vector<Arguments> commands{
+      {"validate", quick},
+      {"info", quick},
+      {"simulate", quick, "-o", folder / "s", "--times", "0:1:1"},
+      {"info", folder / "s/quick_0001.vdb"},
+      {"render", quick, "-o", folder / "p.png", "--size", "64x48"},
+      {"bench", "field", quick, "--repeats", "1"},
+  };
+  for (Arguments arguments : commands) {
+    arguments.emplace_back("--json");
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_TRUE(json::accept(result.out)) << testing::PrintToString(arguments) << result.out;
+  }
+}
+
+TEST(CommandLine, GlobalOptionsMayStandBeforeTheSubcommand) {
+  const ProgramResult result = run({"--json", "validate", shippedScenario("quick.yaml")});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(json::parse(result.out).at("ok"), true);
+}
+
+TEST(Bench, FieldHasTheKeysThatOthersRelyOn) {
+  const ProgramResult result =
+      run({"bench", "field", shippedScenario("quick.yaml"), "--repeats", "1", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json bench = json::parse(result.out);
+  EXPECT_EQ(bench.at("device"), "cpu");
+  EXPECT_EQ(bench.at("grid"), json({40, 40, 20}));
+  EXPECT_EQ(bench.at("emitters"), 2);
+  for (const char* stage : {"fan", "plane", "combine", "product"})
+    EXPECT_TRUE(bench.at("stages_ms").at(stage).is_number());
+  for (const char* kind : {"all_moved", "one_moved", "beams_turned"})
+    EXPECT_GT(bench.at("update_ms").at(kind), 0.0);
+  EXPECT_GT(bench.at("voxels_per_s"), 0.0);
+}
+
+}  // namespace
+}  // namespace emscape::test

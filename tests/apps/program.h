@@ -1,0 +1,58 @@
+/// Runs the built program as a user would.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace emscape::test {
+
+struct ProgramResult {
+  int status = 0;   ///< exit status; 128 + N if signal N ended it
+  std::string out;  ///< standard output
+  std::string err;  ///< standard error
+};
+
+using Arguments = std::vector<std::string>;
+
+/// A program that runs in the background. Its output goes to files of its own.
+class RunningProgram {
+ public:
+  /// @param shell_prefix  shell commands that stand before it, for example limits; may be empty
+  explicit RunningProgram(const Arguments& arguments, const std::string& shell_prefix = "");
+  void signal(int number) const;
+  ProgramResult wait();
+
+ private:
+  std::filesystem::path output_;
+  pid_t process_ = -1;
+};
+
+/// Runs `emscape ARGUMENTS` to its end.
+ProgramResult run(const Arguments& arguments, const std::string& shell_prefix = "");
+
+/// A folder of its own for a test, gone when it ends.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  /// Names of all files below, sorted.
+  std::vector<std::string> files() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string readFile(const std::filesystem::path& file);
+void writeFile(const std::filesystem::path& file, const std::string& text);
+/// scenarios/NAME of the source tree.
+std::string shippedScenario(const std::string& name);
+
+}  // namespace emscape::test

@@ -1,0 +1,221 @@
+// emscape simulate and render, end to end on a small scenario.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::Not;
+
+const std::string& quick() {
+  static const std::string file = shippedScenario("quick.yaml");
+  return file;
+}
+
+/// A scenario that takes long enough to be interrupted.
+std::string slowScenario(const TemporaryFolder& folder) {
+  std::string text = readFile(quick());
+  text.replace(text.find("duration_s: 4"), 13, "duration_s: 200");
+  text.replace(text.find("[40, 40, 20]"), 12, "[60, 60, 40]");
+  const std::string file = folder / "slow.yaml";
+  writeFile(file, text);
+  return file;
+}
+
+json infoOf(const std::string& file) {
+  const ProgramResult result = run({"info", file, "--json"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  return json::parse(result.out);
+}
+
+TEST(Simulate, WritesEveryFormatOfEveryStepAndNothingElse) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run({"simulate", quick(), "-o", folder / "s", "--format", "vdb,nvdb,vti,raw", "--times", "0:2:1",
+           "--quantity", "power_density_dbwm2,emitter_count", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::vector<std::string> files = folder.files();
+  for (const char* step : {"0001", "0002", "0003"}) {
+    for (const char* ending : {".vdb", ".nvdb", ".vti"}) {
+      EXPECT_THAT(files, Contains("s/quick_" + std::string(step) + ending));
+    }
+  }
+  EXPECT_THAT(files, IsSupersetOf({"s/quick.pvd", "s/series.json"}));
+  EXPECT_THAT(files, Not(Contains(HasSubstr(".part-"))));
+  EXPECT_EQ(json::parse(result.out).at("steps"), 3);
+}
+
+TEST(Simulate, EveryVolumeSaysTheRangeOfTheWholeSeries) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:4:2"}).status, 0);
+  const json first = infoOf(folder / "s/quick_0001.vdb").at("volumes").at(0);
+  const json last = infoOf(folder / "s/quick_0003.vdb").at("volumes").at(0);
+  EXPECT_EQ(first.at("range"), last.at("range"));
+  EXPECT_EQ(last.at("time_s"), 4.0);
+  EXPECT_EQ(last.at("quantity"), "power_density_dbwm2");
+  EXPECT_LT(first.at("range").at(0), first.at("range").at(1));
+}
+
+TEST(Simulate, RefusesAFolderThatHoldsASeries) {
+  const TemporaryFolder folder;
+  const Arguments arguments{"simulate", quick(), "-o", folder / "s", "--times", "0:1:1"};
+  ASSERT_EQ(run(arguments).status, 0);
+  const ProgramResult again = run(arguments);
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.err, HasSubstr("--resume"));
+  Arguments force = arguments;
+  force.emplace_back("--force");
+  EXPECT_EQ(run(force).status, 0);
+}
+
+TEST(Simulate, ForceLeavesNothingOfTheSeriesBefore) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:3:1"}).status, 0);
+  writeFile(folder / "s/notes.txt", "mine");
+  ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0", "--force"}).status, 0);
+  EXPECT_THAT(folder.files(), ElementsAre("s/notes.txt", "s/quick_0001.vdb", "s/series.json"));
+}
+
+TEST(Simulate, ResumeRefusesOtherOptionsAndSaysWhich) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:1:1"}).status, 0);
+  const ProgramResult result = run({"simulate", quick(), "-o", folder / "s", "--times", "0:2:1", "--resume"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.err, HasSubstr("another times"));
+}
+
+TEST(Simulate, ASeriesThatWasKilledResumesToTheSameFiles) {
+  const TemporaryFolder folder;
+  const std::string scenario = slowScenario(folder);
+  const Arguments arguments{"simulate", scenario, "-o",      folder / "s",
+                            "--format", "raw",    "--range", "-120:20"};
+  RunningProgram first(arguments);
+  while (!std::filesystem::exists(folder / "s/quick_0003.raw"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  first.signal(SIGKILL);
+  ASSERT_EQ(first.wait().status, 128 + SIGKILL);
+
+  Arguments resume = arguments;
+  resume.insert(resume.end(), {"--resume", "--json"});
+  const ProgramResult resumed = run(resume);
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  const json report = json::parse(resumed.out);
+  EXPECT_LT(report.at("steps_computed"), report.at("steps"));
+
+  Arguments whole = arguments;
+  whole[3] = folder / "w";
+  ASSERT_EQ(run(whole).status, 0);
+  for (const char* file : {"quick_0001.raw", "quick_0004.raw", "quick_0201.raw", "quick_0201.raw.json"}) {
+    EXPECT_TRUE(readFile(folder.path() / "s" / file) == readFile(folder.path() / "w" / file)) << file;
+  }
+  EXPECT_THAT(folder.files(), Not(Contains(HasSubstr(".part-"))));
+}
+
+TEST(Simulate, CtrlCLeavesWholeFilesAndStatus130) {
+  const TemporaryFolder folder;
+  RunningProgram program(
+      {"simulate", slowScenario(folder), "-o", folder / "s", "--format", "vti", "--range", "-120:20"});
+  while (!std::filesystem::exists(folder / "s/quick_0002.vti"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  program.signal(SIGINT);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.status, 130) << result.err;
+  EXPECT_THAT(folder.files(), Not(Contains(HasSubstr(".part-"))));
+  EXPECT_EQ(infoOf(folder / "s/quick.pvd").at("steps"), infoOf(folder / "s/quick.pvd").at("times_s").size());
+}
+
+TEST(Simulate, AFullDiskIsOneErrorAndLeavesWhatWasFinished) {
+  const TemporaryFolder folder;
+  // Files may grow to 64 KiB: series.json fits, a volume does not.
+  const ProgramResult result =
+      run({"simulate", quick(), "-o", folder / "s", "--format", "raw"}, "trap '' XFSZ; ulimit -f 128;");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("emscape: error: "));
+  EXPECT_THAT(folder.files(), ElementsAre("s/series.json"));
+}
+
+TEST(Simulate, AFolderThatIsAFileIsAnError) {
+  const TemporaryFolder folder;
+  writeFile(folder / "file", "");
+  EXPECT_EQ(run({"simulate", quick(), "-o", folder / "file"}).status, 1);
+}
+
+TEST(Render, DrawsAScenarioAsOnePicture) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run({"render", quick(), "-o", folder / "p.png", "--size", "160x120", "--times", "2"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string png = readFile(folder / "p.png");
+  ASSERT_GT(png.size(), 24U);
+  EXPECT_EQ(png.substr(1, 3), "PNG");
+  EXPECT_EQ(static_cast<unsigned char>(png[19]), 160);
+  EXPECT_EQ(static_cast<unsigned char>(png[23]), 120);
+}
+
+TEST(Render, DrawsASeriesOfVolumesLikeTheScenarioThatItCameFrom) {
+  const TemporaryFolder folder;
+  const Arguments look{"--size", "96x72", "--range", "-120:0", "--times", "0:2:1"};
+  const auto render = [&](Arguments arguments) {
+    arguments.insert(arguments.end(), look.begin(), look.end());
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--format", "vdb,vti"}).status, 0);
+  render({"render", quick(), "-o", folder / "direct"});
+  render({"render", folder / "s", "-o", folder / "vdb", "--scenario", quick()});
+  render({"render", folder / "s/quick.pvd", "-o", folder / "vti", "--scenario", quick()});
+  for (const char* frame : {"quick_0001.png", "quick_0003.png"}) {
+    const std::string direct = readFile(folder.path() / "direct" / frame);
+    EXPECT_FALSE(direct.empty());
+    EXPECT_TRUE(direct == readFile(folder.path() / "vdb" / frame)) << frame;
+    EXPECT_TRUE(direct == readFile(folder.path() / "vti" / frame)) << frame;
+  }
+}
+
+TEST(Render, WritesFramesAndVideoInOneGo) {
+  if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  const TemporaryFolder folder;
+  const ProgramResult result = run(
+      {"render", quick(), "-o", folder / "v.mp4", "-o", folder / "f", "--size", "65x49", "--times", "0:2:1"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(folder.files(),
+              ElementsAre("f/quick_0001.png", "f/quick_0002.png", "f/quick_0003.png", "v.mp4"));
+  EXPECT_EQ(readFile(folder / "v.mp4").substr(4, 4), "ftyp");
+}
+
+TEST(Render, WithoutFfmpegAVideoIsAClearErrorAndNoFile) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run({"render", quick(), "-o", folder / "v.mp4", "--size", "64x48"}, "PATH=/nowhere;");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("needs the program ffmpeg"));
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Info, DescribesEveryKindOfInput) {
+  const json scenario = infoOf(quick());
+  EXPECT_EQ(scenario.at("kind"), "scenario");
+  EXPECT_EQ(scenario.at("emitters").size(), 2U);
+  const json dem = infoOf(shippedScenario("data/jacksboro.tif"));
+  EXPECT_EQ(dem.at("kind"), "elevation");
+  EXPECT_EQ(dem.at("columns"), 403);
+  EXPECT_EQ(dem.at("highest_m"), 1076);
+  const json antenna = infoOf(shippedScenario("data/sector_450mhz.msi"));
+  EXPECT_EQ(antenna.at("kind"), "antenna");
+  EXPECT_NEAR(antenna.at("gain_dbi"), 13.15, 1e-3);
+}
+
+}  // namespace
+}  // namespace emscape::test

@@ -1,0 +1,83 @@
+// emscape validate on broken scenarios. The parser's own tests go through every kind of fault; here the
+// program's part.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+/// The shipped quick scenario with one piece of text replaced, as a file.
+class Validate : public testing::Test {
+ protected:
+  std::string changed(const std::string& from, const std::string& to) {
+    std::string text = readFile(shippedScenario("quick.yaml"));
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    const std::string file = folder_ / "changed.yaml";
+    writeFile(file, text.replace(at, from.size(), to));
+    return file;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Validate, ShippedScenariosAreWithoutFault) {
+  for (const char* name : {"quick.yaml", "sphere_64.yaml", "eme_200.yaml", "jacksboro.yaml"}) {
+    const ProgramResult result = run({"validate", shippedScenario(name)});
+    EXPECT_EQ(result.status, 0) << name << result.out << result.err;
+  }
+}
+
+TEST_F(Validate, TellsPlaceAndSeverityOfEveryProblem) {
+  const std::string file = changed("power_w: 1000\n", "power_w: -1000\n    colour: red\n");
+  const ProgramResult text = run({"validate", file});
+  EXPECT_EQ(text.status, 3);
+  EXPECT_THAT(text.out, testing::ContainsRegex(file + ":[0-9]+:[0-9]+: error: "));
+
+  const ProgramResult result = run({"validate", file, "--json"});
+  EXPECT_EQ(result.status, 3);
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report.at("ok"), false);
+  ASSERT_EQ(report.at("problems").size(), 2U) << result.out;
+  for (const json& problem : report.at("problems")) {
+    EXPECT_EQ(problem.at("file"), file);
+    EXPECT_GT(problem.at("line"), 0);
+    EXPECT_GT(problem.at("column"), 0);
+    EXPECT_EQ(problem.at("severity"), "error");
+    EXPECT_TRUE(problem.at("message").is_string());
+  }
+}
+
+TEST_F(Validate, FindsRegionsBeyondTheElevationData) {
+  const std::string dem = shippedScenario("data/jacksboro.tif");
+  const std::string file = changed("platforms:", "terrain: {files: ['" + dem + "']}\nplatforms:");
+  const ProgramResult result = run({"validate", file});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.out, HasSubstr("1600 columns"));
+}
+
+TEST_F(Validate, FindsPlatformsBelowTheGround) {
+  std::string text = readFile(shippedScenario("jacksboro.yaml"));
+  const std::string agl = "longitude_deg: -84.24167, height_agl_m: 15";
+  ASSERT_NE(text.find(agl), std::string::npos);
+  text.replace(text.find(agl), agl.size(), "longitude_deg: -84.24167, height_msl_m: 500");
+  for (const std::string& path : {"data/jacksboro.tif", "data/helicopter.csv", "data/sector_450mhz.msi"}) {
+    text.replace(text.find(path), path.size(), shippedScenario(path));
+  }
+  const std::string file = folder_ / "below.yaml";
+  writeFile(file, text);
+  const ProgramResult result = run({"validate", file});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.out, HasSubstr("ridge site"));
+  EXPECT_THAT(result.out, HasSubstr("steps like it"));
+}
+
+}  // namespace
+}  // namespace emscape::test
