@@ -156,19 +156,24 @@ AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
 
   const std::vector<double> attenuations_db = inGridOrder(std::move(rows), azimuth, elevation, place);
   requireMaximum(*std::min_element(attenuations_db.begin(), attenuations_db.end()), place, "grid");
-  std::vector<double> amplitudes(attenuations_db.size());
-  std::transform(attenuations_db.begin(), attenuations_db.end(), amplitudes.begin(), amplitudeOfAttenuation);
-  const auto amplitudeAt = [&](double azimuth_deg, double elevation_deg) {
-    const AxisPlace a = azimuth.locate(azimuth_deg);
+  std::vector<double> measured(attenuations_db.size());
+  std::transform(attenuations_db.begin(), attenuations_db.end(), measured.begin(), amplitudeOfAttenuation);
+
+  const GridNodes nodes = gridNodes(azimuth.angles_deg(), elevation.angles_deg());
+  std::vector<AxisPlace> columns;
+  for (const double azimuth_deg : nodes.azimuths_deg) columns.push_back(azimuth.locate(azimuth_deg));
+  std::vector<float> amplitudes;
+  for (const double elevation_deg : nodes.elevations_deg) {
     const AxisPlace e = elevation.locate(elevation_deg);
-    const auto inRow = [&](std::size_t row) {
-      const double* first = &amplitudes[row * azimuth.angles_deg().size()];
-      return first[a.below] + a.fraction * (first[a.above] - first[a.below]);
-    };
-    return inRow(e.below) + e.fraction * (inRow(e.above) - inRow(e.below));
-  };
-  return makeGridAntenna(amplitudeAt, azimuth.angles_deg(), elevation.angles_deg(), gain_dbi,
-                         "measured grid");
+    const double* below = &measured[e.below * azimuth.angles_deg().size()];
+    const double* above = &measured[e.above * azimuth.angles_deg().size()];
+    for (const AxisPlace& a : columns) {
+      const double at_below = below[a.below] + a.fraction * (below[a.above] - below[a.below]);
+      const double at_above = above[a.below] + a.fraction * (above[a.above] - above[a.below]);
+      amplitudes.push_back(static_cast<float>(at_below + e.fraction * (at_above - at_below)));
+    }
+  }
+  return makeGridAntenna(nodes, std::move(amplitudes), gain_dbi, "measured grid");
 }
 
 AntennaPtr readAntenna(const std::string& file, double gain_dbi) {

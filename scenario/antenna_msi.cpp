@@ -176,16 +176,23 @@ AntennaPtr readMsi(const std::string& file, double gain_dbi) {
         file, *content.tilt_deg, peakAngle_deg(vertical)));
   }
 
+  const GridNodes nodes = gridNodes(horizontal.angles_deg(), vertical.angles_deg());
+  std::vector<double> horizontal_db;
+  for (const double azimuth_deg : nodes.azimuths_deg)
+    horizontal_db.push_back(horizontal.attenuationAt_db(azimuth_deg));
   const double ahead_db = horizontal.attenuationAt_db(0);
   const double behind_db = horizontal.attenuationAt_db(180);
-  const auto amplitudeAt = [&](double azimuth_deg, double elevation_deg) {
-    const double w = std::abs(azimuth_deg) / 180;
-    const double attenuation_db = horizontal.attenuationAt_db(azimuth_deg) +
-                                  (1 - w) * (vertical.attenuationAt_db(-elevation_deg) - ahead_db) +
-                                  w * (vertical.attenuationAt_db(180 + elevation_deg) - behind_db);
-    return amplitudeOfAttenuation(std::max(attenuation_db, 0.0));
-  };
-  return makeGridAntenna(amplitudeAt, horizontal.angles_deg(), vertical.angles_deg(), gain_dbi,
+  std::vector<float> amplitudes;
+  for (const double elevation_deg : nodes.elevations_deg) {
+    const double front_db = vertical.attenuationAt_db(-elevation_deg) - ahead_db;
+    const double back_db = vertical.attenuationAt_db(180 + elevation_deg) - behind_db;
+    for (std::size_t i = 0; i < horizontal_db.size(); ++i) {
+      const double w = std::abs(nodes.azimuths_deg[i]) / 180;
+      const double attenuation_db = horizontal_db[i] + (1 - w) * front_db + w * back_db;
+      amplitudes.push_back(static_cast<float>(amplitudeOfAttenuation(std::max(attenuation_db, 0.0))));
+    }
+  }
+  return makeGridAntenna(nodes, std::move(amplitudes), gain_dbi,
                          content.name.empty() ? "MSI pattern" : content.name);
 }
 

@@ -19,7 +19,7 @@ constexpr double kHalfPowerOfSinc = 1.3915573782515103;
 constexpr double kEvenApertureFactor = 0.885892941;
 /// Table steps as parts of the beamwidth: within 1e-3 dB down to -40 dB, where the error of linear
 /// interpolation is largest relative to the amplitude; finer where the shape has a corner.
-constexpr double kStepsPerBeamwidth = 512;
+constexpr double kStepsPerBeamwidth = 768;
 constexpr double kStepsPerBeamwidthAtCorners = 2048;
 
 double amplitudeOfDb(double decibels) {
@@ -77,7 +77,9 @@ class PlanarAntenna : public Antenna {
       : u_(std::move(u)),
         v_(std::move(v)),
         element_exponent_(element_exponent),
-        back_amplitude_(back_amplitude) {}
+        back_amplitude_(back_amplitude) {
+    aperture_factor = kEvenApertureFactor;
+  }
 
   PatternView view() const override {
     PatternView view;
@@ -115,6 +117,11 @@ ShapeTable sincTable(double beamwidth_deg) {
   return tabulate(sinc, kDirectionCosineSpan, 2 * half_power_cosine / kStepsPerBeamwidth);
 }
 
+/// Half-power width in direction cosine of an unsteered array.
+double arrayWidth(int elements, double spacing_wavelengths) {
+  return kEvenApertureFactor / (elements * spacing_wavelengths);
+}
+
 /// Array factor sin(N x) / (N sin x), x = pi spacing u, of N evenly weighted elements.
 ShapeTable arrayTable(int elements, double spacing_wavelengths) {
   const auto factor = [elements, spacing_wavelengths](double cosine) {
@@ -123,16 +130,17 @@ ShapeTable arrayTable(int elements, double spacing_wavelengths) {
     if (std::abs(std::sin(x)) < 1e-9) return std::cos(elements * x) / std::cos(x);
     return std::sin(elements * x) / (elements * std::sin(x));
   };
-  const double beamwidth = kEvenApertureFactor / (elements * spacing_wavelengths);
-  return tabulate(factor, kDirectionCosineSpan, beamwidth / kStepsPerBeamwidth);
+  return tabulate(factor, kDirectionCosineSpan,
+                  arrayWidth(elements, spacing_wavelengths) / kStepsPerBeamwidth);
 }
 
 /// Half-power width (deg) of the unsteered array in one of its principal planes.
-double arrayBeamwidth_deg(const Shape& array_factor, double element_exponent) {
+double arrayBeamwidth_deg(const Shape& array_factor, double width_guess_rad, double element_exponent) {
   const auto cut = [&](double angle_rad) {
     return array_factor(std::sin(angle_rad)) * std::pow(std::max(std::cos(angle_rad), 0.0), element_exponent);
   };
-  const ShapeTable table = tabulate(cut, kPi / 2, degToRad(0.001));
+  constexpr double kSteps = 128;
+  const ShapeTable table = tabulate(cut, kPi / 2, std::min(width_guess_rad, 1.0) / kSteps);
   return radToDeg(halfPowerWidth(table.values, table.half_span, false));
 }
 
@@ -204,8 +212,10 @@ AntennaPtr makePhasedArray(double gain_dbi, int columns, int rows, double spacin
   requireWithin("element_exponent", element_exponent, 0, 10, "");
   ShapeTable u = arrayTable(columns, spacing_wavelengths);
   ShapeTable v = arrayTable(rows, spacing_wavelengths);
-  const double azimuth_deg = arrayBeamwidth_deg(u.shape, element_exponent);
-  const double elevation_deg = arrayBeamwidth_deg(v.shape, element_exponent);
+  const double azimuth_deg =
+      arrayBeamwidth_deg(u.shape, arrayWidth(columns, spacing_wavelengths), element_exponent);
+  const double elevation_deg =
+      arrayBeamwidth_deg(v.shape, arrayWidth(rows, spacing_wavelengths), element_exponent);
   return describedAntenna(std::make_shared<PlanarAntenna>(std::move(u), std::move(v), element_exponent, 0.0),
                           gain_dbi, azimuth_deg, elevation_deg,
                           fmt::format("phased array of {} x {} elements", columns, rows));

@@ -40,14 +40,19 @@ ShapeTable tabulate(Shape shape, double half_span, const std::vector<double>& an
 
 int intervalsThatMeet(const std::vector<double>& angles_deg, double span_deg, int most) {
   constexpr double kUnitsPerDegree = 1e4;
+  constexpr double kStepsPerSpacing = 8;
   const auto half_span = std::llround(span_deg / 2 * kUnitsPerDegree);
   long long step = half_span;
-  for (const double angle_deg : angles_deg) {
-    const double units = angle_deg * kUnitsPerDegree;
-    if (std::abs(units - std::round(units)) > 1e-4) return most;
+  double closest_deg = span_deg;
+  bool whole = true;
+  for (std::size_t i = 0; i < angles_deg.size(); ++i) {
+    const double units = angles_deg[i] * kUnitsPerDegree;
+    whole = whole && std::abs(units - std::round(units)) < 1e-4;
     step = std::gcd(step, std::llround(units));
+    if (i > 0) closest_deg = std::min(closest_deg, angles_deg[i] - angles_deg[i - 1]);
   }
-  return static_cast<int>(std::min<long long>(2 * (half_span / step), most));
+  if (whole && 2 * (half_span / step) <= most) return static_cast<int>(2 * (half_span / step));
+  return std::min(evenIntervals(kStepsPerSpacing * span_deg / closest_deg), most);
 }
 
 double halfPowerWidth(const std::vector<float>& values, double half_span, bool closed) {
@@ -127,29 +132,27 @@ double GridAntenna::amplitudeTowards(const Vec3d& direction, double, double) con
   return mix(mix(entry(0, 0), entry(1, 0), x - column), mix(entry(0, 1), entry(1, 1), x - column), y - row);
 }
 
-AntennaPtr makeGridAntenna(const std::function<double(double, double)>& amplitude_at,
-                           const std::vector<double>& azimuths_deg, const std::vector<double>& elevations_deg,
-                           double gain_dbi, const std::string& name) {
-  const int columns = intervalsThatMeet(azimuths_deg, 360, kMostGridIntervals) + 1;
-  const int rows = intervalsThatMeet(elevations_deg, 180, kMostGridIntervals / 2) + 1;
-  std::vector<float> amplitudes;
-  amplitudes.reserve(static_cast<std::size_t>(columns) * rows);
-  for (int row = 0; row < rows; ++row) {
-    for (int column = 0; column < columns; ++column) {
-      amplitudes.push_back(static_cast<float>(
-          amplitude_at(-180 + 360.0 * column / (columns - 1), -90 + 180.0 * row / (rows - 1))));
-    }
-  }
+GridNodes gridNodes(const std::vector<double>& azimuths_deg, const std::vector<double>& elevations_deg) {
+  const auto nodes = [](double span_deg, int intervals) {
+    std::vector<double> angles;
+    for (int i = 0; i <= intervals; ++i) angles.push_back(span_deg * (double(i) / intervals - 0.5));
+    return angles;
+  };
+  return {nodes(360, intervalsThatMeet(azimuths_deg, 360, kMostGridIntervals)),
+          nodes(180, intervalsThatMeet(elevations_deg, 180, kMostGridIntervals / 2))};
+}
+
+AntennaPtr makeGridAntenna(const GridNodes& nodes, std::vector<float> amplitudes, double gain_dbi,
+                           const std::string& name) {
+  const std::size_t columns = nodes.azimuths_deg.size(), rows = nodes.elevations_deg.size();
   const auto peak =
-      static_cast<int>(std::max_element(amplitudes.begin(), amplitudes.end()) - amplitudes.begin());
+      static_cast<std::size_t>(std::max_element(amplitudes.begin(), amplitudes.end()) - amplitudes.begin());
   std::vector<float> azimuth_cut, elevation_cut;
-  for (int i = 0; i < columns; ++i)
-    azimuth_cut.push_back(amplitudes[std::size_t(peak / columns) * columns + i]);
-  for (int j = 0; j < rows; ++j)
-    elevation_cut.push_back(amplitudes[std::size_t(j) * columns + peak % columns]);
-  return describedAntenna(std::make_shared<GridAntenna>(std::move(amplitudes), columns, rows), gain_dbi,
-                          halfPowerWidth(azimuth_cut, 180, true), halfPowerWidth(elevation_cut, 90, false),
-                          name);
+  for (std::size_t i = 0; i < columns; ++i) azimuth_cut.push_back(amplitudes[peak / columns * columns + i]);
+  for (std::size_t j = 0; j < rows; ++j) elevation_cut.push_back(amplitudes[j * columns + peak % columns]);
+  return describedAntenna(
+      std::make_shared<GridAntenna>(std::move(amplitudes), static_cast<int>(columns), static_cast<int>(rows)),
+      gain_dbi, halfPowerWidth(azimuth_cut, 180, true), halfPowerWidth(elevation_cut, 90, false), name);
 }
 
 AntennaPtr describedAntenna(const std::shared_ptr<Antenna>& antenna, double gain_dbi, double beamwidth_az_deg,

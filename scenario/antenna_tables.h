@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "scenario/antenna.h"
@@ -28,9 +29,10 @@ ShapeTable tabulate(Shape shape, double half_span, double largest_step);
 /// intervals suffice.
 ShapeTable tabulate(Shape shape, double half_span, const std::vector<double>& angles_deg);
 
-/// Intervals, an even number up to `most`, that divide a span (deg) so that every angle (deg, counted from
-/// the span's middle) is an end of one; `most` itself if there is no such number or the angles are no
-/// multiples of 0.0001 degree.
+/// Intervals, an even number up to `most`, that divide a span (deg) so that every angle is an end of one.
+/// Where that takes too many, or angles are not multiples of 0.0001 degree: eight or more to the smallest
+/// distance of two angles.
+/// @param angles_deg  counted from the span's middle, ascending
 int intervalsThatMeet(const std::vector<double>& angles_deg, double span_deg, int most);
 
 /// Distance between the half-power points to both sides of a table's maximum, in the unit of half_span; 2
@@ -73,12 +75,17 @@ class GridAntenna : public Antenna {
 /// Most intervals of a grid in azimuth, and twice as many as in elevation: 0.1 degree, 26 MB.
 constexpr int kMostGridIntervals = 3600;
 
-/// A grid that has entries at every one of the angles (as intervalsThatMeet), with beamwidths measured
-/// through its maximum.
-/// @param amplitude_at  of azimuth and elevation (deg)
-AntennaPtr makeGridAntenna(const std::function<double(double, double)>& amplitude_at,
-                           const std::vector<double>& azimuths_deg, const std::vector<double>& elevations_deg,
-                           double gain_dbi, const std::string& name);
+/// Angles (deg) of a grid's entries: azimuths from -180 to 180, elevations from -90 to 90, evenly.
+struct GridNodes {
+  std::vector<double> azimuths_deg, elevations_deg;
+};
+/// Nodes at the angles of a measurement (ascending), as intervalsThatMeet().
+GridNodes gridNodes(const std::vector<double>& azimuths_deg, const std::vector<double>& elevations_deg);
+
+/// @param amplitudes  at the nodes, azimuth fastest
+/// The beamwidths are measured through the maximum.
+AntennaPtr makeGridAntenna(const GridNodes& nodes, std::vector<float> amplitudes, double gain_dbi,
+                           const std::string& name);
 
 /// Completes an antenna: gain, beamwidths, and a description that names them.
 AntennaPtr describedAntenna(const std::shared_ptr<Antenna>& antenna, double gain_dbi, double beamwidth_az_deg,

@@ -1,0 +1,76 @@
+/// Antenna files written by tests, and what reading broken ones must say.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include "base/error.h"
+
+namespace emscape::scenario {
+
+/// A file in the tests' temporary folder, removed at the end of its scope.
+class TemporaryFile {
+ public:
+  TemporaryFile(const std::string& name, const std::string& content) : path_(pathOf(name)) {
+    rewrite(content);
+  }
+  ~TemporaryFile() { std::remove(path_.c_str()); }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+  void rewrite(const std::string& content) const { std::ofstream(path_, std::ios::binary) << content; }
+  const std::string& path() const { return path_; }
+
+ private:
+  /// Tests of one program run side by side: the running test's name keeps their files apart.
+  static std::string pathOf(const std::string& name) {
+    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
+    return testing::TempDir() + "emscape_" + test->test_suite_name() + "_" + test->name() + "_" + name;
+  }
+
+  std::string path_;
+};
+
+/// Expects an Error (bad_input) at line:column of the file (0: none) whose message holds `part`.
+inline void expectFault(const std::function<void()>& read, const std::string& file, int line, int column,
+                        const std::string& part) {
+  try {
+    read();
+    ADD_FAILURE() << "no error; expected: " << part;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_input);
+    EXPECT_EQ(error.place().file, file);
+    EXPECT_EQ(error.place().line, line) << error.what();
+    EXPECT_EQ(error.place().column, column) << error.what();
+    EXPECT_THAT(error.message(), testing::HasSubstr(part));
+  }
+}
+
+/// Reads a file cut off after each of its bytes, and with each byte replaced by one that hurts, another at
+/// each place: an Error or an antenna, never anything else.
+inline void surviveDamage(const TemporaryFile& file, const std::string& content,
+                          const std::function<void()>& read) {
+  const auto attempt = [&](const std::string& damaged) {
+    file.rewrite(damaged);
+    try {
+      read();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_input);
+      EXPECT_FALSE(error.message().empty());
+    }
+  };
+  for (std::size_t length = 0; length < content.size(); ++length) attempt(content.substr(0, length));
+  const std::string hurtful("\0009-\n,\xff ", 7);
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    std::string damaged = content;
+    damaged[i] = hurtful[i % hurtful.size()];
+    attempt(damaged);
+  }
+}
+
+}  // namespace emscape::scenario
