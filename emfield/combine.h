@@ -46,9 +46,11 @@ EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, std::size_t
 
   float amplitude = 1;
   if constexpr (kind != scenario::PatternKind::isotropic) {
-    const float scale = 1 / std::sqrt(ground2 + bent_up * bent_up + 1e-12f);
-    const Vec3f ray{east * scale, north * scale, bent_up * scale};
-    const Vec3f direction{dot(ray, emitter.forward), dot(ray, emitter.right), dot(ray, emitter.up)};
+    const Vec3f ray{east, north, bent_up};
+    Vec3f direction{dot(ray, emitter.forward), dot(ray, emitter.right), dot(ray, emitter.up)};
+    if constexpr (kind == scenario::PatternKind::phased_array) {
+      direction = direction * (1 / std::sqrt(ground2 + bent_up * bent_up + 1e-12f));
+    }
     amplitude = scenario::amplitudeOf<kind>(emitter.pattern, direction, emitter.steer_u, emitter.steer_v);
   }
 

@@ -10,6 +10,9 @@
 namespace emscape::emfield {
 namespace {
 
+/// Samples of a fan held at once.
+constexpr int kFanSamples = 1 << 23;
+
 /// How far (m) a point of a column may lie from its middle over the ground.
 double leanOf(const GridColumns& columns) {
   if (!columns.tilted) return 0;
@@ -34,9 +37,18 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, scenario::Pro
     times.fan_ms += watch.lap_ms();
     return;
   }
-  const TerrainFan fan = makeTerrainFan(station, coordinates, terrain, resolution, leanOf(columns));
+  // Some intervals at a time, so that a fine fan over a wide region does not fill the memory.
+  const FanShape shape = fanShape(station, coordinates, terrain, resolution, leanOf(columns));
+  const int at_once = columns.tilted ? shape.interval_count : std::max(1, kFanSamples / shape.rangeCount());
+  shadow_edge_m_.resize(column_count_);
   times.fan_ms += watch.lap_ms();
-  shadow_edge_m_ = shadowEdges(station, columns, coordinates, fan);
+  for (int first = 0; first < shape.interval_count; first += at_once) {
+    const int count = std::min(at_once, shape.interval_count - first);
+    const TerrainFan fan = readTerrainFan(station, shape, terrain, first, count);
+    times.fan_ms += watch.lap_ms();
+    findShadowEdges(station, columns, coordinates, shape, fan, shadow_edge_m_);
+    times.plane_ms += watch.lap_ms();
+  }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
   times.plane_ms += watch.lap_ms();

@@ -22,10 +22,9 @@ struct ProductScale {
   float floor = -120;  ///< lowest value kept
 };
 
-EMSCAPE_HD inline float productValue(const ProductScale& product, float accumulator) {
-  if (!product.decibels) return accumulator;
+EMSCAPE_HD inline float decibelsOf(const ProductScale& product, float accumulator) {
   const float value = product.scale * fastRatioToDb(accumulator) + product.offset_db;
-  return accumulator > 0 && value > product.floor ? value : product.floor;
+  return (accumulator > 0) & (value > product.floor) ? value : product.floor;
 }
 
 /// How a channel is made: its reduction, each emitter's weight in it, and its scale.

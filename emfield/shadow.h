@@ -7,11 +7,14 @@
 
 namespace emscape::emfield {
 
-/// For each column the z (m, in the grid's frame) of the shadow's edge: voxels at or above it are lit.
-/// -infinity: nothing is in shadow; +infinity: all is; NaN: unknown, because the path crosses missing
-/// terrain. A leaning column that leaves and enters shadow counts as shadow up to its last dark voxel.
+/// For each column of the fan's intervals the z (m, in the grid's frame) of the shadow's edge: voxels at or
+/// above it are lit. -infinity: nothing is in shadow; +infinity: all is; NaN: unknown, because the path
+/// crosses missing terrain. A leaning column that leaves and enters shadow counts as shadow up to its last
+/// dark voxel; the fan must then hold all intervals.
+/// @param edges_m  one a column; columns of other intervals are left alone
 /// @accuracy against a walk along the ray: the fan's resolution
-std::vector<float> shadowEdges(const Station& station, const GridColumns& columns,
-                               const std::vector<FanCoordinates>& coordinates, const TerrainFan& fan);
+void findShadowEdges(const Station& station, const GridColumns& columns,
+                     const std::vector<FanCoordinates>& coordinates, const FanShape& shape,
+                     const TerrainFan& fan, std::vector<float>& edges_m);
 
 }  // namespace emscape::emfield

@@ -94,15 +94,16 @@ std::vector<FanCoordinates> fanCoordinates(const Station& station, const GridCol
   return result;
 }
 
-double TerrainFan::azimuthIndex(double azimuth_rad) const {
-  if (azimuth_count == 1) return 0;
+double FanShape::azimuthIndex(double azimuth_rad) const {
+  if (azimuth_step_rad == 0) return 0;
   double offset = std::remainder(azimuth_rad - first_azimuth_rad, 2 * kPi);
   if (offset < 0) offset = full_circle ? offset + 2 * kPi : 0;
   const double index = offset / azimuth_step_rad;
-  return index < azimuth_count ? index : (full_circle ? 0 : azimuth_count - 1);
+  if (index < interval_count) return index;
+  return full_circle ? 0 : std::nextafter(static_cast<double>(interval_count), 0.0);
 }
 
-int TerrainFan::lastBefore(double range_m) const {
+int FanShape::lastBefore(double range_m) const {
   const auto first_not_before = std::lower_bound(ranges_m.begin(), ranges_m.end(), range_m);
   return std::max(0, static_cast<int>(first_not_before - ranges_m.begin()) - 1);
 }
@@ -114,46 +115,54 @@ FanResolution fanResolution(const volume::Grid& grid, const scenario::Terrain* t
   return {std::max(post_m, voxel_m / 8), std::max(post_m / 2, voxel_m / 16)};
 }
 
-TerrainFan makeTerrainFan(const Station& station, const std::vector<FanCoordinates>& coordinates,
-                          const scenario::Terrain* terrain, const FanResolution& resolution, double lean_m) {
+FanShape fanShape(const Station& station, const std::vector<FanCoordinates>& coordinates,
+                  const scenario::Terrain* terrain, const FanResolution& resolution, double lean_m) {
   double farthest_m = 0;
   for (const FanCoordinates& point : coordinates) farthest_m = std::max(farthest_m, point.range_m);
-  farthest_m += lean_m;
+  farthest_m = std::min(farthest_m + lean_m, 0.5 * kPi * station.earth_radius_m);
 
-  TerrainFan fan;
-  fan.ranges_m = fanRanges(farthest_m, resolution.range_m);
+  FanShape shape;
+  shape.ranges_m = fanRanges(farthest_m, resolution.range_m);
   if (terrain == nullptr) {
-    fan.azimuth_count = 1;
-    fan.height_msl_m.assign(fan.rangeCount(), 0.0f);
-    fan.used_ranges.assign(1, fan.rangeCount());
-    return fan;
+    shape.used_ranges.assign(2, shape.rangeCount());
+    return shape;
   }
 
   const Sector sector = sectorOf(coordinates, lean_m);
   const double finest_rad = resolution.arc_m / std::max(farthest_m, resolution.arc_m);
-  const int intervals = std::max(8, static_cast<int>(std::ceil(sector.width_rad / finest_rad)));
-  fan.full_circle = sector.full_circle;
-  fan.first_azimuth_rad = sector.first_rad;
-  fan.azimuth_step_rad = sector.width_rad / intervals;
-  fan.azimuth_count = sector.full_circle ? intervals : intervals + 1;
+  shape.interval_count = std::max(8, static_cast<int>(std::ceil(sector.width_rad / finest_rad)));
+  shape.full_circle = sector.full_circle;
+  shape.first_azimuth_rad = sector.first_rad;
+  shape.azimuth_step_rad = sector.width_rad / shape.interval_count;
 
-  fan.used_ranges.assign(fan.azimuth_count, lean_m > 0 ? fan.rangeCount() : 0);
+  shape.used_ranges.assign(shape.interval_count + 1, lean_m > 0 ? shape.rangeCount() : 0);
   for (const FanCoordinates& point : coordinates) {
-    const int azimuth = static_cast<int>(fan.azimuthIndex(point.azimuth_rad));
-    const int used = fan.lastBefore(point.range_m) + 1;
-    for (int a : {azimuth, fan.next(azimuth)}) fan.used_ranges[a] = std::max(fan.used_ranges[a], used);
+    const int interval = static_cast<int>(shape.azimuthIndex(point.azimuth_rad));
+    const int used = shape.lastBefore(point.range_m) + 1;
+    for (int a : {interval, interval + 1}) shape.used_ranges[a] = std::max(shape.used_ranges[a], used);
   }
+  return shape;
+}
 
-  fan.height_msl_m.resize(static_cast<std::size_t>(fan.azimuth_count) * fan.rangeCount());
+TerrainFan readTerrainFan(const Station& station, const FanShape& shape, const scenario::Terrain* terrain,
+                          int first_interval, int interval_count) {
+  TerrainFan fan;
+  fan.first_interval = first_interval;
+  fan.interval_count = interval_count;
+  fan.range_count = shape.rangeCount();
+  const std::size_t samples = static_cast<std::size_t>(interval_count + 1) * fan.range_count;
+  if (terrain == nullptr) {
+    fan.height_msl_m.assign(samples, 0.0f);
+    return fan;
+  }
+  fan.height_msl_m.assign(samples, std::numeric_limits<float>::quiet_NaN());
   const scenario::TerrainView view = terrain->view();
   const ProfileReader reader(station, view);
-  parallelFor(fan.azimuth_count, 8, [&](int begin, int end) {
+  parallelFor(interval_count + 1, 8, [&](int begin, int end) {
     for (int a = begin; a < end; ++a) {
-      float* profile = fan.height_msl_m.data() + static_cast<std::size_t>(a) * fan.rangeCount();
-      reader.read(fan.first_azimuth_rad + a * fan.azimuth_step_rad, fan.ranges_m, fan.used_ranges[a],
-                  profile);
-      std::fill(profile + fan.used_ranges[a], profile + fan.rangeCount(),
-                std::numeric_limits<float>::quiet_NaN());
+      reader.read(shape.first_azimuth_rad + (first_interval + a) * shape.azimuth_step_rad, shape.ranges_m,
+                  shape.used_ranges[first_interval + a],
+                  fan.height_msl_m.data() + static_cast<std::size_t>(a) * fan.range_count);
     }
   });
   return fan;

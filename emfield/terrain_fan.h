@@ -8,33 +8,6 @@
 
 namespace emscape::emfield {
 
-/// Azimuths first_azimuth_rad + a * azimuth_step_rad, the same ranges along each. Immutable once made.
-struct TerrainFan {
-  double first_azimuth_rad = 0;
-  double azimuth_step_rad = 0;
-  int azimuth_count = 0;
-  bool full_circle = false;  ///< the azimuth after the last one is the first
-  /// From 0 (the station) outwards: dense near it, where a few metres of ground hide much of the sky.
-  std::vector<double> ranges_m;
-  /// Height above mean sea level (m), azimuth_count x rangeCount(), range fastest; NaN over missing terrain
-  /// and beyond used_ranges.
-  std::vector<float> height_msl_m;
-  /// For each azimuth the number of ranges that a column of the grid lies behind; 0: none.
-  std::vector<int> used_ranges;
-
-  const float* profile(int azimuth) const {
-    return height_msl_m.data() + static_cast<std::size_t>(azimuth) * rangeCount();
-  }
-  int rangeCount() const { return static_cast<int>(ranges_m.size()); }
-  /// Index of the last sample nearer than a range; 0 if there is none.
-  int lastBefore(double range_m) const;
-  /// Fractional azimuth index, 0 <= index < azimuth_count; the neighbours of floor(index) are next().
-  double azimuthIndex(double azimuth_rad) const;
-  int next(int azimuth) const {
-    return azimuth + 1 < azimuth_count ? azimuth + 1 : (full_circle ? 0 : azimuth);
-  }
-};
-
 /// Distances between the samples of a fan: the azimuths' at the farthest column, and along a range away from
 /// the station (m).
 struct FanResolution {
@@ -46,11 +19,44 @@ struct FanResolution {
 /// sixteenth) of a voxel.
 FanResolution fanResolution(const volume::Grid& grid, const scenario::Terrain* terrain);
 
+/// Where a fan's samples lie: azimuths first_azimuth_rad + a * azimuth_step_rad for a = 0..interval_count,
+/// the same ranges along each. Immutable once made.
+struct FanShape {
+  double first_azimuth_rad = 0;
+  double azimuth_step_rad = 0;
+  int interval_count = 1;    ///< between azimuths
+  bool full_circle = false;  ///< the last azimuth is the first one again
+  /// From 0 (the station) outwards: dense near it, where a few metres of ground hide much of the sky.
+  std::vector<double> ranges_m;
+  /// For each azimuth the number of ranges that a column of the grid lies behind; 0: none.
+  std::vector<int> used_ranges;
+
+  int rangeCount() const { return static_cast<int>(ranges_m.size()); }
+  /// Fractional azimuth index, 0 <= index < interval_count; outside a sector its nearest border.
+  double azimuthIndex(double azimuth_rad) const;
+  /// Index of the last sample nearer than a range; 0 if there is none.
+  int lastBefore(double range_m) const;
+};
+
 /// The fan that reaches every column: a full circle, or the sector that holds the grid for a station well
 /// outside it.
-/// @param terrain  null: a smooth earth at mean sea level, one azimuth serves all
+/// @param terrain  null: a smooth earth, one interval serves all azimuths
 /// @param lean_m  how far (m) a point may lie off its column's middle; 0 for upright columns
-TerrainFan makeTerrainFan(const Station& station, const std::vector<FanCoordinates>& coordinates,
-                          const scenario::Terrain* terrain, const FanResolution& resolution, double lean_m);
+FanShape fanShape(const Station& station, const std::vector<FanCoordinates>& coordinates,
+                  const scenario::Terrain* terrain, const FanResolution& resolution, double lean_m);
+
+/// Heights of some neighbouring intervals of a fan.
+struct TerrainFan {
+  int first_interval = 0;
+  int interval_count = 0;
+  int range_count = 0;
+  /// Height above mean sea level (m), (interval_count + 1) azimuths x range_count, range fastest; NaN over
+  /// missing terrain and beyond used_ranges.
+  std::vector<float> height_msl_m;
+};
+
+/// @param terrain  null: a smooth earth at mean sea level
+TerrainFan readTerrainFan(const Station& station, const FanShape& shape, const scenario::Terrain* terrain,
+                          int first_interval, int interval_count);
 
 }  // namespace emscape::emfield
