@@ -33,6 +33,13 @@ Canvas::Canvas(ImageSize size)
                                       std::to_string(size.height) +
                                       " pixels: " + cairo_status_to_string(cairo_status(cairo_.get())));
   }
+  // Glyphs stand where they belong, not on whole pixels: even spacing at small sizes.
+  const std::unique_ptr<cairo_font_options_t, void (*)(cairo_font_options_t*)> font(
+      cairo_font_options_create(), cairo_font_options_destroy);
+  cairo_font_options_set_hint_metrics(font.get(), CAIRO_HINT_METRICS_OFF);
+  cairo_font_options_set_hint_style(font.get(), CAIRO_HINT_STYLE_SLIGHT);
+  cairo_font_options_set_antialias(font.get(), CAIRO_ANTIALIAS_GRAY);
+  cairo_set_font_options(cairo_.get(), font.get());
   cairo_set_line_cap(cairo_.get(), CAIRO_LINE_CAP_ROUND);
   cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_ROUND);
 }

@@ -88,10 +88,18 @@ std::vector<std::string> headingOf(const Legend& legend) {
   return lines;
 }
 
+constexpr double kLine = 1.3;  // line height in text sizes
+
+/// Upper end of what stands below the heading.
+double topOf(const Canvas& canvas, const Style& style, const Legend& legend) {
+  const double heading = kLine * style.text_px * static_cast<double>(headingOf(legend).size());
+  return std::max(kBarTop * canvas.size().height, headerHeight(style) + heading + 10 * style.unit);
+}
+
 /// Draws the heading so that it ends above `bottom`.
 void drawHeading(Canvas& canvas, const Style& style, const Legend& legend, double left, double bottom) {
   const std::vector<std::string> lines = headingOf(legend);
-  const double line_px = 1.3 * style.text_px;
+  const double line_px = kLine * style.text_px;
   double y = bottom - line_px * (static_cast<double>(lines.size()) - 0.5);
   for (std::size_t i = 0; i < lines.size(); ++i, y += line_px) {
     const bool unit = !legend.unit.empty() && i + 1 == lines.size();
@@ -115,7 +123,7 @@ double contentWidth(const Style& style, const Legend& legend) {
 
 void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double left) {
   const TransferFunction& function = legend.function;
-  const double top = kBarTop * canvas.size().height;
+  const double top = topOf(canvas, style, legend);
   const double bottom = kBarBottom * canvas.size().height;
   const double bar_left = left + kOpacityWidth * style.unit;
   const double bar_width = kBarWidth * style.unit;
@@ -158,7 +166,7 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
 }
 
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
-  double y = kBarTop * canvas.size().height;
+  double y = topOf(canvas, style, legend);
   drawHeading(canvas, style, legend, left, y);
   for (const Category& category : legend.categories) {
     y += kRowHeight * style.unit;

@@ -101,6 +101,10 @@ bool Projector::project(const Vec3d& frame_m, Point2& point) const {
   return projected.in_front;
 }
 
+double headerHeight(const Style& style) {
+  return (kMargin + 2.4 * kTitle) * style.unit;
+}
+
 FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
   const Style style(size, annotations.theme);
   const double axis_px = annotations.axes ? 52 * style.unit : 0;
@@ -110,7 +114,7 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
   margins.left = side_px / size.width;
   margins.right =
       (annotations.legend ? legendWidth(style, *annotations.legend) + 0.3 * axis_px : side_px) / size.width;
-  margins.top = (has_texts ? (kMargin + 2.4 * kTitle) * style.unit : side_px) / size.height;
+  margins.top = (has_texts ? headerHeight(style) : side_px) / size.height;
   margins.bottom = (1.1 * kMargin * style.unit + axis_px) / size.height;
   return margins;
 }

@@ -37,6 +37,8 @@ void drawFarEdges(Canvas& canvas, const Style& style, const Projector& projector
 /// The other edges, ticks and axis titles. Adds the boxes of all texts to `taken`.
 void drawNearEdges(Canvas& canvas, const Style& style, const Projector& projector,
                    const Annotations& annotations, std::vector<Rect>& taken);
+/// Height of the two lines of text at the top, with their distance from the picture's edge (pixels).
+double headerHeight(const Style& style);
 /// Width of the column that a legend takes, with its distance from the picture's edge (pixels).
 double legendWidth(const Style& style, const Legend& legend);
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend);

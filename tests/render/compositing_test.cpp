@@ -1,0 +1,111 @@
+#include "render/compositing.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "base/error.h"
+
+namespace emscape::render {
+namespace {
+
+struct Sample {
+  float f;
+  Rgba color;
+};
+
+/// A ray with rising, falling and transparent samples.
+const std::vector<Sample> kRay{{0.2F, {0.02F, 0.01F, 0.0F, 0.05F}},
+                               {0.5F, {0.0F, 0.1F, 0.05F, 0.2F}},
+                               {0.3F, {0.0F, 0.0F, 0.0F, 0.0F}},
+                               {0.9F, {0.3F, 0.3F, 0.1F, 0.4F}},
+                               {0.4F, {0.05F, 0.0F, 0.1F, 0.1F}}};
+
+template <class Compositor>
+Compositor composite(float gamma) {
+  Compositor compositor(true, gamma, 1.0F);
+  for (const Sample& sample : kRay) compositor.add(sample.f, sample.color);
+  return compositor;
+}
+
+void expectNear(const Rgba& a, const Rgba& b) {
+  EXPECT_NEAR(a.r, b.r, 1e-6);
+  EXPECT_NEAR(a.g, b.g, 1e-6);
+  EXPECT_NEAR(a.b, b.b, 1e-6);
+  EXPECT_NEAR(a.a, b.a, 1e-6);
+}
+
+TEST(Compositing, OpacityCorrectionIsInvariantToTheStep) {
+  for (float opacity : {0.0F, 0.01F, 0.3F, 0.99F, 1.0F}) {
+    const float half = opacityOver(opacity, 0.5F);
+    EXPECT_NEAR(1 - (1 - half) * (1 - half), opacity, 1e-6) << opacity;
+  }
+}
+
+TEST(Compositing, DvrIsFrontToBackAbsorption) {
+  Rgba expected;
+  for (auto sample = kRay.rbegin(); sample != kRay.rend(); ++sample) expected = over(sample->color, expected);
+  expectNear(composite<DvrCompositor>(0).result({}), expected);
+}
+
+TEST(Compositing, MidaWithGammaMinusOneIsDvr) {
+  expectNear(composite<MidaCompositor>(-1).result({}), composite<DvrCompositor>(0).result({}));
+}
+
+TEST(Compositing, MidaFollowsItsRecurrence) {
+  double color = 0;
+  double alpha = 0;
+  double highest = 0;
+  for (const Sample& sample : kRay) {  // Bruckner and Groeller 2009, eq. (4), (5)
+    const double delta = std::max(0.0, sample.f - highest);
+    highest = std::max(highest, double{sample.f});
+    const double beta = 1 - delta;
+    color = beta * color + (1 - beta * alpha) * sample.color.r;
+    alpha = beta * alpha + (1 - beta * alpha) * sample.color.a;
+  }
+  const Rgba result = composite<MidaCompositor>(0).result({});
+  EXPECT_NEAR(result.r, color, 1e-6);
+  EXPECT_NEAR(result.a, alpha, 1e-6);
+}
+
+TEST(Compositing, MidaWithGammaOneIsMip) {
+  const std::vector<Rgba> projected{{0, 0, 0, 0}, {0.5F, 0.4F, 0.3F, 0.6F}, {1, 1, 1, 1}};
+  TransferView transfer;
+  transfer.projected = projected.data();
+  transfer.last = 2;
+  expectNear(composite<MidaCompositor>(1).result(transfer), projected[2]);  // f = 0.9
+}
+
+TEST(Compositing, MidaDoesNotEndWhileALaterSampleMayExceedTheMaximum) {
+  MidaCompositor opaque(false, 0, 1.0F);
+  opaque.add(0.5F, {1, 1, 1, 1});
+  EXPECT_FALSE(opaque.done());
+  opaque.add(1.0F, {1, 1, 1, 1});
+  EXPECT_TRUE(opaque.done());
+}
+
+TEST(Compositing, MidaDoesNotSkipTransparentSamplesThatRaiseTheMaximum) {
+  MidaCompositor compositor(true, 0, 1.0F);
+  compositor.add(0.4F, {0.1F, 0.1F, 0.1F, 0.2F});
+  EXPECT_TRUE(compositor.canSkip(0.4F, true));
+  EXPECT_FALSE(compositor.canSkip(0.5F, true));
+  EXPECT_FALSE(compositor.canSkip(0.1F, false));
+}
+
+TEST(Compositing, DvrEndsEarlyUnlessExact) {
+  DvrCompositor early(false, 0, 1);
+  DvrCompositor exact(true, 0, 1);
+  for (DvrCompositor* compositor : {&early, &exact}) compositor->add(0.5F, {0.99F, 0.99F, 0.99F, 0.995F});
+  EXPECT_TRUE(early.done());
+  EXPECT_FALSE(exact.done());
+}
+
+TEST(Compositing, ModesHaveNames) {
+  for (CompositingMode mode : {CompositingMode::dvr, CompositingMode::mida, CompositingMode::mip}) {
+    EXPECT_EQ(parseCompositingMode(toString(mode)), mode);
+  }
+  EXPECT_THROW(parseCompositingMode("xray"), Error);
+}
+
+}  // namespace
+}  // namespace emscape::render

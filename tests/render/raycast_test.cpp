@@ -1,0 +1,225 @@
+#include "render/raycast.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "render/renderer.h"
+#include "tests/render/scenes.h"
+
+namespace emscape::render {
+namespace {
+
+using testing::fog;
+using testing::makeVolume;
+
+constexpr ImageSize kOnePixel{1, 1};
+
+/// What the one pixel of a camera shows that looks along an axis through the middle of a volume.
+Rgba lookAlong(const std::shared_ptr<volume::DenseVolume>& volume, const TransferFunction& function,
+               const std::string& camera, RenderSettings settings = {}) {
+  settings.exact = true;
+  settings.vertical_exaggeration = 1;
+  Renderer renderer;
+  renderer.setVolume(volume);
+  renderer.setTransferFunction(function);
+  renderer.setSettings(settings);
+  renderer.setCamera(makeCamera(parseCamera(camera), renderer.sceneBox(), kOnePixel));
+  return renderer.render(kOnePixel).at(0, 0);
+}
+
+const char* const kAlongX = "orbit:azimuth_deg=90,elevation_deg=0,distance=3,fov_deg=1";
+const char* const kAlongZ = "orbit:azimuth_deg=0,elevation_deg=90,distance=3,fov_deg=1";
+
+float one(int, int, int) {
+  return 1.0F;
+}
+
+TEST(Dvr, HomogeneousFogLetsThroughOneMinusOpacityForEachVoxel) {
+  const auto volume = makeVolume({20, 10, 7}, {3, 5, 2}, one);
+  EXPECT_NEAR(lookAlong(volume, fog(0.03), kAlongX).a, 1 - std::pow(0.97, 20), 1e-5);
+  EXPECT_NEAR(lookAlong(volume, fog(0.03), kAlongZ).a, 1 - std::pow(0.97, 7), 1e-5);
+}
+
+TEST(Dvr, HomogeneousFogDoesNotDependOnTheStep) {
+  const auto volume = makeVolume({20, 10, 7}, {1, 1, 1}, one);
+  for (double step : {0.05, 0.3, 0.7, 1.0, 1.9, 7.3}) {
+    RenderSettings settings;
+    settings.step_voxels = step;
+    const Rgba pixel =
+        lookAlong(volume, fog(0.03), "orbit:azimuth_deg=70,elevation_deg=11,distance=2,fov_deg=1", settings);
+    settings.step_voxels = 0.11;
+    EXPECT_NEAR(
+        pixel.a,
+        lookAlong(volume, fog(0.03), "orbit:azimuth_deg=70,elevation_deg=11,distance=2,fov_deg=1", settings)
+            .a,
+        2e-5)
+        << step;
+  }
+}
+
+TEST(Dvr, ARampSumsToItsOpticalDepth) {
+  // Values rise from 0 to 1 between the first and the last centre; opacity is chosen small, so that it adds
+  // up.
+  const int n = 41;
+  const auto volume =
+      makeVolume({n, 3, 3}, {1, 1, 1}, [&](int i, int, int) { return static_cast<float>(i) / (n - 1); });
+  const TransferFunction function = testing::makeFunction({{0, {1, 1, 1}}}, {{0, 0}, {1, 1e-3}});
+  RenderSettings settings;
+  settings.step_voxels = 0.25;
+  const double expected = 1e-3 * (0.5 * (n - 1) + 0.5);  // the last half voxel holds the end value
+  EXPECT_NEAR(lookAlong(volume, function, kAlongX, settings).a, expected, 0.02 * expected);
+}
+
+TEST(Dvr, ColourIsPremultiplied) {
+  const auto volume = makeVolume({4, 4, 4}, {1, 1, 1}, one);
+  const TransferFunction function = testing::makeFunction({{0, {0.5F, 0.25F, 1.0F}}}, {{0, 0.2}, {1, 0.2}});
+  const Rgba pixel = lookAlong(volume, function, kAlongX);
+  EXPECT_NEAR(pixel.r, 0.5 * pixel.a, 1e-5);
+  EXPECT_NEAR(pixel.g, 0.25 * pixel.a, 1e-5);
+  EXPECT_NEAR(pixel.b, pixel.a, 1e-5);
+}
+
+TEST(Mip, ShowsTheColourOfTheLargestValue) {
+  const auto volume = makeVolume({9, 3, 3}, {1, 1, 1}, [](int i, int, int) { return i == 4 ? 0.75F : 0.1F; });
+  const TransferFunction function =
+      testing::makeFunction({{0, {0, 0, 0}}, {1, {1, 1, 1}}}, {{0, 0}, {1, 0.02}});
+  RenderSettings settings;
+  settings.mode = CompositingMode::mip;
+  const Rgba pixel = lookAlong(volume, function, kAlongX, settings);
+  EXPECT_NEAR(pixel.a, 0.75, 1e-3);
+  EXPECT_NEAR(pixel.r, 0.75 * 0.75, 1e-3);
+}
+
+TEST(Mida, WithGammaMinusOneCastsTheDvrPicture) {
+  const auto volume = testing::makeEmeVolume({24, 24, 12});
+  const TransferFunction function = defaultTransferFunction(*volume);
+  RenderSettings mida;
+  mida.mode = CompositingMode::mida;
+  mida.mida_gamma = -1;
+  const Rgba a = lookAlong(volume, function, kAlongX, mida);
+  const Rgba b = lookAlong(volume, function, kAlongX);
+  EXPECT_NEAR(a.r, b.r, 1e-6);
+  EXPECT_NEAR(a.a, b.a, 1e-6);
+}
+
+TEST(Sampling, IsTrilinearBetweenCentresAndConstantBeyond) {
+  const auto volume = makeVolume(
+      {3, 4, 5}, {1, 1, 1}, [](int i, int j, int k) { return static_cast<float>(i + 10 * j + 100 * k); });
+  VolumeView view;
+  view.values = volume->values.data();
+  view.dims = volume->grid.dims;
+  float value = 0;
+  ASSERT_TRUE(TrilinearSampler::sample(view, {1.25F, 2.5F, 3.75F}, value));
+  EXPECT_FLOAT_EQ(value, 1.25F + 25 + 375);
+  ASSERT_TRUE(TrilinearSampler::sample(view, {-0.5F, 3.5F, 4.5F}, value));
+  EXPECT_FLOAT_EQ(value, 0 + 30 + 400);
+  ASSERT_TRUE(NearestSampler::sample(view, {1.4F, 1.6F, 2.1F}, value));
+  EXPECT_FLOAT_EQ(value, 1 + 20 + 200);
+}
+
+TEST(Sampling, WorksInAVolumeOfOneVoxel) {
+  const auto volume = makeVolume({1, 1, 1}, {10, 10, 10}, one);
+  EXPECT_NEAR(lookAlong(volume, fog(0.25), kAlongX).a, 0.25, 1e-5);
+}
+
+TEST(Mask, MaskedVoxelsAreNeverDrawn) {
+  auto volume = makeVolume({8, 8, 8}, {1, 1, 1}, one);
+  volume->first_valid_k.assign(64, 8);
+  EXPECT_EQ(lookAlong(volume, fog(0.5), kAlongX), Rgba{});
+  volume->first_valid_k.assign(64, 3);
+  EXPECT_NEAR(lookAlong(volume, fog(0.03), kAlongZ).a, 1 - std::pow(0.97, 5), 0.01);
+}
+
+TEST(Mask, WhatIsMaskedDoesNotBleed) {
+  // A cliff: half of the columns masked up to a height, with a value there that would be seen at once.
+  auto volume =
+      makeVolume({8, 8, 8}, {1, 1, 1}, [](int i, int, int k) { return i < 4 && k < 5 ? 1.0F : 0.0F; });
+  volume->first_valid_k.assign(64, 0);
+  for (int j = 0; j < 8; ++j) {
+    for (int i = 0; i < 4; ++i) volume->first_valid_k[static_cast<std::size_t>(j) * 8 + i] = 5;
+  }
+  const TransferFunction function = testing::makeFunction({{0, {1, 1, 1}}}, {{0, 0}, {0.001, 1}, {1, 1}});
+  for (const char* camera :
+       {"orbit:azimuth_deg=90,elevation_deg=30", "orbit:azimuth_deg=300,elevation_deg=50", "orbit"}) {
+    Renderer renderer;
+    renderer.setVolume(volume);
+    renderer.setTransferFunction(function);
+    const ImageSize size{64, 48};
+    renderer.setCamera(makeCamera(parseCamera(camera), renderer.sceneBox(), size));
+    for (const Rgba& pixel : renderer.render(size).pixels) EXPECT_EQ(pixel.a, 0.0F) << camera;
+  }
+}
+
+TEST(Nan, DrawsNothingAndHidesNothing) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto all = makeVolume({8, 8, 8}, {1, 1, 1}, [&](int, int, int) { return nan; });
+  EXPECT_EQ(lookAlong(all, fog(0.5), kAlongX), Rgba{});
+  const auto some = makeVolume({20, 3, 3}, {1, 1, 1}, [&](int i, int, int) { return i < 10 ? 1.0F : nan; });
+  EXPECT_NEAR(lookAlong(some, fog(0.03), kAlongX).a, 1 - std::pow(0.97, 9), 0.02);
+}
+
+TEST(Categories, AreDrawnInTheirOwnColoursWithoutOthersBetween) {
+  auto volume = makeVolume({10, 10, 10}, {1, 1, 1}, [](int i, int, int) { return i < 5 ? 0.0F : 2.0F; });
+  volume->info.categorical = true;
+  volume->info.range_max = 2;
+  TransferFunction function = defaultTransferFunction(volume->info);
+  function.opacities = {{0, 1}, {2, 1}};
+  const Rgba from_east = lookAlong(volume, function, kAlongX);
+  EXPECT_NEAR(from_east.r, categoryColor(2).r, 1e-4);
+  EXPECT_NEAR(from_east.b, categoryColor(2).b, 1e-4);
+}
+
+TEST(Skipping, DoesNotChangeThePicture) {
+  const ImageSize size{90, 60};
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    auto volume = testing::makeEmeVolume({37, 29, 23}, seed);
+    if (seed == 3) volume->values[4000] = std::numeric_limits<float>::quiet_NaN();
+    for (CompositingMode mode : {CompositingMode::dvr, CompositingMode::mida, CompositingMode::mip}) {
+      for (double opacity_from : {-40.0, -10.0, 12.0}) {
+        Renderer renderer;
+        renderer.setVolume(volume);
+        const TransferFunction function =
+            testing::makeFunction({{-50, {1, 0, 0}}, {30, {0, 1, 1}}}, {{-50, 0},
+                                                                        {opacity_from, 0},
+                                                                        {opacity_from, 0.1},
+                                                                        {opacity_from + 4, 0.1},
+                                                                        {opacity_from + 4, 0},
+                                                                        {30, 0}});
+        renderer.setTransferFunction(function);
+        renderer.setCamera(makeCamera(parseCamera("orbit:azimuth_deg=33"), renderer.sceneBox(), size));
+        RenderSettings settings;
+        settings.mode = mode;
+        settings.step_voxels = 0.7;
+        settings.skip_empty = false;
+        renderer.setSettings(settings);
+        const Image every_sample = renderer.render(size);
+        settings.skip_empty = true;
+        renderer.setSettings(settings);
+        EXPECT_TRUE(renderer.render(size).pixels == every_sample.pixels)
+            << toString(mode) << opacity_from << seed;
+      }
+    }
+  }
+}
+
+TEST(Rays, ProjectBackToTheirPixels) {
+  const auto volume = makeVolume({20, 30, 10}, {100, 50, 30}, one);
+  const ImageSize size{31, 17};
+  const SceneBox box = sceneBoxOf(volume->grid, 2.5);
+  for (const char* text : {"orbit", "orbit:projection=orthographic,azimuth_deg=77"}) {
+    const Camera camera = makeCamera(parseCamera(text), box, size, {0.1, 0.3, 0.05, 0.2});
+    const Vec3d frame_m{700, 300, 222};
+    const Projected p = project(camera, size, box.toDrawn(frame_m));
+    // The drawn position on the plane of that pixel, at that depth.
+    const double scale = camera.half_height * (camera.projection == Projection::orthographic ? 1 : p.depth_m);
+    const Vec3d back = camera.eye_m + camera.forward * p.depth_m +
+                       camera.right * (camera.planeX(p.x, size) * scale) +
+                       camera.up * (camera.planeY(p.y, size) * scale);
+    EXPECT_NEAR(length(back - box.toDrawn(frame_m)), 0, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace emscape::render

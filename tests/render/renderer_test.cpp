@@ -1,0 +1,129 @@
+#include "render/renderer.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "base/error.h"
+#include "tests/render/scenes.h"
+
+namespace emscape::render {
+namespace {
+
+using testing::makeEmeVolume;
+using testing::makeGround;
+
+/// A renderer of a random scene: volume, ground, camera, mode, step.
+void setRandomScene(Renderer& renderer, std::mt19937& random, ImageSize size) {
+  const auto between = [&](int least, int most) {
+    return std::uniform_int_distribution<int>(least, most)(random);
+  };
+  auto volume =
+      makeEmeVolume({between(1, 30), between(1, 30), between(1, 20)}, static_cast<unsigned>(between(1, 99)));
+  RenderSettings settings;
+  settings.mode = static_cast<CompositingMode>(between(0, 2));
+  settings.step_voxels = 0.3 + 0.1 * between(0, 12);
+  settings.exact = between(0, 1) == 1;
+  settings.mida_gamma = 0.5 * between(-2, 2);
+  settings.vertical_exaggeration = between(1, 3);
+  renderer.setSettings(settings);
+  renderer.setVolume(volume);
+  renderer.setTransferFunction(defaultTransferFunction(*volume));
+  if (between(0, 2) > 0) {
+    renderer.setHeightField(makeGround(volume->grid, between(2, 40), [](double x, double y) {
+      return 100 + 80 * std::sin(x / 300) * std::sin(y / 400);
+    }));
+  } else {
+    renderer.setHeightField(nullptr);
+  }
+  CameraSpec camera;
+  camera.azimuth_deg = between(0, 359);
+  camera.elevation_deg = between(-30, 90);
+  camera.projection = between(0, 3) == 0 ? Projection::orthographic : Projection::perspective;
+  renderer.setCamera(makeCamera(camera, renderer.sceneBox(), size));
+}
+
+TEST(Restore, IsBitIdenticalToAFullCast) {
+  std::mt19937 random(7);
+  Renderer renderer;  // kept: nothing of an earlier scene may remain
+  for (int scene = 0; scene < 40; ++scene) {
+    const ImageSize size{1 + static_cast<int>(random() % 40), 1 + static_cast<int>(random() % 40)};
+    setRandomScene(renderer, random, size);
+    const Image full = renderer.render(size);
+    for (Pattern pattern : allPatterns()) {
+      for (Interpolation interpolation : {Interpolation::float32, Interpolation::bits8}) {
+        Image image = renderer.render(size, pattern, interpolation);
+        const CastReport report = renderer.restore(pattern, image);
+        EXPECT_TRUE(report.complete);
+        EXPECT_EQ(report.rays, pixelCount(missingLattices(pattern, size)));
+        EXPECT_TRUE(image.pixels == full.pixels) << scene << " " << toString(pattern);
+      }
+    }
+  }
+}
+
+TEST(Cast, SourcePixelsAreThoseOfTheFullCast) {
+  std::mt19937 random(11);
+  Renderer renderer;
+  const ImageSize size{33, 21};
+  setRandomScene(renderer, random, size);
+  const Image full = renderer.render(size);
+  FrameReport report;
+  const Image quarter = renderer.render(size, Pattern::quarter, Interpolation::float32, &report);
+  EXPECT_EQ(report.cast.rays, 17 * 11);
+  for (int y = 0; y < size.height; y += 2) {
+    for (int x = 0; x < size.width; x += 2) EXPECT_EQ(quarter.at(x, y), full.at(x, y));
+  }
+}
+
+TEST(Cast, TellsWhenItWasStopped) {
+  std::mt19937 random(3);
+  Renderer renderer;
+  const ImageSize size{64, 64};
+  setRandomScene(renderer, random, size);
+  StopFlag stop{true};
+  Image image;
+  EXPECT_FALSE(renderer.cast(Pattern::full, size, image, &stop).complete);
+  stop = false;
+  EXPECT_TRUE(renderer.cast(Pattern::full, size, image, &stop).complete);
+}
+
+TEST(Renderer, ShowsTheVolumeThatWasSetLast) {
+  const ImageSize size{20, 20};
+  const auto first = makeEmeVolume({16, 16, 16}, 1);
+  const auto second = makeEmeVolume({16, 16, 16}, 2);
+  const auto fresh = [&](const std::shared_ptr<volume::DenseVolume>& volume) {
+    Renderer renderer;
+    renderer.setVolume(volume);
+    renderer.setTransferFunction(defaultTransferFunction(*first));
+    renderer.setCamera(makeCamera({}, renderer.sceneBox(), size));
+    return renderer.render(size);
+  };
+  Renderer kept;
+  kept.setVolume(first);
+  kept.setTransferFunction(defaultTransferFunction(*first));
+  kept.setCamera(makeCamera({}, kept.sceneBox(), size));
+  EXPECT_TRUE(kept.render(size).pixels == fresh(first).pixels);
+  kept.setVolume(second);
+  EXPECT_TRUE(kept.render(size).pixels == fresh(second).pixels);
+  EXPECT_FALSE(fresh(first).pixels == fresh(second).pixels);
+}
+
+TEST(Renderer, RefusesWhatItCannotDraw) {
+  Renderer renderer;
+  EXPECT_THROW(renderer.sceneBox(), Error);
+  EXPECT_THROW(renderer.setVolume(nullptr), Error);
+  auto volume = makeEmeVolume({4, 4, 4});
+  volume->values.pop_back();
+  EXPECT_THROW(renderer.setVolume(volume), Error);
+  RenderSettings settings;
+  settings.step_voxels = 0;
+  EXPECT_THROW(renderer.setSettings(settings), Error);
+  settings = {};
+  settings.mida_gamma = 2;
+  EXPECT_THROW(renderer.setSettings(settings), Error);
+}
+
+}  // namespace
+}  // namespace emscape::render

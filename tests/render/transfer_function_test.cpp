@@ -1,0 +1,184 @@
+#include "render/transfer_function.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "base/error.h"
+#include "render/transfer_table.h"
+#include "tests/render/scenes.h"
+
+namespace emscape::render {
+namespace {
+
+using ::testing::HasSubstr;
+
+volume::VolumeInfo decibels() {
+  volume::VolumeInfo info;
+  info.quantity = "power_density_dbwm2";
+  info.unit = "dBW/m2";
+  info.floor = -120;
+  info.range_min = -100;
+  info.range_max = 0;
+  return info;
+}
+
+std::string refusalOf(const std::string& text) {
+  try {
+    parseTransferFunction(text, "tf.json", decibels());
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_input);
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(TransferFunction, IsLinearBetweenPointsAndConstantOutside) {
+  const TransferFunction f =
+      testing::makeFunction({{-50, {0, 0, 0}}, {-10, {1, 0.5F, 0}}}, {{-60, 0.1}, {-20, 0.5}});
+  EXPECT_FLOAT_EQ(f.color(-30).r, 0.5F);
+  EXPECT_FLOAT_EQ(f.color(99).g, 0.5F);
+  EXPECT_FLOAT_EQ(f.color(-99).r, 0.0F);
+  EXPECT_DOUBLE_EQ(f.opacity(-40), 0.3);
+  EXPECT_DOUBLE_EQ(f.opacity(-99), 0.1);
+  EXPECT_DOUBLE_EQ(f.opacity(0), 0.5);
+  EXPECT_DOUBLE_EQ(f.lowest(), -60);
+  EXPECT_DOUBLE_EQ(f.highest(), -10);
+}
+
+TEST(TransferFunction, ARepeatedOpacityPointIsAJump) {
+  const TransferFunction f = testing::makeFunction({{0, {1, 1, 1}}}, {{0, 0}, {1, 0}, {1, 0.5}, {2, 0.5}});
+  EXPECT_DOUBLE_EQ(f.opacity(0.999), 0);
+  EXPECT_DOUBLE_EQ(f.opacity(1), 0.5);
+}
+
+TEST(TransferFunction, DefaultSpansTheRangeAndHidesTheFloor) {
+  const TransferFunction f = defaultTransferFunction(decibels());
+  EXPECT_DOUBLE_EQ(f.lowest(), -100);
+  EXPECT_DOUBLE_EQ(f.highest(), 0);
+  EXPECT_EQ(f.opacity(-120), 0);
+  EXPECT_GT(f.opacity(0), 0.05);
+}
+
+TEST(TransferFunction, DefaultOfAVolumeFollowsItsValuesAndEndsAtRoundNumbers) {
+  const auto volume = testing::makeEmeVolume({40, 40, 20});
+  const TransferFunction f = defaultTransferFunction(*volume);
+  EXPECT_EQ(f.opacity(volume->info.floor), 0);
+  EXPECT_GT(f.opacity(f.highest()), 0.05);
+  EXPECT_DOUBLE_EQ(f.lowest(), std::round(f.lowest()));
+  EXPECT_DOUBLE_EQ(f.highest(), std::round(f.highest()));
+  EXPECT_LT(f.highest(), 60);
+}
+
+TEST(TransferFunction, DefaultOfAVolumeWithoutAnyFieldIsStillOne) {
+  const auto empty = testing::makeVolume({4, 4, 4}, {1, 1, 1}, [](int, int, int) { return 0.0F; });
+  const TransferFunction f = defaultTransferFunction(*empty);
+  EXPECT_GT(f.highest(), f.lowest());
+}
+
+TEST(TransferFunction, CategoriesHaveOwnColoursAndNoneIsClear) {
+  volume::VolumeInfo info;
+  info.categorical = true;
+  info.range_max = 2;
+  const TransferFunction f = defaultTransferFunction(info);
+  EXPECT_EQ(f.opacity(-1), 0);
+  EXPECT_GT(f.opacity(0), 0);
+  const TransferTable table(f, 1.0);
+  const TransferView view = table.view();
+  EXPECT_EQ(view.samples[view.index(view.normalized(-1))].a, 0);
+  for (int category = 0; category < 3; ++category) {
+    const Rgba entry = view.projected[view.index(view.normalized(static_cast<float>(category)))];
+    EXPECT_FLOAT_EQ(entry.r, categoryColor(category).r) << category;
+  }
+}
+
+TEST(TransferTable, CorrectsOpacityForTheStep) {
+  const TransferTable table(testing::fog(0.3), 0.5);
+  EXPECT_NEAR(table.view().samples[100].a, 1 - std::sqrt(0.7), 1e-6);
+  EXPECT_NEAR(table.view().projected[100].a, 1, 1e-6);
+}
+
+TEST(TransferFile, ReadsValuesAndRelativePositions) {
+  const TransferFunction by_value = parseTransferFunction(
+      R"({"schema_version": 1, "domain": "value", "unit": "dBW/m2", "colors": [{"at": -90, "color": "#000000"},
+          {"at": -10, "color": "#ff8000"}], "opacity": [{"at": -90, "opacity": 0}, {"at": -10, "opacity": 0.2}]})",
+      "tf.json", decibels());
+  EXPECT_FLOAT_EQ(by_value.color(-10).r, 1);
+  EXPECT_NEAR(by_value.opacity(-50), 0.1, 1e-12);
+  const TransferFunction relative = parseTransferFunction(
+      R"({"schema_version": 1, "domain": "relative", "colors": "viridis",
+          "opacity": [{"at": 0.25, "opacity": 0}, {"at": 1, "opacity": 0.2}]})",
+      "tf.json", decibels());
+  EXPECT_DOUBLE_EQ(relative.lowest(), -75);
+  EXPECT_DOUBLE_EQ(relative.highest(), 0);
+  EXPECT_NEAR(relative.color(0).r, 0xfd / 255.0, 1e-6);
+}
+
+TEST(TransferFile, RefusalsSayWhereAndWhat) {
+  const std::string head = "{\"schema_version\": 1,\n \"domain\": \"value\",\n \"colors\": \"viridis\",\n";
+  EXPECT_THAT(
+      refusalOf(head + " \"opacity\": [{\"at\": -90, \"opacity\": 0}, {\"at\": -20, \"opacity\": 1.5}]}"),
+      HasSubstr("tf.json:4:53: opacity 1.5: expected 0..1"));
+  EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}, {\"at\": 0, \"opacity\": 1}]}"),
+              HasSubstr("at 0: points must not decrease"));
+  EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}]}"),
+              HasSubstr("tf.json:3:12: a colour map by name needs opacity points at two different values"));
+  EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": \"x\", \"opacity\": 0}]}"),
+              HasSubstr("at: expected a number"));
+  EXPECT_THAT(refusalOf(head + " \"opacity\": []}"), HasSubstr("opacity: expected a list of points"));
+  EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1}]}"), HasSubstr("key 'opacity' is missing"));
+  EXPECT_THAT(refusalOf(head + " \"colour\": 1}"), HasSubstr("tf.json:4:2: unknown key 'colour'"));
+  EXPECT_THAT(refusalOf(head + " \"domain\": \"value\"}"),
+              HasSubstr("tf.json:4:2: key 'domain' is given twice"));
+  EXPECT_THAT(refusalOf("{\"schema_version\": 2}"), HasSubstr("schema_version 2: expected 1"));
+  EXPECT_THAT(refusalOf("{\"schema_version\": 1, \"domain\": "), HasSubstr("tf.json:1:"));
+  EXPECT_THAT(refusalOf("[]"), HasSubstr("expected an object"));
+  EXPECT_THAT(refusalOf(""), HasSubstr("expected an object"));
+}
+
+TEST(TransferFile, RefusesUnknownMapsBadColoursAndOtherUnits) {
+  const std::string tail = "\"opacity\": [{\"at\": 0, \"opacity\": 0}, {\"at\": 1, \"opacity\": 1}]}";
+  EXPECT_THAT(refusalOf("{\"schema_version\": 1, \"domain\": \"relative\", \"colors\": \"jet\", " + tail),
+              HasSubstr("unknown colour map 'jet': expected viridis, cividis"));
+  EXPECT_THAT(refusalOf("{\"schema_version\": 1, \"domain\": \"relative\", \"colors\": [{\"at\": 0, "
+                        "\"color\": \"red\"}], " +
+                        tail),
+              HasSubstr("colour 'red': expected \"#rrggbb\""));
+  EXPECT_THAT(
+      refusalOf(
+          "{\"schema_version\": 1, \"domain\": \"value\", \"unit\": \"dBm\", \"colors\": \"viridis\", " +
+          tail),
+      HasSubstr("unit 'dBm' is not that of the volume: power_density_dbwm2 is in 'dBW/m2'"));
+}
+
+TEST(TransferFile, AMissingFileIsNamed) {
+  try {
+    readTransferFunction("/no/such/file.json", decibels());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/no/such/file.json"));
+  }
+}
+
+TEST(TransferFile, EveryShippedFunctionReads) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(EMSCAPE_SOURCE_DIR "/scenarios/transfer")) {
+    volume::VolumeInfo info = decibels();
+    if (entry.path().filename() == "snr_db.json") info.unit = "dB";
+    if (entry.path().filename() == "field_strength_dbuvm.json") info.unit = "dBuV/m";
+    EXPECT_NO_THROW(readTransferFunction(entry.path().string(), info)) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 5);
+}
+
+TEST(ColorMap, EndsAreThePublishedColours) {
+  EXPECT_NEAR(colorMap("viridis").at(0).r, 0x44 / 255.0, 1e-6);
+  EXPECT_NEAR(colorMap("viridis").at(1).g, 0xe7 / 255.0, 1e-6);
+  EXPECT_NEAR(colorMap("cividis").at(0.5).b, 0x78 / 255.0, 1e-6);
+  for (const std::string& name : colorMapNames()) EXPECT_EQ(colorMap(name).points.back().at, 1.0) << name;
+}
+
+}  // namespace
+}  // namespace emscape::render
