@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -25,8 +26,8 @@ constexpr ColumnSpec kElevation{"elevation_deg", -90, 90, "deg"};
 constexpr ColumnSpec kAttenuation{"attenuation_db", 0, kMostAttenuation_db, "dB"};
 
 struct CsvRow {
-  std::vector<double> values;  ///< in the order of the columns asked for
-  FilePlace place;             ///< of the line
+  std::array<double, 3> values{};  ///< in the order of the columns asked for, of which there are two or three
+  int line = 0;
 };
 
 /// The rows of a table with exactly the columns asked for, in any order.
@@ -63,7 +64,8 @@ std::vector<CsvRow> readRows(const AntennaText& text, const std::vector<ColumnSp
     if (cells.size() != columns.size()) {
       fail(line, fmt::format("{} values, but the header names {} columns", cells.size(), columns.size()));
     }
-    CsvRow row{{}, text.place(line)};
+    CsvRow row;
+    row.line = line.line;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       const TextField& cell = cells[position[i]];
       const ColumnSpec& column = columns[i];
@@ -73,9 +75,9 @@ std::vector<CsvRow> readRows(const AntennaText& text, const std::vector<ColumnSp
         fail(cell, fmt::format("{} is {} {}; allowed are {} to {} {}", column.name, *value, column.unit,
                                column.lowest, column.highest, column.unit));
       }
-      row.values.push_back(*value);
+      row.values[i] = *value;
     }
-    rows.push_back(std::move(row));
+    rows.push_back(row);
   }
   return rows;
 }
@@ -85,7 +87,7 @@ MeasuredCut readCut(const std::string& file, const ColumnSpec& angle, AxisKind k
   std::vector<CutRow> rows;
   double smallest_db = std::numeric_limits<double>::infinity();
   for (const CsvRow& row : readRows(text, {angle, kAttenuation})) {
-    rows.push_back({row.values[0], row.values[1], row.place});
+    rows.push_back({row.values[0], row.values[1], row.line, 1});
     smallest_db = std::min(smallest_db, row.values[1]);
   }
   MeasuredCut cut(kind, std::move(rows), {file, 0, 0}, "cut");
@@ -120,7 +122,7 @@ std::vector<double> inGridOrder(std::vector<CsvRow> rows, const MeasuredAxis& az
     for (++row; row < rows.size() && pairOf(rows[row]) == pair; ++row) {
       if (rows[row].values[2] == attenuations_db.back()) continue;
       throw Error(
-          ErrorCode::bad_input, rows[row].place,
+          ErrorCode::bad_input, {file.file, rows[row].line, 1},
           fmt::format(
               "azimuth {} deg, elevation {} deg stands here a second time, with {} dB instead of {} dB",
               pair.second, pair.first, rows[row].values[2], attenuations_db.back()));

@@ -83,7 +83,7 @@ MeasuredCut::MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const FilePlac
     double& amplitude = amplitudes_[axis_.indexOf(row.angle_deg)];
     const double of_row = amplitudeOfAttenuation(row.attenuation_db);
     if (amplitude >= 0 && amplitude != of_row) {
-      throw Error(ErrorCode::bad_input, row.place,
+      throw Error(ErrorCode::bad_input, {file.file, row.line, row.column},
                   fmt::format("the {} has {} deg twice, with different attenuations", what, row.angle_deg));
     }
     amplitude = of_row;

@@ -48,13 +48,14 @@ class MeasuredAxis {
 struct CutRow {
   double angle_deg = 0;
   double attenuation_db = 0;  ///< below the maximum
-  FilePlace place;
+  int line = 0, column = 0;   ///< where it stands
 };
 
 /// Amplitude by angle, linear in amplitude between the rows.
 class MeasuredCut {
  public:
   /// @param rows  in any order
+  /// @param file, what  name the cut in errors
   /// @throws Error (bad_input): an angle twice with different attenuations, or as MeasuredAxis
   MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const FilePlace& file, const char* what);
 

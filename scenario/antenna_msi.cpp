@@ -4,8 +4,7 @@
 /// boresight, V(angle), whose angle runs from the horizon ahead (0) downwards to the nadir (90), the horizon
 /// behind (180) and the zenith (270). In between, horizontal projection interpolation is used:
 ///
-///     A(az, el) = H(az) + (1 - w) (V(-el) - H(0)) + w (V(180 + el) - H(180)),   w = |az| / 180,   not below
-///     0
+///     A(az, el) = max(0, H(az) + (1 - w) (V(-el) - H(0)) + w (V(180 + el) - H(180))),   w = |az| / 180
 ///
 /// It gives back both cuts in their planes, and near the beam the usual sum of the two attenuations; towards
 /// the rear the back of the vertical cut takes over from its front. Limits: away from both planes, and above
@@ -102,7 +101,7 @@ class MsiReader {
     }
     const double angle_deg = numberWithin(words[0], -360, 360, what + ": angle", "deg");
     return {angle_deg, numberWithin(words[1], 0, kMostAttenuation_db, what + ": attenuation", "dB"),
-            text_.place(words[0])};
+            words[0].line, words[0].column};
   }
 
   double numberWithin(const TextField& field, double lowest, double highest, const std::string& what,
@@ -121,7 +120,7 @@ class MsiReader {
     const std::size_t digits = std::min(field.text.find_first_not_of("+-.0123456789"), field.text.size());
     const TextField unit = restOf(field, digits);
     const TextField number = restOf({field.text.substr(0, digits), field.line, field.column}, 0);
-    const double gain = numberWithin(number, -100, 100, "GAIN", "dB");
+    const double gain = numberWithin(digits > 0 ? number : field, -100, 100, "GAIN", "dB");
     const std::string unit_name = upperCase(unit.text);
     if (unit_name == "DBI") return gain;
     if (unit_name.empty() || unit_name == "DBD") return gain + kDipoleGain_dbi;

@@ -1,5 +1,6 @@
 #include "scenario/antenna_text.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -10,6 +11,12 @@ namespace {
 
 constexpr std::size_t kLargestFile = std::size_t{64} << 20;
 constexpr std::string_view kBlanks = " \t";
+
+/// Outside ASCII or a control character, but for line ends, tabs, and zeros, which tell binary files.
+bool isForeign(char c) {
+  const auto byte = static_cast<unsigned char>(c);
+  return byte >= 0x7F || (byte < 0x20 && c != '\0' && c != '\t' && c != '\n' && c != '\r');
+}
 
 }  // namespace
 
@@ -22,6 +29,7 @@ TextField restOf(const TextField& field, std::size_t offset) {
 
 AntennaText::AntennaText(const std::string& file) : file_(file), text_(readWholeFile(file, kLargestFile)) {
   if (text_.compare(0, 3, "\xEF\xBB\xBF") == 0) text_.erase(0, 3);
+  std::replace_if(text_.begin(), text_.end(), isForeign, '?');
   const std::string_view text = text_;
   int number = 1;
   for (std::size_t begin = 0; begin < text.size(); ++number) {

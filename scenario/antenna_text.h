@@ -17,7 +17,9 @@ struct TextField {
   int column = 0;
 };
 
-/// The text of an antenna file, read whole, up to 64 MiB.
+/// The text of an antenna file, read whole, up to 64 MiB. Antenna files come in any encoding and mean nothing
+/// outside ASCII: other bytes, and control characters, are read as '?', so that what is quoted of them is
+/// safe to print.
 class AntennaText {
  public:
   /// @throws Error (bad_input) if the file cannot be read or is not text (holds a zero byte)

@@ -176,7 +176,7 @@ TEST(MsiAntenna, SaysWhatIsWrongAndWhere) {
   };
   expectBroken("GAIN 10 dBi", "GAIN 10 dBm", 2, 9,
                "unit 'dBm' of GAIN; allowed are dBd (the default) and dBi");
-  expectBroken("GAIN 10 dBi", "GAIN high", 2, 6, "GAIN '' is not a number");
+  expectBroken("GAIN 10 dBi", "GAIN high", 2, 6, "GAIN 'high' is not a number");
   expectBroken("GAIN 10 dBi", "GAIN 400", 2, 6, "GAIN is 400 dB; allowed are -100 to 100 dB");
   expectBroken("HORIZONTAL 4", "HORIZONTAL", 3, 1,
                "HORIZONTAL must be followed by its number of rows, 4 to 36000");
@@ -205,6 +205,11 @@ TEST(MsiAntenna, SaysWhatIsWrongAndWhere) {
   file.rewrite(std::string("NAME a\0b\n", 9));
   expectFault([&] { readMsi(file.path()); }, file.path(), 1, 7, "zero byte");
   expectFault([] { readMsi("/nowhere/antenna.msi"); }, "/nowhere/antenna.msi", 0, 0, "no such file");
+}
+
+TEST(MsiAntenna, TellsItsNameInPlainCharacters) {
+  EXPECT_EQ(readText("NAME B\xf6se \x01\n" + kSmall.substr(kSmall.find("GAIN")))->description.substr(0, 7),
+            "B?se ?,");
 }
 
 TEST(MsiAntenna, SurvivesDamageToEveryByte) {
