@@ -50,7 +50,8 @@ struct PatternView {
 };
 
 /// Amplitude (relative voltage, 0..1) towards a direction of the antenna's frame.
-/// @param direction  unit vector (forward, right, up); a NaN in it gives any value of the pattern or NaN
+/// @param direction  (forward, right, up), a unit vector for phased_array, of any length above 0 for the other kinds; a
+///                   NaN in it gives any value of the pattern or NaN
 /// @param steer_u, steer_v  phased_array: the direction cosines (right, up) to which the array is steered;
 /// else ignored
 /// @accuracy for beamwidths of 1 degree and more, down to 40 dB below the maximum: gaussian within 1e-4 dB of
