@@ -169,7 +169,7 @@ void GroundSurface::shade(const volume::Grid& grid, const SceneBox& box) {
 void GroundSurface::buildHierarchy() {
   int columns = view_.columns - 1;
   int rows = view_.rows - 1;
-  const float pit = static_cast<float>(view_.lower.z);
+  const float pit = static_cast<float>(view_.lower.z) + GroundView::kRounding;
   std::vector<float> cells(static_cast<std::size_t>(columns) * rows);
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {

@@ -26,6 +26,8 @@ struct GroundHit {
 /// Positions are in the volume's index space; *post space* counts x and y in posts.
 struct GroundView {
   static constexpr int kMaxLevels = 16;
+  /// What rounding may make of a distance (voxels): nearer than this to the surface or the base is on it.
+  static constexpr float kRounding = 1e-3F;
 
   const float* heights = nullptr;  ///< columns * rows posts, index space z; NaN: unknown. Null: no ground
   const Rgba* colors = nullptr;    ///< shaded colour of each post

@@ -71,7 +71,6 @@ EMSCAPE_HD inline Rgba GroundView::pitColor(float x, float y) const {
 EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, float enter, float leave,
                                             float& distance, Rgba& color) const {
   using namespace ground_detail;
-  constexpr float kRounding = 1e-3F;  // voxels; below it a ray is on the surface, not in a wall
   const float* post = heights + static_cast<long long>(j) * columns + i;
   const float h00 = post[0];
   const float slope_x = post[1] - h00;
@@ -83,7 +82,7 @@ EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, fl
   const float base = static_cast<float>(lower.z);
   if (!(twist == twist)) {  // a pit: nothing but its floor
     const bool enters_floor = z <= base;
-    if (!enters_floor && !(ray.dz < 0.0F && z + ray.dz * (leave - enter) <= base)) return false;
+    if (!enters_floor && !(ray.dz < 0.0F && z + ray.dz * (leave - enter) <= base + kRounding)) return false;
     distance = enters_floor ? enter : enter + (base - z) / ray.dz;
     color = pitColor(ray.x + ray.dx * distance, ray.y + ray.dy * distance);
     return true;

@@ -129,7 +129,7 @@ TEST(Ground, AHoleIsAHatchedPitAndNoPlain) {
     hatched |= color.r > 1.5F * color.g;
   }
   EXPECT_TRUE(dark && hatched);
-  EXPECT_NEAR(hitOf(surface, {9.5, 9.5, 2}, {30, 9.5, 2}).distance, 3.8, 0.2);  // the pit's wall
+  EXPECT_NEAR(hitOf(surface, {9.5, 9.5, 2}, {30, 9.5, 2}).distance, 4.5, 1e-3);  // the pit's wall
 }
 
 TEST(Ground, AllHolesIsStillDrawn) {

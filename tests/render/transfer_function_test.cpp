@@ -119,7 +119,7 @@ TEST(TransferFile, RefusalsSayWhereAndWhat) {
   const std::string head = "{\"schema_version\": 1,\n \"domain\": \"value\",\n \"colors\": \"viridis\",\n";
   EXPECT_THAT(
       refusalOf(head + " \"opacity\": [{\"at\": -90, \"opacity\": 0}, {\"at\": -20, \"opacity\": 1.5}]}"),
-      HasSubstr("tf.json:4:53: opacity 1.5: expected 0..1"));
+      HasSubstr("tf.json:4:64: opacity 1.5: expected 0..1"));
   EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}, {\"at\": 0, \"opacity\": 1}]}"),
               HasSubstr("at 0: points must not decrease"));
   EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}]}"),
