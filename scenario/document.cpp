@@ -36,17 +36,28 @@ class PositionFinder {
     }
   }
 
-  TextPosition operator()(const YAML::Mark& mark) const {
+  TextPosition operator()(const YAML::Mark& mark) {
     if (mark.is_null()) return {};
     const std::size_t line = static_cast<std::size_t>(mark.line);
     if (line >= line_begins_.size()) return {mark.line + 1, 1};
-    const std::string_view before = text_.substr(line_begins_[line], static_cast<std::size_t>(mark.column));
-    return {mark.line + 1, static_cast<int>(characterCount(before)) + 1};
+    const std::size_t byte =
+        std::min(line_begins_[line] + static_cast<std::size_t>(mark.column), text_.size());
+    if (line != line_ || byte < byte_) {
+      line_ = line;
+      byte_ = line_begins_[line];
+      column_ = 1;
+    }
+    column_ += static_cast<int>(characterCount(text_.substr(byte_, byte - byte_)));
+    byte_ = byte;
+    return {mark.line + 1, column_};
   }
 
  private:
   std::string_view text_;
   std::vector<std::size_t> line_begins_;
+  // The last place found: the next one mostly lies further on, which counts on a file of one long line.
+  std::size_t line_ = 0, byte_ = 0;
+  int column_ = 1;
 };
 
 class TreeBuilder : public YAML::EventHandler {
@@ -54,7 +65,7 @@ class TreeBuilder : public YAML::EventHandler {
   TreeBuilder(const std::string& file, const std::string& text, ProblemList& problems)
       : file_(file), positions_(text), problems_(problems) {}
 
-  TextPosition positionOf(const YAML::Mark& mark) const { return positions_(mark); }
+  TextPosition positionOf(const YAML::Mark& mark) { return positions_(mark); }
   DocumentNodePtr root() const { return root_; }
 
   void OnDocumentStart(const YAML::Mark&) override {}
@@ -82,7 +93,7 @@ class TreeBuilder : public YAML::EventHandler {
                 const std::string& value) override {
     auto node = makeNode(NodeKind::scalar, mark, anchor);
     node->text = value;
-    node->quoted = tag == "!";
+    node->quoted = tag == "!" || tag == "tag:yaml.org,2002:str";
     if (tag != "!" && tag != "?") refuseTag(node->position, tag);
     finish(node);
   }
@@ -201,9 +212,9 @@ bool hasTabsAsIndentation(const std::string& file, const std::string& text, Prob
   for (std::size_t begin = 0; begin < text.size() && reports < kMostTabReports; ++line) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::size_t word = std::min(text.find_first_not_of(" \t\r", begin), end);
-    const std::size_t tab = text.find('\t', begin);
-    if (word < end && text[word] != '#' && tab < word) {
-      problems.addError({file, line, static_cast<int>(tab - begin) + 1}, "tab as indentation; use spaces");
+    const std::size_t tab = std::string_view(text).substr(begin, word - begin).find('\t');
+    if (word < end && text[word] != '#' && tab != std::string_view::npos) {
+      problems.addError({file, line, static_cast<int>(tab) + 1}, "tab as indentation; use spaces");
       ++reports;
     }
     begin = end + 1;

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/units.h"
 #include "scenario/antenna_shapes.h"
 #include "scenario/schema_check.h"
 
@@ -16,19 +15,6 @@ namespace emscape::scenario {
 namespace {
 
 constexpr std::size_t kLargestNamedFile = std::size_t{64} << 20;
-
-/// Gain (dBi) of an aperture antenna by its half-power beamwidths; a beam as wide as that of a dipole or
-/// wider has 0 dBi.
-/// @see W. L. Stutzman, G. A. Thiele, Antenna Theory and Design: G = 26000 / (az el) in degrees, for
-/// practical antennas
-double gainOfBeamwidths_dbi(double azimuth_deg, double elevation_deg) {
-  return std::max(ratioToDb(26000.0 / (azimuth_deg * elevation_deg)), 0.0);
-}
-
-/// Gain (dBi) of a filled planar array on boresight: 4 pi A / lambda^2.
-double gainOfArray_dbi(int columns, int rows, double spacing_wavelengths) {
-  return ratioToDb(4 * kPi * columns * rows * spacing_wavelengths * spacing_wavelengths);
-}
 
 AntennaPtr makeAntenna(const Section& section, const ParseContext& context) {
   const double azimuth_deg = section.number("beamwidth_az_deg"),
@@ -41,10 +27,10 @@ AntennaPtr makeAntenna(const Section& section, const ParseContext& context) {
     case AntennaForm::isotropic:
       return makeIsotropic(section.number("gain_dbi"));
     case AntennaForm::gaussian:
-      return makeGaussian(gainOr(gainOfBeamwidths_dbi(azimuth_deg, elevation_deg)), azimuth_deg,
+      return makeGaussian(gainOr(gainFromBeamwidths_dbi(azimuth_deg, elevation_deg)), azimuth_deg,
                           elevation_deg, side_lobe_db);
     case AntennaForm::sinc:
-      return makeSinc(gainOr(gainOfBeamwidths_dbi(azimuth_deg, elevation_deg)), azimuth_deg, elevation_deg,
+      return makeSinc(gainOr(gainFromBeamwidths_dbi(azimuth_deg, elevation_deg)), azimuth_deg, elevation_deg,
                       side_lobe_db);
     case AntennaForm::cosecant2:
       return makeCosecant2(section.number("gain_dbi"), azimuth_deg, elevation_deg,
@@ -52,7 +38,7 @@ AntennaPtr makeAntenna(const Section& section, const ParseContext& context) {
     case AntennaForm::phased_array: {
       const int columns = section.integer("columns"), rows = section.integer("rows");
       const double spacing_wavelengths = section.number("spacing_wavelengths");
-      return makePhasedArray(gainOr(gainOfArray_dbi(columns, rows, spacing_wavelengths)), columns, rows,
+      return makePhasedArray(gainOr(gainFromArray_dbi(columns, rows, spacing_wavelengths)), columns, rows,
                              spacing_wavelengths, section.number("element_exponent"));
     }
     case AntennaForm::file:
@@ -70,10 +56,11 @@ ScanSpec parseScan(const Section& section, bool steers_electronically, ParseCont
   scan.kind = section.has("kind") ? section.choice<ScanKind>("kind") : ScanKind::fixed;
   scan.azimuth_deg = section.number("azimuth_deg");
   scan.elevation_deg = section.number("elevation_deg");
-  scan.rate_rpm = section.number("rate_rpm");
-  scan.width_deg = section.number("width_deg");
-  scan.rate_deg_s = section.number("rate_deg_s");
-  scan.elevation_step_deg = section.number("elevation_step_deg");
+  const auto numberOrZero = [&](const char* key) { return section.optionalNumber(key).value_or(0); };
+  scan.rate_rpm = numberOrZero("rate_rpm");
+  scan.width_deg = numberOrZero("width_deg");
+  scan.rate_deg_s = numberOrZero("rate_deg_s");
+  scan.elevation_step_deg = numberOrZero("elevation_step_deg");
   scan.bars = std::max(section.integer("bars"), 1);
   const double highest_deg = std::abs(scan.elevation_deg) + (scan.bars - 1) / 2.0 * scan.elevation_step_deg;
   if (highest_deg > 90) {
@@ -206,10 +193,9 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   emitter.losses_db = section.number("losses_db");
   emitter.polarization = section.choice<Polarization>("polarization");
   emitter.propagation = section.choice<PropagationModel>("propagation");
-  const Section antenna = section.section("antenna");
-  if (section.has("antenna")) emitter.antenna = parseAntenna(antenna, context);
-  emitter.scan = parseScan(section.section("scan"),
-                           antenna.choice<AntennaForm>("pattern") == AntennaForm::phased_array, context);
+  if (section.has("antenna")) emitter.antenna = parseAntenna(section.section("antenna"), context);
+  const bool steers = emitter.antenna && emitter.antenna->view().kind == PatternKind::phased_array;
+  emitter.scan = parseScan(section.section("scan"), steers, context);
   if (section.has("receiver"))
     emitter.receiver = parseReceiver(section.section("receiver"), emitter.losses_db);
   emitter.active_s = parseActive(section, context);

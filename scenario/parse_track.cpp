@@ -60,7 +60,7 @@ class TrackReader {
     if (columns_.empty()) {
       fault(1, 1, "the track file is empty; it begins with " + header());
     } else if (faults_ == 0 && points_.size() < 2) {
-      fault(number, 0, fmt::format("the track has {} rows; it needs at least 2", points_.size()));
+      fault(number - 1, 0, fmt::format("the track has {} rows; it needs at least 2", points_.size()));
     }
     return std::move(points_);
   }

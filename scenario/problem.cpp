@@ -6,6 +6,12 @@
 
 namespace emscape::scenario {
 
+namespace {
+
+constexpr std::size_t kMostProblems = 1000;
+
+}  // namespace
+
 void ProblemList::addError(const FilePlace& place, const std::string& message) {
   add(place, {place, Severity::error, message});
 }
@@ -20,6 +26,8 @@ void ProblemList::addErrorElsewhere(const FilePlace& named_at, const FilePlace& 
 }
 
 void ProblemList::add(const FilePlace& order, Problem problem) {
+  if (entries_.size() > kMostProblems) return;
+  if (entries_.size() == kMostProblems) problem.message = "further faults are not told";
   entries_.push_back({std::move(problem), order.line, order.column});
 }
 
@@ -31,7 +39,9 @@ bool ProblemList::hasErrors() const {
 std::vector<Problem> ProblemList::inOrder() const {
   std::vector<Entry> sorted = entries_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
-    return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+    const FilePlace &at = a.problem.place, &bt = b.problem.place;
+    return std::tie(a.line, a.column, at.file, at.line, at.column) <
+           std::tie(b.line, b.column, bt.file, bt.line, bt.column);
   });
   std::vector<Problem> problems;
   for (Entry& entry : sorted) problems.push_back(std::move(entry.problem));

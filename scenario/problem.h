@@ -16,8 +16,8 @@ struct Problem {
   std::string message;
 };
 
-/// Collects problems, so that all of them can be told at once. Those of another file stand in the order of
-/// the place where the scenario names that file.
+/// Collects problems, so that all of them can be told at once. At most 1000 are kept, and one that says so.
+/// Those of another file stand in the order of the place where the scenario names that file.
 class ProblemList {
  public:
   void addError(const FilePlace& place, const std::string& message);

@@ -79,14 +79,14 @@ ReceiverProfile parseReceiverProfile(const Section& section) {
   receiver.gain_dbi = section.number("gain_dbi");
   receiver.losses_db = section.number("losses_db");
   if (section.has("polarization")) receiver.polarization = section.choice<Polarization>("polarization");
-  receiver.center_frequency_hz = section.number("center_frequency_hz");
-  receiver.bandwidth_hz = section.number("bandwidth_hz");
+  receiver.center_frequency_hz = section.optionalNumber("center_frequency_hz").value_or(0);
+  receiver.bandwidth_hz = section.optionalNumber("bandwidth_hz").value_or(0);
   return receiver;
 }
 
 Band parseBand(const Section& section, ParseContext& context) {
   const Band band{section.text("name"), section.number("begin_hz"), section.number("end_hz")};
-  if (section.sound() && band.begin_hz >= band.end_hz) {
+  if (band.begin_hz >= band.end_hz) {
     context.problems.addError(
         section.placeOf("end_hz"),
         fmt::format("'end_hz' is {}, not above 'begin_hz', {} Hz", band.end_hz, band.begin_hz));
@@ -131,7 +131,7 @@ void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, Pa
     const bool in_band = std::any_of(scenario.bands.begin(), scenario.bands.end(), [&](const Band& band) {
       return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
     });
-    if (in_band || !sections[i].has("frequency_hz")) continue;
+    if (in_band) continue;
     context.problems.addWarning(sections[i].placeOf("frequency_hz"),
                                 fmt::format("emitter '{}' ({} Hz) lies in none of the bands",
                                             scenario.emitters[i].name, frequency_hz));
@@ -155,7 +155,7 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
     scenario.receivers.push_back(parseReceiverProfile(item));
   for (const Section& item : root.sections("bands")) scenario.bands.push_back(parseBand(item, context));
   scenario.output = parseOutput(root.section("output"), scenario, context);
-  warnOfEmittersWithoutBand(scenario, root, context);
+  if (!context.problems.hasErrors()) warnOfEmittersWithoutBand(scenario, root, context);
   scenario.hash = context.hash.hex();
   return scenario;
 }

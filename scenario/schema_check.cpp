@@ -122,7 +122,8 @@ class Checker {
     }
     const std::string* variant = variantOf(node, spec);
     std::map<std::string, int> lines;
-    std::set<std::string> seen;  // with what unknown keys were probably meant to be: one fault, one message
+    std::set<std::string> seen;
+    std::vector<std::string> meant;  // what unknown keys were probably meant to be: one fault, one message
     for (const MapEntry& entry : node.entries) {
       const auto [first, is_new] = lines.emplace(entry.key, entry.position.line);
       if (!is_new) {
@@ -134,12 +135,10 @@ class Checker {
       if (const KeySpec* row = spec.find(entry.key, variant)) {
         value(quoted(row->name), *entry.value, row->value);
       } else {
-        std::vector<std::string> meant;
         fault(entry.position, unknownKeyMessage(entry.key, spec, variant, &meant));
-        seen.insert(meant.begin(), meant.end());
       }
     }
-    missing(node, spec, variant, seen);
+    missing(node, spec, variant, seen, {meant.begin(), meant.end()});
   }
 
  private:
@@ -160,17 +159,19 @@ class Checker {
   }
 
   void missing(const DocumentNode& node, const ObjectSpec& spec, const std::string* variant,
-               const std::set<std::string>& seen) {
+               const std::set<std::string>& seen, const std::set<std::string>& meant) {
     const auto given = [&](const std::string& key) { return seen.count(key) != 0; };
     for (const KeySpec& row : spec.keys) {
       const bool applies =
           row.only_for.empty() || (variant != nullptr && spec.find(row.name, variant) == &row);
-      if (row.required && applies && !given(row.name)) {
+      if (row.required && applies && !given(row.name) && meant.count(row.name) == 0) {
         fault(node.position,
               fmt::format("missing key '{}'{} of the {}", row.name, withUnit(unitOf(row.value)), spec.name));
       }
     }
     for (const auto& group : spec.exactly_one_of) {
+      if (std::any_of(group.begin(), group.end(), [&](const auto& key) { return meant.count(key) != 0; }))
+        continue;
       const auto count = std::count_if(group.begin(), group.end(), given);
       if (count == 1) continue;
       fault(node.position, fmt::format("the {} must have exactly one of {}; it has {}", spec.name,

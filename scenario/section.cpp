@@ -1,6 +1,8 @@
 #include "scenario/section.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "scenario/schema_check.h"
@@ -9,14 +11,17 @@ namespace emscape::scenario {
 
 namespace {
 
-/// The value of a number, 0 if it is faulty.
-double numberIn(const DocumentNode& node) {
-  return node.kind == NodeKind::scalar && !node.quoted ? numberOf(node.text).value_or(0) : 0;
+constexpr double kFaulty = std::numeric_limits<double>::quiet_NaN();
+
+double numberIn(const DocumentNode& node, const ValueSpec& spec) {
+  if (node.kind != NodeKind::scalar || node.quoted) return kFaulty;
+  const std::optional<double> value = numberOf(node.text);
+  return value && rangeFault("", node.text, *value, spec).empty() ? *value : kFaulty;
 }
 
-std::vector<double> numbersIn(const DocumentNode& node) {
+std::vector<double> numbersIn(const DocumentNode& node, const ValueSpec& spec) {
   std::vector<double> numbers;
-  for (const DocumentNodePtr& item : node.items) numbers.push_back(numberIn(*item));
+  for (const DocumentNodePtr& item : node.items) numbers.push_back(numberIn(*item, *spec.item));
   return numbers;
 }
 
@@ -58,13 +63,13 @@ bool Section::has(const std::string& key) const {
 
 bool Section::sound() const {
   ProblemList unheard;
-  return node_ == nullptr || checkObject(*file_, *node_, *spec_, unheard);
+  return node_ != nullptr && checkObject(*file_, *node_, *spec_, unheard);
 }
 
 double Section::number(const std::string& key) const {
-  if (const DocumentNode* node = find(key)) return numberIn(*node);
+  if (const DocumentNode* node = find(key)) return numberIn(*node, row(key).value);
   const auto& fallback = row(key).default_value;
-  return fallback.is_number() ? fallback.get<double>() : 0;
+  return fallback.is_number() ? fallback.get<double>() : kFaulty;
 }
 
 std::optional<double> Section::optionalNumber(const std::string& key) const {
@@ -73,9 +78,8 @@ std::optional<double> Section::optionalNumber(const std::string& key) const {
 }
 
 int Section::integer(const std::string& key) const {
-  const KeySpec& spec = row(key);
   const double value = number(key);
-  return value >= spec.value.minimum && value <= spec.value.maximum ? static_cast<int>(value) : 0;
+  return std::isnan(value) ? 0 : static_cast<int>(value);
 }
 
 std::string Section::text(const std::string& key) const {
@@ -105,7 +109,7 @@ std::vector<Section> Section::sections(const std::string& key) const {
 
 std::vector<double> Section::numbers(const std::string& key) const {
   const DocumentNode* list = find(key);
-  return list == nullptr ? std::vector<double>{} : numbersIn(*list);
+  return list == nullptr ? std::vector<double>{} : numbersIn(*list, row(key).value);
 }
 
 std::vector<std::string> Section::texts(const std::string& key) const {
@@ -122,7 +126,7 @@ std::vector<std::vector<double>> Section::numberLists(const std::string& key) co
   std::vector<std::vector<double>> all;
   const DocumentNode* list = find(key);
   if (list == nullptr) return all;
-  for (const DocumentNodePtr& item : list->items) all.push_back(numbersIn(*item));
+  for (const DocumentNodePtr& item : list->items) all.push_back(numbersIn(*item, *row(key).value.item));
   return all;
 }
 

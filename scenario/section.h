@@ -10,8 +10,9 @@
 
 namespace emscape::scenario {
 
-/// One object of the file. Reading a value that is missing gives the table's default; reading one that is
-/// faulty, which checkObject() has told already, gives 0, empty text or an empty list. Asking for a key that
+/// One object of the file. Reading a value that is not given gives the table's default. Where there is none,
+/// and where the value is faulty, which checkObject() has told already, numbers are NaN, so that no
+/// comparison finds fault with them again, whole numbers 0, and texts and lists empty. Asking for a key that
 /// the table does not have is a programming error (std::logic_error). Valid as long as the document, the
 /// table and `file`.
 class Section {
@@ -21,7 +22,7 @@ class Section {
 
   /// Whether the key is given, with a value of the right type.
   bool has(const std::string& key) const;
-  /// Whether checkObject() finds nothing wrong.
+  /// Whether the object is given and checkObject() finds nothing wrong in it.
   bool sound() const;
 
   double number(const std::string& key) const;

@@ -1,0 +1,71 @@
+#include "scenario/clock.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+
+namespace emscape::scenario {
+namespace {
+
+TEST(Clock, TimesHoldBothEndsIfTheStepMeetsThem) {
+  EXPECT_EQ(timesOf(0, 1, 0.5), (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(timesOf(0, 1.2, 0.5), (std::vector<double>{0, 0.5, 1}));
+  EXPECT_EQ(timesOf(2, 2, 1), (std::vector<double>{2}));
+  EXPECT_EQ(timesOf(0, 0.3, 0.1).size(), 4u) << "0.3 / 0.1 is just below 3";
+}
+
+TEST(Clock, NoErrorAddsUp) {
+  const auto times = timesOf(0, 86400, 0.1);
+  ASSERT_EQ(times.size(), 864001u);
+  EXPECT_EQ(times.back(), 864000 * 0.1);
+}
+
+TEST(Clock, ParsesTimesInItsThreeForms) {
+  const Clock clock{"", 10, 2};
+  EXPECT_EQ(parseTimes("3.5", clock), (std::vector<double>{3.5}));
+  EXPECT_EQ(parseTimes("0:4", clock), (std::vector<double>{0, 2, 4}));
+  EXPECT_EQ(parseTimes("1:2:0.5", clock), (std::vector<double>{1, 1.5, 2}));
+}
+
+TEST(Clock, RefusesTimesThatAreNone) {
+  const Clock clock{"", 10, 2};
+  for (const char* text :
+       {"", ":", "a", "1:", "1:2:3:4", "2:1", "0:1:0", "0:1:-1", "nan", "0:inf", "0:1e9:1e-3", "1 s"}) {
+    try {
+      parseTimes(text, clock);
+      FAIL() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::usage) << text;
+      EXPECT_NE(error.message().find("times"), std::string::npos) << error.message();
+    }
+  }
+}
+
+TEST(Clock, UtcCountsFromTheEpoch) {
+  const Clock clock{"2026-06-01T06:00:00Z", 10, 2};
+  EXPECT_EQ(utcAt(clock, 0), "2026-06-01T06:00:00.000Z");
+  EXPECT_EQ(utcAt(clock, 12.3456), "2026-06-01T06:00:12.346Z");
+  EXPECT_EQ(utcAt(clock, -0.5), "2026-06-01T05:59:59.500Z");
+  EXPECT_EQ(utcAt(clock, 30 * 86400.0), "2026-07-01T06:00:00.000Z");
+  EXPECT_EQ(utcAt({"2024-02-28T23:59:59.25Z", 0, 1}, 1), "2024-02-29T00:00:00.250Z");
+  EXPECT_EQ(utcAt({"1900-03-01T00:00:00Z", 0, 1}, -1), "1900-02-28T23:59:59.000Z");
+  EXPECT_EQ(utcAt({"", 0, 1}, 1), "");
+}
+
+TEST(Clock, UtcOfTheUnixEpochIsZero) {
+  EXPECT_EQ(parseUtc_ms("1970-01-01T00:00:00Z"), 0);
+  EXPECT_EQ(parseUtc_ms("2000-03-01T00:00:00.001Z"), 951868800001);
+  EXPECT_EQ(parseUtc_ms("1969-12-31T23:59:59.9996Z"), -1);
+}
+
+TEST(Clock, RefusesWhatIsNoUtcTime) {
+  for (const char* text : {"", "2026-06-01", "2026-06-01T06:00:00", "2026-06-01 06:00:00Z",
+                           "2026-13-01T06:00:00Z", "2026-02-29T06:00:00Z", "2026-06-01T24:00:00Z",
+                           "2026-06-01T06:00:60Z", "2026-06-01T06:00:00.Z", "2026-06-01T06:00:00.5xZ",
+                           "2026-06-01T06:00:00+02:00", "0000-06-01T06:00:00Z", "20260-06-01T06:00:00Z"}) {
+    EXPECT_FALSE(parseUtc_ms(text)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace emscape::scenario
