@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "base/host_device.h"
 
@@ -23,10 +24,12 @@ constexpr double kDipoleGain_dbi = 2.15;
 
 template <class Real>
 EMSCAPE_HD constexpr Real degToRad(Real degrees) {
+  static_assert(std::is_floating_point_v<Real>, "an integer angle would be cut to 0");
   return degrees * Real(kPi / 180.0);
 }
 template <class Real>
 EMSCAPE_HD constexpr Real radToDeg(Real radians) {
+  static_assert(std::is_floating_point_v<Real>, "an integer angle would be cut to 0");
   return radians * Real(180.0 / kPi);
 }
 /// Power ratio to decibels; ratio > 0.
