@@ -1,5 +1,5 @@
-/// Geodetic positions (WGS84) and the local frames in which volumes lie. The truth, by GeographicLib; fast_geodesy.h has
-/// the approximation used per voxel.
+/// Geodetic positions (WGS84) and the local frames in which volumes lie. The truth, by GeographicLib;
+/// fast_geodesy.h has the approximation used per voxel.
 #pragma once
 
 #include <memory>
@@ -16,8 +16,9 @@ struct GeodeticPosition {
   double height_ellipsoid_m = 0;
 };
 
-/// altitude: x east, y north in the azimuthal equidistant projection about the origin, z = height above mean sea level.
-/// enu: Cartesian, tangent to the ellipsoid's normal at the origin: x east, y north, z up from the origin's height.
+/// altitude: x east, y north in the azimuthal equidistant projection about the origin, z = height above mean
+/// sea level. enu: Cartesian, tangent to the ellipsoid's normal at the origin: x east, y north, z up from the
+/// origin's height.
 enum class FrameKind { altitude, enu };
 
 const char* toString(FrameKind kind);
@@ -27,7 +28,8 @@ struct FrameOrigin {
   FrameKind kind = FrameKind::altitude;
   double latitude_deg = 0;
   double longitude_deg = 0;
-  /// enu: the origin's height. altitude: the height where the region begins; z itself counts from mean sea level.
+  /// enu: the origin's height. altitude: the height where the region begins; z itself counts from mean sea
+  /// level.
   double height_msl_m = 0;
 };
 
@@ -64,7 +66,8 @@ struct GeodesicInverse {
 GeodesicInverse geodesicInverse(double latitude1_deg, double longitude1_deg, double latitude2_deg,
                                 double longitude2_deg);
 /// The point at a distance along a geodesic; its height is 0.
-GeodeticPosition geodesicDirect(double latitude_deg, double longitude_deg, double azimuth_rad, double distance_m);
+GeodeticPosition geodesicDirect(double latitude_deg, double longitude_deg, double azimuth_rad,
+                                double distance_m);
 
 /// Longitude brought to -180..180 (deg).
 double wrapLongitude_deg(double longitude_deg);

@@ -171,24 +171,17 @@ bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double lati
   return false;
 }
 
-/// Reads all heights of a file, a strip at a time.
 void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
-  constexpr long long kStripPosts = 1 << 22;
-  const long long strip_rows = std::max(1LL, kStripPosts / file.columns());
-  std::vector<float> heights_m;
-  for (long long begin = 0; begin < file.rows(); begin += strip_rows) {
-    const PostWindow window{0, begin, file.columns(), std::min<long long>(strip_rows, file.rows() - begin)};
-    heights_m.resize(static_cast<std::size_t>(window.columns * window.rows));
-    file.read(window, heights_m.data());
-    for (const float height_m : heights_m) {
-      if (std::isnan(height_m)) {
+  file.read({0, 0, file.columns(), file.rows()}, [&](long long, const float* heights_m) {
+    for (int column = 0; column < file.columns(); ++column) {
+      if (std::isnan(heights_m[column])) {
         ++info.void_posts;
       } else {
-        info.lowest_m = std::fmin(info.lowest_m, height_m);
-        info.highest_m = std::fmax(info.highest_m, height_m);
+        info.lowest_m = std::fmin(info.lowest_m, heights_m[column]);
+        info.highest_m = std::fmax(info.highest_m, heights_m[column]);
       }
     }
-  }
+  });
 }
 
 }  // namespace

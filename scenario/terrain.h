@@ -40,15 +40,18 @@ struct TerrainFileInfo {
 
 /// Heights above mean sea level, bilinear between posts. Immutable; safe to share between threads.
 ///
-/// Posts are at the centres of GDAL's pixels, whether these stand for points or for areas; files of areas
-/// reach half a post beyond their outer posts, with the outer heights. Files whose posts lie on one lattice
-/// and touch are one raster: heights go on between them, and where two have the same post (tiles that share
-/// an edge) the file named first is believed unless it is void there. Of rasters that overlap, the finest
-/// with a height decides; at its rim it goes on into what lies beside it. Void are a file's own nodata value
-/// or mask, -32767 and -32768, NaN, and what is higher or deeper than anything on earth. A point between
-/// posts is void if one of its four posts is void and has a weight. Files in a projection or on another datum
-/// are brought to longitudes and latitudes of WGS84 when they are read, bilinear, on posts twice as close as
-/// their own.
+/// - Posts are at the centres of GDAL's pixels, whether these stand for points or for areas.
+/// - Files whose posts lie on one lattice (to a hundredth of a post) and touch are one raster: heights go on
+///   between them. Where two have the same post (tiles that share an edge) the file named first is believed,
+///   unless it is void there. A raster of areas reaches half a post beyond its outer posts, with their
+///   heights.
+/// - Of rasters that overlap, the finest with a height decides; at its rim it goes on into what lies beside
+/// it.
+/// - Void are a file's own nodata value or mask, -32767 and -32768, NaN, and what is higher or deeper than
+///   anything on earth. A point between posts is void if one of its four posts is void and has a weight.
+/// - Files in a projection or on another datum are brought to longitudes and latitudes of WGS84 when they are
+///   read, bilinear, on posts twice as close as their own: four times the memory, and ridges keep their
+///   height.
 class Terrain {
  public:
   /// Reads what the files hold within the box (HGT, DTED, GeoTIFF in any CRS, VRT: whatever GDAL reads),

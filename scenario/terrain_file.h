@@ -1,6 +1,7 @@
 /// One elevation file, as GDAL reads it, in the terms of terrain: posts, metres, voids.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,7 +24,7 @@ class TerrainFile {
   ~TerrainFile();
 
   const std::string& name() const;
-  std::string format() const;
+  const std::string& format() const;
   std::string crs() const;
   /// What a user should know: bands left out, unit converted, positions brought to WGS84.
   const std::vector<std::string>& notes() const;
@@ -34,9 +35,12 @@ class TerrainFile {
   /// The heights stand for areas (the file reaches half a post beyond its posts), not for points.
   bool isArea() const;
 
-  /// Heights (m above the file's datum) of a window of the file, south row first; NaN where void.
+  /// Takes a row of heights (m above the file's datum; NaN where void), counted from the window's southern
+  /// one.
+  using RowSink = std::function<void(long long row, const float* heights_m)>;
+  /// Reads a window of the file, a strip of rows at a time; hands over each row once.
   /// @throws Error (bad_input) if reading fails
-  void read(const PostWindow& window, float* heights_m) const;
+  void read(const PostWindow& window, const RowSink& take) const;
 
   /// True: the lattice is of longitudes and latitudes of WGS84 (deg). False: of a plane of its own.
   bool isGeographic() const;

@@ -99,8 +99,9 @@ void snapToDegrees(double& first, double& step, int count) {
   const double snapped_first = halves / (2.0 * per_degree);
   const double snapped_last = (halves + 2.0 * (count - 1)) / (2.0 * per_degree);
   if (std::abs(snapped_first - first) > kSnap_posts * step ||
-      std::abs(snapped_last - last) > kSnap_posts * step)
+      std::abs(snapped_last - last) > kSnap_posts * step) {
     return;
+  }
   first = snapped_first;
   step = 1.0 / per_degree;
 }
@@ -109,7 +110,7 @@ using TransformationPtr = std::unique_ptr<OGRCoordinateTransformation>;
 
 /// Points that could not be transformed become NaN.
 void transform(OGRCoordinateTransformation& transformation, std::vector<double>& x, std::vector<double>& y) {
-  GdalMessages messages;
+  const GdalMessages quiet;
   std::vector<int> done(x.size());
   transformation.Transform(static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -123,9 +124,8 @@ struct TerrainFile::Impl {
   std::string name;
   FilePlace place;
   std::vector<std::string> notes;
-  std::unique_ptr<GDALDataset> dataset;
-  GDALRasterBand* band = nullptr;
-  bool has_mask = false;
+  std::string format;
+  int columns = 0, rows = 0;
   double scale = 1.0, offset = 0.0, unit_m = 1.0;
 
   double pixel_to_crs[6] = {0, 1, 0, 0, 0, 1};
@@ -144,46 +144,57 @@ struct TerrainFile::Impl {
     throw Error(ErrorCode::bad_input, place, "elevation file " + name + ": " + problem);
   }
 
-  void open();
-  void openBand();
-  void placePosts();
-  void placeOnEarth();
+  std::unique_ptr<GDALDataset> open() const;
+  void readHead();
+  void readBand(GDALRasterBand& band);
+  void placePosts(GDALDataset& dataset);
+  void placeOnEarth(const OGRSpatialReference* given);
   bool liesOnWgs84() const;
   void crsOfPlane(std::vector<double>& x, std::vector<double>& y) const;
   void planeOfCrs(std::vector<double>& x, std::vector<double>& y) const;
 };
 
-void TerrainFile::Impl::open() {
+std::unique_ptr<GDALDataset> TerrainFile::Impl::open() const {
   GdalMessages messages;
-  GDALAllRegister();
-  dataset.reset(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  std::unique_ptr<GDALDataset> dataset(
+      GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (!dataset) {
     VSIStatBufL status;
     const bool exists = VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
     fail(exists ? messages.explain("not a raster that GDAL reads") : "no such file");
   }
+  return dataset;
+}
+
+void TerrainFile::Impl::readHead() {
+  const GdalMessages quiet;  // before the dataset, which may complain when it is closed
+  GDALAllRegister();
+  const std::unique_ptr<GDALDataset> dataset = open();
   if (dataset->GetRasterCount() == 0) {
     fail("holds no raster band itself; name one of the data sets in it, as gdalinfo lists them");
   }
-  openBand();
-  placePosts();
-  placeOnEarth();
-}
-
-void TerrainFile::Impl::openBand() {
-  band = dataset->GetRasterBand(1);
+  const char* long_name = dataset->GetDriver()->GetMetadataItem(GDAL_DMD_LONGNAME);
+  format = long_name ? long_name : dataset->GetDriverName();
+  columns = dataset->GetRasterXSize();
+  rows = dataset->GetRasterYSize();
   if (dataset->GetRasterCount() > 1) {
     notes.push_back("has " + std::to_string(dataset->GetRasterCount()) +
                     " bands: heights are taken from the first");
   }
-  if (GDALDataTypeIsComplex(band->GetRasterDataType())) fail("holds complex numbers, not heights");
-  has_mask = (band->GetMaskFlags() & GMF_ALL_VALID) == 0;
-  scale = band->GetScale();
-  offset = band->GetOffset();
-  const std::string unit = band->GetUnitType();
+  readBand(*dataset->GetRasterBand(1));
+  placePosts(*dataset);
+  placeOnEarth(dataset->GetSpatialRef());
+}
+
+void TerrainFile::Impl::readBand(GDALRasterBand& band) {
+  if (GDALDataTypeIsComplex(band.GetRasterDataType())) fail("holds complex numbers, not heights");
+  scale = band.GetScale();
+  offset = band.GetOffset();
+  const std::string unit = band.GetUnitType();
   unit_m = metresOf(unit);
-  if (unit_m == 0.0)
+  if (unit_m == 0.0) {
     fail("heights are in '" + unit + "', a unit that is not known; known are m, ft and US survey ft");
+  }
   if (unit_m != 1.0) notes.push_back("heights in '" + unit + "' are converted to metres");
   if (scale != 1.0 || offset != 0.0) {
     notes.push_back("heights are stored with scale " + std::to_string(scale) + " and offset " +
@@ -191,14 +202,14 @@ void TerrainFile::Impl::openBand() {
   }
 }
 
-void TerrainFile::Impl::placePosts() {
-  GdalMessages messages;
+void TerrainFile::Impl::placePosts(GDALDataset& dataset) {
   double* g = pixel_to_crs;
-  if (dataset->GetGeoTransform(g) != CE_None) fail("has no georeference");
+  if (dataset.GetGeoTransform(g) != CE_None) fail("has no georeference");
   const double area = g[1] * g[5] - g[2] * g[4];
-  if (!std::isfinite(g[0] + g[3]) || !std::isfinite(area) || area == 0.0)
+  if (!std::isfinite(g[0] + g[3]) || !std::isfinite(area) || area == 0.0) {
     fail("has a georeference of no extent");
-  const char* meaning = dataset->GetMetadataItem(GDALMD_AREA_OR_POINT);
+  }
+  const char* meaning = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
   is_area = meaning == nullptr || !EQUAL(meaning, GDALMD_AOP_POINT);
   turned = g[2] != 0.0 || g[4] != 0.0 || g[1] < 0.0;
   if (turned) {
@@ -208,19 +219,19 @@ void TerrainFile::Impl::placePosts() {
     lattice.step_x = g[1];
     lattice.step_y = std::abs(g[5]);
     lattice.x0 = g[0] + 0.5 * g[1];
-    lattice.y0 = g[3] + (north_first ? dataset->GetRasterYSize() - 0.5 : 0.5) * g[5];
+    lattice.y0 = g[3] + (north_first ? rows - 0.5 : 0.5) * g[5];
   }
 }
 
-void TerrainFile::Impl::placeOnEarth() {
+void TerrainFile::Impl::placeOnEarth(const OGRSpatialReference* given) {
   GdalMessages messages;
-  const OGRSpatialReference* given = dataset->GetSpatialRef();
   if (given == nullptr || given->IsEmpty()) {
-    fail(
-        "has no coordinate reference system; gdal_edit.py -a_srs EPSG:4326 sets that of latitudes and "
-        "longitudes");
+    fail("has no coordinate reference system (gdal_edit.py -a_srs EPSG:4326 sets latitudes and longitudes)");
   }
   crs = *given;
+  if (const char* datum = crs.GetAttrValue("VERT_CS")) {
+    notes.push_back(std::string("says that its heights are of '") + datum + "'");
+  }
   crs.StripVertical();
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   OGRSpatialReference wgs84;
@@ -242,8 +253,8 @@ void TerrainFile::Impl::placeOnEarth() {
 
   geographic = crs.IsGeographic() && !turned && liesOnWgs84();
   if (geographic) {
-    snapToDegrees(lattice.x0, lattice.step_x, dataset->GetRasterXSize());
-    snapToDegrees(lattice.y0, lattice.step_y, dataset->GetRasterYSize());
+    snapToDegrees(lattice.x0, lattice.step_x, columns);
+    snapToDegrees(lattice.y0, lattice.step_y, rows);
     plane_name = "WGS84";
     return;
   }
@@ -260,8 +271,8 @@ bool TerrainFile::Impl::liesOnWgs84() const {
   std::vector<double> x, y;
   for (double part_y : {0.0, 0.5, 1.0}) {
     for (double part_x : {0.0, 0.5, 1.0}) {
-      x.push_back(lattice.x(part_x * (dataset->GetRasterXSize() - 1)));
-      y.push_back(lattice.y(part_y * (dataset->GetRasterYSize() - 1)));
+      x.push_back(lattice.x(part_x * (columns - 1)));
+      y.push_back(lattice.y(part_y * (rows - 1)));
     }
   }
   std::vector<double> longitude = x, latitude = y;
@@ -290,7 +301,7 @@ void TerrainFile::Impl::planeOfCrs(std::vector<double>& x, std::vector<double>& 
   if (crs.IsGeographic()) {
     // The turn of longitude in which the file counts.
     const double turn = 2.0 * kPi / crs.GetAngularUnits();
-    const double middle = g[0] + 0.5 * (dataset->GetRasterXSize() * g[1] + dataset->GetRasterYSize() * g[2]);
+    const double middle = g[0] + 0.5 * (columns * g[1] + rows * g[2]);
     for (double& longitude : x) longitude = middle + std::remainder(longitude - middle, turn);
   }
   if (!turned) return;
@@ -305,16 +316,15 @@ void TerrainFile::Impl::planeOfCrs(std::vector<double>& x, std::vector<double>& 
 TerrainFile::TerrainFile(const std::string& file, const FilePlace& place) : impl_(std::make_unique<Impl>()) {
   impl_->name = file;
   impl_->place = place;
-  impl_->open();
+  impl_->readHead();
 }
 TerrainFile::~TerrainFile() = default;
 
 const std::string& TerrainFile::name() const {
   return impl_->name;
 }
-std::string TerrainFile::format() const {
-  const char* name = impl_->dataset->GetDriver()->GetMetadataItem(GDAL_DMD_LONGNAME);
-  return name ? name : impl_->dataset->GetDriverName();
+const std::string& TerrainFile::format() const {
+  return impl_->format;
 }
 std::string TerrainFile::crs() const {
   const char* authority = impl_->crs.GetAuthorityName(nullptr);
@@ -330,10 +340,10 @@ const PostLattice& TerrainFile::lattice() const {
   return impl_->lattice;
 }
 int TerrainFile::columns() const {
-  return impl_->dataset->GetRasterXSize();
+  return impl_->columns;
 }
 int TerrainFile::rows() const {
-  return impl_->dataset->GetRasterYSize();
+  return impl_->rows;
 }
 bool TerrainFile::isArea() const {
   return impl_->is_area;
@@ -345,39 +355,38 @@ const std::string& TerrainFile::planeName() const {
   return impl_->plane_name;
 }
 
-void TerrainFile::read(const PostWindow& window, float* heights_m) const {
+void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
+  const GdalMessages messages;  // before the dataset, which may complain when it is closed
+  const std::unique_ptr<GDALDataset> dataset = impl_->open();
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  GDALRasterBand* mask_band = (band.GetMaskFlags() & GMF_ALL_VALID) == 0 ? band.GetMaskBand() : nullptr;
   const int columns = static_cast<int>(window.columns);
-  const int strip_rows = static_cast<int>(std::max(1LL, kStripPosts / std::max(1LL, window.columns)));
+  const int left = static_cast<int>(window.first_column);
+  const long long strip_rows = std::max(1LL, kStripPosts / std::max(1LL, window.columns));
+  std::vector<float> strip;
   std::vector<GByte> mask;
   for (long long begin = 0; begin < window.rows; begin += strip_rows) {
-    const int rows = static_cast<int>(std::min<long long>(strip_rows, window.rows - begin));
-    float* strip = heights_m + begin * window.columns;
+    const int rows = static_cast<int>(std::min(strip_rows, window.rows - begin));
     const long long south = window.first_row + begin;
-    const int top = static_cast<int>(impl_->north_first ? this->rows() - south - rows : south);
-    const int left = static_cast<int>(window.first_column);
-    mask.assign(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 255);
-    GdalMessages messages;
-    // Both arrays in the file's order of rows; turned over below.
-    if (impl_->band->RasterIO(GF_Read, left, top, columns, rows, strip, columns, rows, GDT_Float32, 0, 0,
-                              nullptr) != CE_None ||
-        (impl_->has_mask &&
-         impl_->band->GetMaskBand()->RasterIO(GF_Read, left, top, columns, rows, mask.data(), columns, rows,
-                                              GDT_Byte, 0, 0, nullptr) != CE_None)) {
+    const int top = static_cast<int>(impl_->north_first ? impl_->rows - south - rows : south);
+    strip.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    mask.assign(strip.size(), 255);
+    if (band.RasterIO(GF_Read, left, top, columns, rows, strip.data(), columns, rows, GDT_Float32, 0, 0,
+                      nullptr) != CE_None ||
+        (mask_band != nullptr && mask_band->RasterIO(GF_Read, left, top, columns, rows, mask.data(), columns,
+                                                     rows, GDT_Byte, 0, 0, nullptr) != CE_None)) {
       impl_->fail(messages.explain("rows " + std::to_string(top) + " to " + std::to_string(top + rows - 1) +
                                    " cannot be read"));
     }
-    for (std::size_t k = 0; k < mask.size(); ++k) {
+    for (std::size_t k = 0; k < strip.size(); ++k) {
       const bool declared_void = mask[k] == 0 || strip[k] == kVoidValues[0] || strip[k] == kVoidValues[1];
       const double height_m = (strip[k] * impl_->scale + impl_->offset) * impl_->unit_m;
       const bool known = !declared_void && std::abs(height_m) <= kHighestOnEarth_m;
       strip[k] = known ? static_cast<float>(height_m) : std::numeric_limits<float>::quiet_NaN();
     }
-    if (impl_->north_first) {
-      for (int row = 0; row < rows / 2; ++row) {
-        std::swap_ranges(strip + static_cast<long long>(row) * columns,
-                         strip + static_cast<long long>(row + 1) * columns,
-                         strip + static_cast<long long>(rows - 1 - row) * columns);
-      }
+    for (int row = 0; row < rows; ++row) {
+      const int row_of_file = impl_->north_first ? rows - 1 - row : row;
+      take(begin + row, strip.data() + static_cast<std::ptrdiff_t>(row_of_file) * columns);
     }
   }
 }
@@ -393,7 +402,7 @@ void TerrainFile::toPlane(std::vector<double>& x, std::vector<double>& y) const 
 }
 
 void TerrainFile::lineToPlane(std::vector<double>& x, std::vector<double>& y) const {
-  GdalMessages messages;
+  const GdalMessages quiet;
   std::vector<double> z(x.size(), 0.0);
   std::vector<int> done(x.size());
   GDALApproxTransform(impl_->line_transformer.get(), FALSE, static_cast<int>(x.size()), x.data(), y.data(),

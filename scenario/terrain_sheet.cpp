@@ -121,22 +121,19 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
   own.y0 = lattice.y(static_cast<double>(patch.row_begin - 1));
   TerrainSheet sheet(patch.pieces.front().piece->file, own, patch.column_end - patch.column_begin + 2,
                      patch.row_end - patch.row_begin + 2);
-  std::vector<float> heights_m;
   for (const PlacedPiece& placed : patch.pieces) {
-    const PostWindow& window = placed.piece->window;
-    sheet.is_area = sheet.is_area || placed.piece->file->isArea();
-    heights_m.resize(static_cast<std::size_t>(window.columns * window.rows));
-    placed.piece->file->read(window, heights_m.data());
-    const float* from = heights_m.data();
-    for (long long row = placed.row_begin; row < placed.row_end; ++row) {
-      std::size_t to = sheet.index(static_cast<int>(placed.column_begin - patch.column_begin + 1),
-                                   static_cast<int>(row - patch.row_begin + 1));
-      for (long long column = 0; column < window.columns; ++column, ++to, ++from) {
-        if (sheet.kinds[to] == PostKind::known) continue;
-        sheet.kinds[to] = std::isnan(*from) ? PostKind::empty : PostKind::known;
-        sheet.heights_m[to] = *from;
+    const TerrainFile& file = *placed.piece->file;
+    sheet.is_area = sheet.is_area || file.isArea();
+    const int first_column = static_cast<int>(placed.column_begin - patch.column_begin) + 1;
+    const int first_row = static_cast<int>(placed.row_begin - patch.row_begin) + 1;
+    file.read(placed.piece->window, [&](long long row, const float* heights_m) {
+      std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));
+      for (long long column = 0; column < placed.piece->window.columns; ++column, ++post) {
+        if (sheet.kinds[post] == PostKind::known) continue;
+        sheet.kinds[post] = std::isnan(heights_m[column]) ? PostKind::empty : PostKind::known;
+        sheet.heights_m[post] = heights_m[column];
       }
-    }
+    });
   }
   measureSpacing(sheet);
   return sheet;

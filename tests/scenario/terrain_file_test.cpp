@@ -64,7 +64,6 @@ TerrainPtr load(const std::vector<std::string>& files, const GeoBox& box) {
 }
 
 // --- units
-// --------------------------------------------------------------------------------------------------------
 
 TEST_F(TerrainFileTest, FeetBecomeMetres) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
@@ -101,7 +100,6 @@ TEST_F(TerrainFileTest, OfSeveralBandsTheFirstHoldsHeights) {
 }
 
 // --- projections
-// --------------------------------------------------------------------------------------------------
 
 /// Easting and northing as a height: what lies at the wrong place shows.
 double ramp(double east_m, double north_m) {
@@ -249,8 +247,17 @@ TEST_F(TerrainFileTest, AVirtualMosaicIsReadWhereTheBoxIs) {
   EXPECT_LT(terrain->view().rasters[0].columns, 110);
 }
 
+TEST_F(TerrainFileTest, AVirtualMosaicWithoutItsTilesIsAnError) {
+  std::ofstream(folder_ / "m.vrt") << R"(<VRTDataset rasterXSize="100" rasterYSize="100"><SRS>EPSG:4326</SRS>
+    <GeoTransform>10, 0.01, 0, 50, 0, -0.01</GeoTransform>
+    <VRTRasterBand dataType="Float32" band="1">
+      <SimpleSource><SourceFilename relativeToVRT="1">gone.tif</SourceFilename><SourceBand>1</SourceBand>
+        <SrcRect xOff="0" yOff="0" xSize="100" ySize="100"/><DstRect xOff="0" yOff="0" xSize="100" ySize="100"/>
+      </SimpleSource></VRTRasterBand></VRTDataset>)";
+  EXPECT_THAT(problemOf((folder_ / "m.vrt").string()), AllOf(HasSubstr("m.vrt"), HasSubstr("gone.tif")));
+}
+
 // --- what a file says of itself
-// -----------------------------------------------------------------------------------
 
 TEST_F(TerrainFileTest, DescribeTellsWhatTheFileHolds) {
   DemFile file = geographicDem(10, 50, 0.1, 20, 10, flat);
@@ -286,8 +293,15 @@ TEST_F(TerrainFileTest, DescribePlacesAProjectedFileOnTheEarth) {
   EXPECT_THAT(info.notes, Contains(HasSubstr("UTM zone 32N")));
 }
 
+TEST_F(TerrainFileTest, DescribeRepeatsTheVerticalDatumOfTheFile) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.crs = "EPSG:4326+5773";
+  const TerrainFileInfo info = Terrain::describe(write("a.tif", file));
+  EXPECT_THAT(info.notes, Contains(HasSubstr("'EGM96 height'")));
+  EXPECT_EQ(load({info.file}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100);
+}
+
 // --- faults
-// -------------------------------------------------------------------------------------------------------
 
 TEST_F(TerrainFileTest, AMissingFileIsNamed) {
   const std::string file = (folder_ / "none.tif").string();

@@ -56,7 +56,6 @@ TerrainPtr load(const std::vector<std::string>& files, const GeoBox& box,
 }
 
 // --- the real files
-// -----------------------------------------------------------------------------------------------
 
 class ReferenceDem : public testing::Test {
  protected:
@@ -142,7 +141,6 @@ TEST_F(ReferenceDem, ABoxHoldsItsOwnPostsOnlyAndTheSameHeights) {
 }
 
 // --- where posts lie
-// ----------------------------------------------------------------------------------------------
 
 TEST_F(TerrainTest, AreaPostsLieAtPixelCentresAndReachHalfAPostFurther) {
   const auto file = write("a.tif", geographicDem(10, 50, 0.1, 10, 10, slope));
@@ -201,7 +199,6 @@ TEST_F(TerrainTest, TheViewGivesTheSameHeightsAndTakesAnyTurnOfLongitude) {
 }
 
 // --- voids
-// --------------------------------------------------------------------------------------------------------
 
 TEST_F(TerrainTest, EveryKindOfVoidIsNaN) {
   DemFile file = geographicPointDem(0, 1, 0.1, 11, 11, flat);
@@ -237,7 +234,6 @@ TEST_F(TerrainTest, AVoidCornerCountsOnlyWithWeight) {
 }
 
 // --- several files
-// ------------------------------------------------------------------------------------------------
 
 TEST_F(TerrainTest, HeightsGoOnBetweenAreaTiles) {
   const auto west = write("w.tif", geographicDem(10, 50, 0.1, 10, 10, slope));
@@ -358,7 +354,6 @@ TEST_F(TerrainTest, CoverageIsWhatTheFilesCoverOfTheBox) {
 }
 
 // --- round the globe
-// ----------------------------------------------------------------------------------------------
 
 TEST_F(TerrainTest, ABoxAcrossTheAntimeridianJoinsTilesOfBothSides) {
   const auto east = write("e.tif", geographicDem(179, 1, 0.1, 10, 20, slopeAcross180));
@@ -398,7 +393,6 @@ TEST_F(TerrainTest, AGlobalFileGoesOnAcrossItsOwnSeam) {
 }
 
 // --- vertical datum
-// -----------------------------------------------------------------------------------------------
 
 TEST_F(TerrainTest, EllipsoidalHeightsBecomeHeightsAboveMeanSeaLevel) {
   const auto file = write("a.tif", geographicPointDem(10, 50, 0.1, 11, 11, flat));
