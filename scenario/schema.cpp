@@ -91,17 +91,29 @@ const ValueSpec kLoss = number("dB").from(0).to(100);
 const ValueSpec kGain = number("dBi").from(-50).to(80);
 constexpr int kMostItems = 10000;
 
+KeySpec latitudeKey() {
+  return required("latitude_deg", kLatitude, "geodetic, WGS84");
+}
+KeySpec longitudeKey() {
+  return required("longitude_deg", kLongitude, "WGS84, positive eastwards");
+}
+KeySpec heightMslKey() {
+  return optional("height_msl_m", kHeight, "above EGM96 mean sea level");
+}
+KeySpec heightAglKey() {
+  return optional("height_agl_m", kHeightAboveGround,
+                  "above the ground; above mean sea level without terrain");
+}
+
 const ObjectSpec& originSpec() {
   static const ObjectSpec spec{
       "origin",
       "",
       {
-          required("latitude_deg", kLatitude, "geodetic, WGS84"),
-          required("longitude_deg", kLongitude, "WGS84, positive eastwards"),
+          latitudeKey(),
+          longitudeKey(),
           byDefault("height_msl_m", kHeight, 0.0, "bottom of the region, above EGM96 mean sea level"),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -113,14 +125,11 @@ const ObjectSpec& regionSpec() {
           required("origin", object(originSpec()), "centre of the region's bottom"),
           byDefault("frame", choice({toString(FrameKind::altitude), toString(FrameKind::enu)}), "altitude",
                     "altitude: x east and y north along the ground, z above mean sea level; enu: a Cartesian "
-                    "box tangent "
-                    "at the origin"),
+                    "box tangent at the origin"),
           required("size_m", listOf(number("m").above(0).to(4e6), 3, 3), "extent along x, y and z"),
           required("dims", listOf(kInteger.from(2).to(4096), 3, 3),
                    "voxels along x, y and z; at most 2^31 in all"),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -133,9 +142,7 @@ const ObjectSpec& terrainSpec() {
                    "elevation files (HGT, DTED, GeoTIFF, VRT), relative to the scenario's folder"),
           byDefault("vertical_datum", choice({"egm96", "ellipsoid"}), "egm96",
                     "what the files' heights count from"),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -152,24 +159,8 @@ const ObjectSpec& atmosphereSpec() {
                     "at sea level"),
           byDefault("vapour_g_m3", number("g/m3").from(0).to(100), Atmosphere{}.vapour_g_m3, "water vapour"),
           byDefault("rain_mm_h", number("mm/h").from(0).to(200), Atmosphere{}.rain_mm_h, "rain rate"),
-      },
-      {},
-      {}};
+      }};
   return spec;
-}
-
-KeySpec latitudeKey() {
-  return required("latitude_deg", kLatitude, "geodetic, WGS84");
-}
-KeySpec longitudeKey() {
-  return required("longitude_deg", kLongitude, "WGS84, positive eastwards");
-}
-KeySpec heightMslKey() {
-  return optional("height_msl_m", kHeight, "above EGM96 mean sea level");
-}
-KeySpec heightAglKey() {
-  return optional("height_agl_m", kHeightAboveGround,
-                  "above the ground; above mean sea level without terrain");
 }
 
 const ObjectSpec& positionSpec() {
@@ -177,8 +168,7 @@ const ObjectSpec& positionSpec() {
                                "",
                                {latitudeKey(), longitudeKey(), heightMslKey(), heightAglKey(),
                                 optional("height_ellipsoid_m", kHeight, "above the WGS84 ellipsoid")},
-                               {{"height_msl_m", "height_agl_m", "height_ellipsoid_m"}},
-                               {}};
+                               {{"height_msl_m", "height_agl_m", "height_ellipsoid_m"}}};
   return spec;
 }
 
@@ -193,7 +183,7 @@ KeySpec rollKey() {
 }
 
 const ObjectSpec& attitudeSpec() {
-  static const ObjectSpec spec{"attitude", "", {headingKey(0.0), pitchKey(), rollKey()}, {}, {}};
+  static const ObjectSpec spec{"attitude", "", {headingKey(0.0), pitchKey(), rollKey()}};
   return spec;
 }
 
@@ -203,10 +193,7 @@ const ObjectSpec& trackSpec() {
       "",
       {required("file", kFile,
                 "CSV with a header line: t_s, latitude_deg, longitude_deg, height_msl_m or height_agl_m and, "
-                "if wanted, "
-                "heading_deg, pitch_deg, roll_deg; relative to the scenario's folder")},
-      {},
-      {}};
+                "if wanted, heading_deg, pitch_deg, roll_deg; relative to the scenario's folder")}};
   return spec;
 }
 
@@ -258,9 +245,7 @@ const ObjectSpec& antennaSpec() {
           required("file", kFile, "relative to the scenario's folder", {"file"}),
           required("azimuth_file", kFile, "CSV: azimuth_deg, attenuation_db", {"cuts"}),
           required("elevation_file", kFile, "CSV: elevation_deg, attenuation_db", {"cuts"}),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -272,9 +257,7 @@ const ObjectSpec& dwellSpec() {
           required("azimuth_deg", number("deg").from(-180).to(180), "off the boresight, clockwise"),
           required("elevation_deg", kElevation, "off the boresight, upwards"),
           required("duration_s", number("s").from(1e-6).to(1e6), "whole nanoseconds"),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -296,9 +279,7 @@ const ObjectSpec& scanSpec() {
           required("elevation_step_deg", number("deg").above(0).to(90), "between bars", {"raster"}),
           required("bars", kInteger.from(1).to(1000), "sweeps stacked, from the lowest upwards", {"raster"}),
           required("dwells", listOf(object(dwellSpec()), 1, kMostItems), "repeated for ever", {"dwell_list"}),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -316,9 +297,7 @@ const ObjectSpec& radarReceiverSpec() {
                     "case of target fluctuation"),
           byDefault("target_rcs_m2", number("m2").above(0).to(1e9), RadarReceiver{}.target_rcs_m2,
                     "radar cross section"),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -345,9 +324,7 @@ const ObjectSpec& emitterSpec() {
           required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
           optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMostItems),
                    "[begin, end) of the times at which it radiates; always by default"),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -363,9 +340,7 @@ const ObjectSpec& receiverSpec() {
                    "by default that of each emitter"),
           optional("center_frequency_hz", kFrequency, "by default that of each emitter"),
           optional("bandwidth_hz", kBandwidth, "by default as wide as each emitter's signal"),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -376,9 +351,7 @@ const ObjectSpec& bandSpec() {
                                    required("name", kName, ""),
                                    required("begin_hz", kFrequency, "included"),
                                    required("end_hz", kFrequency, "excluded"),
-                               },
-                               {},
-                               {}};
+                               }};
   return spec;
 }
 
@@ -400,9 +373,7 @@ const ObjectSpec& outputSpec() {
                     "lowest value kept, in each quantity's unit"),
           byDefault("count_threshold_dbwm2", number("dBW/m2").from(-1000).to(1000),
                     OutputSpec{}.count_threshold_dbwm2, "emitter_count counts emitters above it"),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -469,9 +440,7 @@ const ObjectSpec& scenarioSpec() {
                    "placed at every voxel for received_power_dbm, which takes the first"),
           optional("bands", listOf(object(bandSpec()), 1, kMostItems).distinct(), "for combine per_band"),
           optional("output", object(outputSpec()), "what is computed"),
-      },
-      {},
-      {}};
+      }};
   return spec;
 }
 
@@ -481,8 +450,7 @@ const ObjectSpec& trackRowSpec() {
       "",
       {required("t_s", number("s").from(-1e8).to(1e8), "since the epoch"), latitudeKey(), longitudeKey(),
        heightMslKey(), heightAglKey(), headingKey(nullptr), pitchKey(), rollKey()},
-      {{"height_msl_m", "height_agl_m"}},
-      {}};
+      {{"height_msl_m", "height_agl_m"}}};
   return spec;
 }
 

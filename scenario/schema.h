@@ -50,8 +50,8 @@ struct ObjectSpec {
   std::string name;           ///< as messages and the JSON Schema's definitions call it
   std::string discriminator;  ///< key whose choice says which other keys apply; empty: none
   std::vector<KeySpec> keys;
-  std::vector<std::vector<std::string>> exactly_one_of;        ///< groups of which one key must be given
-  std::vector<std::pair<std::string, std::string>> goes_with;  ///< first only beside second
+  std::vector<std::vector<std::string>> exactly_one_of = {};        ///< groups of which one key must be given
+  std::vector<std::pair<std::string, std::string>> goes_with = {};  ///< first only beside second
 
   /// The row of a key, or null. @param variant  the discriminator's value; null: any
   const KeySpec* find(const std::string& key, const std::string* variant) const;

@@ -89,11 +89,18 @@ class SchemaWriter {
 
   Json object(const ObjectSpec& spec) {
     if (spec.discriminator.empty()) return variant(spec, nullptr);
+    // if-then rather than oneOf: validators then point at the faulty key.
+    const KeySpec& discriminator = *spec.find(spec.discriminator, nullptr);
     Json variants = Json::array();
-    for (const std::string& choice : spec.find(spec.discriminator, nullptr)->value.choices) {
-      variants.push_back(variant(spec, &choice));
+    for (const std::string& choice : discriminator.value.choices) {
+      const Json condition = {{"required", Json::array({discriminator.name})},
+                              {"properties", {{discriminator.name, {{"const", choice}}}}}};
+      variants.push_back({{"if", condition}, {"then", variant(spec, &choice)}});
     }
-    return {{"oneOf", std::move(variants)}};
+    return {{"type", "object"},
+            {"required", Json::array({discriminator.name})},
+            {"properties", {{discriminator.name, key(discriminator)}}},
+            {"allOf", std::move(variants)}};
   }
 
   /// @param choice  the discriminator's value; null for an object without one
@@ -103,9 +110,6 @@ class SchemaWriter {
     for (const KeySpec& row : spec.keys) {
       if (spec.find(row.name, choice) != &row) continue;
       properties[row.name] = key(row);
-      if (choice != nullptr && row.name == spec.discriminator) {
-        properties[row.name] = {{"const", *choice}, {"description", row.description}};
-      }
       if (row.required) required.push_back(row.name);
     }
     json["properties"] = std::move(properties);
