@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "base/simd.h"
 
 namespace emscape::render {
 namespace {
@@ -12,7 +13,8 @@ namespace {
 constexpr int kTile = 16;
 
 template <class Compositor, class Sampler>
-void castTile(const RaycastTask& task, const Lattice& lattice, int column, int row, Image& image) {
+EMSCAPE_SIMD_CLONES void castTile(const RaycastTask& task, const Lattice& lattice, int column, int row,
+                                  Image& image) {
   const int columns_end = std::min(column + kTile, lattice.columns);
   const int rows_end = std::min(row + kTile, lattice.rows);
   for (int j = row; j < rows_end; ++j) {
