@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "base/whole_file.h"
 
 namespace emscape::render {
 namespace {
@@ -83,15 +84,12 @@ void writePng(const std::string& file, const Image8& image) {
   png.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
   png.flags = PNG_IMAGE_FLAG_FAST;
   const std::vector<std::uint8_t> pixels = opaque ? withoutAlpha(image) : straightAlpha(image);
-  const std::string partial = file + ".part";
+  const std::string partial = temporaryFor(file).string();
   if (png_image_write_to_file(&png, partial.c_str(), 0, pixels.data(), 0, nullptr) == 0) {
     std::remove(partial.c_str());
     throw Error(ErrorCode::other, "cannot write picture '" + file + "': " + png.message);
   }
-  if (std::rename(partial.c_str(), file.c_str()) != 0) {
-    std::remove(partial.c_str());
-    throw Error(ErrorCode::other, "cannot write picture '" + file + "'");
-  }
+  publish(partial, file);
 }
 
 Image8 readPng(const std::string& file) {
