@@ -2,7 +2,7 @@
 list(APPEND CMAKE_MODULE_PATH
   "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB"  # where Debian keeps these two find modules
   /usr/share/cmake/geographiclib)
-set(EMSCAPE_DEPENDENCIES TBB GDAL GeographicLib OpenVDB pugixml yaml-cpp nlohmann_json fmt PNG)
+set(EMSCAPE_DEPENDENCIES TBB GDAL GeographicLib OpenVDB pugixml yaml-cpp nlohmann_json fmt PNG ZLIB)
 
 # emscape_find_dependencies(COMMAND ...): find_package REQUIRED or find_dependency, for each of them.
 macro(emscape_find_dependencies command)

@@ -15,7 +15,7 @@ def check_metadata(grid, time_s):
         "emscape:quantity": "power_density_dbwm2",
         "emscape:unit": "dBW/m2",
         "emscape:time_s": time_s,
-        "emscape:time_utc": f"2026-06-01T06:00:0{time_s:.0f}Z",
+        "emscape:time_utc": f"2026-06-01T06:00:0{time_s:.0f}.000Z",
         "emscape:frame": "enu",
         "emscape:origin_latitude_deg": 36.303,
         "emscape:origin_longitude_deg": -84.246,

@@ -19,6 +19,6 @@ for step, time_s in enumerate(series.TIMES_S, start=1):
         "fog volume",
         "emscape:unit: dBW/m2",
         f"emscape:time_s: {time_s:g}",
-        "voxel size: [1000, 800, 200]",
+        "voxel dimensions: [1e+03, 800, 200]",
     ):
         series.check(text in printed, f"vdb_print does not print '{text}' but:\n{printed}")
