@@ -35,9 +35,11 @@ scenario::Snapshot FieldSeries::snapshot(int step) const {
   return scenario::snapshotAt(input_.scenario, input_.terrain.get(), time_s(step));
 }
 
-void FieldSeries::update(int step) {
+scenario::Snapshot FieldSeries::update(int step) {
   stopIfInterrupted();
-  solver_.update(snapshot(step));
+  scenario::Snapshot now = snapshot(step);
+  solver_.update(now);
+  return now;
 }
 
 std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<void(int)>& done) {
@@ -55,11 +57,14 @@ std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<
 
 std::vector<std::shared_ptr<const volume::DenseVolume>> FieldSeries::compute(
     int step, const std::vector<ValueRange>& ranges) {
-  update(step);
+  const scenario::Snapshot now = update(step);
   std::vector<std::shared_ptr<const volume::DenseVolume>> volumes;
   for (std::size_t c = 0; c < channels().size(); ++c) {
     auto copy = std::make_shared<volume::DenseVolume>(*solver_.volumes()[c]);
     const ValueRange range = ranges[c].empty() ? ValueRange{copy->info.floor, copy->info.floor} : ranges[c];
+    // The solver leaves a volume that did not change as it was, its time too.
+    copy->info.time_s = now.time_s;
+    copy->info.time_utc = now.time_utc;
     copy->info.range_min = range.min;
     copy->info.range_max = range.max;
     volumes.push_back(std::move(copy));

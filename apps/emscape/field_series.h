@@ -50,7 +50,7 @@ class FieldSeries {
   std::vector<std::string> warnings() const { return solver_.warnings(); }
 
  private:
-  void update(int step);
+  scenario::Snapshot update(int step);
 
   LoadedScenario input_;
   std::vector<double> times_s_;

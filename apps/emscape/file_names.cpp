@@ -1,7 +1,5 @@
 #include "apps/emscape/file_names.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 
 namespace emscape::app {
@@ -14,10 +12,6 @@ std::string fileNameOf(const std::string& name) {
   std::string result = name;
   std::replace_if(result.begin(), result.end(), isForeign, '_');
   return result;
-}
-
-std::string numberedName(const std::string& name, int number) {
-  return fmt::format("{}_{:04}", name, number);
 }
 
 }  // namespace emscape::app

@@ -10,6 +10,7 @@
 #include "apps/emscape/scene.h"
 #include "apps/emscape/volume_input.h"
 #include "base/error.h"
+#include "volume/file.h"
 
 namespace emscape::app {
 namespace {
@@ -76,7 +77,9 @@ class ComputedFrames : public FrameSource {
 class StoredFrames : public FrameSource {
  public:
   explicit StoredFrames(const FrameSelection& selection)
-      : quantity_(selection.quantity), range_(selection.range), files_(seriesOf(selection.input, quantity_)) {
+      : quantity_(selection.quantity),
+        range_(selection.range),
+        files_(volumeFilesOf(selection.input, quantity_)) {
     if (!selection.scenario.empty()) scene_ = loadScenarioWithTerrain(selection.scenario);
     if (selection.first_only) {
       files_.resize(1);
@@ -93,7 +96,7 @@ class StoredFrames : public FrameSource {
   Frame frame(int index) override {
     stopIfInterrupted();
     auto volume = std::make_shared<volume::DenseVolume>(
-        readVolume(files_[static_cast<std::size_t>(index)].file, quantity_));
+        volume::readVolume(files_[static_cast<std::size_t>(index)].file, quantity_));
     if (range_) {
       volume->info.range_min = range_->min;
       volume->info.range_max = range_->max;

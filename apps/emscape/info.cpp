@@ -12,6 +12,7 @@
 #include "emfield/field_solver.h"
 #include "scenario/antenna_shapes.h"
 #include "scenario/scenario_yaml.h"
+#include "volume/file.h"
 #include "volume/statistics.h"
 
 namespace emscape::app {
@@ -103,10 +104,10 @@ Json describeVolume(const volume::DenseVolume& volume) {
 /// The first step's volumes; of a series also its steps.
 Json describeVolumeFiles(const std::string& path) {
   std::string quantity;
-  const std::vector<VolumeFile> files = seriesOf(path, quantity);
+  const std::vector<VolumeFile> files = volumeFilesOf(path, quantity);
   Json volumes = Json::array();
-  for (const volume::DenseVolume& volume : describeVolumes(files.front().file)) {
-    volumes.push_back(describeVolume(readVolume(files.front().file, volume.info.quantity)));
+  for (const volume::DenseVolume& volume : volume::listVolume(files.front().file).volumes) {
+    volumes.push_back(describeVolume(volume::readVolume(files.front().file, volume.info.quantity)));
   }
   Json json{{"kind", "volume"}, {"file", path}, {"steps", files.size()}};
   json["times_s"] = Json::array();

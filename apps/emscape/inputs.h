@@ -11,8 +11,8 @@ namespace emscape::app {
 
 enum class InputKind { scenario, volume, elevation, antenna };
 
-/// Guesses by the file's ending; a .json or .csv file is looked into.
-/// @throws Error (bad_input) if the file cannot be read or its kind is not known
+/// Guesses by the file's ending; a folder holds volumes.
+/// @throws Error (bad_input) if there is no such file or its ending is not known
 InputKind inputKindOf(const std::string& file);
 
 /// A scenario and the ground that it names; terrain is null if it names none.

@@ -5,6 +5,7 @@
 #include "apps/emscape/file_names.h"
 #include "apps/emscape/video.h"
 #include "base/error.h"
+#include "volume/file.h"
 
 namespace emscape::app {
 namespace {
@@ -32,7 +33,7 @@ class PngFolder : public PictureSink {
       throw Error(ErrorCode::other, {folder_.string(), 0, 0}, "cannot make the folder: " + error.message());
   }
   void add(int number, const render::Image8& picture) override {
-    render::writePng((folder_ / (numberedName(name_, number) + ".png")).string(), picture);
+    render::writePng(volume::seriesFile(folder_, name_, number, "png").string(), picture);
   }
   void finish() override {}
 

@@ -38,35 +38,44 @@ struct RenderOptions {
   bool show_emitters = true;
 };
 
-/// Files are not in a hurry: `auto` casts every pixel.
-render::Pattern patternOf(const std::string& rays) {
-  return rays == "auto" ? render::Pattern::full : render::parsePattern(rays);
+/// The options that say how a picture looks, read: wrong ones are told before anything is computed.
+struct Look {
+  render::ImageSize size;
+  render::Pattern pattern;
+  render::Interpolation interpolation;
+  render::CameraSpec camera;
+  render::Theme theme;
+  render::RenderSettings settings;
+};
+
+Look lookOf(const RenderOptions& options) {
+  Look look;
+  look.size = render::parseImageSize(options.size);
+  // Files are not in a hurry: `auto` casts every pixel.
+  look.pattern = options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays);
+  look.interpolation = render::parseInterpolation(options.interpolate);
+  look.camera = render::parseCamera(options.camera);
+  look.theme = render::parseTheme(options.theme);
+  look.settings.mode = render::parseCompositingMode(options.mode);
+  look.settings.step_voxels = options.step_voxels;
+  look.settings.mida_gamma = options.mida_gamma;
+  look.settings.exact = options.exact;
+  look.settings.vertical_exaggeration = options.exaggeration;
+  return look;
 }
 
 /// Draws frames of one scene; camera and colours stay as they were fitted to the first.
 class Painter {
  public:
-  Painter(const RenderOptions& options, const FrameSource& source)
-      : options_(options),
-        source_(source),
-        size_(render::parseImageSize(options.size)),
-        pattern_(patternOf(options.rays)),
-        interpolation_(render::parseInterpolation(options.interpolate)),
-        camera_(render::parseCamera(options.camera)) {
-    render::RenderSettings settings;
-    settings.mode = render::parseCompositingMode(options.mode);
-    settings.step_voxels = options.step_voxels;
-    settings.mida_gamma = options.mida_gamma;
-    settings.exact = options.exact;
-    settings.vertical_exaggeration = options.exaggeration;
-    renderer_.setSettings(settings);
+  Painter(const RenderOptions& options, const Look& look, const FrameSource& source)
+      : options_(options), look_(look), source_(source) {
+    renderer_.setSettings(look.settings);
     annotations_.title = source.name();
-    annotations_.theme = render::parseTheme(options.theme);
-    annotations_.note = fmt::format("{}, {} rays, step {:g} voxel", options.mode, render::toString(pattern_),
-                                    options.step_voxels);
+    annotations_.theme = look.theme;
+    annotations_.note = fmt::format("{}, {} rays, step {:g} voxel", options.mode,
+                                    render::toString(look.pattern), options.step_voxels);
   }
 
-  render::ImageSize size() const { return size_; }
   double castMilliseconds() const { return cast_ms_; }
 
   render::Image8 paint(const Frame& frame) {
@@ -77,7 +86,7 @@ class Painter {
     if (options_.show_emitters) annotations_.markers = frame.markers;
     if (!fitted_) fitTo(volume);
     render::FrameReport report;
-    const render::Image cast = renderer_.render(size_, pattern_, interpolation_, &report);
+    const render::Image cast = renderer_.render(look_.size, look_.pattern, look_.interpolation, &report);
     cast_ms_ += report.cast.ms + report.interpolate_ms;
     return render::compose(cast, renderer_.camera(), renderer_.sceneBox(), annotations_,
                            [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
@@ -96,17 +105,14 @@ class Painter {
     annotations_.georeferenced = volume.grid.georeferenced;
     annotations_.legend = render::legendOf(volume.info, function);
     if (scene && volume.info.categorical) annotations_.legend->categories = categoriesOf(*scene->scenario);
-    renderer_.setCamera(render::makeCamera(camera_, renderer_.sceneBox(), size_,
-                                           render::overlayMargins(size_, annotations_)));
+    renderer_.setCamera(render::makeCamera(look_.camera, renderer_.sceneBox(), look_.size,
+                                           render::overlayMargins(look_.size, annotations_)));
     fitted_ = true;
   }
 
   const RenderOptions& options_;
+  const Look& look_;
   const FrameSource& source_;
-  const render::ImageSize size_;
-  const render::Pattern pattern_;
-  const render::Interpolation interpolation_;
-  const render::CameraSpec camera_;
   render::Renderer renderer_;
   render::Annotations annotations_;
   bool fitted_ = false;
@@ -120,15 +126,16 @@ bool isOnePicture(const std::vector<std::string>& outputs) {
 }
 
 int renderPictures(RenderOptions options, const GlobalOptions& global) {
+  const Look look = lookOf(options);
   const std::string device = chooseBackend(global);
   if (!options.range.empty()) options.selection.range = parseRange(options.range);
   options.selection.first_only = options.selection.times.empty() && isOnePicture(options.outputs);
   const std::unique_ptr<FrameSource> source = openFrameSource(options.selection, global);
-  Painter painter(options, *source);
+  Painter painter(options, look, *source);
   std::vector<std::unique_ptr<PictureSink>> sinks;
   for (const std::string& output : options.outputs) {
     sinks.push_back(
-        makePictureSink(output, source->name(), source->count(), painter.size(), options.frames_per_s));
+        makePictureSink(output, source->name(), source->count(), look.size, options.frames_per_s));
   }
 
   Stopwatch watch;
@@ -146,7 +153,7 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
   const double seconds = watch.lap_ms() / 1000;
   if (global.json) {
     printJson({{"device", device},
-               {"size", {painter.size().width, painter.size().height}},
+               {"size", {look.size.width, look.size.height}},
                {"mode", options.mode},
                {"frames", source->count()},
                {"outputs", options.outputs},

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,10 +13,11 @@ namespace emscape::app {
 
 class SeriesFiles {
  public:
-  static const std::vector<std::string>& formatNames();
+  /// What can be written.
+  static std::vector<std::string> formatNames();
 
   /// @param formats  of formatNames()
-  SeriesFiles(std::filesystem::path folder, const std::string& name, std::vector<std::string> formats,
+  SeriesFiles(std::filesystem::path folder, const std::string& name, const std::vector<std::string>& formats,
               std::vector<double> times_s);
 
   /// Writes a step in every format; one thread at a time.
@@ -30,7 +32,7 @@ class SeriesFiles {
 
   const std::filesystem::path folder_;
   const std::string name_;
-  const std::vector<std::string> formats_;
+  const std::set<std::string> formats_;
   const std::vector<double> times_s_;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "apps/emscape/background_writer.h"
 #include "apps/emscape/command.h"
@@ -49,7 +50,7 @@ Json recipeOf(const SimulateOptions& options, const FieldSeries& series) {
   return {{"scenario", series.input().scenario->name},
           {"scenario hash", series.input().scenario->hash},
           {"version of emscape", kVersion},
-          {"format", options.formats},
+          {"format", std::set<std::string>(options.formats.begin(), options.formats.end())},
           {"quantity", namesOf(series.channels())},
           {"range", options.range},
           {"allow-missing-terrain", options.allow_missing_terrain},

@@ -54,7 +54,7 @@ TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {
   for (const Arguments& arguments : wrong) {
     const ProgramResult result = run(arguments);
     EXPECT_EQ(result.status, kUsage) << testing::PrintToString(arguments) << result.err;
-    EXPECT_THAT(result.err, StartsWith("emscape: error: ")) << testing::PrintToString(arguments);
+    EXPECT_THAT(result.err, HasSubstr("emscape: error: ")) << testing::PrintToString(arguments);
     EXPECT_EQ(result.out, "") << testing::PrintToString(arguments);
   }
   EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
@@ -93,7 +93,7 @@ TEST(CommandLine, AMissingInputIsToldWithItsName) {
         Arguments{"render", missing, "-o", folder / "x.png"}, Arguments{"bench", "field", missing}}) {
     const ProgramResult result = run(arguments);
     EXPECT_EQ(result.status, kBadInput) << result.err;
-    EXPECT_THAT(result.err, StartsWith("emscape: error: "));
+    EXPECT_THAT(result.err, HasSubstr("emscape: error: "));
     EXPECT_THAT(result.err, HasSubstr("missing.yaml"));
   }
   EXPECT_EQ(run({"validate", missing}).status, kBadInput);

@@ -68,7 +68,8 @@ TEST_F(Validate, FindsPlatformsBelowTheGround) {
   const std::string agl = "longitude_deg: -84.24167, height_agl_m: 15";
   ASSERT_NE(text.find(agl), std::string::npos);
   text.replace(text.find(agl), agl.size(), "longitude_deg: -84.24167, height_msl_m: 500");
-  for (const std::string& path : {"data/jacksboro.tif", "data/helicopter.csv", "data/sector_450mhz.msi"}) {
+  for (const char* name : {"data/jacksboro.tif", "data/helicopter.csv", "data/sector_450mhz.msi"}) {
+    const std::string path = name;
     text.replace(text.find(path), path.size(), shippedScenario(path));
   }
   const std::string file = folder_ / "below.yaml";
