@@ -7,6 +7,7 @@
 
 #include "base/log.h"
 #include "base/whole_file.h"
+#include "volume/sparse.h"
 #include "volume/statistics.h"
 #include "volume/vdb.h"
 #include "volume/vdb_grid.h"
@@ -14,11 +15,6 @@
 
 namespace emscape::volume {
 namespace {
-
-/// A file of another program may be so sparse that its box is huge; beyond this many voxels the active ones
-/// must fill at least one in kSparsest, else the file is more likely damaged than sparse.
-constexpr long long kAlwaysAllowedVoxels = 1LL << 27;
-constexpr long long kSparsest = 1000;
 
 /// A file's bytes from the reader's position on, as a stream for OpenVDB. Reading beyond the end throws.
 class MemoryStream : public boost::iostreams::stream<boost::iostreams::array_source> {
@@ -202,15 +198,6 @@ void readMask(DenseVolume& volume, const GridEntry& entry, const VdbFile& file) 
   std::memcpy(volume.first_valid_k.data(), bytes.data(), bytes.size());
 }
 
-void checkSparseness(const Dims& dims, openvdb::Index64 active, const VdbFile& file) {
-  checkDims(dims, {});
-  if (dims.count() > kAlwaysAllowedVoxels &&
-      static_cast<double>(dims.count()) > double(kSparsest) * double(active)) {
-    file.fail("the active voxels' box holds " + std::to_string(dims.count()) + " voxels, of which only " +
-              std::to_string(active) + " are active: too sparse to be made dense");
-  }
-}
-
 openvdb::CoordBBox boxOf(const Dims& dims) {
   return {openvdb::Coord(0, 0, 0), openvdb::Coord(dims.x - 1, dims.y - 1, dims.z - 1)};
 }
@@ -246,7 +233,7 @@ bool makeDense(const openvdb::GridBase& base, const GridEntry& entry, const VdbF
     volume.grid.dims = {size.x(), size.y(), size.z()};
     volume.info.floor = static_cast<float>(grid->background());
     volume.info.categorical = std::is_integral_v<typename GridType::ValueType>;
-    checkSparseness(volume.grid.dims, grid->activeVoxelCount(), file);
+    checkSparseness(volume.grid.dims, grid->activeVoxelCount(), {});
   }
   placeGrid(volume, grid->transform(), box.min(), file);
   copyValues(*grid, box, volume);

@@ -166,7 +166,8 @@ inline void survivesDamage(const std::filesystem::path& path, const std::functio
     putByte(path, at, whole[at]);
   }
   EXPECT_NO_THROW(read());
-  for (std::size_t size = whole.size() - 1; size > 0; size -= std::min(size, size > 400 ? step : 13)) {
+  // A text is whole without the end of its last line.
+  for (std::size_t size = whole.size() - 2; size > 0; size -= std::min(size, size > 400 ? step : 13)) {
     std::filesystem::resize_file(path, size);
     EXPECT_THROW(read(), Error) << "truncated to " << size << " of " << whole.size() << " bytes";
   }

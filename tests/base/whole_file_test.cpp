@@ -1,0 +1,163 @@
+#include "base/whole_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+
+#include "base/error.h"
+
+namespace emscape {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class WholeFile : public ::testing::Test {
+ protected:
+  WholeFile() {
+    std::string pattern = (fs::temp_directory_path() / "emscape-test-XXXXXX").string();
+    folder_ = mkdtemp(pattern.data());
+  }
+  ~WholeFile() override { fs::remove_all(folder_); }
+
+  static std::string errorOf(const std::function<void()>& body) {
+    try {
+      body();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::other);
+      return error.what();
+    }
+    ADD_FAILURE() << "no Error was thrown";
+    return "";
+  }
+  static std::string textOf(const fs::path& path) {
+    const auto bytes = readWhole(path);
+    return {bytes.begin(), bytes.end()};
+  }
+  long filesInFolder() const {
+    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(WholeFile, AppearsWithItsText) {
+  writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "one"; });
+  EXPECT_EQ(textOf(folder_ / "a"), "one");
+  writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "two"; });
+  EXPECT_EQ(textOf(folder_ / "a"), "two");
+  EXPECT_EQ(filesInFolder(), 1);
+}
+
+TEST_F(WholeFile, LeavesWhatWasThereWhenTheWriterThrows) {
+  writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "one"; });
+  EXPECT_THROW(writeWhole(folder_ / "a",
+                          [](std::ostream& stream) {
+                            stream << "half";
+                            throw std::runtime_error("stop");
+                          }),
+               std::runtime_error);
+  EXPECT_EQ(textOf(folder_ / "a"), "one");
+  EXPECT_EQ(filesInFolder(), 1);
+}
+
+TEST_F(WholeFile, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
+  const auto good = [](std::ostream& stream) { stream << "good"; };
+  const auto bad = [](std::ostream& stream) { stream.setstate(std::ios::badbit); };
+  EXPECT_THROW(writeWhole({{folder_ / "a", good}, {folder_ / "b", bad}}), Error);
+  EXPECT_EQ(filesInFolder(), 0);
+  writeWhole({{folder_ / "a", good}, {folder_ / "b", good}});
+  EXPECT_EQ(filesInFolder(), 2);
+}
+
+TEST_F(WholeFile, NamesAMissingFolder) {
+  EXPECT_THAT(errorOf([&] { writeWhole(folder_ / "none" / "a", [](std::ostream&) {}); }),
+              HasSubstr((folder_ / "none" / "a").string() + ": cannot write: the folder " +
+                        (folder_ / "none").string() + " does not exist"));
+}
+
+TEST_F(WholeFile, RefusesFoldersAndDevices) {
+  EXPECT_THAT(errorOf([&] { writeWhole(folder_, [](std::ostream&) {}); }),
+              HasSubstr("a folder of that name exists"));
+  EXPECT_THAT(errorOf([] { writeWhole("/dev/full", [](std::ostream&) {}); }),
+              HasSubstr("not a regular file"));
+}
+
+TEST_F(WholeFile, NamesAMissingPermission) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
+  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+  EXPECT_THAT(errorOf([&] { writeWhole(folder_ / "a", [](std::ostream&) {}); }),
+              HasSubstr("Permission denied"));
+  fs::permissions(folder_, fs::perms::owner_all);
+}
+
+/// Limits the size of files, as a full disk would.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  sighandler_t handler_;
+};
+
+TEST_F(WholeFile, IsGoneWhenTheDiskIsFull) {
+  const FileSizeLimit limit(100000);
+  for (const int bytes : {150000, 3000000}) {
+    const std::string text(static_cast<std::size_t>(bytes), 'x');
+    EXPECT_THAT(errorOf([&] { writeWhole(folder_ / "a", [&](std::ostream& stream) { stream << text; }); }),
+                HasSubstr("a: cannot write: File too large"));
+  }
+  // Small writes fail when the buffer is emptied at the end.
+  EXPECT_THROW(writeWhole(folder_ / "a",
+                          [](std::ostream& stream) {
+                            for (int i = 0; i < 100001; ++i) stream.put('x');
+                          }),
+               Error);
+  EXPECT_EQ(filesInFolder(), 0);
+}
+
+TEST_F(WholeFile, TemporariesOfKilledRunsAreKnownAndRemoved) {
+  const fs::path mine = temporaryFor(folder_ / "a.vdb");
+  EXPECT_TRUE(isTemporary(mine));
+  EXPECT_EQ(mine.filename().string().rfind("a.vdb.part-", 0), 0U);
+  EXPECT_FALSE(isTemporary("a.vdb"));
+  EXPECT_FALSE(isTemporary("a.part-"));
+  EXPECT_FALSE(isTemporary("a.part-12b"));
+  EXPECT_FALSE(isTemporary(".part-12"));
+  std::ofstream(mine) << "running";
+  std::ofstream(folder_ / "a.vdb.part-999999999") << "killed";  // beyond the greatest process number
+  EXPECT_EQ(removeStaleTemporaries(folder_), 1);
+  EXPECT_TRUE(fs::exists(mine));
+  publish(mine, folder_ / "a.vdb");
+  EXPECT_EQ(textOf(folder_ / "a.vdb"), "running");
+  EXPECT_EQ(filesInFolder(), 1);
+  EXPECT_EQ(removeStaleTemporaries(folder_ / "none"), 0);
+}
+
+TEST_F(WholeFile, ReadingNamesTheCause) {
+  try {
+    readWhole(folder_ / "none");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_input);
+    EXPECT_THAT(error.what(), HasSubstr("none: cannot read: No such file or directory"));
+  }
+  EXPECT_THROW(readWhole(folder_), Error);
+}
+
+}  // namespace
+}  // namespace emscape

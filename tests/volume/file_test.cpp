@@ -1,0 +1,80 @@
+#include "volume/file.h"
+
+#include "tests/volume/sample_volumes.h"
+#include "volume/vti.h"
+
+namespace emscape::volume {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using namespace test;
+
+TEST(File, EveryWritableFormatGivesBackWhatWasWritten) {
+  TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume();
+  for (const FileFormat& format : fileFormats()) {
+    if (!format.writable) continue;
+    SCOPED_TRACE(format.name);
+    const auto path = folder / ("a." + format.name);
+    writeVolumes(path, {&volume});
+    expectSame(readVolume(path), volume);
+    expectSame(readVolume(path, volume.info.quantity), volume);
+    const FileListing listing = listVolume(path);
+    EXPECT_EQ(listing.format, format.name);
+    EXPECT_EQ(listing.bytes, std::filesystem::file_size(path));
+    ASSERT_EQ(listing.volumes.size(), 1U);
+    expectSameInfo(listing.volumes[0], volume);
+    EXPECT_TRUE(listing.volumes[0].values.empty());
+    EXPECT_THROW(readVolume(path, "another"), Error);
+  }
+}
+
+TEST(File, NothingLiesUnderTheFinalNameWhenWritingFails) {
+  TemporaryFolder folder;
+  DenseVolume volume = fieldVolume();
+  volume.values.pop_back();
+  for (const FileFormat& format : fileFormats()) {
+    EXPECT_THROW(writeVolumes(folder / ("a." + format.name), {&volume}), Error) << format.name;
+    EXPECT_THROW(writeVolumes(folder / ("a." + format.name), {}), Error) << format.name;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(File, UnknownEndingsAreRefusedWithTheKnownOnes) {
+  const DenseVolume volume = plainVolume();
+  EXPECT_THAT(errorOf([] { readVolume("a.tiff"); }),
+              HasSubstr("a.tiff: no volume file by its ending; known are .vdb, .nvdb, .vti, .raw, .dat"));
+  EXPECT_THAT(errorOf([&] { writeVolumes("a.dat", {&volume}); }), HasSubstr("read, not written"));
+  EXPECT_THAT(errorOf([&] {
+                writeVolumes("a.raw", {&volume, &volume});
+              }),
+              HasSubstr("holds one volume, not 2"));
+  EXPECT_TRUE(isVolumeFile("x/A.VDB"));
+  EXPECT_FALSE(isVolumeFile("vdb"));
+}
+
+TEST(Series, NamesItsFilesByNumber) {
+  EXPECT_EQ(seriesFile("out", "demo", 1, "vdb"), "out/demo_0001.vdb");
+  EXPECT_EQ(seriesFile("out", "demo", 12345, "vti"), "out/demo_12345.vti");
+}
+
+TEST(Series, IsFoundFromAFolderAFileOrAList) {
+  TemporaryFolder folder;
+  const auto touch = [&](const std::string& name) {
+    writeBytes(folder / name, {});
+    return folder / name;
+  };
+  EXPECT_THAT(errorOf([&] { seriesOf(folder.path()); }), HasSubstr("holds no volume file"));
+  const auto late = touch("a_10000.vti"), early = touch("a_9999.vti"), other = touch("b_0001.vti");
+  touch("a_0001.raw");
+  EXPECT_THAT(seriesOf(folder.path()), ElementsAre(early, late, other));
+  EXPECT_THAT(seriesOf(late), ElementsAre(early, late));
+  EXPECT_THAT(seriesOf(touch("single.vdb")), ElementsAre(folder / "single.vdb"));
+  writePvd(folder / "a.pvd", {{2, late}, {1, other}});
+  EXPECT_THAT(seriesOf(folder / "a.pvd"), ElementsAre(other, late));
+  EXPECT_THAT(errorOf([&] { seriesOf(folder / "none.vdb"); }), HasSubstr("there is no such file"));
+}
+
+}  // namespace
+}  // namespace emscape::volume

@@ -1,0 +1,84 @@
+#include "volume/nvdb.h"
+
+#include "tests/volume/sample_volumes.h"
+#include "volume/nanovdb_wrapper.h"
+
+namespace emscape::volume {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace test;
+
+TEST(Nvdb, GivesBackVolumesExactly) {
+  TemporaryFolder folder;
+  for (const DenseVolume& volume : {fieldVolume(), categoricalVolume(), plainVolume()}) {
+    writeNvdb(folder / "a.nvdb", {&volume});
+    expectSame(readNvdb(folder / "a.nvdb"), volume);
+  }
+}
+
+TEST(Nvdb, HoldsSeveralQuantitiesAndReadsTheNamedOne) {
+  TemporaryFolder folder;
+  const DenseVolume power = fieldVolume(), emitter = categoricalVolume();
+  writeNvdb(folder / "a.nvdb", {&power, &emitter});
+  expectSame(readNvdb(folder / "a.nvdb", "dominant_emitter"), emitter);
+  const std::vector<DenseVolume> descriptions = describeNvdb(folder / "a.nvdb");
+  ASSERT_EQ(descriptions.size(), 2U);
+  expectSameInfo(descriptions[0], power);
+  expectSameInfo(descriptions[1], emitter);
+  EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb", "x"); }),
+              HasSubstr("no grid \"x\"; the file holds power_density_dbwm2, dominant_emitter"));
+}
+
+TEST(Nvdb, LooksAsStatedToNanoVdb) {
+  TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume();
+  writeNvdb(folder / "a.nvdb", {&volume});
+  const nano::Handle handle = ::nanovdb::io::readGrid((folder / "a.nvdb").string(), "power_density_dbwm2");
+  const auto* grid = handle.grid<float>();
+  ASSERT_NE(grid, nullptr);
+  EXPECT_TRUE(grid->isFogVolume());
+  EXPECT_EQ(grid->tree().background(), -120.F);
+  const nano::Coord voxel(4, 5, 6);
+  EXPECT_EQ(grid->tree().getValue(voxel),
+            volume.values[static_cast<std::size_t>(volume.grid.index(4, 5, 6))]);
+  const nano::Vec3d world = grid->indexToWorld(nano::Vec3d(4, 5, 6));
+  EXPECT_NEAR(world[1], volume.grid.center_m(4, 5, 6).y, 1e-9);
+}
+
+TEST(Nvdb, WithoutSidecarIsReadOverTheBoxOfItsActiveVoxels) {
+  TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume();
+  writeNvdb(folder / "a.nvdb", {&volume});
+  std::filesystem::remove(folder / "a.nvdb.json");
+  const DenseVolume read = readNvdb(folder / "a.nvdb");
+  EXPECT_EQ(read.grid.dims, (Dims{20, 17, 18}));  // the columns of x = 0 are all masked
+  EXPECT_EQ(read.info.floor, -120.F);
+  EXPECT_NEAR(read.grid.first_center_m.x, volume.grid.center_m(1, 0, 0).x, 1e-9);
+  EXPECT_NEAR(read.grid.spacing_m.z, 60.1, 1e-9);
+  for (int k = 0; k < 18; ++k) {
+    for (int i = 0; i < 20; ++i) {
+      EXPECT_EQ(read.values[static_cast<std::size_t>(read.grid.index(i, 5, k))],
+                volume.values[static_cast<std::size_t>(volume.grid.index(i + 1, 5, k))]);
+    }
+  }
+}
+
+TEST(Nvdb, SurvivesDamage) {
+  TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume();
+  writeNvdb(folder / "a.nvdb", {&volume});
+  survivesDamage(folder / "a.nvdb", [&] { readNvdb(folder / "a.nvdb"); });
+  writeNvdb(folder / "a.nvdb", {&volume});
+  std::filesystem::remove(folder / "a.nvdb.json");
+  survivesDamage(folder / "a.nvdb", [&] { readNvdb(folder / "a.nvdb"); });
+}
+
+TEST(Nvdb, RefusesWhatIsNotOne) {
+  TemporaryFolder folder;
+  writeBytes(folder / "a.nvdb", std::vector<std::uint8_t>(100, 'x'));
+  EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb"); }), HasSubstr("a.nvdb: no NanoVDB file"));
+}
+
+}  // namespace
+}  // namespace emscape::volume

@@ -1,0 +1,119 @@
+#include "volume/raw.h"
+
+#include "tests/reference_dir.h"
+#include "tests/volume/sample_volumes.h"
+#include "volume/statistics.h"
+
+namespace emscape::volume {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace test;
+
+TEST(Raw, GivesBackVolumesExactly) {
+  TemporaryFolder folder;
+  for (const DenseVolume& volume : {fieldVolume(), categoricalVolume(), plainVolume()}) {
+    writeRaw(folder / "a.raw", volume);
+    expectSame(readRaw(folder / "a.raw"), volume);
+    expectSameInfo(describeRaw(folder / "a.raw"), volume);
+  }
+}
+
+TEST(Raw, GivesBackInfinitiesInItsHeader) {
+  TemporaryFolder folder;
+  DenseVolume volume = plainVolume();
+  volume.info.floor = -std::numeric_limits<float>::infinity();
+  writeRaw(folder / "a.raw", volume);
+  EXPECT_EQ(readRaw(folder / "a.raw").info.floor, volume.info.floor);
+}
+
+TEST(Raw, FindsTheLayoutInTheName) {
+  const auto layout = rawLayoutFromName("x/engine_256x250x110_uint8.raw");
+  ASSERT_TRUE(layout.has_value());
+  EXPECT_EQ(layout->dims, (Dims{256, 250, 110}));
+  EXPECT_EQ(layout->type, VoxelType::uint8);
+  EXPECT_FALSE(rawLayoutFromName("engine.raw").has_value());
+  EXPECT_FALSE(rawLayoutFromName("engine_2x2x2_complex64.raw").has_value());
+}
+
+TEST(Raw, ReadsAFileWithoutHeaderByItsName) {
+  TemporaryFolder folder;
+  writeBytes(folder / "scan_3x2x1_uint16.raw", {1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 0, 1});
+  const DenseVolume volume = readRaw(folder / "scan_3x2x1_uint16.raw");
+  EXPECT_EQ(volume.values, (std::vector<float>{1, 2, 3, 4, 5, 256}));
+  EXPECT_EQ(volume.info.quantity, "scan");
+  EXPECT_EQ(volume.info.range_max, 256);
+  RawLayout layout;
+  layout.dims = {3, 2, 1};
+  layout.type = VoxelType::uint16;
+  layout.big_endian = true;
+  EXPECT_EQ(readRaw(folder / "scan_3x2x1_uint16.raw", layout).values.back(), 1);
+}
+
+TEST(Raw, NamesExpectedAndFoundBytes) {
+  TemporaryFolder folder;
+  writeBytes(folder / "scan_3x2x2_uint16.raw", std::vector<std::uint8_t>(23));
+  EXPECT_THAT(errorOf([&] { readRaw(folder / "scan_3x2x2_uint16.raw"); }),
+              HasSubstr("expected 24 bytes for 3 x 2 x 2 voxels of uint16, found 23"));
+  writeBytes(folder / "scan_60000x60000x60000_uint8.raw", {1});
+  EXPECT_THAT(errorOf([&] { readRaw(folder / "scan_60000x60000x60000_uint8.raw"); }),
+              HasSubstr("at most 4294967296 voxels"));
+  writeBytes(folder / "scan.raw", {1});
+  EXPECT_THAT(errorOf([&] { readRaw(folder / "scan.raw"); }), HasSubstr("_256x256x110_uint8.raw"));
+}
+
+TEST(Raw, NamesWhatIsWrongInAHeader) {
+  TemporaryFolder folder;
+  const auto with = [&](const std::string& header) {
+    writeBytes(folder / "a.raw", std::vector<std::uint8_t>(8));
+    writeBytes(folder / "a.raw.json", {header.begin(), header.end()});
+    return errorOf([&] { readRaw(folder / "a.raw"); });
+  };
+  EXPECT_THAT(with("{\"dims\": [2, 1"),
+              HasSubstr("a.raw.json: [json.exception.parse_error.101] parse error at line 1"));
+  EXPECT_THAT(with("[]"), HasSubstr("no JSON object"));
+  EXPECT_THAT(with("{\"dims\": [2, 1, -1]}"), HasSubstr("key dims: -1 is no whole number"));
+  EXPECT_THAT(with("{\"dims\": [2, 1, 0]}"), HasSubstr("each must be 1..65535"));
+  EXPECT_THAT(with("{\"dims\": [2, 1, 1], \"unit\": 3}"), HasSubstr("key unit:"));
+  EXPECT_THAT(with("{\"dims\": [2, 1, 1], \"frame\": {\"kind\": \"moon\"}}"),
+              HasSubstr("\"moon\" is neither"));
+  EXPECT_THAT(with("{\"dims\": [2, 1, 1]}"), HasSubstr("key type:"));
+  EXPECT_THAT(with("{\"dims\": [2, 1, 1], \"type\": \"float16\"}"),
+              HasSubstr("\"float16\" is none of int8, uint8"));
+  const std::string layout =
+      "{\"dims\": [2, 1, 1], \"type\": \"float32\", \"order\": \"x fastest, then y, then z\"";
+  EXPECT_THAT(with(layout + "}"), HasSubstr("key endianness:"));
+  EXPECT_THAT(with(layout + ", \"endianness\": \"little\", \"first_valid_k\": [0]}"),
+              HasSubstr("a mask of 1 columns for 2"));
+  EXPECT_THAT(with(layout + ", \"endianness\": \"little\", \"first_valid_k\": [0, 2]}"),
+              HasSubstr("a mask that begins at layer 2 of 1"));
+}
+
+TEST(Raw, SurvivesADamagedHeader) {
+  TemporaryFolder folder;
+  writeRaw(folder / "a.raw", plainVolume());
+  survivesDamage(folder / "a.raw.json", [&] { readRaw(folder / "a.raw"); });
+}
+
+TEST(Dat, ReadsSizesAndVoxels) {
+  TemporaryFolder folder;
+  writeBytes(folder / "a.dat", {2, 0, 1, 0, 1, 0, 7, 0, 0, 2});
+  const DenseVolume volume = readDat(folder / "a.dat");
+  EXPECT_EQ(volume.grid.dims, (Dims{2, 1, 1}));
+  EXPECT_EQ(volume.values, (std::vector<float>{7, 512}));
+  survivesDamage(folder / "a.dat", [&] { readDat(folder / "a.dat"); });
+}
+
+TEST(Raw, ReadsTheEngineScan) {
+  const auto file = emscape::test::referenceFile("volumes/engine_256x256x110_uint8.raw");
+  if (!file) GTEST_SKIP() << "volumes/engine_256x256x110_uint8.raw is not there";
+  const DenseVolume volume = readRaw(*file);
+  const Statistics statistics = statisticsOf(volume);
+  EXPECT_EQ(statistics.valid, 256 * 256 * 110);
+  EXPECT_EQ(statistics.min, 0);
+  EXPECT_EQ(statistics.max, 255);
+  EXPECT_EQ(volume.info.quantity, "engine");
+}
+
+}  // namespace
+}  // namespace emscape::volume

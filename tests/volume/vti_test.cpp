@@ -1,0 +1,129 @@
+#include "volume/vti.h"
+
+#include "tests/volume/sample_volumes.h"
+
+namespace emscape::volume {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using namespace test;
+
+/// The categorical sample on the field sample's grid.
+DenseVolume emitterVolume() {
+  DenseVolume volume = categoricalVolume(fieldVolume().grid.dims);
+  volume.grid = fieldVolume().grid;
+  return volume;
+}
+
+TEST(Vti, GivesBackVolumesExactly) {
+  TemporaryFolder folder;
+  for (const DenseVolume& volume : {fieldVolume(), categoricalVolume(), plainVolume()}) {
+    writeVti(folder / "a.vti", {&volume});
+    expectSame(readVti(folder / "a.vti"), volume);
+  }
+}
+
+TEST(Vti, HoldsSeveralQuantitiesOnOneGrid) {
+  TemporaryFolder folder;
+  const DenseVolume power = fieldVolume();
+  for (const bool same_mask : {true, false}) {
+    DenseVolume emitter = emitterVolume();
+    if (!same_mask) emitter.first_valid_k.clear();
+    writeVti(folder / "a.vti", {&power, &emitter});
+    expectSame(readVti(folder / "a.vti"), power);
+    expectSame(readVti(folder / "a.vti", "dominant_emitter"), emitter);
+    const std::vector<DenseVolume> descriptions = describeVti(folder / "a.vti");
+    ASSERT_EQ(descriptions.size(), 2U);
+    expectSameInfo(descriptions[1], emitter);
+  }
+  EXPECT_THAT(errorOf([&] { readVti(folder / "a.vti", "snr_db"); }),
+              HasSubstr("no array \"snr_db\"; the file holds power_density_dbwm2, dominant_emitter"));
+  const DenseVolume other = plainVolume();
+  EXPECT_THAT(errorOf([&] {
+                writeVti(folder / "b.vti", {&power, &other});
+              }),
+              HasSubstr("lie on different grids"));
+}
+
+TEST(Vti, QuantitiesMayHaveNamesThatXmlMustEscape) {
+  TemporaryFolder folder;
+  DenseVolume volume = plainVolume();
+  volume.info.quantity = "power:radar <\"A\"> & co";
+  writeVti(folder / "a.vti", {&volume});
+  expectSame(readVti(folder / "a.vti", volume.info.quantity), volume);
+}
+
+TEST(Vti, SurvivesDamage) {
+  TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume({5, 5, 6});
+  writeVti(folder / "a.vti", {&volume});
+  survivesDamage(folder / "a.vti", [&] { readVti(folder / "a.vti"); });
+}
+
+std::string vti(const std::string& attributes, const std::string& array, const std::string& tail) {
+  return "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\" " + attributes +
+         "><ImageData WholeExtent=\"2 3 0 1 0 0\" Origin=\"10 20 30\" Spacing=\"1 2 3\">"
+         "<Piece Extent=\"2 3 0 1 0 0\"><PointData><DataArray Name=\"d\" " +
+         array + "</DataArray></PointData></Piece></ImageData>" + tail + "</VTKFile>";
+}
+
+DenseVolume readText(const std::string& text) {
+  TemporaryFolder folder;
+  writeBytes(folder / "a.vti", {text.begin(), text.end()});
+  return readVti(folder / "a.vti");
+}
+
+TEST(ForeignVti, MayBeInlineBase64) {
+  // 4 bytes: 4 0 0 0 | 1 2 3 250
+  const DenseVolume volume = readText(vti("", "type=\"UInt8\" format=\"binary\">\n BAAAAAECA/o=\n", ""));
+  EXPECT_EQ(volume.values, (std::vector<float>{1, 2, 3, 250}));
+  EXPECT_EQ(volume.grid.dims, (Dims{2, 2, 1}));
+  EXPECT_EQ(volume.grid.first_center_m, (Vec3d{12, 20, 30}));
+  EXPECT_EQ(volume.info.quantity, "d");
+  EXPECT_FALSE(volume.grid.georeferenced);
+}
+
+TEST(ForeignVti, MayBeAppendedBase64WithPaddingAfterTheHeader) {
+  const DenseVolume volume =
+      readText(vti("", "type=\"UInt8\" format=\"appended\" offset=\"0\">",
+                   "<AppendedData encoding=\"base64\">_BAAAAA==AQID+g==</AppendedData>"));
+  EXPECT_EQ(volume.values, (std::vector<float>{1, 2, 3, 250}));
+}
+
+TEST(ForeignVti, IsRefusedWhereItCannotBeRead) {
+  const auto refusal = [](const std::string& text) { return errorOf([&] { readText(text); }); };
+  EXPECT_THAT(refusal(vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "")),
+              HasSubstr("stored as \"ascii\"; appended and binary can be read"));
+  EXPECT_THAT(
+      refusal(vti("compressor=\"vtkLZ4DataCompressor\"", "type=\"UInt8\" format=\"binary\">AA==", "")),
+      HasSubstr("compressed with vtkLZ4DataCompressor"));
+  EXPECT_THAT(refusal(vti("", "type=\"UInt8\" NumberOfComponents=\"3\" format=\"binary\">AA==", "")),
+              HasSubstr("has 3 components"));
+  EXPECT_THAT(refusal(vti("", "type=\"Int64\" format=\"binary\">AA==", "")), HasSubstr("of type Int64"));
+  EXPECT_THAT(refusal(vti("", "type=\"Float32\" format=\"binary\">BAAAAAECA/o=", "")),
+              HasSubstr("expected 16 bytes, found 4"));
+  EXPECT_THAT(refusal("<VTKFile type=\"PolyData\"></VTKFile>"), HasSubstr("of type \"PolyData\""));
+  EXPECT_THAT(refusal("<VTKFile type=\"ImageData\">\n<x></VTKFile>"), HasSubstr("a.vti:2: XML:"));
+  EXPECT_THAT(refusal("nothing"), HasSubstr("no VTK XML file"));
+}
+
+TEST(Pvd, ListsASeriesAndCanBeWrittenAnew) {
+  TemporaryFolder folder;
+  std::vector<PvdEntry> entries = {{0, folder / "a_0001.vti"}, {0.1, "/elsewhere/a_0002.vti"}};
+  writePvd(folder / "a.pvd", entries);
+  entries.push_back({0.5, folder.path() / "sub" / "a & b.vti"});
+  writePvd(folder / "a.pvd", entries);
+  const std::vector<PvdEntry> read = readPvd(folder / "a.pvd");
+  ASSERT_EQ(read.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(read[i].time_s, entries[i].time_s);
+    EXPECT_EQ(read[i].file, entries[i].file);
+  }
+  const std::vector<std::uint8_t> bytes = readWhole(folder / "a.pvd");
+  EXPECT_THAT(std::string(bytes.begin(), bytes.end()), HasSubstr("file=\"a_0001.vti\""));
+  survivesDamage(folder / "a.pvd", [&] { readPvd(folder / "a.pvd"); });
+}
+
+}  // namespace
+}  // namespace emscape::volume

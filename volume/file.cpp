@@ -1,0 +1,191 @@
+#include "volume/file.h"
+
+#include <algorithm>
+#include <cctype>
+#include <regex>
+#include <tuple>
+
+#include "volume/nvdb.h"
+#include "volume/raw.h"
+#include "volume/vdb.h"
+#include "volume/vti.h"
+
+namespace emscape::volume {
+namespace fs = std::filesystem;
+namespace {
+
+using Volumes = std::vector<const DenseVolume*>;
+
+struct Format {
+  FileFormat about;
+  void (*write)(const fs::path& path, const Volumes& volumes);
+  DenseVolume (*read)(const fs::path& path, const std::string& name);
+  std::vector<DenseVolume> (*describe)(const fs::path& path);
+};
+
+/// For files that hold one volume: the name, if given, has to be its.
+DenseVolume named(DenseVolume volume, const fs::path& path, const std::string& name) {
+  if (!name.empty() && volume.info.quantity != name) {
+    throw Error(ErrorCode::bad_input, {path.string()},
+                "no volume \"" + name + "\"; the file holds " + volume.info.quantity);
+  }
+  return volume;
+}
+
+std::vector<DenseVolume> listOf(DenseVolume volume) {
+  volume.first_valid_k = {};
+  std::vector<DenseVolume> list;
+  list.push_back(std::move(volume));
+  return list;
+}
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> kFormats = {
+      {{"vdb", true, true, false}, writeVdb, readVdb, describeVdb},
+      {{"nvdb", true, true, false}, writeNvdb, readNvdb, describeNvdb},
+      {{"vti", true, true, true}, writeVti, readVti, describeVti},
+      {{"raw", true, false, false},
+       [](const fs::path& path, const Volumes& volumes) { writeRaw(path, *volumes.front()); },
+       [](const fs::path& path, const std::string& name) { return named(readRaw(path), path, name); },
+       [](const fs::path& path) { return listOf(describeRaw(path)); }},
+      {{"dat", false, false, false},
+       nullptr,
+       [](const fs::path& path, const std::string& name) { return named(readDat(path), path, name); },
+       [](const fs::path& path) { return listOf(describeDat(path)); }},
+  };
+  return kFormats;
+}
+
+const Format* findFormat(const fs::path& path) {
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  for (const Format& format : formats()) {
+    if (ending == "." + format.about.name) return &format;
+  }
+  return nullptr;
+}
+
+const Format& requireFormat(const fs::path& path) {
+  if (const Format* format = findFormat(path)) return *format;
+  std::string known;
+  for (const Format& format : formats()) known += (known.empty() ? "." : ", .") + format.about.name;
+  throw Error(ErrorCode::bad_input, {path.string()}, "no volume file by its ending; known are " + known);
+}
+
+/// NAME_ and the number of NAME_NNNN; the whole stem and -1 for names of another form.
+struct SeriesName {
+  explicit SeriesName(const fs::path& path) : base(path.stem().string()) {
+    static const std::regex kNumbered("(.*_)([0-9]{4,9})");
+    std::smatch parts;
+    const std::string stem = base;
+    if (!std::regex_match(stem, parts, kNumbered)) return;
+    base = parts[1];
+    number = std::stoi(parts[2]);
+  }
+  bool operator<(const SeriesName& other) const {
+    return std::tie(base, number) < std::tie(other.base, other.number);
+  }
+
+  std::string base;
+  int number = -1;
+};
+
+std::vector<fs::path> sorted(std::vector<fs::path> files) {
+  std::sort(files.begin(), files.end());
+  std::stable_sort(files.begin(), files.end(),
+                   [](const fs::path& a, const fs::path& b) { return SeriesName(a) < SeriesName(b); });
+  return files;
+}
+
+std::vector<fs::path> filesOfFolder(const fs::path& folder) {
+  for (const Format& format : formats()) {
+    std::vector<fs::path> files;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      if (entry.is_regular_file() && findFormat(entry.path()) == &format) files.push_back(entry.path());
+    }
+    if (!files.empty()) return sorted(std::move(files));
+  }
+  throw Error(ErrorCode::bad_input, {folder.string()}, "the folder holds no volume file");
+}
+
+/// The files beside a numbered one that differ from it in the number alone.
+std::vector<fs::path> filesBeside(const fs::path& path) {
+  const SeriesName own(path);
+  if (own.number < 0) return {path};
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : ".")) {
+    const SeriesName name(entry.path());
+    const bool sibling =
+        entry.path().extension() == path.extension() && name.base == own.base && name.number >= 0;
+    if (sibling) files.push_back(path.parent_path() / entry.path().filename());
+  }
+  return sorted(std::move(files));
+}
+
+}  // namespace
+
+const std::vector<FileFormat>& fileFormats() {
+  static const std::vector<FileFormat> kAbout = [] {
+    std::vector<FileFormat> about;
+    for (const Format& format : formats()) about.push_back(format.about);
+    return about;
+  }();
+  return kAbout;
+}
+
+const FileFormat& formatOf(const fs::path& path) {
+  return requireFormat(path).about;
+}
+
+bool isVolumeFile(const fs::path& path) {
+  return findFormat(path) != nullptr;
+}
+
+void writeVolumes(const fs::path& path, const Volumes& volumes) {
+  const Format& format = requireFormat(path);
+  const auto fail = [&](const std::string& what) {
+    throw Error(ErrorCode::bad_input, {path.string()}, what);
+  };
+  if (!format.about.writable) fail("." + format.about.name + " files are read, not written");
+  if (volumes.empty()) fail("no volume to write");
+  if (volumes.size() > 1 && !format.about.several) {
+    fail("a ." + format.about.name + " file holds one volume, not " + std::to_string(volumes.size()));
+  }
+  format.write(path, volumes);
+}
+
+DenseVolume readVolume(const fs::path& path, const std::string& name) {
+  return requireFormat(path).read(path, name);
+}
+
+FileListing listVolume(const fs::path& path) {
+  const Format& format = requireFormat(path);
+  FileListing listing{format.about.name, 0, format.describe(path)};
+  listing.bytes = fs::file_size(path);
+  return listing;
+}
+
+fs::path seriesFile(const fs::path& folder, const std::string& name, int number, const std::string& format) {
+  std::string digits = std::to_string(number);
+  digits.insert(0, digits.size() < 4 ? 4 - digits.size() : 0, '0');
+  return folder / (name + "_" + digits + "." + format);
+}
+
+std::vector<fs::path> seriesOf(const fs::path& path) {
+  if (fs::is_directory(path)) return filesOfFolder(path);
+  if (path.extension() == ".pvd") {
+    std::vector<PvdEntry> entries = readPvd(path);
+    std::stable_sort(entries.begin(), entries.end(),
+                     [](const PvdEntry& a, const PvdEntry& b) { return a.time_s < b.time_s; });
+    std::vector<fs::path> files;
+    for (const PvdEntry& entry : entries) files.push_back(entry.file);
+    return files;
+  }
+  requireFormat(path);
+  if (!fs::exists(path)) throw Error(ErrorCode::bad_input, {path.string()}, "there is no such file");
+  return filesBeside(path);
+}
+
+}  // namespace emscape::volume

@@ -1,0 +1,226 @@
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include "volume/statistics.h"
+#include "volume/volume_json.h"
+#include "volume/voxel_type.h"
+#include "volume/vti.h"
+#include "volume/vtk_xml.h"
+
+namespace emscape::volume {
+namespace {
+
+constexpr char kMask[] = "valid";
+
+template <class Number, std::size_t count>
+std::array<Number, count> numbers(const VtkXmlFile& file, const pugi::xml_node& node, const char* attribute) {
+  std::istringstream text(node.attribute(attribute).value());
+  text.imbue(std::locale::classic());
+  std::array<Number, count> values{};
+  for (Number& value : values) {
+    if (!(text >> value)) {
+      file.fail(std::string(attribute) + "=\"" + node.attribute(attribute).value() +
+                "\": " + std::to_string(count) + " numbers are needed");
+    }
+  }
+  return values;
+}
+
+std::optional<VoxelType> voxelTypeOf(const std::string& vtk_type) {
+  static const std::map<std::string, VoxelType> kTypes = {
+      {"Int8", VoxelType::int8},       {"UInt8", VoxelType::uint8},    {"Int16", VoxelType::int16},
+      {"UInt16", VoxelType::uint16},   {"Int32", VoxelType::int32},    {"UInt32", VoxelType::uint32},
+      {"Float32", VoxelType::float32}, {"Float64", VoxelType::float64}};
+  const auto found = kTypes.find(vtk_type);
+  if (found == kTypes.end()) return std::nullopt;
+  return found->second;
+}
+
+/// The text that an array of character numbers spells, up to its zero.
+std::string spelledText(const char* numbers_text) {
+  std::istringstream text(numbers_text);
+  std::string spelled;
+  for (int character = 0; text >> character && character > 0 && character < 256;) {
+    spelled += static_cast<char>(character);
+  }
+  return spelled;
+}
+
+class VtiFile {
+ public:
+  explicit VtiFile(const std::filesystem::path& path) : file_(path, "ImageData"), path_(path.string()) {
+    image_ = file_.root().child("ImageData");
+    const pugi::xml_node piece = image_.child("Piece");
+    if (!piece || piece.next_sibling("Piece")) file_.fail("image data in one piece can be read");
+    arrays_ = piece.child("PointData");
+    cells_ = !arrays_.child("DataArray");
+    if (cells_) arrays_ = piece.child("CellData");
+    grid_ = gridOf(piece);
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> names;
+    for (const pugi::xml_node& array : arrays_.children("DataArray")) {
+      const std::string name = array.attribute("Name").value();
+      if (name != kMask && name.rfind(std::string(kMask) + ":", 0) != 0) names.push_back(name);
+    }
+    if (names.empty()) file_.fail("no array of voxels in it");
+    return names;
+  }
+
+  /// Without values and mask. The range of an array without our metadata is not known yet.
+  DenseVolume describe(const std::string& name, bool& ours) const {
+    const std::string json = spelledText(fieldText("emscape:" + name).c_str());
+    ours = !json.empty();
+    if (ours) {
+      DenseVolume volume = fromJson(parseJson(json, path_), path_);
+      if (volume.grid.dims != grid_.dims)
+        file_.fail("the dims in the metadata of " + name + " are not the image's");
+      return volume;
+    }
+    DenseVolume volume;
+    volume.grid = grid_;
+    volume.info.quantity = name.empty() ? "scalars" : name;
+    const std::string time = fieldText("TimeValue");
+    if (!time.empty()) volume.info.time_s = std::strtod(time.c_str(), nullptr);
+    if (!std::isfinite(volume.info.time_s)) volume.info.time_s = 0;
+    return volume;
+  }
+
+  DenseVolume read(const std::string& name) const {
+    bool ours = false;
+    DenseVolume volume = describe(name, ours);
+    volume.values = valuesOf(arrayNamed(name));
+    readMask(volume, name);
+    checkVolume(volume, {path_});
+    if (!ours) setRangeFromValues(volume);
+    return volume;
+  }
+
+  [[noreturn]] void fail(const std::string& what) const { file_.fail(what); }
+
+ private:
+  Grid gridOf(const pugi::xml_node& piece) const {
+    const auto extent = numbers<int, 6>(file_, image_, "WholeExtent");
+    if (numbers<int, 6>(file_, piece, "Extent") != extent) file_.fail("image data in one piece can be read");
+    const auto origin = numbers<double, 3>(file_, image_, "Origin");
+    const auto spacing = numbers<double, 3>(file_, image_, "Spacing");
+    Grid grid;
+    const int more = cells_ ? 0 : 1;
+    int counts[3];
+    double first[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      const long long count = static_cast<long long>(extent[2 * axis + 1]) - extent[2 * axis] + more;
+      counts[axis] = static_cast<int>(std::clamp<long long>(count, 0, INT32_MAX));
+      first[axis] = origin[axis] + (extent[2 * axis] + (cells_ ? 0.5 : 0.0)) * spacing[axis];
+      if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]) || !std::isfinite(first[axis])) {
+        file_.fail("Spacing and Origin must be finite, Spacing positive");
+      }
+    }
+    grid.dims = {counts[0], counts[1], counts[2]};
+    grid.spacing_m = {spacing[0], spacing[1], spacing[2]};
+    grid.first_center_m = {first[0], first[1], first[2]};
+    checkDims(grid.dims, {path_});
+    return grid;
+  }
+
+  /// An array of the field data in text form; empty where there is none.
+  std::string fieldText(const std::string& name) const {
+    for (const pugi::xml_node& array : image_.child("FieldData").children()) {
+      const bool text = std::string_view(array.attribute("format").value()) == "ascii";
+      if (text && name == array.attribute("Name").value()) return array.child_value();
+    }
+    return "";
+  }
+
+  pugi::xml_node arrayNamed(const std::string& name) const {
+    for (const pugi::xml_node& array : arrays_.children("DataArray")) {
+      if (name == array.attribute("Name").value()) return array;
+    }
+    return {};
+  }
+
+  std::vector<float> valuesOf(const pugi::xml_node& array) const {
+    const std::string name = array.attribute("Name").value();
+    const int components = array.attribute("NumberOfComponents").as_int(1);
+    if (components != 1) {
+      file_.fail("array " + name + " has " + std::to_string(components) + " components; one can be read");
+    }
+    const std::optional<VoxelType> type = voxelTypeOf(array.attribute("type").value());
+    if (!type)
+      file_.fail("array " + name + " is of type " + array.attribute("type").value() +
+                 ", which cannot be read");
+    const auto count = static_cast<std::uint64_t>(grid_.dims.count());
+    const std::vector<std::uint8_t> bytes =
+        file_.arrayBytes(array, count * static_cast<std::uint64_t>(bytesOf(*type)));
+    return toFloats(bytes.data(), count, *type, file_.bigEndian());
+  }
+
+  void readMask(DenseVolume& volume, const std::string& name) const {
+    pugi::xml_node array = arrayNamed(std::string(kMask) + ":" + name);
+    if (!array) array = arrayNamed(kMask);
+    if (!array) return;
+    const std::vector<float> valid = valuesOf(array);
+    const Dims& dims = grid_.dims;
+    for (int j = 0; j < dims.y; ++j) {
+      for (int i = 0; i < dims.x; ++i) {
+        int k = 0;
+        while (k < dims.z && valid[static_cast<std::size_t>(grid_.index(i, j, k))] == 0) ++k;
+        volume.first_valid_k.push_back(static_cast<std::uint16_t>(k));
+      }
+    }
+  }
+
+  VtkXmlFile file_;
+  std::string path_;
+  pugi::xml_node image_;
+  pugi::xml_node arrays_;
+  bool cells_ = false;  ///< the arrays are cell data
+  Grid grid_;
+};
+
+}  // namespace
+
+DenseVolume readVti(const std::filesystem::path& path, const std::string& array_name) {
+  const VtiFile file(path);
+  const std::vector<std::string> names = file.names();
+  if (array_name.empty()) return file.read(names.front());
+  std::string list;
+  for (const std::string& name : names) {
+    if (name == array_name) return file.read(name);
+    list += (list.empty() ? "" : ", ") + name;
+  }
+  file.fail("no array \"" + array_name + "\"; the file holds " + list);
+}
+
+std::vector<DenseVolume> describeVti(const std::filesystem::path& path) {
+  const VtiFile file(path);
+  std::vector<DenseVolume> descriptions;
+  for (const std::string& name : file.names()) {
+    bool ours = false;
+    DenseVolume volume = file.describe(name, ours);
+    if (!ours) {
+      volume = file.read(name);
+      volume.values = {};
+      volume.first_valid_k = {};
+    }
+    descriptions.push_back(std::move(volume));
+  }
+  return descriptions;
+}
+
+std::vector<PvdEntry> readPvd(const std::filesystem::path& path) {
+  const VtkXmlFile file(path, "Collection");
+  std::vector<PvdEntry> entries;
+  for (const pugi::xml_node& node : file.root().child("Collection").children("DataSet")) {
+    const std::filesystem::path name = node.attribute("file").value();
+    if (name.empty()) file.fail("a DataSet names no file");
+    entries.push_back({node.attribute("timestep").as_double(), path.parent_path() / name});
+  }
+  if (entries.empty()) file.fail("the series holds no file");
+  return entries;
+}
+
+}  // namespace emscape::volume

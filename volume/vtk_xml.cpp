@@ -1,0 +1,173 @@
+#include "volume/vtk_xml.h"
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "base/whole_file.h"
+
+namespace emscape::volume {
+namespace {
+
+constexpr std::string_view kEnd = "</VTKFile>";
+/// Blanks and line ends that may follow the end.
+constexpr std::size_t kTail = 64;
+
+/// Value of a base64 digit, -1 for other characters.
+int digitOf(std::uint8_t character) {
+  if (character >= 'A' && character <= 'Z') return character - 'A';
+  if (character >= 'a' && character <= 'z') return character - 'a' + 26;
+  if (character >= '0' && character <= '9') return character - '0' + 52;
+  if (character == '+') return 62;
+  if (character == '/') return 63;
+  return -1;
+}
+
+/// Decodes from the first digit to what is none. VTK encodes a header and the data behind it by themselves,
+/// so that padding may stand in the middle; it ends a group of four like any other.
+/// @param most  stops when that many bytes are there
+std::vector<std::uint8_t> fromBase64(const std::uint8_t* begin, const std::uint8_t* end, std::uint64_t most) {
+  std::vector<std::uint8_t> bytes;
+  const auto* at = std::find_if(begin, end, [](std::uint8_t character) { return digitOf(character) >= 0; });
+  for (; end - at >= 4 && bytes.size() < most; at += 4) {
+    std::uint32_t group = 0;
+    int digits = 0;
+    while (digits < 4 && digitOf(at[digits]) >= 0)
+      group = group << 6 | static_cast<std::uint32_t>(digitOf(at[digits++]));
+    if (digits < 2) break;
+    group <<= 6 * (4 - digits);
+    for (int i = 0; i < digits - 1; ++i) bytes.push_back(static_cast<std::uint8_t>(group >> (16 - 8 * i)));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+VtkXmlFile::VtkXmlFile(const std::filesystem::path& path, const char* type)
+    : file_(path.string()), bytes_(readWhole(path)) {
+  const std::string_view text(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
+  if (text.find("<VTKFile") == std::string_view::npos) fail("no VTK XML file");
+  if (text.substr(text.size() - std::min(text.size(), kTail)).find(kEnd) == std::string_view::npos) {
+    fail("truncated: it does not end in " + std::string(kEnd));
+  }
+  std::string head(text);
+  const std::size_t section = text.find("<AppendedData");
+  if (section != std::string_view::npos) {
+    const std::size_t tag_end = text.find('>', section);
+    const std::size_t underscore = text.find('_', tag_end);
+    if (underscore == std::string_view::npos) fail("damaged: the appended data have no beginning");
+    appended_ = underscore + 1;
+    head = std::string(text.substr(0, tag_end + 1)) + "</AppendedData>" + std::string(kEnd);
+  }
+  const pugi::xml_parse_result result = document_.load_buffer(head.data(), head.size());
+  if (!result) {
+    const auto line =
+        1 +
+        std::count(head.begin(), head.begin() + std::min<std::ptrdiff_t>(result.offset, head.size()), '\n');
+    throw Error(ErrorCode::bad_input, {file_, static_cast<int>(line)},
+                std::string("XML: ") + result.description());
+  }
+  root_ = document_.child("VTKFile");
+  const std::string found = root_.attribute("type").value();
+  if (found != type) fail("VTK file of type \"" + found + "\" where " + type + " is needed");
+}
+
+bool VtkXmlFile::bigEndian() const {
+  return std::string_view(root_.attribute("byte_order").value()) == "BigEndian";
+}
+
+void VtkXmlFile::fail(const std::string& what) const {
+  throw Error(ErrorCode::bad_input, {file_}, what);
+}
+
+std::uint64_t VtkXmlFile::headerValue(ByteReader& reader) const {
+  const bool wide = std::string_view(root_.attribute("header_type").value()) == "UInt64";
+  std::uint8_t digits[8] = {};
+  const int count = wide ? 8 : 4;
+  std::memcpy(digits, reader.take(static_cast<std::uint64_t>(count), "size of an array"),
+              static_cast<std::size_t>(count));
+  if (bigEndian()) std::reverse(digits, digits + count);
+  std::uint64_t value;
+  std::memcpy(&value, digits, sizeof(value));
+  return value;
+}
+
+/// Blocks of zlib: their number, the size of each and of the last before compression (0: full as well), the
+/// compressed sizes, then the blocks.
+std::vector<std::uint8_t> VtkXmlFile::inflate(ByteReader& reader, std::uint64_t expected_bytes) const {
+  const std::uint64_t blocks = headerValue(reader);
+  const std::uint64_t block_bytes = headerValue(reader);
+  const std::uint64_t last_bytes = headerValue(reader);
+  if (blocks > reader.left()) reader.fail(std::to_string(blocks) + " compressed blocks");
+  std::vector<std::uint64_t> stored;
+  for (std::uint64_t i = 0; i < blocks; ++i) stored.push_back(headerValue(reader));
+  std::vector<std::uint8_t> bytes(expected_bytes);
+  std::uint64_t done = 0;
+  for (std::uint64_t i = 0; i < blocks; ++i) {
+    const std::uint64_t wanted = i + 1 == blocks && last_bytes > 0 ? last_bytes : block_bytes;
+    if (wanted > expected_bytes - done) reader.fail("compressed blocks hold more than the array");
+    uLongf got = static_cast<uLongf>(wanted);
+    const std::uint8_t* block = reader.take(stored[i], "compressed block");
+    if (uncompress(bytes.data() + done, &got, block, static_cast<uLong>(stored[i])) != Z_OK ||
+        got != wanted) {
+      reader.fail("a compressed block cannot be decompressed");
+    }
+    done += wanted;
+  }
+  if (done != expected_bytes) reader.fail("compressed blocks hold less than the array");
+  return bytes;
+}
+
+/// What stands for an array in the file, decoded from base64.
+std::vector<std::uint8_t> VtkXmlFile::storedBytes(const pugi::xml_node& array,
+                                                  std::uint64_t expected_bytes) const {
+  // Compression and its tables cannot make an array much longer.
+  const std::uint64_t most = expected_bytes + expected_bytes / 8 + (1 << 16);
+  const std::string_view format = array.attribute("format").value();
+  if (format == "binary") {
+    const std::string_view text = array.child_value();
+    const auto* begin = reinterpret_cast<const std::uint8_t*>(text.data());
+    return fromBase64(begin, begin + text.size(), most);
+  }
+  if (format != "appended") {
+    fail("array " + std::string(array.attribute("Name").value()) + " is stored as \"" + std::string(format) +
+         "\"; appended and binary can be read");
+  }
+  if (appended_ == 0) fail("damaged: there are no appended data");
+  const std::uint64_t offset = array.attribute("offset").as_ullong();
+  if (offset > bytes_.size() - appended_)
+    fail("truncated or damaged: an array begins at offset " + std::to_string(offset));
+  const std::uint8_t* begin = bytes_.data() + appended_ + offset;
+  const std::uint8_t* end = bytes_.data() + bytes_.size();
+  const std::string_view encoding = root_.child("AppendedData").attribute("encoding").value();
+  if (encoding == "base64") return fromBase64(begin, end, most);
+  if (encoding != "raw")
+    fail("appended data in encoding \"" + std::string(encoding) + "\"; raw and base64 can be read");
+  return {begin, begin + std::min<std::uint64_t>(most, static_cast<std::uint64_t>(end - begin))};
+}
+
+std::vector<std::uint8_t> VtkXmlFile::arrayBytes(const pugi::xml_node& array,
+                                                 std::uint64_t expected_bytes) const {
+  const std::string compressor = root_.attribute("compressor").value();
+  if (!compressor.empty() && compressor != "vtkZLibDataCompressor") {
+    fail("compressed with " + compressor + "; vtkZLibDataCompressor can be read");
+  }
+  // zlib shrinks a thousandfold at most, so a file cannot hold more.
+  if (expected_bytes / 1100 > bytes_.size()) {
+    fail("truncated: an array of " + std::to_string(expected_bytes) + " bytes in a file of " +
+         std::to_string(bytes_.size()));
+  }
+  const std::vector<std::uint8_t> stored = storedBytes(array, expected_bytes);
+  ByteReader reader(file_, stored.data(), stored.size());
+  if (!compressor.empty()) return inflate(reader, expected_bytes);
+  const std::uint64_t bytes = headerValue(reader);
+  if (bytes != expected_bytes) {
+    fail("array " + std::string(array.attribute("Name").value()) + ": expected " +
+         std::to_string(expected_bytes) + " bytes, found " + std::to_string(bytes));
+  }
+  const std::uint8_t* begin = reader.take(bytes, "array");
+  return {begin, begin + bytes};
+}
+
+}  // namespace emscape::volume

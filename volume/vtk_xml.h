@@ -1,0 +1,40 @@
+/// The XML files of VTK: their head as a document, their arrays as bytes. Internal to the module.
+#pragma once
+
+#include <filesystem>
+#include <pugixml.hpp>
+#include <string>
+#include <vector>
+
+#include "volume/byte_reader.h"
+
+namespace emscape::volume {
+
+class VtkXmlFile {
+ public:
+  /// @throws Error (bad_input) for what is no VTK XML file of the type (such as ImageData), or is not whole
+  VtkXmlFile(const std::filesystem::path& path, const char* type);
+
+  /// The element VTKFile.
+  pugi::xml_node root() const { return root_; }
+  bool bigEndian() const;
+
+  /// The bytes of a DataArray, decoded and decompressed.
+  /// @param expected_bytes  any other number is an Error, before anything is allocated for it
+  std::vector<std::uint8_t> arrayBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
+
+  [[noreturn]] void fail(const std::string& what) const;
+
+ private:
+  std::vector<std::uint8_t> storedBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
+  std::uint64_t headerValue(ByteReader& reader) const;
+  std::vector<std::uint8_t> inflate(ByteReader& reader, std::uint64_t expected_bytes) const;
+
+  std::string file_;
+  std::vector<std::uint8_t> bytes_;
+  pugi::xml_document document_;
+  pugi::xml_node root_;
+  std::uint64_t appended_ = 0;  ///< offset of the appended data, behind the underscore; 0: there are none
+};
+
+}  // namespace emscape::volume
