@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/error.h"
 #include "scenario/antenna.h"
 #include "scenario/scan.h"
 
