@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "apps/emscape/background_writer.h"
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/frame_source.h"
@@ -141,11 +142,14 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
   Stopwatch watch;
   {
     ProgressBar progress(global, "drawing", source->count());
+    BackgroundWriter writer(2);  // PNG and video are packed while the next picture is cast
     for (int index = 0; index < source->count(); ++index) {
-      const render::Image8 picture = painter.paint(source->frame(index));
-      for (const auto& sink : sinks) sink->add(index + 1, picture);
+      writer.push([&sinks, index, picture = painter.paint(source->frame(index))] {
+        for (const auto& sink : sinks) sink->add(index + 1, picture);
+      });
       progress.show(index + 1);
     }
+    writer.finish();
   }
   for (const auto& sink : sinks) sink->finish();
   for (const std::string& warning : source->warnings()) logWarning(warning);

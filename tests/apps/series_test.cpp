@@ -27,7 +27,7 @@ const std::string& quick() {
 /// A scenario that takes long enough to be interrupted.
 std::string slowScenario(const TemporaryFolder& folder) {
   std::string text = readFile(quick());
-  text.replace(text.find("duration_s: 4"), 13, "duration_s: 200");
+  text.replace(text.find("duration_s: 4"), 13, "duration_s: 80");
   text.replace(text.find("[40, 40, 20]"), 12, "[60, 60, 40]");
   const std::string file = folder / "slow.yaml";
   writeFile(file, text);
@@ -117,7 +117,7 @@ TEST(Simulate, ASeriesThatWasKilledResumesToTheSameFiles) {
   Arguments whole = arguments;
   whole[3] = folder / "w";
   ASSERT_EQ(run(whole).status, 0);
-  for (const char* file : {"quick_0001.raw", "quick_0004.raw", "quick_0201.raw", "quick_0201.raw.json"}) {
+  for (const char* file : {"quick_0001.raw", "quick_0004.raw", "quick_0081.raw", "quick_0081.raw.json"}) {
     EXPECT_TRUE(readFile(folder.path() / "s" / file) == readFile(folder.path() / "w" / file)) << file;
   }
   EXPECT_THAT(folder.files(), Not(Contains(HasSubstr(".part-"))));
