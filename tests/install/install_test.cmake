@@ -1,4 +1,4 @@
-# cmake -D build_dir=... -D consumer_dir=... -D work_dir=... -D generator=... -D compiler=... -P install_test.cmake
+# cmake -D build_dir=... -D consumer_dir=... -D work_dir=... -D generator=... -D compiler=... -D scenario=... -P install_test.cmake
 set(prefix "${work_dir}/prefix")
 set(consumer_build "${work_dir}/consumer")
 file(REMOVE_RECURSE "${prefix}" "${consumer_build}")
@@ -16,7 +16,7 @@ run(${CMAKE_COMMAND} --install "${build_dir}" --prefix "${prefix}")
 run(${CMAKE_COMMAND} -S "${consumer_dir}" -B "${consumer_build}" -G "${generator}"
     -D "CMAKE_CXX_COMPILER=${compiler}" -D "CMAKE_PREFIX_PATH=${prefix}")
 run(${CMAKE_COMMAND} --build "${consumer_build}")
-run("${consumer_build}/consumer")
-if(NOT output STREQUAL "111319.491\n")  # a degree of WGS84's equator
+run("${consumer_build}/consumer" "${scenario}")
+if(NOT output STREQUAL "power_density_dbwm2 4096\n")
   message(FATAL_ERROR "the consumer printed: ${output}")
 endif()

@@ -1,9 +1,16 @@
-// The smallest program that uses an installed Emscape.
+// The smallest program that computes a field with an installed Emscape.
 #include <cstdio>
 
-#include "base/geo_frame.h"
+#include "emfield/field_solver.h"
+#include "render/image.h"
+#include "scenario/scenario_yaml.h"
+#include "scenario/snapshot.h"
 
-int main() {
-  const emscape::GeodesicInverse degree = emscape::geodesicInverse(0, 0, 0, 1);
-  std::printf("%.3f\n", degree.distance_m);
+int main(int, char** arguments) {
+  const auto scenario = emscape::scenario::loadScenario(arguments[1]);
+  emscape::emfield::FieldSolver solver(scenario, nullptr, {});
+  solver.update(emscape::scenario::snapshotAt(scenario, nullptr, 0));
+  const auto& volume = *solver.volumes().front();
+  const emscape::render::ImageSize size{volume.grid.dims.x, volume.grid.dims.y};
+  std::printf("%s %d\n", volume.info.quantity.c_str(), static_cast<int>(size.count()));
 }
