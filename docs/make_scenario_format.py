@@ -18,8 +18,6 @@ def kind_of(spec):
     if "$ref" in spec:
         name = spec["$ref"].split("/")[-1]
         return f"[{name}](#{name.lower()})"
-    if "const" in spec:
-        return f"`{spec['const']}`"
     if "enum" in spec:
         return ", ".join(f"`{choice}`" for choice in spec["enum"])
     if spec["type"] == "array":
@@ -41,30 +39,27 @@ def number(value):
     return f"{value:g}" if abs(value) >= 1e5 else str(value)
 
 
+def variants_of(definition):
+    """(choice, properties, required keys) of each variant; one without a choice where there are none."""
+    for condition in definition.get("allOf", []):
+        (choice,) = (spec["const"] for spec in condition["if"]["properties"].values())
+        yield choice, condition["then"]["properties"], condition["then"].get("required", [])
+    if "allOf" not in definition:
+        yield None, definition["properties"], definition.get("required", [])
+
+
 def rows_of(definition):
-    """(key, kind, default, description), each key once; keys of some variants only name them."""
-    variants = definition["oneOf"] if "properties" not in definition else [definition]
-    rows = {}
-    for variant in variants:
-        properties = variant["properties"]
-        choice = next((spec["const"] for spec in properties.values() if "const" in spec), None)
+    """(key, kind, default, description), each once; those that hold for some variants only name them."""
+    uses = {}
+    variants = list(variants_of(definition))
+    for choice, properties, required in variants:
         for key, spec in properties.items():
-            default = "required" if key in variant.get("required", []) else ""
-            if "default" in spec:
-                default = f"`{json.dumps(spec['default'])}`"
-            row = (key, kind_of(spec) if "const" not in spec else None, default, spec.get("description", ""))
-            rows.setdefault(row, []).append((choice, spec.get("const")))
-    merged = {}
-    for (key, kind, default, description), uses in rows.items():
-        if kind is None:
-            kind = ", ".join(f"`{const}`" for _, const in uses)
-            choices = []
-        else:
-            choices = [choice for choice, _ in uses if choice]
-        if kind and choices and len(choices) < len(variants):
+            default = f"`{json.dumps(spec['default'])}`" if "default" in spec else "required" if key in required else ""
+            uses.setdefault((key, kind_of(spec), default, spec.get("description", "")), []).append(choice)
+    for (key, kind, default, description), choices in uses.items():
+        if len(choices) < len(variants):
             description = f"{', '.join(f'`{choice}`' for choice in choices)}: {description}"
-        merged[(key, kind, default, description)] = None
-    return merged
+        yield key, kind, default, description
 
 
 def table(definition):
