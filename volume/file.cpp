@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <regex>
+#include <set>
 #include <tuple>
 
 #include "volume/nvdb.h"
@@ -152,6 +153,10 @@ void writeVolumes(const fs::path& path, const Volumes& volumes) {
   if (volumes.empty()) fail("no volume to write");
   if (volumes.size() > 1 && !format.about.several) {
     fail("a ." + format.about.name + " file holds one volume, not " + std::to_string(volumes.size()));
+  }
+  std::set<std::string> quantities;
+  for (const DenseVolume* volume : volumes) {
+    if (!quantities.insert(volume->info.quantity).second) fail("two volumes of " + volume->info.quantity);
   }
   format.write(path, volumes);
 }

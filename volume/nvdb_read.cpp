@@ -200,11 +200,11 @@ class NvdbFile {
   }
 
   DenseVolume read(const GridEntry& entry) const {
+    if (entry.size < sizeof(nano::GridData)) reader_.fail("a grid without its header");
     nano::Buffer buffer = nano::Buffer::create(entry.size);
     std::memcpy(buffer.data(), bytes_.data() + entry.offset, entry.size);
     const auto* data = reinterpret_cast<const nano::GridData*>(buffer.data());
-    if (entry.size < sizeof(nano::GridData) || data->mMagic != nano::kMagic)
-      reader_.fail("a grid without its header");
+    if (data->mMagic != nano::kMagic) reader_.fail("a grid without its header");
     switch (data->mGridType) {
       case nano::GridType::Float:
         return readAs<float>(entry, *data, false);

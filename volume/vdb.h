@@ -7,7 +7,7 @@
 ///
 ///   emscape:quantity, :unit, :time_utc  string        emscape:time_s  double
 ///   emscape:floor, :range_min, :range_max  float       emscape:categorical  bool
-///   emscape:dims  vec3i (the tree says only where voxels are active)
+///   emscape:dims  vec3i (the tree says only where voxels are active); :voxel_count  int64, their product
 ///   emscape:frame  string; :origin_latitude_deg, :origin_longitude_deg, :origin_height_msl_m  double (where
 ///   georeferenced) emscape:first_valid_k  bytes: the mask, 16 bits a column, little endian (where there is
 ///   one) emscape:KEY  string, for each entry of VolumeInfo::extra (scenario_hash, version, ...)

@@ -117,6 +117,7 @@ void setMetadata(openvdb::GridBase& grid, const DenseVolume& volume) {
   set("categorical", openvdb::BoolMetadata(info.categorical));
   const Dims& dims = volume.grid.dims;
   set("dims", openvdb::Vec3IMetadata(openvdb::Vec3i(dims.x, dims.y, dims.z)));
+  set("voxel_count", openvdb::Int64Metadata(dims.count()));
   if (volume.grid.georeferenced) {
     const FrameOrigin& frame = volume.grid.frame;
     set("frame", openvdb::StringMetadata(toString(frame.kind)));

@@ -15,6 +15,18 @@ constexpr char kHalfSuffix[] = "_HalfFloat";
 
 enum Compression : std::uint32_t { kZip = 1, kActiveMask = 2, kBlosc = 4 };
 
+/// How a node's inactive values are kept, as the byte before its values says: they are the background or its
+/// negative, other values that stand there, or by a mask the one or the other; or nothing is left out.
+enum ValueKind : std::int8_t {
+  kBackground = 0,
+  kMinusBackground = 1,
+  kOneInactive = 2,
+  kMaskOfSigns = 3,
+  kMaskAndOneInactive = 4,
+  kMaskAndTwoInactive = 5,
+  kAllValues = 6,
+};
+
 /// Log2 of the nodes' edges, from the root's children to the leaves.
 constexpr int kUpperLog2 = 5, kLowerLog2 = 4, kLeafLog2 = 3;
 /// Edge of a root's child (voxels); the root's keys are multiples of it.
@@ -84,15 +96,14 @@ class TreeWalk {
 
   /// The values of a node, of which inactive ones may be left out.
   void values(int log2, const std::uint8_t* value_mask) {
-    enum { kAllValues = 6 };
     const auto kind = reader_.value<std::int8_t>("kind of a node's values");
     if (kind < 0 || kind > kAllValues)
       reader_.fail("values of kind " + std::to_string(kind) + ", which is none");
-    const bool one_value = kind == 2 || kind == 4 || kind == 5;
-    const bool two_values = kind == 5;
-    const bool selection = kind == 3 || kind == 4 || kind == 5;
-    reader_.take(voxel_bytes_ * (one_value + two_values) + (selection ? maskBytes(log2) : 0),
-                 "inactive values");
+    const bool one_value = kind == kOneInactive || kind == kMaskAndOneInactive;
+    const bool two_values = kind == kMaskAndTwoInactive;
+    const bool selection = kind == kMaskOfSigns || kind == kMaskAndOneInactive || kind == kMaskAndTwoInactive;
+    reader_.take(voxel_bytes_ * (two_values ? 2 : one_value ? 1 : 0), "inactive values");
+    reader_.take(selection ? maskBytes(log2) : 0, "mask of inactive values");
     const bool left_out = (compression_ & kActiveMask) != 0 && kind != kAllValues;
     const std::uint64_t count = left_out ? countOn(value_mask, log2) : valueCount(log2);
     if (half_ && count == 0) return;

@@ -154,6 +154,10 @@ DenseVolume volumeOf(const GridEntry& entry) {
   if (const auto dims = metaInts(metadata, "emscape:dims")) {
     volume.grid.dims = {dims->x, dims->y, dims->z};
     checkDims(volume.grid.dims, {});
+    // Two statements that agree: a damaged one must not make us allocate for it.
+    if (number("voxel_count") != static_cast<double>(volume.grid.dims.count())) {
+      throw Error(ErrorCode::bad_input, "emscape:voxel_count is not the product of emscape:dims");
+    }
   }
   const auto frame = text("frame");
   const auto latitude_deg = number("origin_latitude_deg"), longitude_deg = number("origin_longitude_deg"),

@@ -98,6 +98,7 @@ Json toJson(const DenseVolume& volume, bool with_mask) {
   json["quantity"] = info.quantity;
   json["unit"] = info.unit;
   json["dims"] = {grid.dims.x, grid.dims.y, grid.dims.z};
+  json["voxels"] = grid.dims.count();
   json["spacing_m"] = vectorToJson(grid.spacing_m);
   json["first_center_m"] = vectorToJson(grid.first_center_m);
   if (grid.georeferenced) {
@@ -131,6 +132,10 @@ DenseVolume fromJson(const Json& json, const std::string& file) {
     }
   }
   checkDims(volume.grid.dims, {file});
+  if (json.contains("voxels") && json["voxels"] != volume.grid.dims.count()) {
+    throw Error(ErrorCode::bad_input, {file},
+                "key voxels: " + json["voxels"].dump() + " is not the product of the dims");
+  }
   return volume;
 }
 

@@ -13,7 +13,9 @@ namespace emscape::volume {
 /// Grid and info; the mask as "first_valid_k" where `with_mask` and there is one.
 nlohmann::ordered_json toJson(const DenseVolume& volume, bool with_mask);
 
-/// A volume without values. Keys that are missing keep their defaults, all but dims.
+/// A volume without values. Keys that are missing keep their defaults, all but dims. "voxels", if there, must
+/// agree with them: whoever allocates for dims that a damaged file states should not find that out
+/// afterwards.
 /// @throws Error (bad_input) that names file and key
 DenseVolume fromJson(const nlohmann::ordered_json& json, const std::string& file);
 

@@ -51,9 +51,11 @@ VtkXmlFile::VtkXmlFile(const std::filesystem::path& path, const char* type)
   if (text.substr(text.size() - std::min(text.size(), kTail)).find(kEnd) == std::string_view::npos) {
     fail("truncated: it does not end in " + std::string(kEnd));
   }
-  std::string head(text);
+  std::string head;
   const std::size_t section = text.find("<AppendedData");
-  if (section != std::string_view::npos) {
+  if (section == std::string_view::npos) {
+    head = text;
+  } else {
     const std::size_t tag_end = text.find('>', section);
     const std::size_t underscore = text.find('_', tag_end);
     if (underscore == std::string_view::npos) fail("damaged: the appended data have no beginning");

@@ -2,14 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <fstream>
 #include <string>
 
 #include "base/error.h"
+#include "tests/file_size_limit.h"
 
 namespace emscape {
 namespace {
@@ -96,26 +95,8 @@ TEST_F(WholeFile, NamesAMissingPermission) {
   fs::permissions(folder_, fs::perms::owner_all);
 }
 
-/// Limits the size of files, as a full disk would.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  sighandler_t handler_;
-};
-
 TEST_F(WholeFile, IsGoneWhenTheDiskIsFull) {
-  const FileSizeLimit limit(100000);
+  const test::FileSizeLimit limit(100000);
   for (const int bytes : {150000, 3000000}) {
     const std::string text(static_cast<std::size_t>(bytes), 'x');
     EXPECT_THAT(errorOf([&] { writeWhole(folder_ / "a", [&](std::ostream& stream) { stream << text; }); }),

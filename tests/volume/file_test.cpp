@@ -1,11 +1,13 @@
 #include "volume/file.h"
 
+#include "tests/file_size_limit.h"
 #include "tests/volume/sample_volumes.h"
 #include "volume/vti.h"
 
 namespace emscape::volume {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using namespace test;
@@ -39,6 +41,26 @@ TEST(File, NothingLiesUnderTheFinalNameWhenWritingFails) {
     EXPECT_THROW(writeVolumes(folder / ("a." + format.name), {}), Error) << format.name;
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(File, NothingLiesUnderTheFinalNameWhenTheDiskIsFull) {
+  TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume();
+  const emscape::test::FileSizeLimit limit(5000);
+  for (const FileFormat& format : fileFormats()) {
+    if (!format.writable) continue;
+    EXPECT_THAT(errorOf([&] { writeVolumes(folder / ("a." + format.name), {&volume}); }),
+                AllOf(HasSubstr((folder / "a.").string()), HasSubstr("cannot write: File too large")));
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(File, QuantitiesOfOneFileDiffer) {
+  const DenseVolume volume = plainVolume();
+  EXPECT_THAT(errorOf([&] {
+                writeVolumes("a.vdb", {&volume, &volume});
+              }),
+              HasSubstr("two volumes of density"));
 }
 
 TEST(File, UnknownEndingsAreRefusedWithTheKnownOnes) {

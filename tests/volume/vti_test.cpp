@@ -91,6 +91,16 @@ TEST(ForeignVti, MayBeAppendedBase64WithPaddingAfterTheHeader) {
   EXPECT_EQ(volume.values, (std::vector<float>{1, 2, 3, 250}));
 }
 
+TEST(ForeignVti, MayBeCompressedWithZlib) {
+  // One block of 4 bytes; then blocks of 3 bytes and 1.
+  for (const char* blocks : {"AQAAAAQAAAAAAAAADAAAAA==eJxjZGL+BQABDgEB",
+                             "AgAAAAMAAAABAAAACwAAAAkAAAA=eJxjZGIGAAANAAd4nPsFAAD7APs="}) {
+    const DenseVolume volume = readText(vti("compressor=\"vtkZLibDataCompressor\"",
+                                            std::string("type=\"UInt8\" format=\"binary\">") + blocks, ""));
+    EXPECT_EQ(volume.values, (std::vector<float>{1, 2, 3, 250}));
+  }
+}
+
 TEST(ForeignVti, IsRefusedWhereItCannotBeRead) {
   const auto refusal = [](const std::string& text) { return errorOf([&] { readText(text); }); };
   EXPECT_THAT(refusal(vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "")),
