@@ -8,3 +8,8 @@ extern "C" const char* __tsan_default_suppressions() {
          "called_from_lib:libopenvdb.so\n"
          "race:openvdb::\n";
 }
+
+// Fontconfig keeps what it has read until the process ends, and cairo does not hand it back.
+extern "C" const char* __lsan_default_suppressions() {
+  return "leak:libfontconfig.so\n";
+}
