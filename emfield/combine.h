@@ -28,36 +28,55 @@ struct EmitterBeam {
 /// Nearer than this (m) the distance is taken as this: the field stays finite at the emitter itself.
 constexpr float kSmallestDistance_m = 1;
 
-/// Power density (W/m2) of one emitter at the voxel at z = t_m of a column; 0 in shadow and where the path is
-/// unknown. On the emitter's own far field: nearer than 2 D^2 / lambda it is the extrapolated far field, an
-/// upper bound.
-/// @accuracy 1e-4 dB of double precision on axis and on smooth patterns, to 500 km
-template <scenario::PatternKind kind>
-EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, std::size_t column, float t_m) {
-  const ColumnGeometryView& g = emitter.geometry;
-  const float along_m = t_m - g.nearest_t_m[column];
-  const float distance2 = g.offset2_m2[column] + along_m * along_m;
+/// A voxel as an emitter sees it.
+struct VoxelRay {
+  Vec3f direction;  ///< of the refracted ray's start, in the antenna's frame (forward, right, up); not a unit
+                    ///< vector
+  float length2_m2;     ///< the direction's length squared
+  float isotropic_wm2;  ///< power density if the antenna radiated as on boresight; 0 in shadow and where it
+                        ///< is unknown
+};
 
+/// @param t_m  z of the voxel in the grid's frame
+EMSCAPE_HD inline VoxelRay voxelRay(const EmitterBeam& emitter, std::size_t column, float t_m) {
+  const ColumnGeometryView& g = emitter.geometry;
   const float east = g.base_east_m[column] + t_m * g.axis_east[column];
   const float north = g.base_north_m[column] + t_m * g.axis_north[column];
   const float ground2 = east * east + north * north;
-  const float bent_up =
-      g.base_up_m[column] + t_m * g.axis_up[column] + g.bending[column] * std::sqrt(ground2);
+  const float up = g.base_up_m[column] + t_m * g.axis_up[column] + g.bending[column] * std::sqrt(ground2);
+  const Vec3f ray{east, north, up};
 
-  float amplitude = 1;
-  if constexpr (kind != scenario::PatternKind::isotropic) {
-    const Vec3f ray{east, north, bent_up};
-    Vec3f direction{dot(ray, emitter.forward), dot(ray, emitter.right), dot(ray, emitter.up)};
-    if constexpr (kind == scenario::PatternKind::phased_array) {
-      direction = direction * (1 / std::sqrt(ground2 + bent_up * bent_up + 1e-12f));
-    }
-    amplitude = scenario::amplitudeOf<kind>(emitter.pattern, direction, emitter.steer_u, emitter.steer_v);
-  }
-
+  const float along_m = t_m - g.nearest_t_m[column];
+  const float distance2 = g.offset2_m2[column] + along_m * along_m;
   constexpr float kSmallest2 = kSmallestDistance_m * kSmallestDistance_m;
-  const float lit =
-      g.shadow_edge_m == nullptr || t_m >= g.shadow_edge_m[column] ? emitter.eirp_over_4pi_w : 0.0f;
-  return lit * amplitude * amplitude / (distance2 > kSmallest2 ? distance2 : kSmallest2);
+  const float lit_w = t_m >= g.shadow_edge_m[column] ? emitter.eirp_over_4pi_w : 0.0f;
+  return {{dot(ray, emitter.forward), dot(ray, emitter.right), dot(ray, emitter.up)},
+          ground2 + up * up,
+          lit_w / (distance2 > kSmallest2 ? distance2 : kSmallest2)};
+}
+
+/// Power density (W/m2) of one emitter at the voxel at z = t_m of a column; 0 in shadow and where the path is
+/// unknown. Nearer than the far field (2 D^2 / lambda) it is the extrapolated far field.
+/// @accuracy 1e-4 dB of double precision on axis and on smooth patterns, to 500 km
+template <scenario::PatternKind kind>
+EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, std::size_t column, float t_m) {
+  const VoxelRay ray = voxelRay(emitter, column, t_m);
+  Vec3f direction = ray.direction;
+  if constexpr (kind == scenario::PatternKind::phased_array) {
+    direction = direction * (1 / std::sqrt(ray.length2_m2 + 1e-12f));
+  }
+  const float amplitude =
+      scenario::amplitudeOf<kind>(emitter.pattern, direction, emitter.steer_u, emitter.steer_v);
+  return ray.isotropic_wm2 * amplitude * amplitude;
+}
+
+/// The same where the voxel lies outside the pattern's lobe.
+/// @param depth  below 0 where it does (scenario::depthInLobe)
+EMSCAPE_HD inline float sideLobePowerDensity_wm2(const EmitterBeam& emitter, std::size_t column, float t_m,
+                                                 float& depth) {
+  const VoxelRay ray = voxelRay(emitter, column, t_m);
+  depth = scenario::depthInLobe(emitter.pattern, ray.direction);
+  return ray.isotropic_wm2 * emitter.pattern.side_lobe_amplitude * emitter.pattern.side_lobe_amplitude;
 }
 
 /// How the emitters' power densities S become a channel's accumulator.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -31,7 +32,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, scenario::Pro
   const Station station = makeStation(state.position, state.height_msl_m, k_factor);
   const std::vector<FanCoordinates> coordinates = fanCoordinates(station, columns);
   locateColumns(station, k_factor, columns, coordinates);
-  shadow_edge_m_.clear();
+  shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
   unknown_columns_ = 0;
   if (model == scenario::PropagationModel::free_space) {
     times.fan_ms += watch.lap_ms();
@@ -40,7 +41,6 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, scenario::Pro
   // Some intervals at a time, so that a fine fan over a wide region does not fill the memory.
   const FanShape shape = fanShape(station, coordinates, terrain, resolution, leanOf(columns));
   const int at_once = columns.tilted ? shape.interval_count : std::max(1, kFanSamples / shape.rangeCount());
-  shadow_edge_m_.resize(column_count_);
   times.fan_ms += watch.lap_ms();
   for (int first = 0; first < shape.interval_count; first += at_once) {
     const int count = std::min(at_once, shape.interval_count - first);
@@ -85,20 +85,12 @@ void EmitterGeometry::locateColumns(const Station& station, double k_factor, con
 ColumnGeometryView EmitterGeometry::view() const {
   const float* first = arrays_.data();
   const std::size_t n = column_count_;
-  return {first,         first + n,
-          first + 2 * n, first + 3 * n,
-          first + 4 * n, first + 5 * n,
-          first + 6 * n, first + 7 * n,
-          first + 8 * n, shadow_edge_m_.empty() ? nullptr : shadow_edge_m_.data()};
+  return {first,         first + n,     first + 2 * n, first + 3 * n, first + 4 * n,
+          first + 5 * n, first + 6 * n, first + 7 * n, first + 8 * n, shadow_edge_m_.data()};
 }
 
 bool EmitterGeometry::isUnknown(std::size_t column) const {
-  return !shadow_edge_m_.empty() && std::isnan(shadow_edge_m_[column]);
-}
-
-void EmitterGeometry::release() {
-  arrays_ = {};
-  shadow_edge_m_ = {};
+  return std::isnan(shadow_edge_m_[column]);
 }
 
 }  // namespace emscape::emfield

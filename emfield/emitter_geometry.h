@@ -25,7 +25,7 @@ struct ColumnGeometryView {
   const float* nearest_t_m = nullptr;
   /// How much the refracted ray starts above the straight line: added to the tangent of the elevation.
   const float* bending = nullptr;
-  /// Voxels below this z (m) are in shadow; null: the model has no shadow. NaN: unknown.
+  /// Voxels below this z (m) are in shadow; -infinity: none is. NaN: unknown.
   const float* shadow_edge_m = nullptr;
 };
 
@@ -49,7 +49,6 @@ class EmitterGeometry {
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
   std::size_t bytes() const { return (arrays_.size() + shadow_edge_m_.size()) * sizeof(float); }
-  void release();
 
  private:
   void locateColumns(const Station& station, double k_factor, const GridColumns& columns,

@@ -38,6 +38,9 @@ struct PatternView {
   float gaussian_azimuth = 0;
   float gaussian_elevation = 0;
   float side_lobe_amplitude = 0;
+  /// Where |right| > lobe_tangent * forward, the amplitude is side_lobe_amplitude at every elevation, so that
+  /// loops may pass over what lies there; 0: no such azimuths are known. See depthInLobe().
+  float lobe_tangent = 0;
   /// separable, phased_array, grid. Grid: row-major, elevation rows, azimuth fastest, azimuth_count x
   /// elevation_count.
   const float* azimuth_table = nullptr;
@@ -50,7 +53,8 @@ struct PatternView {
 };
 
 /// Amplitude (relative voltage, 0..1) towards a direction of the antenna's frame.
-/// @param direction  (forward, right, up), a unit vector for phased_array, of any length above 0 for the other kinds; a
+/// @param direction  (forward, right, up), a unit vector for phased_array, of any length above 0 for the
+/// other kinds; a
 ///                   NaN in it gives any value of the pattern or NaN
 /// @param steer_u, steer_v  phased_array: the direction cosines (right, up) to which the array is steered;
 /// else ignored

@@ -87,6 +87,12 @@ EMSCAPE_HD inline float gridAmplitude(const PatternView& pattern, const Vec3f& d
 
 }  // namespace antenna_detail
 
+/// 0 or above where a direction (forward, right, up; of any length) may see more of the pattern than
+/// side_lobe_amplitude. For patterns whose lobe_tangent is not 0.
+EMSCAPE_HD inline float depthInLobe(const PatternView& pattern, const Vec3f& direction) {
+  return pattern.lobe_tangent * direction.x - std::fabs(direction.y);
+}
+
 template <PatternKind kind>
 EMSCAPE_HD inline float amplitudeOf(const PatternView& pattern, const Vec3f& direction, float steer_u,
                                     float steer_v) {

@@ -57,6 +57,7 @@ class GaussianAntenna : public Antenna {
     view.gaussian_azimuth = static_cast<float>(azimuth_);
     view.gaussian_elevation = static_cast<float>(elevation_);
     view.side_lobe_amplitude = static_cast<float>(side_lobe_amplitude_);
+    view.lobe_tangent = lobeTangent(std::sqrt(-std::log(side_lobe_amplitude_) / azimuth_));
     return view;
   }
   double amplitudeTowards(const Vec3d& direction, double, double) const override {
@@ -69,6 +70,9 @@ class GaussianAntenna : public Antenna {
  private:
   double azimuth_, elevation_, side_lobe_amplitude_;
 };
+
+/// Lobe of what radiates everywhere but backwards.
+constexpr float kHalfSpaceTangent = 1e30f;
 
 /// A planar aperture in direction cosines, continuous or of elements.
 class PlanarAntenna : public Antenna {
@@ -85,6 +89,7 @@ class PlanarAntenna : public Antenna {
     PatternView view;
     view.kind = PatternKind::phased_array;
     view.side_lobe_amplitude = static_cast<float>(back_amplitude_);
+    view.lobe_tangent = kHalfSpaceTangent;
     view.azimuth_table = u_.values.data();
     view.elevation_table = v_.values.data();
     view.azimuth_count = u_.count();

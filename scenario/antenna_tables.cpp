@@ -85,15 +85,34 @@ Angles patternAngles(const Vec3d& direction) {
           std::atan2(direction.z, std::hypot(direction.x, direction.y))};
 }
 
+float lobeTangent(double edge_azimuth_rad) {
+  // Well before a right angle the tangent grows too steep to be of use; the margin covers its rounding.
+  constexpr double kWidest_rad = 1.4, kMargin = 1e-4;
+  return edge_azimuth_rad < kWidest_rad
+             ? static_cast<float>(std::tan(edge_azimuth_rad) * (1 + kMargin) + kMargin)
+             : 0.0f;
+}
+
 SeparableAntenna::SeparableAntenna(ShapeTable azimuth, ShapeTable elevation, double side_lobe_amplitude)
     : azimuth_(std::move(azimuth)),
       elevation_(std::move(elevation)),
-      side_lobe_amplitude_(side_lobe_amplitude) {}
+      side_lobe_amplitude_(side_lobe_amplitude) {
+  double highest = 0;
+  for (float amplitude : elevation_.values) highest = std::max(highest, std::abs(double(amplitude)));
+  const int middle = azimuth_.count() / 2;
+  int edge = middle;
+  const auto isLow = [&](int i) {
+    return std::abs(double(azimuth_.values[i])) * highest < side_lobe_amplitude_;
+  };
+  while (edge > 0 && isLow(middle - edge) && isLow(middle + edge)) --edge;
+  lobe_tangent_ = lobeTangent((edge + 1) * azimuth_.half_span / middle);
+}
 
 PatternView SeparableAntenna::view() const {
   PatternView view;
   view.kind = PatternKind::separable;
   view.side_lobe_amplitude = static_cast<float>(side_lobe_amplitude_);
+  view.lobe_tangent = lobe_tangent_;
   view.azimuth_table = azimuth_.values.data();
   view.elevation_table = elevation_.values.data();
   view.azimuth_count = azimuth_.count();

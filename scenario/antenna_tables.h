@@ -47,6 +47,10 @@ struct Angles {
 };
 Angles patternAngles(const Vec3d& direction);
 
+/// PatternView::lobe_tangent of a pattern that is at its side-lobe level beyond an azimuth (rad) to both
+/// sides.
+float lobeTangent(double edge_azimuth_rad);
+
 /// azimuth shape * elevation shape, not below side_lobe_amplitude.
 class SeparableAntenna : public Antenna {
  public:
@@ -57,6 +61,7 @@ class SeparableAntenna : public Antenna {
  private:
   ShapeTable azimuth_, elevation_;
   double side_lobe_amplitude_;
+  float lobe_tangent_;
 };
 
 /// Rows of elevation from -90 to 90 degrees, azimuth fastest from -180 to 180; bilinear in amplitude.

@@ -18,10 +18,39 @@ struct Row {
 };
 
 template <PatternKind kind>
-__attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter, const Row& row, float* out) {
+__attribute__((always_inline)) inline void fillPiece(const EmitterBeam& emitter, const Row& row, float* out) {
   const EmitterBeam local = emitter;
 #pragma omp simd
   for (int i = 0; i < row.count; ++i) out[i] = powerDensity_wm2<kind>(local, row.column + i, row.t_m);
+}
+
+/// Voxels tried at once for lying outside the lobe, which saves the pattern: most of a narrow beam's do.
+constexpr int kPiece = 64;
+
+/// Fills a piece of at most kPiece voxels as if it lay outside the main lobe, and says whether some of it may
+/// not.
+__attribute__((always_inline)) inline bool fillBesideLobe(const EmitterBeam& emitter, const Row& row,
+                                                          float* out) {
+  const EmitterBeam local = emitter;
+  float depth[kPiece];
+#pragma omp simd
+  for (int i = 0; i < row.count; ++i) {
+    out[i] = sideLobePowerDensity_wm2(local, row.column + i, row.t_m, depth[i]);
+  }
+  int inside = 0;
+#pragma omp simd reduction(+ : inside)
+  for (int i = 0; i < row.count; ++i) inside += depth[i] >= 0 ? 1 : 0;
+  return inside > 0;
+}
+
+template <PatternKind kind>
+__attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  if (kind == PatternKind::isotropic || emitter.pattern.lobe_tangent == 0)
+    return fillPiece<kind>(emitter, row, out);
+  for (int first = 0; first < row.count; first += kPiece) {
+    const Row piece{row.column + first, std::min(kPiece, row.count - first), row.t_m};
+    if (fillBesideLobe(emitter, piece, out + first)) fillPiece<kind>(emitter, piece, out + first);
+  }
 }
 
 EMSCAPE_SIMD_CLONES void isotropicRow(const EmitterBeam& emitter, const Row& row, float* out) {
