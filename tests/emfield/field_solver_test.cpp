@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/units.h"
+#include "scenario/scenario_yaml.h"
 #include "tests/emfield/test_scenario.h"
 
 namespace emscape::emfield {
@@ -231,6 +232,13 @@ TEST(FieldSolver, CountsAndMarksTheNearField) {
   solver.update(scenario::snapshotAt(scenario, nullptr, 0));
   EXPECT_THAT(solver.warnings(), ElementsAre(HasSubstr("'dish': voxels nearer than its far field")));
   EXPECT_THAT(solver.volumes().front()->info.extra.at("near_field"), HasSubstr("dish: "));
+}
+
+TEST(FieldSolver, ComputesQuantitiesThatTheScenarioSchemaKnows) {
+  const std::string schema = scenario::scenarioJsonSchema();
+  for (const QuantityInfo& entry : quantityTable()) {
+    EXPECT_THAT(schema, HasSubstr("\"" + std::string(entry.name) + "\""));
+  }
 }
 
 TEST(FieldSolver, RefusesWhatItCannotCompute) {
