@@ -12,53 +12,62 @@ namespace {
 constexpr ValueRange kNothing{std::numeric_limits<float>::infinity(),
                               -std::numeric_limits<float>::infinity()};
 
-/// One row: from the accumulator in place to values, masked where k lies below first_valid_k.
-template <bool decibels>
-inline void fillRow(const ProductScale& product, const float* accumulator, const std::uint16_t* first_valid_k,
-                    int k, int count, float* values, ValueRange& range) {
+// Simple loops, one thing each: so g++ makes full-width SIMD code of them.
+
+EMSCAPE_SIMD_CLONES void decibelRow(const ProductScale& product, const float* accumulator, int count,
+                                    float* values) {
   const ProductScale local = product;
+#pragma omp simd
+  for (int i = 0; i < count; ++i) values[i] = decibelsOf(local, accumulator[i]);
+}
+
+/// Gives voxels below first_valid_k the floor.
+EMSCAPE_SIMD_CLONES void maskRow(const std::uint16_t* first_valid_k, int k, float floor, int count,
+                                 float* values) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) values[i] = k >= static_cast<int>(first_valid_k[i]) ? values[i] : floor;
+}
+
+EMSCAPE_SIMD_CLONES void widenRange(const float* values, int count, float floor, ValueRange& range) {
   float lowest = range.lowest, highest = range.highest;
 #pragma omp simd reduction(min : lowest) reduction(max : highest)
   for (int i = 0; i < count; ++i) {
-    const float made = decibels ? decibelsOf(local, accumulator[i]) : accumulator[i];
-    const float value = k >= static_cast<int>(first_valid_k[i]) ? made : local.floor;
-    values[i] = value;
-    const float for_lowest = value > local.floor ? value : kNothing.lowest;
-    const float for_highest = value > local.floor ? value : kNothing.highest;
+    const float for_lowest = values[i] > floor ? values[i] : kNothing.lowest;
     lowest = for_lowest < lowest ? for_lowest : lowest;
-    highest = for_highest > highest ? for_highest : highest;
+    highest = values[i] > highest ? values[i] : highest;
   }
   range = {lowest, highest};
 }
 
-EMSCAPE_SIMD_CLONES void decibelRow(const ProductScale& product, const float* accumulator,
-                                    const std::uint16_t* first_valid_k, int k, int count, float* values,
-                                    ValueRange& range) {
-  fillRow<true>(product, accumulator, first_valid_k, k, count, values, range);
-}
-EMSCAPE_SIMD_CLONES void plainRow(const ProductScale& product, const float* accumulator,
-                                  const std::uint16_t* first_valid_k, int k, int count, float* values,
-                                  ValueRange& range) {
-  fillRow<false>(product, accumulator, first_valid_k, k, count, values, range);
+/// All rows at one y.
+ValueRange fillRows(const ProductTask& task, int j) {
+  const int count = task.dims.x;
+  const std::uint16_t* first_valid_k =
+      task.first_valid_k == nullptr ? nullptr : task.first_valid_k + static_cast<std::size_t>(j) * count;
+  const int all_valid_k =
+      first_valid_k == nullptr ? 0 : *std::max_element(first_valid_k, first_valid_k + count);
+  ValueRange range = kNothing;
+  for (int k = 0; k < task.dims.z; ++k) {
+    const std::size_t first = (static_cast<std::size_t>(k) * task.dims.y + j) * count;
+    const float* accumulator = task.accumulator + first;
+    float* values = task.values + first;
+    if (task.product.decibels) {
+      decibelRow(task.product, accumulator, count, values);
+    } else {
+      std::copy_n(accumulator, count, values);
+    }
+    if (k < all_valid_k) maskRow(first_valid_k, k, task.product.floor, count, values);
+    widenRange(values, count, task.product.floor, range);
+  }
+  return range.highest > task.product.floor ? range : kNothing;
 }
 
 }  // namespace
 
 ValueRange productCpu(const ProductTask& task) {
   std::vector<ValueRange> ranges(task.dims.y, kNothing);
-  const std::vector<std::uint16_t> all_valid(task.first_valid_k == nullptr ? task.dims.x : 0, 0);
-  const auto row = task.product.decibels ? decibelRow : plainRow;
   parallelFor(task.dims.y, 1, [&](int begin, int end) {
-    for (int j = begin; j < end; ++j) {
-      const std::uint16_t* first_valid_k =
-          task.first_valid_k == nullptr ? all_valid.data()
-                                        : task.first_valid_k + static_cast<std::size_t>(j) * task.dims.x;
-      for (int k = 0; k < task.dims.z; ++k) {
-        const std::size_t first = (static_cast<std::size_t>(k) * task.dims.y + j) * task.dims.x;
-        row(task.product, task.accumulator + first, first_valid_k, k, task.dims.x, task.values + first,
-            ranges[j]);
-      }
-    }
+    for (int j = begin; j < end; ++j) ranges[j] = fillRows(task, j);
   });
   ValueRange total = kNothing;
   for (const ValueRange& range : ranges) {
