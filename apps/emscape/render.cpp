@@ -94,11 +94,16 @@ class Painter {
   }
 
  private:
+  /// By how frequent the values are, unless the user gave the range or the function.
+  render::TransferFunction functionFor(const volume::DenseVolume& volume) const {
+    if (!options_.transfer.empty()) return render::readTransferFunction(options_.transfer, volume.info);
+    return options_.range.empty() ? render::defaultTransferFunction(volume)
+                                  : render::defaultTransferFunction(volume.info);
+  }
+
   void fitTo(const volume::DenseVolume& volume) {
     const LoadedScenario* scene = source_.scene();
-    const render::TransferFunction function =
-        options_.transfer.empty() ? render::defaultTransferFunction(volume.info)
-                                  : render::readTransferFunction(options_.transfer, volume.info);
+    const render::TransferFunction function = functionFor(volume);
     renderer_.setTransferFunction(function);
     if (options_.show_terrain && scene && scene->terrain) {
       renderer_.setHeightField(heightFieldOf(*scene->terrain, volume.grid));
