@@ -11,6 +11,7 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/inputs.h"
 #include "apps/emscape/interrupt.h"
+#include "base/error.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "emfield/field_solver.h"
@@ -22,7 +23,28 @@ namespace {
 struct BenchFieldOptions {
   std::string scenario;
   int repeats = 5;
+  std::vector<std::string> emitters;  ///< that move and turn; empty: all
 };
+
+/// Indices of the emitters that an option names. @throws Error (usage) for a name that the scenario lacks
+std::vector<std::size_t> chosenEmitters(const scenario::Scenario& scenario,
+                                        const std::vector<std::string>& names) {
+  std::vector<std::size_t> chosen;
+  std::string known;
+  for (const scenario::Emitter& emitter : scenario.emitters)
+    known += (known.empty() ? "'" : ", '") + emitter.name + "'";
+  for (const std::string& name : names) {
+    const auto found = std::find_if(scenario.emitters.begin(), scenario.emitters.end(),
+                                    [&](const scenario::Emitter& emitter) { return emitter.name == name; });
+    if (found == scenario.emitters.end()) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("--emitters: no emitter '{}' in {}; it has {}", name, scenario.file, known));
+    }
+    chosen.push_back(static_cast<std::size_t>(found - scenario.emitters.begin()));
+  }
+  for (std::size_t e = 0; names.empty() && e < scenario.emitters.size(); ++e) chosen.push_back(e);
+  return chosen;
+}
 
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
@@ -105,19 +127,20 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
   const LoadedScenario input = loadScenarioWithTerrain(options.scenario);
   FieldBench bench(input, options.repeats);
   const double tolerance_m = bench.tolerance_m();
+  const std::vector<std::size_t> chosen = chosenEmitters(*input.scenario, options.emitters);
   constexpr double kTurn_rad = 0.1;
   const Measured moved = bench.measure([&](scenario::Snapshot& snapshot, int repeat) {
-    for (scenario::EmitterState& emitter : snapshot.emitters) move(emitter, tolerance_m, repeat);
+    for (std::size_t e : chosen) move(snapshot.emitters[e], tolerance_m, repeat);
   });
   const Measured one_moved = bench.measure([&](scenario::Snapshot& snapshot, int repeat) {
-    move(snapshot.emitters.front(), tolerance_m, repeat);
+    move(snapshot.emitters[chosen.front()], tolerance_m, repeat);
   });
   const Measured turned = bench.measure([&](scenario::Snapshot& snapshot, int) {
-    for (scenario::EmitterState& emitter : snapshot.emitters) turn(emitter, kTurn_rad);
+    for (std::size_t e : chosen) turn(snapshot.emitters[e], kTurn_rad);
   });
 
   const Dims dims = bench.solver().grid().dims;
-  const int emitters = static_cast<int>(input.scenario->emitters.size());
+  const int emitters = static_cast<int>(chosen.size());
   const double voxels_per_s = static_cast<double>(dims.count()) * emitters / (moved.stages.combine_ms / 1000);
   const emfield::MemoryUse memory = bench.solver().memoryUse();
   if (global.json) {
@@ -165,15 +188,19 @@ void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action)
   command->fallthrough();
   command->footer(R"(
 all moved: every emitter is shifted a little more than the tolerance, so that its terrain fan and planes are computed anew;
-one moved: the first emitter alone; beams turned: only the beams change. Voxel-emitters per second: voxels times emitters over
+one moved: the first emitter alone; beams turned: only the beams change. --emitters: these alone move and turn, the others rest. Voxel-emitters per second: voxels times emitters over
 the time of the combine stage with all moved.
 
 Example:
-  emscape bench field scenarios/jacksboro.yaml --threads 2 --json)");
+  emscape bench field scenarios/jacksboro.yaml --threads 2 --json
+  emscape bench field scenarios/jacksboro.yaml --emitters "search radar,tracking radar,jammer")");
   auto options = std::make_shared<BenchFieldOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   command->add_option("--repeats", options->repeats, "Updates of each kind, of which the median is told")
       ->check(CLI::Range(1, 1000));
+  command
+      ->add_option("--emitters", options->emitters, "Names of the emitters that move and turn; default: all")
+      ->delimiter(',');
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchField(*options, global); }; });
 }
