@@ -42,8 +42,7 @@ EMSCAPE_HD inline VoxelRay voxelRay(const EmitterBeam& emitter, std::size_t colu
   const ColumnGeometryView& g = emitter.geometry;
   const float east = g.base_east_m[column] + t_m * g.axis_east[column];
   const float north = g.base_north_m[column] + t_m * g.axis_north[column];
-  const float ground2 = east * east + north * north;
-  const float up = g.base_up_m[column] + t_m * g.axis_up[column] + g.bending[column] * std::sqrt(ground2);
+  const float up = g.base_up_m[column] + t_m * g.axis_up[column] + g.lift_m[column];
   const Vec3f ray{east, north, up};
 
   const float along_m = t_m - g.nearest_t_m[column];
@@ -51,7 +50,7 @@ EMSCAPE_HD inline VoxelRay voxelRay(const EmitterBeam& emitter, std::size_t colu
   constexpr float kSmallest2 = kSmallestDistance_m * kSmallestDistance_m;
   const float lit_w = t_m >= g.shadow_edge_m[column] ? emitter.eirp_over_4pi_w : 0.0f;
   return {{dot(ray, emitter.forward), dot(ray, emitter.right), dot(ray, emitter.up)},
-          ground2 + up * up,
+          dot(ray, ray),
           lit_w / (distance2 > kSmallest2 ? distance2 : kSmallest2)};
 }
 

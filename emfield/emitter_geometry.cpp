@@ -62,12 +62,16 @@ void EmitterGeometry::locateColumns(const Station& station, double k_factor, con
   for (int a = 0; a < kArrays; ++a) out[a] = arrays_.data() + a * column_count_;
   const Vec3d& up = station.geodesy.station.up;
   const double bending_per_m = (1 - 1 / k_factor) / (2 * station.earth_radius_m);
+  const double middle_m = 0.5 * (columns.t_m.front() + columns.t_m.back());
   parallelFor(static_cast<int>(column_count_), 4096, [&](int begin, int end) {
     for (int c = begin; c < end; ++c) {
       const GridColumn& column = columns.columns[c];
       const Vec3d base = column.base_ecef_m - station.ecef_m;
       const double nearest_t_m = -dot(base, column.axis);
       const Vec3d offset = base + column.axis * nearest_t_m;
+      const Vec3d middle = base + column.axis * middle_m;
+      const double level_m =
+          std::hypot(dot(middle, station.geodesy.east), dot(middle, station.geodesy.north));
       const double values[kArrays] = {dot(base, station.geodesy.east),
                                       dot(base, station.geodesy.north),
                                       dot(base, up),
@@ -76,7 +80,7 @@ void EmitterGeometry::locateColumns(const Station& station, double k_factor, con
                                       dot(column.axis, up),
                                       dot(offset, offset),
                                       nearest_t_m,
-                                      coordinates[c].range_m * bending_per_m};
+                                      coordinates[c].range_m * bending_per_m * level_m};
       for (int a = 0; a < kArrays; ++a) out[a][c] = static_cast<float>(values[a]);
     }
   });
