@@ -1,12 +1,15 @@
 // Reports that lie in Debian's libraries, not in this project. Read by the sanitizers at the start of every
 // program.
 
-// Debian's libraries are not instrumented: the sanitizer misses how they hand data from thread to thread. Our
-// own loops run on plain threads here (base/parallel.cpp) and are checked in full.
+// Debian's libraries are not instrumented: the sanitizer misses how OpenVDB and oneTBB hand data from thread
+// to thread. Our own loops do not use oneTBB here (base/parallel.cpp) and are checked in full. GDAL takes its
+// locks in changing order.
 extern "C" const char* __tsan_default_suppressions() {
   return "called_from_lib:libtbb.so\n"
-         "called_from_lib:libopenvdb.so\n"
-         "race:openvdb::\n";
+         "race:libopenvdb.so\n"
+         "race:libz.so\n"
+         "race:tbb::detail::\n"
+         "deadlock:libgdal.so\n";
 }
 
 // Fontconfig keeps what it has read until the process ends, and cairo does not hand it back.
