@@ -19,8 +19,8 @@ struct FilePlace {
 /// "file:line:column", without the parts that are unknown.
 std::string toString(const FilePlace& place);
 
-/// Thrown where input comes in. The message names the value, the allowed range and its unit; what() starts with the
-/// place where there is one.
+/// Thrown where input comes in. The message names the value, the allowed range and its unit; what() starts
+/// with the place where there is one.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message);

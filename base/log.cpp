@@ -20,8 +20,14 @@ void setLogSink(LogSink sink) {
   current_sink = std::move(sink);
 }
 
-void logDebug(const std::string& message) { log(LogLevel::debug, message); }
-void logInfo(const std::string& message) { log(LogLevel::info, message); }
-void logWarning(const std::string& message) { log(LogLevel::warning, message); }
+void logDebug(const std::string& message) {
+  log(LogLevel::debug, message);
+}
+void logInfo(const std::string& message) {
+  log(LogLevel::info, message);
+}
+void logWarning(const std::string& message) {
+  log(LogLevel::warning, message);
+}
 
 }  // namespace emscape

@@ -5,8 +5,7 @@
 /// all that is inlined into it. Off under sanitizers, whose run time is not ready when the choice is made.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
-#define EMSCAPE_SIMD_CLONES \
-  __attribute__((flatten, target_clones("avx512f", "avx2", "default")))
+#define EMSCAPE_SIMD_CLONES __attribute__((flatten, target_clones("avx512f", "avx2", "default")))
 #else
 #define EMSCAPE_SIMD_CLONES
 #endif

@@ -33,10 +33,16 @@ EMSCAPE_HD constexpr Real radToDeg(Real radians) {
   return radians * Real(180.0 / kPi);
 }
 /// Power ratio to decibels; ratio > 0.
-inline double ratioToDb(double ratio) { return 10.0 * std::log10(ratio); }
+inline double ratioToDb(double ratio) {
+  return 10.0 * std::log10(ratio);
+}
 /// Decibels to power ratio.
-inline double dbToRatio(double decibels) { return std::pow(10.0, decibels / 10.0); }
+inline double dbToRatio(double decibels) {
+  return std::pow(10.0, decibels / 10.0);
+}
 /// Wavelength in vacuum (m); frequency_hz > 0.
-constexpr double wavelength_m(double frequency_hz) { return kSpeedOfLight / frequency_hz; }
+constexpr double wavelength_m(double frequency_hz) {
+  return kSpeedOfLight / frequency_hz;
+}
 
 }  // namespace emscape

@@ -23,7 +23,7 @@ struct ColumnGeometryView {
   /// that the distance squared is offset2 + (t - nearest)^2: no cancellation, however near.
   const float* offset2_m2 = nullptr;
   const float* nearest_t_m = nullptr;
-  /// Added to the straight line's rise (m) it points along the start of the refracted ray.
+  /// Added to the straight line's rise (m) so that it points along the start of the refracted ray.
   /// @accuracy launch angle within 0.001 degree to 500 km and 10 km of height: it is that of the column's
   /// middle
   const float* lift_m = nullptr;

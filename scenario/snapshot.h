@@ -20,7 +20,7 @@ struct PlatformState {
 /// Orientation of a beam: unit vectors of the antenna's frame in the local east-north-up axes at the emitter.
 struct BeamPose {
   Vec3d forward, right, up;
-  double steer_u = 0;   ///< direction cosines (right, up) to which a phased array is steered
+  double steer_u = 0;  ///< direction cosines (right, up) to which a phased array is steered
   double steer_v = 0;
 };
 
@@ -42,7 +42,8 @@ struct Snapshot {
 
 /// The scenario at t_s seconds since its epoch. Pure. Thread-safe.
 /// @param terrain  for heights above ground; may be null if no platform uses them
-/// @throws Error (bad_input) if a height above ground is asked for where the terrain is missing, or a platform lies below ground
+/// @throws Error (bad_input) if a height above ground is asked for where the terrain is missing, or a
+/// platform lies below ground
 Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s);
 
 }  // namespace emscape::scenario
