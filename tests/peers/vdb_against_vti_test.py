@@ -1,13 +1,13 @@
 """The .vdb and .vti files of one series hold the same values, bit by bit."""
 
-import numpy
 import series
 
 try:
+    import numpy
     import pyopenvdb
     import vtk_test
 except ImportError:
-    series.skip("python3-openvdb is not installed")
+    series.skip("python3-numpy or python3-openvdb is not installed")
 
 for step, (time_s, image) in enumerate(vtk_test.read_series(series.folder() / "hollow.pvd"), start=1):
     grid = pyopenvdb.read(str(series.folder() / f"hollow_{step:04}.vdb"), "power_density_dbwm2")
