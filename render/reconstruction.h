@@ -1,6 +1,7 @@
 /// Which pixels are cast and how the others follow: the patterns of pixel interpolation.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,11 @@ const char* toString(Pattern pattern);
 Pattern parsePattern(const std::string& name);
 /// Every pattern, that with the most rays first.
 const std::vector<Pattern>& allPatterns();
+
+/// A pixel of a list to be cast.
+struct Pixel {
+  std::uint16_t x = 0, y = 0;
+};
 
 /// How missing pixels are interpolated: in premultiplied float, or in 8-bit levels as the paper does (for its
 /// tables).

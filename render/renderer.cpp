@@ -81,6 +81,8 @@ struct Renderer::Impl {
   int masked_below = 0;
   float highest = 0;
 
+  Pattern drawn = Pattern::full;  ///< of the last frame
+
   const volume::DenseVolume& requireVolume() const {
     if (!volume) throw Error(ErrorCode::other, "Renderer: no volume is set");
     return *volume;
@@ -137,17 +139,17 @@ struct Renderer::Impl {
     return task;
   }
 
-  CastReport castAll(const std::vector<Lattice>& lattices, Image& image, const StopFlag* stop) {
+  /// @return false if it was stopped
+  bool cast(const std::vector<Lattice>& lattices, Image& image, FrameReport& report, const StopFlag* stop) {
     Stopwatch watch;
-    CastReport report;
     const RaycastTask prepared = task(image.size);
     for (const Lattice& lattice : lattices) {
       report.complete = castCpu(prepared, settings.mode, volume->info.categorical, lattice, image, stop);
       if (!report.complete) break;
       report.rays += lattice.count();
     }
-    report.ms = watch.lap_ms();
-    return report;
+    report.cast_ms = watch.lap_ms();
+    return report.complete;
   }
 };
 
@@ -222,24 +224,29 @@ bool Renderer::isHidden(const Vec3d& frame_m) const {
   return hit.found && hit.distance < distance - kStandsOn_voxels;
 }
 
-CastReport Renderer::cast(Pattern pattern, ImageSize size, Image& image, const StopFlag* stop) {
+FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, Image& image, const StopFlag* stop) {
   if (image.size != size) image = Image(size);
-  return impl_->castAll(sourceLattices(pattern, size), image, stop);
-}
-
-CastReport Renderer::restore(Pattern pattern, Image& image, const StopFlag* stop) {
-  return impl_->castAll(missingLattices(pattern, image.size), image, stop);
-}
-
-Image Renderer::render(ImageSize size, Pattern pattern, Interpolation interpolation, FrameReport* report) {
-  FrameReport frame;
-  frame.pattern = pattern;
-  Image image(size);
-  frame.cast = cast(pattern, size, image);
+  impl_->drawn = plan.pattern;
+  FrameReport report;
+  report.pattern = plan.pattern;
+  if (!impl_->cast(sourceLattices(plan.pattern, size), image, report, stop)) return report;
   Stopwatch watch;
-  interpolate(pattern, interpolation, image);
-  frame.interpolate_ms = watch.lap_ms();
-  if (report != nullptr) *report = frame;
+  interpolate(plan.pattern, plan.interpolation, image);
+  report.interpolate_ms = watch.lap_ms();
+  return report;
+}
+
+FrameReport Renderer::restore(Image& image, const StopFlag* stop) {
+  FrameReport report;
+  report.pattern = impl_->drawn;
+  impl_->cast(missingLattices(impl_->drawn, image.size), image, report, stop);
+  return report;
+}
+
+Image Renderer::render(ImageSize size, const FramePlan& plan, FrameReport* report) {
+  Image image(size);
+  const FrameReport drawn = draw(plan, size, image);
+  if (report != nullptr) *report = drawn;
   return image;
 }
 

@@ -23,18 +23,21 @@ struct RenderSettings {
   double vertical_exaggeration = 0;  ///< 0: niceVerticalExaggeration()
 };
 
-/// What a cast took.
-struct CastReport {
-  long long rays = 0;
-  double ms = 0;
-  bool complete = true;  ///< false: it was stopped; the picture then holds nothing to be shown
+/// How the pixels of a frame are come by.
+struct FramePlan {
+  Pattern pattern = Pattern::full;
+  Interpolation interpolation = Interpolation::float32;
 };
 
-/// One frame's times.
+/// What a frame, or the restoration of one, took.
 struct FrameReport {
   Pattern pattern = Pattern::full;
-  CastReport cast;
+  long long rays = 0;
+  double cast_ms = 0;
   double interpolate_ms = 0;
+  bool complete = true;  ///< false: it was stopped; the picture then holds nothing to be shown
+
+  double total_ms() const { return cast_ms + interpolate_ms; }
 };
 
 /// Casts a scene: volume, ground, transfer function, camera. A scene's pixel depends on its coordinates and
@@ -63,15 +66,16 @@ class Renderer {
   /// Whether the ground hides a position (frame metres) from the camera.
   bool isHidden(const Vec3d& frame_m) const;
 
-  /// Casts the source pixels of a pattern into an image (resized to `size`); the others are left unwritten.
-  /// @param stop  set from elsewhere: returns soon, incomplete. May be null
-  CastReport cast(Pattern pattern, ImageSize size, Image& image, const StopFlag* stop = nullptr);
-  /// Casts exactly the pixels that the pattern left out: the image is then bit-identical to a full cast of
-  /// the same scene.
-  CastReport restore(Pattern pattern, Image& image, const StopFlag* stop = nullptr);
-  /// cast() and interpolate().
-  Image render(ImageSize size, Pattern pattern = Pattern::full,
-               Interpolation interpolation = Interpolation::float32, FrameReport* report = nullptr);
+  /// Draws a frame of the scene: casts the source pixels of the plan's pattern and interpolates the others.
+  /// @param image  resized to `size`
+  /// @param stop   set from elsewhere: returns soon, incomplete. May be null
+  FrameReport draw(const FramePlan& plan, ImageSize size, Image& image, const StopFlag* stop = nullptr);
+  /// Casts exactly the pixels that the last draw() left out, into the image that it drew: the image is then
+  /// bit-identical to a full one of the same scene, which must not have changed in between. A stopped
+  /// restoration begins anew.
+  FrameReport restore(Image& image, const StopFlag* stop = nullptr);
+  /// draw() into an image of its own.
+  Image render(ImageSize size, const FramePlan& plan = {}, FrameReport* report = nullptr);
 
  private:
   struct Impl;

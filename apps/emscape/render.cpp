@@ -87,8 +87,8 @@ class Painter {
     if (options_.show_emitters) annotations_.markers = frame.markers;
     if (!fitted_) fitTo(volume);
     render::FrameReport report;
-    const render::Image cast = renderer_.render(look_.size, look_.pattern, look_.interpolation, &report);
-    cast_ms_ += report.cast.ms + report.interpolate_ms;
+    const render::Image cast = renderer_.render(look_.size, {look_.pattern, look_.interpolation}, &report);
+    cast_ms_ += report.total_ms();
     return render::compose(cast, renderer_.camera(), renderer_.sceneBox(), annotations_,
                            [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
   }

@@ -53,8 +53,8 @@ TEST(Restore, IsBitIdenticalToAFullCast) {
     const Image full = renderer.render(size);
     for (Pattern pattern : allPatterns()) {
       for (Interpolation interpolation : {Interpolation::float32, Interpolation::bits8}) {
-        Image image = renderer.render(size, pattern, interpolation);
-        const CastReport report = renderer.restore(pattern, image);
+        Image image = renderer.render(size, {pattern, interpolation});
+        const FrameReport report = renderer.restore(image);
         EXPECT_TRUE(report.complete);
         EXPECT_EQ(report.rays, pixelCount(missingLattices(pattern, size)));
         EXPECT_TRUE(image.pixels == full.pixels) << scene << " " << toString(pattern);
@@ -70,8 +70,8 @@ TEST(Cast, SourcePixelsAreThoseOfTheFullCast) {
   setRandomScene(renderer, random, size);
   const Image full = renderer.render(size);
   FrameReport report;
-  const Image quarter = renderer.render(size, Pattern::quarter, Interpolation::float32, &report);
-  EXPECT_EQ(report.cast.rays, 17 * 11);
+  const Image quarter = renderer.render(size, {Pattern::quarter}, &report);
+  EXPECT_EQ(report.rays, 17 * 11);
   for (int y = 0; y < size.height; y += 2) {
     for (int x = 0; x < size.width; x += 2) EXPECT_EQ(quarter.at(x, y), full.at(x, y));
   }
@@ -84,9 +84,9 @@ TEST(Cast, TellsWhenItWasStopped) {
   setRandomScene(renderer, random, size);
   StopFlag stop{true};
   Image image;
-  EXPECT_FALSE(renderer.cast(Pattern::full, size, image, &stop).complete);
+  EXPECT_FALSE(renderer.draw({}, size, image, &stop).complete);
   stop = false;
-  EXPECT_TRUE(renderer.cast(Pattern::full, size, image, &stop).complete);
+  EXPECT_TRUE(renderer.draw({}, size, image, &stop).complete);
 }
 
 TEST(Renderer, ShowsTheVolumeThatWasSetLast) {
