@@ -81,25 +81,35 @@ struct RaycastTask {
   float volume_highest_f = 1;
   bool exact = false;
 
+  /// Where the ray of a pixel meets the ground.
+  EMSCAPE_HD GroundHit groundAt(int x, int y) const {
+    if (ground.heights == nullptr) return {};
+    const Ray ray = camera.ray(x, y);
+    const RayInterval over_ground = clip(ray, ground.lower, ground.upper);
+    if (!(over_ground.end > over_ground.begin)) return {};
+    return ground.firstHit(ray.origin, ray.direction, over_ground.begin, over_ground.end);
+  }
+
+  /// The volume as a pixel shows it, premultiplied.
+  /// @param limit  no sample is taken beyond this distance from the ray's origin, where the ground is hit
   template <class Compositor, class Sampler>
-  EMSCAPE_HD Rgba castPixel(int x, int y) const {
+  EMSCAPE_HD Rgba castVolume(int x, int y, double limit) const {
     const Ray ray = camera.ray(x, y);
     RayInterval inside = clip(ray, volume.lower(), volume.upper());
-    GroundHit hit;
-    if (ground.heights != nullptr) {
-      const RayInterval over_ground = clip(ray, ground.lower, ground.upper);
-      if (over_ground.end > over_ground.begin) {
-        hit = ground.firstHit(ray.origin, ray.direction, over_ground.begin, over_ground.end);
-        if (hit.found && hit.distance < inside.end) inside.end = hit.distance;
-      }
-    }
+    if (limit < inside.end) inside.end = limit;
     Compositor compositor(exact, mida_gamma, volume_highest_f);
     if (inside.end > inside.begin) {
       march<Compositor, Sampler>(vecCast<float>(ray.origin + ray.direction * inside.begin),
                                  vecCast<float>(ray.direction), static_cast<float>(inside.end - inside.begin),
                                  compositor);
     }
-    const Rgba front = compositor.result(transfer);
+    return compositor.result(transfer);
+  }
+
+  template <class Compositor, class Sampler>
+  EMSCAPE_HD Rgba castPixel(int x, int y) const {
+    const GroundHit hit = groundAt(x, y);
+    const Rgba front = castVolume<Compositor, Sampler>(x, y, hit.found ? hit.distance : 1e300);
     return hit.found ? over(front, hit.color) : front;
   }
 
