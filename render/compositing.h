@@ -6,6 +6,7 @@
 
 #include "base/host_device.h"
 #include "render/image.h"
+#include "render/volume_view.h"
 
 namespace emscape::render {
 
@@ -43,9 +44,9 @@ struct TransferView {
 /// What every compositor offers: samples come front to back; `f` is normalised, `sample` premultiplied and
 /// corrected for its length.
 ///   add(f, sample)                          takes one sample
-///   canSkip(brick_highest_f, transparent)   whether samples up to that f, all transparent if so said, change
-///   nothing done()                                  whether no later sample can matter (any more than the
-///   early termination allows) result(transfer)                        the ray's colour, premultiplied
+///   canSkip(level)        whether the samples of a brick change nothing; see SkipView::levels
+///   done()                whether no later sample can matter (any more than early termination allows)
+///   result(transfer)      the ray's colour, premultiplied
 /// `volume_highest_f` is the largest f that any sample can have.
 
 constexpr float kOpaqueEnough = 0.99F;
@@ -58,7 +59,7 @@ struct DvrCompositor {
   EMSCAPE_HD DvrCompositor(bool exact_cast, float /*gamma*/, float /*volume_highest_f*/)
       : exact(exact_cast) {}
   EMSCAPE_HD void add(float /*f*/, const Rgba& sample) { sum = over(sum, sample); }
-  EMSCAPE_HD bool canSkip(float /*brick_highest_f*/, bool transparent) const { return transparent; }
+  EMSCAPE_HD bool canSkip(float level) const { return level < SkipView::kNever; }
   EMSCAPE_HD bool done() const { return !exact && sum.a > kOpaqueEnough; }
   EMSCAPE_HD Rgba result(const TransferView& /*transfer*/) const { return sum; }
 };
@@ -72,9 +73,7 @@ struct MipCompositor {
   EMSCAPE_HD MipCompositor(bool /*exact_cast*/, float /*gamma*/, float volume_highest_f)
       : volume_highest(volume_highest_f) {}
   EMSCAPE_HD void add(float f, const Rgba& /*sample*/) { highest = f > highest ? f : highest; }
-  EMSCAPE_HD bool canSkip(float brick_highest_f, bool /*transparent*/) const {
-    return brick_highest_f <= highest;
-  }
+  EMSCAPE_HD bool canSkip(float level) const { return level <= highest; }
   EMSCAPE_HD bool done() const { return highest >= volume_highest; }
   EMSCAPE_HD Rgba result(const TransferView& transfer) const {
     return highest >= 0.0F ? transfer.projected[transfer.index(highest)] : Rgba{};
@@ -99,9 +98,7 @@ struct MidaCompositor {
     const float through = 1.0F - beta * sum.a;
     sum = sum * beta + sample * through;
   }
-  EMSCAPE_HD bool canSkip(float brick_highest_f, bool transparent) const {
-    return transparent && mip.canSkip(brick_highest_f, transparent);
-  }
+  EMSCAPE_HD bool canSkip(float level) const { return mip.canSkip(level); }
   EMSCAPE_HD bool done() const { return !exact && sum.a > kOpaqueEnough && mip.done(); }
   EMSCAPE_HD Rgba result(const TransferView& transfer) const {
     return gamma <= 0.0F ? sum : sum * (1.0F - gamma) + mip.result(transfer) * gamma;

@@ -121,11 +121,11 @@ struct RaycastTask {
     int next_brick = 0;  // the first sample that may lie in another brick than the last one looked at
     for (int n = 0; n < whole; ++n) {
       const Vec3f position = start + direction * ((static_cast<float>(n) + 0.5F) * step_voxels);
-      if (n >= next_brick && skip.ranges != nullptr) {
+      if (n >= next_brick && skip.levels != nullptr) {
         const BrickStep brick = skip.at(volume, position, direction);
         const float samples = brick.leave / step_voxels;
         next_brick = n + 1 + (samples < static_cast<float>(whole) ? static_cast<int>(samples) : whole);
-        if (compositor.canSkip(transfer.normalized(brick.highest), brick.transparent)) {
+        if (compositor.canSkip(brick.level)) {
           n = next_brick - 1;
           continue;
         }

@@ -7,8 +7,11 @@
 #include <optional>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "render/cpu/raycast_cpu.h"
+#include "render/ground_layer.h"
+#include "render/ready_volume.h"
 #include "render/transfer_table.h"
 
 namespace emscape::render {
@@ -49,107 +52,97 @@ CameraView viewOf(const Camera& camera, const IndexSpace& space, ImageSize size)
   return view;
 }
 
-int maskedBelow(const volume::DenseVolume& volume) {
-  if (volume.first_valid_k.empty()) return 0;
-  return *std::max_element(volume.first_valid_k.begin(), volume.first_valid_k.end());
-}
-
-void checkVolume(const volume::DenseVolume& volume) {
-  const Dims& dims = volume.grid.dims;
-  if (dims.x < 1 || dims.y < 1 || dims.z < 1 ||
-      dims.count() != static_cast<long long>(volume.values.size())) {
-    throw Error(ErrorCode::bad_input, fmt::format("volume of {} x {} x {} voxels holds {} values", dims.x,
-                                                  dims.y, dims.z, volume.values.size()));
-  }
-}
-
 }  // namespace
 
 struct Renderer::Impl {
-  std::shared_ptr<const volume::DenseVolume> volume;
+  ReadyVolume volume;
   std::shared_ptr<const HeightField> height_field;
   TransferFunction function;
   Camera camera;
   RenderSettings settings;
 
   // Prepared from the above; empty: to be prepared before the next cast.
-  std::optional<volume::Bricks> bricks;
   std::optional<GroundSurface> ground;
   std::optional<TransferTable> table;
-  std::vector<std::uint8_t> transparent;
-  bool bricks_current = false;
-  int masked_below = 0;
-  float highest = 0;
+  SkipLevels skip;
+  bool skip_current = false;
 
+  GroundLayer ground_layer;       ///< of the camera; its size is 0 x 0 when it must be computed anew
+  Image volume_layer;             ///< the volume alone, cut off by the ground
   Pattern drawn = Pattern::full;  ///< of the last frame
 
-  const volume::DenseVolume& requireVolume() const {
-    if (!volume) throw Error(ErrorCode::other, "Renderer: no volume is set");
-    return *volume;
+  const volume::Grid& grid() const {
+    if (!volume.isSet()) throw Error(ErrorCode::other, "Renderer: no volume is set");
+    return volume.volume().grid;
   }
 
-  SceneBox box() const { return sceneBoxOf(requireVolume().grid, settings.vertical_exaggeration); }
+  SceneBox box() const { return sceneBoxOf(grid(), settings.vertical_exaggeration); }
+
+  void dropGround() {
+    ground.reset();
+    ground_layer.size = {};
+  }
 
   void prepareGround() {
-    if (height_field && !ground) ground.emplace(*height_field, requireVolume().grid, box());
-  }
-
-  void prepareBricks() {
-    if (bricks_current) return;
-    if (bricks) {
-      bricks->update(*volume);
-    } else {
-      bricks.emplace(*volume);
-    }
-    masked_below = maskedBelow(*volume);
-    const volume::BricksView view = bricks->view();
-    highest = -std::numeric_limits<float>::infinity();
-    for (long long i = 0; i < view.dims.count(); ++i) highest = std::max(highest, view.ranges[i].max);
-    transparent.clear();
-    bricks_current = true;
+    if (height_field && !ground) ground.emplace(*height_field, grid(), box());
   }
 
   void prepareTransfer() {
     if (!table) {
       table.emplace(function, settings.step_voxels);
-      transparent.clear();
+      skip_current = false;
     }
-    if (transparent.empty()) transparent = table->transparentBricks(bricks->view());
+    if (!skip_current) skip = table->skipLevels(volume.bricks(), settings.mode);
+    skip_current = true;
   }
 
   RaycastTask task(ImageSize size) {
-    requireVolume();
+    const volume::Grid& shown = grid();
     prepareGround();
-    prepareBricks();
     prepareTransfer();
     RaycastTask task;
-    task.camera = viewOf(camera, IndexSpace(volume->grid, box()), size);
-    task.volume = {volume->values.data(), volume->grid.dims,
-                   masked_below > 0 ? volume->first_valid_k.data() : nullptr, masked_below};
+    task.camera = viewOf(camera, IndexSpace(shown, box()), size);
+    task.volume = volume.view();
     task.transfer = table->view();
-    if (settings.skip_empty) {
-      const volume::BricksView view = bricks->view();
-      task.skip = {view.ranges, transparent.data(), view.dims, view.edge};
+    if (settings.skip_empty) task.skip = {skip.highest.data(), skip.levels.data(), volume.bricks().dims};
+    if (ground) {
+      task.ground = ground->view();
+      if (ground_layer.size != size) ground_layer.reset(size);
     }
-    if (ground) task.ground = ground->view();
     task.step_voxels = static_cast<float>(settings.step_voxels);
     task.mida_gamma = static_cast<float>(settings.mida_gamma);
-    task.volume_highest_f = task.transfer.normalized(highest);
+    task.volume_highest_f = task.transfer.normalized(volume.highest());
     task.exact = settings.exact;
     return task;
   }
 
+  /// @param shows_ground  false: the volume alone, cut off by the ground
   /// @return false if it was stopped
-  bool cast(const std::vector<Lattice>& lattices, Image& image, FrameReport& report, const StopFlag* stop) {
+  bool cast(const std::vector<Lattice>& lattices, bool shows_ground, Image& image, FrameReport& report,
+            const StopFlag* stop) {
     Stopwatch watch;
     const RaycastTask prepared = task(image.size);
+    CpuCast cast{prepared, settings.mode, volume.volume().info.categorical, settings.plain};
+    cast.ground = ground ? &ground_layer : nullptr;
+    cast.shows_ground = shows_ground;
     for (const Lattice& lattice : lattices) {
-      report.complete = castCpu(prepared, settings.mode, volume->info.categorical, lattice, image, stop);
+      report.complete = castCpu(cast, lattice, image, stop, report.samples);
       if (!report.complete) break;
       report.rays += lattice.count();
     }
-    report.cast_ms = watch.lap_ms();
+    report.cast_ms += watch.lap_ms();
     return report.complete;
+  }
+
+  /// The ground behind every pixel of the volume's layer.
+  void composeGround(Image& image) const {
+    constexpr int kRowGrain = 16;
+    parallelFor(image.size.height, kRowGrain, [&](int begin, int end) {
+      const std::size_t last = ground_layer.index(0, end);
+      for (std::size_t pixel = ground_layer.index(0, begin); pixel < last; ++pixel) {
+        image.pixels[pixel] = ground_layer.behind(volume_layer.pixels[pixel], pixel);
+      }
+    });
   }
 };
 
@@ -158,16 +151,15 @@ Renderer::~Renderer() = default;
 
 void Renderer::setVolume(std::shared_ptr<const volume::DenseVolume> volume) {
   if (!volume) throw Error(ErrorCode::other, "Renderer: no volume is given");
-  checkVolume(*volume);
-  if (!impl_->volume || impl_->volume->grid != volume->grid) impl_->ground.reset();
-  impl_->volume = std::move(volume);
-  impl_->bricks_current = false;
+  if (!impl_->volume.isSet() || impl_->volume.volume().grid != volume->grid) impl_->dropGround();
+  impl_->volume.set(std::move(volume));
+  impl_->skip_current = false;
 }
 
 void Renderer::setHeightField(std::shared_ptr<const HeightField> height_field) {
   impl_->height_field = std::move(height_field);
-  impl_->ground.reset();
-  if (impl_->volume) impl_->prepareGround();
+  impl_->dropGround();
+  if (impl_->volume.isSet()) impl_->prepareGround();
 }
 
 void Renderer::setTransferFunction(const TransferFunction& function) {
@@ -177,6 +169,7 @@ void Renderer::setTransferFunction(const TransferFunction& function) {
 
 void Renderer::setCamera(const Camera& camera) {
   impl_->camera = camera;
+  impl_->ground_layer.size = {};
 }
 
 void Renderer::setSettings(const RenderSettings& settings) {
@@ -184,7 +177,8 @@ void Renderer::setSettings(const RenderSettings& settings) {
   requireRange("MIDA gamma", settings.mida_gamma, -1, 1);
   requireRange("vertical exaggeration", settings.vertical_exaggeration, 0, 1000);
   if (settings.step_voxels != impl_->settings.step_voxels) impl_->table.reset();
-  if (settings.vertical_exaggeration != impl_->settings.vertical_exaggeration) impl_->ground.reset();
+  if (settings.vertical_exaggeration != impl_->settings.vertical_exaggeration) impl_->dropGround();
+  if (settings.mode != impl_->settings.mode) impl_->skip_current = false;
   impl_->settings = settings;
 }
 
@@ -205,7 +199,7 @@ bool Renderer::isHidden(const Vec3d& frame_m) const {
   if (!impl_->height_field) return false;
   impl_->prepareGround();
   const SceneBox box = impl_->box();
-  const IndexSpace space(impl_->volume->grid, box);
+  const IndexSpace space(impl_->grid(), box);
   const Vec3d target = space.position(box.toDrawn(frame_m));
   Vec3d eye = space.position(impl_->camera.eye_m);
   if (impl_->camera.projection == Projection::orthographic) {
@@ -229,9 +223,16 @@ FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, Image& image, 
   impl_->drawn = plan.pattern;
   FrameReport report;
   report.pattern = plan.pattern;
-  if (!impl_->cast(sourceLattices(plan.pattern, size), image, report, stop)) return report;
+  // Where the ground is known everywhere, only the volume is interpolated: the ground stays sharp.
+  const bool in_layers = impl_->ground && impl_->ground_layer.size == size && impl_->ground_layer.complete &&
+                         plan.pattern != Pattern::full;
+  if (in_layers && impl_->volume_layer.size != size) impl_->volume_layer = Image(size);
+  Image& target = in_layers ? impl_->volume_layer : image;
+  if (!impl_->cast(sourceLattices(plan.pattern, size), !in_layers, target, report, stop)) return report;
+  impl_->ground_layer.complete |= plan.pattern == Pattern::full;
   Stopwatch watch;
-  interpolate(plan.pattern, plan.interpolation, image);
+  interpolate(plan.pattern, plan.interpolation, target);
+  if (in_layers) impl_->composeGround(image);
   report.interpolate_ms = watch.lap_ms();
   return report;
 }
@@ -239,7 +240,9 @@ FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, Image& image, 
 FrameReport Renderer::restore(Image& image, const StopFlag* stop) {
   FrameReport report;
   report.pattern = impl_->drawn;
-  impl_->cast(missingLattices(impl_->drawn, image.size), image, report, stop);
+  if (impl_->cast(missingLattices(impl_->drawn, image.size), true, image, report, stop)) {
+    impl_->ground_layer.complete = true;
+  }
   return report;
 }
 

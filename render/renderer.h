@@ -20,6 +20,7 @@ struct RenderSettings {
   double mida_gamma = 0;   ///< -1 (DVR) .. 0 (MIDA) .. 1 (MIP)
   bool exact = false;      ///< true: no early termination
   bool skip_empty = true;  ///< skip bricks that cannot change the picture; the picture is the same either way
+  bool plain = false;      ///< the reference form of the ray caster; slow, for comparison
   double vertical_exaggeration = 0;  ///< 0: niceVerticalExaggeration()
 };
 
@@ -33,6 +34,7 @@ struct FramePlan {
 struct FrameReport {
   Pattern pattern = Pattern::full;
   long long rays = 0;
+  long long samples = 0;  ///< taken of the volume; 0 where they are not counted (the plain form)
   double cast_ms = 0;
   double interpolate_ms = 0;
   bool complete = true;  ///< false: it was stopped; the picture then holds nothing to be shown

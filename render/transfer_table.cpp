@@ -50,22 +50,24 @@ TransferView TransferTable::view() const {
           static_cast<float>(lowest_), static_cast<float>(1.0 / (highest_ - lowest_))};
 }
 
-std::vector<std::uint8_t> TransferTable::transparentBricks(const volume::BricksView& bricks) const {
+SkipLevels TransferTable::skipLevels(const volume::BricksView& bricks, CompositingMode mode) const {
+  if (bricks.edge != 1 << SkipView::kEdgeBits) throw Error(ErrorCode::other, "bricks of another size");
   const TransferView table = view();
-  std::vector<std::uint8_t> transparent(static_cast<std::size_t>(bricks.dims.count()));
-  for (std::size_t i = 0; i < transparent.size(); ++i) {
+  const std::size_t count = static_cast<std::size_t>(bricks.dims.count());
+  SkipLevels skip{std::vector<float>(count, -1.0F), std::vector<float>(count, -1.0F)};
+  for (std::size_t i = 0; i < count; ++i) {
     const volume::ValueRange range = bricks.ranges[i];
-    if (range.empty()) {
-      transparent[i] = 1;
-      continue;
-    }
-    // One entry more on each side: interpolation may round a little beyond its operands.
+    if (range.empty()) continue;  // nothing in it shows, not even 0
+    // Interpolation may round a little beyond its operands.
+    const float rounding = (range.max - range.min) * 1e-6F;
+    skip.highest[i] = table.normalized(range.max + rounding);
     const int first = std::max(table.index(table.normalized(range.min)) - 1, 0);
     const int last = std::min(table.index(table.normalized(range.max)) + 1, table.last);
-    transparent[i] = visible_before_[static_cast<std::size_t>(last) + 1] ==
-                     visible_before_[static_cast<std::size_t>(first)];
+    const bool visible = visible_before_[static_cast<std::size_t>(last) + 1] !=
+                         visible_before_[static_cast<std::size_t>(first)];
+    skip.levels[i] = visible && mode != CompositingMode::mip ? SkipView::kNever : skip.highest[i];
   }
-  return transparent;
+  return skip;
 }
 
 }  // namespace emscape::render

@@ -10,6 +10,12 @@
 
 namespace emscape::render {
 
+/// What SkipView refers to.
+struct SkipLevels {
+  std::vector<float> highest;
+  std::vector<float> levels;
+};
+
 /// Samples a transfer function at equidistant values; a categorical one has one entry a category and one for
 /// none.
 /// @accuracy colours and opacities are those of a value within 1/8190 of the function's interval
@@ -18,8 +24,7 @@ class TransferTable {
   TransferTable(const TransferFunction& function, double step_voxels);
 
   TransferView view() const;
-  /// For each brick: 1 if no value within its range has any opacity, so that no sample of it shows.
-  std::vector<std::uint8_t> transparentBricks(const volume::BricksView& bricks) const;
+  SkipLevels skipLevels(const volume::BricksView& bricks, CompositingMode mode) const;
 
  private:
   std::vector<Rgba> samples_;

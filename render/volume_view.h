@@ -9,12 +9,14 @@
 
 namespace emscape::render {
 
-/// Values where they lie. Positions are in index space: voxel (i, j, k) has its centre at (i, j, k).
+/// Values as a ReadyVolume holds them. Positions are in index space: voxel (i, j, k) has its centre at
+/// (i, j, k).
 struct VolumeView {
-  const float* values = nullptr;
+  const float* values = nullptr;  ///< masked voxels hold the value of the first above them that is not
   Dims dims;
-  const std::uint16_t* first_valid_k = nullptr;  ///< null: no voxel is masked
-  int masked_below = 0;                          ///< no voxel of a layer from here up is masked
+  const std::int32_t* first_valid_k = nullptr;  ///< one a column; null: no voxel is masked
+  int masked_below = 0;                         ///< no voxel of a layer from here up is masked
+  bool has_nan = false;
 
   EMSCAPE_HD Vec3d lower() const { return {-0.5, -0.5, -0.5}; }
   EMSCAPE_HD Vec3d upper() const { return {dims.x - 0.5, dims.y - 0.5, dims.z - 0.5}; }
@@ -46,14 +48,14 @@ EMSCAPE_HD inline float lerp(float a, float b, float fraction) {
   return a + fraction * (b - a);
 }
 
-/// Trilinear between voxel centres. Nothing is drawn where the nearest voxel is masked. Elsewhere a masked
-/// corner of the cell takes the value of the corner above it or, if that is masked too, of the sample's
-/// nearest voxel: what lies below ground never bleeds into the air. NaN draws nothing.
+/// Trilinear between voxel centres. Nothing is drawn where the nearest voxel is masked; elsewhere what lies
+/// below ground does not bleed into the air, as masked voxels hold the value above them. NaN draws nothing.
 struct TrilinearSampler {
   EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
     const CellPosition x(position.x, volume.dims.x);
     const CellPosition y(position.y, volume.dims.y);
     const CellPosition z(position.z, volume.dims.z);
+    if (z.low < volume.masked_below && volume.isMasked(x.nearest(), y.nearest(), z.nearest())) return false;
     const long long row = volume.dims.x;
     const long long layer = row * volume.dims.y;
     const float* lower = volume.values + z.low * layer;
@@ -62,21 +64,10 @@ struct TrilinearSampler {
     const long long c10 = y.low * row + x.high;
     const long long c01 = y.high * row + x.low;
     const long long c11 = y.high * row + x.high;
-    float low[4] = {lower[c00], lower[c10], lower[c01], lower[c11]};
-    float high[4] = {upper[c00], upper[c10], upper[c01], upper[c11]};
-    if (z.low < volume.masked_below) {
-      if (volume.isMasked(x.nearest(), y.nearest(), z.nearest())) return false;
-      const float substitute = volume.at(x.nearest(), y.nearest(), z.nearest());
-      const long long columns[4] = {c00, c10, c01, c11};
-      for (int c = 0; c < 4; ++c) {
-        const int first_valid = volume.first_valid_k[columns[c]];
-        if (z.high < first_valid) high[c] = substitute;
-        if (z.low < first_valid) low[c] = high[c];
-      }
-    }
-    const float below = lerp(lerp(low[0], low[1], x.fraction), lerp(low[2], low[3], x.fraction), y.fraction);
+    const float below =
+        lerp(lerp(lower[c00], lower[c10], x.fraction), lerp(lower[c01], lower[c11], x.fraction), y.fraction);
     const float above =
-        lerp(lerp(high[0], high[1], x.fraction), lerp(high[2], high[3], x.fraction), y.fraction);
+        lerp(lerp(upper[c00], upper[c10], x.fraction), lerp(upper[c01], upper[c11], x.fraction), y.fraction);
     value = lerp(below, above, z.fraction);
     return value == value;
   }
@@ -96,24 +87,27 @@ struct NearestSampler {
 
 /// What a ray finds of the brick around a position.
 struct BrickStep {
-  float highest = 0;         ///< largest value of a sample in it
-  bool transparent = false;  ///< no sample in it has any opacity
-  float leave = 0;           ///< voxels along the ray that surely stay in it
+  float level = 0;  ///< see SkipView::levels
+  float leave = 0;  ///< voxels along the ray that surely stay in it
 };
 
-/// Min-max bricks and, for the transfer function in force, which of them are transparent.
+/// Which bricks need no sampling, for the transfer function and the mode in force.
 struct SkipView {
-  const volume::ValueRange* ranges = nullptr;  ///< null: nothing is skipped
-  const std::uint8_t* transparent = nullptr;
+  static constexpr int kEdgeBits = 3;
+  static constexpr float kNever = 2.0F;
+
+  const float* highest = nullptr;  ///< one a brick: no f of a sample in it is larger
+  /// The same, but kNever where some sample in it has an opacity (except in maximum projection, where opacity
+  /// does not matter). Null: nothing is skipped.
+  const float* levels = nullptr;
   Dims dims;
-  int edge = 8;
 
   /// Brick along one axis and the distance to its far face; the outer bricks reach to infinity.
   EMSCAPE_HD int along(float position, float direction, int voxels, int bricks, float& leave) const {
-    const int brick = CellPosition(position, voxels).low / edge;
+    const int brick = CellPosition(position, voxels).low >> kEdgeBits;
     const bool forward = direction > 0.0F;
     if (direction == 0.0F || (forward ? brick + 1 >= bricks : brick <= 0)) return brick;
-    const float face = static_cast<float>((forward ? brick + 1 : brick) * edge);
+    const float face = static_cast<float>((forward ? brick + 1 : brick) << kEdgeBits);
     const float distance = (face - position) / direction;
     if (distance < leave) leave = distance;
     return brick;
@@ -128,9 +122,7 @@ struct SkipView {
     const int z = along(position.z, direction.z, volume.dims.z, dims.z, leave);
     const long long brick = (static_cast<long long>(z) * dims.y + y) * dims.x + x;
     const float sure = leave - kFaceMargin;
-    // Interpolation may round a little beyond its operands.
-    const float rounding = (ranges[brick].max - ranges[brick].min) * 1e-6F;
-    return {ranges[brick].max + rounding, transparent[brick] != 0, sure > 0.0F ? sure : 0.0F};
+    return {levels[brick], sure > 0.0F ? sure : 0.0F};
   }
 };
 

@@ -1,9 +1,12 @@
 #include "render/cpu/raycast_cpu.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 
 #include "base/parallel.h"
 #include "base/simd.h"
+#include "render/cpu/packets.h"
 
 namespace emscape::render {
 namespace {
@@ -11,86 +14,141 @@ namespace {
 /// Pixels of a lattice along a tile's side: small enough that neighbouring rays share what they read, and
 /// that a stop is heeded soon.
 constexpr int kTile = 16;
+constexpr int kTilePixels = kTile * kTile;
 
-template <class Compositor, class Sampler>
-EMSCAPE_SIMD_CLONES void castTile(const RaycastTask& task, const Lattice& lattice, int column, int row,
-                                  Image& image) {
-  const int columns_end = std::min(column + kTile, lattice.columns);
-  const int rows_end = std::min(row + kTile, lattice.rows);
-  for (int j = row; j < rows_end; ++j) {
-    const int y = lattice.first_y + j * lattice.step_y;
-    for (int i = column; i < columns_end; ++i) {
-      const int x = lattice.first_x + i * lattice.step_x;
-      image.at(x, y) = task.castPixel<Compositor, Sampler>(x, y);
+/// The places of a tile along a Z-shaped curve, so that 4, 8 or 16 in a row lie close together.
+constexpr std::array<Pixel, kTilePixels> zOrder() {
+  std::array<Pixel, kTilePixels> places{};
+  for (int n = 0; n < kTilePixels; ++n) {
+    Pixel& place = places[static_cast<std::size_t>(n)];
+    for (int bit = 0; bit < 4; ++bit) {
+      place.x = static_cast<std::uint16_t>(place.x | ((n >> (2 * bit)) & 1) << bit);
+      place.y = static_cast<std::uint16_t>(place.y | ((n >> (2 * bit + 1)) & 1) << bit);
     }
   }
+  return places;
 }
+constexpr std::array<Pixel, kTilePixels> kZOrder = zOrder();
 
 template <class Compositor, class Sampler>
-EMSCAPE_SIMD_CLONES void castList(const RaycastTask& task, const Pixel* pixels, int count, Image& image) {
+EMSCAPE_SIMD_CLONES void castPlain(const RaycastTask& task, const Pixel* pixels, const float* limits,
+                                   int count, Rgba* fronts) {
   for (int n = 0; n < count; ++n) {
-    const int x = pixels[n].x;
-    const int y = pixels[n].y;
-    image.at(x, y) = task.castPixel<Compositor, Sampler>(x, y);
+    const double limit = limits != nullptr ? limits[n] : 1e300;
+    fronts[n] = task.castVolume<Compositor, Sampler>(pixels[n].x, pixels[n].y, limit);
   }
 }
 
-/// The loops for one kind of compositing and sampling.
-struct Loops {
-  void (*tile)(const RaycastTask&, const Lattice&, int, int, Image&);
-  void (*list)(const RaycastTask&, const Pixel*, int, Image&);
-};
-
-template <class Compositor, class Sampler>
-constexpr Loops kLoops{castTile<Compositor, Sampler>, castList<Compositor, Sampler>};
+using CastPlain = void (*)(const RaycastTask&, const Pixel*, const float*, int, Rgba*);
 
 template <class Sampler>
-Loops loopsOf(CompositingMode mode) {
+CastPlain plainOf(CompositingMode mode) {
   switch (mode) {
     case CompositingMode::mida:
-      return kLoops<MidaCompositor, Sampler>;
+      return castPlain<MidaCompositor, Sampler>;
     case CompositingMode::mip:
-      return kLoops<MipCompositor, Sampler>;
+      return castPlain<MipCompositor, Sampler>;
     case CompositingMode::dvr:
       break;
   }
-  return kLoops<DvrCompositor, Sampler>;
-}
-
-Loops loopsOf(CompositingMode mode, bool nearest) {
-  return nearest ? loopsOf<NearestSampler>(mode) : loopsOf<TrilinearSampler>(mode);
+  return castPlain<DvrCompositor, Sampler>;
 }
 
 bool isSet(const StopFlag* stop) {
   return stop != nullptr && stop->load(std::memory_order_relaxed);
 }
 
+/// Casts pieces of at most kTilePixels pixels.
+class PieceCaster {
+ public:
+  explicit PieceCaster(const CpuCast& cast)
+      : cast_(cast),
+        in_packets_(!cast.plain && !cast.nearest && packetsCanCast(cast.task.volume)),
+        plain_(cast.nearest ? plainOf<NearestSampler>(cast.mode) : plainOf<TrilinearSampler>(cast.mode)) {}
+
+  /// @return samples taken, as far as they are counted
+  long long operator()(const Pixel* pixels, int count, Image& image) const {
+    std::array<Rgba, kTilePixels> fronts;
+    std::array<float, kTilePixels> limits;
+    if (cast_.ground != nullptr) {
+      for (int n = 0; n < count; ++n) limits[static_cast<std::size_t>(n)] = groundLimit(pixels[n]);
+    }
+    const float* limit = cast_.ground != nullptr ? limits.data() : nullptr;
+    long long samples = 0;
+    if (in_packets_) {
+      samples = castPackets(cast_.task, cast_.mode, pixels, limit, count, fronts.data());
+    } else {
+      plain_(cast_.task, pixels, limit, count, fronts.data());
+    }
+    const bool shows_ground = cast_.ground != nullptr && cast_.shows_ground;
+    for (int n = 0; n < count; ++n) {
+      const Rgba& front = fronts[static_cast<std::size_t>(n)];
+      const int x = pixels[n].x;
+      const int y = pixels[n].y;
+      image.at(x, y) = shows_ground ? cast_.ground->behind(front, cast_.ground->index(x, y)) : front;
+    }
+    return samples;
+  }
+
+ private:
+  float groundLimit(Pixel pixel) const {
+    const std::size_t index = cast_.ground->index(pixel.x, pixel.y);
+    float& distance = cast_.ground->distances[index];
+    if (distance == GroundLayer::kUnknown) {
+      const GroundHit hit = cast_.task.groundAt(pixel.x, pixel.y);
+      distance = hit.found ? static_cast<float>(hit.distance) : GroundLayer::kNone;
+      if (hit.found) cast_.ground->colors[index] = hit.color;
+    }
+    return distance;
+  }
+
+  const CpuCast& cast_;
+  const bool in_packets_;
+  const CastPlain plain_;
+};
+
 }  // namespace
 
-bool castCpu(const RaycastTask& task, CompositingMode mode, bool nearest, const Lattice& lattice,
-             Image& image, const StopFlag* stop) {
-  const Loops loops = loopsOf(mode, nearest);
+bool castCpu(const CpuCast& cast, const Lattice& lattice, Image& image, const StopFlag* stop,
+             long long& samples) {
+  const PieceCaster cast_piece(cast);
   const int tile_columns = (lattice.columns + kTile - 1) / kTile;
   const int tile_rows = (lattice.rows + kTile - 1) / kTile;
+  std::atomic<long long> taken{0};
   parallelFor(tile_columns * tile_rows, 1, [&](int begin, int end) {
+    std::array<Pixel, kTilePixels> pixels;
     for (int tile = begin; tile < end && !isSet(stop); ++tile) {
-      loops.tile(task, lattice, tile % tile_columns * kTile, tile / tile_columns * kTile, image);
+      const int first_column = tile % tile_columns * kTile;
+      const int first_row = tile / tile_columns * kTile;
+      int count = 0;
+      for (const Pixel& place : kZOrder) {
+        const int column = first_column + place.x;
+        const int row = first_row + place.y;
+        if (column >= lattice.columns || row >= lattice.rows) continue;
+        pixels[static_cast<std::size_t>(count++)] = {
+            static_cast<std::uint16_t>(lattice.first_x + column * lattice.step_x),
+            static_cast<std::uint16_t>(lattice.first_y + row * lattice.step_y)};
+      }
+      taken += cast_piece(pixels.data(), count, image);
     }
   });
+  samples += taken;
   return !isSet(stop);
 }
 
-bool castCpu(const RaycastTask& task, CompositingMode mode, bool nearest, const std::vector<Pixel>& pixels,
-             Image& image, const StopFlag* stop) {
-  const Loops loops = loopsOf(mode, nearest);
-  constexpr int kPiece = kTile * kTile;
+bool castCpu(const CpuCast& cast, const std::vector<Pixel>& pixels, Image& image, const StopFlag* stop,
+             long long& samples) {
+  const PieceCaster cast_piece(cast);
   const int count = static_cast<int>(pixels.size());
-  parallelFor((count + kPiece - 1) / kPiece, 1, [&](int begin, int end) {
+  std::atomic<long long> taken{0};
+  parallelFor((count + kTilePixels - 1) / kTilePixels, 1, [&](int begin, int end) {
     for (int piece = begin; piece < end && !isSet(stop); ++piece) {
-      const int first = piece * kPiece;
-      loops.list(task, &pixels[static_cast<std::size_t>(first)], std::min(kPiece, count - first), image);
+      const int first = piece * kTilePixels;
+      taken +=
+          cast_piece(&pixels[static_cast<std::size_t>(first)], std::min(kTilePixels, count - first), image);
     }
   });
+  samples += taken;
   return !isSet(stop);
 }
 

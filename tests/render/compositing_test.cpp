@@ -87,9 +87,9 @@ TEST(Compositing, MidaDoesNotEndWhileALaterSampleMayExceedTheMaximum) {
 TEST(Compositing, MidaDoesNotSkipTransparentSamplesThatRaiseTheMaximum) {
   MidaCompositor compositor(true, 0, 1.0F);
   compositor.add(0.4F, {0.1F, 0.1F, 0.1F, 0.2F});
-  EXPECT_TRUE(compositor.canSkip(0.4F, true));
-  EXPECT_FALSE(compositor.canSkip(0.5F, true));
-  EXPECT_FALSE(compositor.canSkip(0.1F, false));
+  EXPECT_TRUE(compositor.canSkip(0.4F));
+  EXPECT_FALSE(compositor.canSkip(0.5F));
+  EXPECT_FALSE(compositor.canSkip(SkipView::kNever));
 }
 
 TEST(Compositing, DvrEndsEarlyUnlessExact) {

@@ -1,0 +1,209 @@
+/// Vectors of rays and what they read: volume, transfer function, bricks. Included once for each kind of
+/// vector register by packets.cpp, after hwy/highway.h.
+#if defined(EMSCAPE_RENDER_CPU_PACKET_SAMPLING_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef EMSCAPE_RENDER_CPU_PACKET_SAMPLING_INL_H_
+#undef EMSCAPE_RENDER_CPU_PACKET_SAMPLING_INL_H_
+#else
+#define EMSCAPE_RENDER_CPU_PACKET_SAMPLING_INL_H_
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+
+#include "render/raycast.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace emscape::render {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using TagF = hn::ScalableTag<float>;
+using TagI = hn::ScalableTag<std::int32_t>;
+using TagOffset = hn::ScalableTag<std::int64_t>;
+using F = hn::Vec<TagF>;
+using I = hn::Vec<TagI>;
+using D = hn::Vec<hn::ScalableTag<double>>;
+using Offset = hn::Vec<TagOffset>;
+using M = hn::Mask<TagF>;
+constexpr TagF kF;
+constexpr TagI kI;
+
+/// A position or direction a lane.
+struct Vec3F {
+  F x, y, z;
+
+  HWY_INLINE Vec3F along(const Vec3F& direction, F distance) const {
+    return {hn::MulAdd(direction.x, distance, x), hn::MulAdd(direction.y, distance, y),
+            hn::MulAdd(direction.z, distance, z)};
+  }
+};
+
+/// A premultiplied colour a lane.
+struct Color {
+  F r, g, b, a;
+
+  static HWY_INLINE Color zero() { return {hn::Zero(kF), hn::Zero(kF), hn::Zero(kF), hn::Zero(kF)}; }
+  HWY_INLINE Color times(F s) const { return {r * s, g * s, b * s, a * s}; }
+  /// this + s * other
+  HWY_INLINE Color plus(const Color& other, F s) const {
+    return {hn::MulAdd(other.r, s, r), hn::MulAdd(other.g, s, g), hn::MulAdd(other.b, s, b),
+            hn::MulAdd(other.a, s, a)};
+  }
+  HWY_INLINE Color where(M mask) const {
+    return {hn::IfThenElseZero(mask, r), hn::IfThenElseZero(mask, g), hn::IfThenElseZero(mask, b),
+            hn::IfThenElseZero(mask, a)};
+  }
+  /// See render::shortened().
+  HWY_INLINE Color shortened(F part) const {
+    const F one = hn::Set(kF, 1.0F);
+    const M visible = hn::Gt(a, hn::Zero(kF));
+    const M opaque = hn::Ge(a, one);
+    const F through = hn::Exp(kF, part * hn::Log(kF, hn::IfThenElse(opaque, one, one - a)));
+    const F shorter = hn::IfThenElse(opaque, one, one - through);
+    return times(hn::IfThenElse(visible, shorter / a, one));
+  }
+};
+
+#if HWY_TARGET == HWY_SCALAR
+/// Reads two neighbouring floats.
+class PairReader {
+ public:
+  explicit HWY_INLINE PairReader(I index) : index_(hn::GetLane(index)) {}
+  HWY_INLINE void read(const float* base, F& first, F& second) const {
+    first = hn::Set(kF, base[index_]);
+    second = hn::Set(kF, base[index_ + 1]);
+  }
+
+ private:
+  std::int32_t index_;
+};
+#else
+/// Reads two neighbouring floats a lane with one 64-bit load each.
+class PairReader {
+ public:
+  /// @param index  in floats
+  explicit HWY_INLINE PairReader(I index) {
+    const hn::Half<TagI> half;
+    const TagOffset wide;
+    low_ = hn::ShiftLeft<2>(hn::PromoteTo(wide, hn::LowerHalf(half, index)));
+    high_ = hn::ShiftLeft<2>(hn::PromoteTo(wide, hn::UpperHalf(half, index)));
+  }
+  HWY_INLINE void read(const float* base, F& first, F& second) const {
+    const TagOffset wide;
+    const auto* from = reinterpret_cast<const std::int64_t*>(base);
+    const F low = hn::BitCast(kF, hn::GatherOffset(wide, from, low_));
+    const F high = hn::BitCast(kF, hn::GatherOffset(wide, from, high_));
+    first = hn::ConcatEven(kF, high, low);
+    second = hn::ConcatOdd(kF, high, low);
+  }
+
+ private:
+  Offset low_, high_;
+};
+#endif
+
+/// One axis of a cell: its low corner and how far a position lies from it, 0..1.
+struct CellAxis {
+  I low;
+  F fraction;
+
+  HWY_INLINE CellAxis(F position, int count) {
+    const F last = hn::Set(kF, static_cast<float>(count - 1));
+    const F held = hn::Min(hn::Max(position, hn::Zero(kF)), last);
+    low = hn::Min(hn::ConvertTo(kI, held), hn::Set(kI, count > 1 ? count - 2 : 0));
+    fraction = held - hn::ConvertTo(kF, low);
+  }
+  HWY_INLINE I nearest() const {
+    return low + hn::IfThenElseZero(hn::RebindMask(kI, hn::Ge(fraction, hn::Set(kF, 0.5F))), hn::Set(kI, 1));
+  }
+};
+
+HWY_INLINE F mix(F a, F b, F fraction) {
+  return hn::MulAdd(fraction, b - a, a);
+}
+
+/// See TrilinearSampler. @param shown  lanes whose nearest voxel is masked are taken out
+HWY_INLINE F sampleVolume(const VolumeView& volume, const Vec3F& position, M& shown) {
+  const Dims dims = volume.dims;
+  const CellAxis x(position.x, dims.x);
+  const CellAxis y(position.y, dims.y);
+  const CellAxis z(position.z, dims.z);
+  if (volume.masked_below > 0) {
+    const M low = hn::And(shown, hn::RebindMask(kF, hn::Lt(z.low, hn::Set(kI, volume.masked_below))));
+    if (!hn::AllFalse(kF, low)) {
+      const I column = y.nearest() * hn::Set(kI, dims.x) + x.nearest();
+      const I first_valid = hn::GatherIndex(kI, volume.first_valid_k, column);
+      shown = hn::AndNot(hn::RebindMask(kF, hn::Lt(z.nearest(), first_valid)), shown);
+    }
+  }
+  const long long row = dims.y > 1 ? dims.x : 0;
+  const long long layer = dims.z > 1 ? static_cast<long long>(dims.x) * dims.y : 0;
+  const PairReader cell((z.low * hn::Set(kI, dims.y) + y.low) * hn::Set(kI, dims.x) + x.low);
+  F v000, v100, v010, v110, v001, v101, v011, v111;
+  cell.read(volume.values, v000, v100);
+  cell.read(volume.values + row, v010, v110);
+  cell.read(volume.values + layer, v001, v101);
+  cell.read(volume.values + layer + row, v011, v111);
+  const F below = mix(mix(v000, v100, x.fraction), mix(v010, v110, x.fraction), y.fraction);
+  const F above = mix(mix(v001, v101, x.fraction), mix(v011, v111, x.fraction), y.fraction);
+  return mix(below, above, z.fraction);
+}
+
+/// See TransferView.
+HWY_INLINE F normalized(const TransferView& transfer, F value) {
+  const F f = (value - hn::Set(kF, transfer.lowest)) * hn::Set(kF, transfer.scale);
+  return hn::Min(hn::Max(f, hn::Zero(kF)), hn::Set(kF, 1.0F));
+}
+HWY_INLINE I tableIndex(const TransferView& transfer, F f) {
+  return hn::ConvertTo(kI, hn::MulAdd(f, hn::Set(kF, static_cast<float>(transfer.last)), hn::Set(kF, 0.5F)));
+}
+HWY_INLINE Color lookUp(const Rgba* table, I index) {
+  const PairReader entry(hn::ShiftLeft<2>(index));
+  Color color;
+  entry.read(&table->r, color.r, color.g);
+  entry.read(&table->b, color.b, color.a);
+  return color;
+}
+
+/// What rays find of the bricks around them; see SkipView::at().
+class BrickWalk {
+ public:
+  HWY_INLINE BrickWalk(const RaycastTask& task, const Vec3F& direction)
+      : skip_(task.skip), voxels_(task.volume.dims), direction_(direction) {}
+
+  /// @param level  receives SkipView::levels of the brick
+  /// @return voxels along the ray that surely stay in it
+  HWY_INLINE F look(const Vec3F& position, F& level) const {
+    constexpr float kFaceMargin = 1e-3F;
+    F leave = hn::Set(kF, 1e9F);
+    const I x = along(position.x, direction_.x, voxels_.x, skip_.dims.x, leave);
+    const I y = along(position.y, direction_.y, voxels_.y, skip_.dims.y, leave);
+    const I z = along(position.z, direction_.z, voxels_.z, skip_.dims.z, leave);
+    const I brick = (z * hn::Set(kI, skip_.dims.y) + y) * hn::Set(kI, skip_.dims.x) + x;
+    level = hn::GatherIndex(kF, skip_.levels, brick);
+    return hn::Max(leave - hn::Set(kF, kFaceMargin), hn::Zero(kF));
+  }
+
+ private:
+  HWY_INLINE I along(F position, F direction, int voxels, int bricks, F& leave) const {
+    const F held = hn::Min(hn::Max(position, hn::Zero(kF)), hn::Set(kF, static_cast<float>(voxels - 1)));
+    const I brick = hn::ShiftRight<SkipView::kEdgeBits>(hn::ConvertTo(kI, held));
+    const M forward = hn::Gt(direction, hn::Zero(kF));
+    const I ahead = brick + hn::IfThenElseZero(hn::RebindMask(kI, forward), hn::Set(kI, 1));
+    const M has_face =
+        hn::And(hn::Ne(direction, hn::Zero(kF)),
+                hn::RebindMask(kF, hn::And(hn::Gt(ahead, hn::Zero(kI)), hn::Lt(ahead, hn::Set(kI, bricks)))));
+    const F distance = (hn::ConvertTo(kF, hn::ShiftLeft<SkipView::kEdgeBits>(ahead)) - position) / direction;
+    leave = hn::IfThenElse(has_face, hn::Min(leave, distance), leave);
+    return brick;
+  }
+
+  const SkipView& skip_;
+  const Dims voxels_;
+  const Vec3F& direction_;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace emscape::render
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,25 @@
+/// Casts rays in packets: each lane of a vector register is a ray. The fast form of
+/// RaycastTask::castVolume().
+///
+/// A lane's result does not depend on its neighbours, so a pixel is the same in whichever packet it is cast.
+#pragma once
+
+#include "render/raycast.h"
+#include "render/reconstruction.h"
+
+namespace emscape::render {
+
+/// Whether packets can cast a volume: no NaN, at least two voxels wide, fewer than 2^31 of them.
+bool packetsCanCast(const VolumeView& volume);
+
+/// Casts the volume as some pixels show it (see RaycastTask::castVolume()), with the widest vectors that the
+/// processor has.
+/// @param pixels  neighbours beside each other make good packets
+/// @param limits  distance along each ray beyond which no sample is taken; null: none
+/// @param fronts  receives `count` colours
+/// @return samples taken
+/// @accuracy each channel within one level of 255 of the plain form
+long long castPackets(const RaycastTask& task, CompositingMode mode, const Pixel* pixels, const float* limits,
+                      int count, Rgba* fronts);
+
+}  // namespace emscape::render
