@@ -101,6 +101,7 @@ int emscapeMain(int argc, char** argv) {
   addInfo(app, global, action);
   addSimulate(app, global, action);
   addRender(app, global, action);
+  addCheck(app, global, action);
   addBench(app, global, action);
 
   if (const int status = parse(app, argc, argv); status >= 0) return status;

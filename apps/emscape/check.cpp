@@ -1,0 +1,118 @@
+/// emscape check: the propagation models against reference figures.
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/interrupt.h"
+#include "base/error.h"
+#include "emfield/check/reference_check.h"
+
+namespace emscape::app {
+namespace {
+
+using emfield::DatasetCheck;
+using emfield::FigureCheck;
+using emfield::ReferenceDataset;
+using emfield::ReferenceFolder;
+
+/// A dataset that was run, or that no model answers to.
+struct Outcome {
+  const ReferenceDataset* dataset;
+  DatasetCheck check;
+};
+
+Json toJson(const FigureCheck& figure) {
+  return {{"figure", figure.figure},       {"max_abs_error", figure.max_abs_error},
+          {"tolerance", figure.tolerance}, {"unit", figure.unit},
+          {"pass", figure.pass()},         {"worst_line", figure.worst_line}};
+}
+
+void printAsJson(const std::vector<Outcome>& checked, const std::vector<std::string>& not_checked,
+                 const ReferenceFolder& folder, bool pass) {
+  Json datasets = Json::array();
+  for (const Outcome& outcome : checked) {
+    const FigureCheck& main = outcome.check.figures.front();
+    Json figures = Json::array();
+    for (const FigureCheck& figure : outcome.check.figures) figures.push_back(toJson(figure));
+    datasets.push_back({{"name", outcome.dataset->name},
+                        {"cases", outcome.check.cases},
+                        {"max_abs_error", main.max_abs_error},
+                        {"tolerance", main.tolerance},
+                        {"unit", main.unit},
+                        {"pass", outcome.check.pass()},
+                        {"figures", figures}});
+  }
+  printJson({{"datasets", datasets},
+             {"pass", pass},
+             {"not_checked", not_checked},
+             {"absent", folder.absent},
+             {"unknown", folder.unknown}});
+}
+
+void printRow(const std::string& name, int cases, const FigureCheck& figure) {
+  fmt::print("{:<40} {:>6}  {:<18} {:>10.3g} {:>10.3g} {:<9} {}\n", name,
+             cases > 0 ? std::to_string(cases) : "", figure.figure, figure.max_abs_error, figure.tolerance,
+             figure.unit, figure.pass() ? "pass" : fmt::format("MISS (line {})", figure.worst_line));
+}
+
+void printAsTable(const std::vector<Outcome>& checked, const std::vector<std::string>& not_checked,
+                  const ReferenceFolder& folder) {
+  fmt::print("{:<40} {:>6}  {:<18} {:>10} {:>10} {:<9} {}\n", "dataset", "cases", "figure", "max error",
+             "tolerance", "unit", "result");
+  for (const Outcome& outcome : checked) {
+    const auto& figures = outcome.check.figures;
+    printRow(outcome.dataset->name, outcome.check.cases, figures.front());
+    for (std::size_t i = 1; i < figures.size(); ++i) printRow("", 0, figures[i]);
+  }
+  for (const std::string& name : not_checked)
+    fmt::print("{:<40} not checked: no model answers to it\n", name);
+  for (const std::string& name : folder.absent) fmt::print("{:<40} not checked: absent\n", name);
+  for (const std::string& name : folder.unknown) fmt::print("{:<40} not checked: unknown\n", name);
+}
+
+int check(const std::string& dir, const GlobalOptions& global) {
+  const ReferenceFolder folder = emfield::lookInto(dir);
+  std::vector<Outcome> checked;
+  std::vector<std::string> not_checked;
+  bool pass = true;
+  for (const ReferenceDataset* dataset : folder.present) {
+    stopIfInterrupted();
+    if (dataset->check == nullptr) {
+      not_checked.push_back(dataset->name);
+      continue;
+    }
+    checked.push_back({dataset, dataset->check(std::filesystem::path(dir) / dataset->name)});
+    pass = pass && checked.back().check.pass();
+  }
+
+  if (global.json) {
+    printAsJson(checked, not_checked, folder, pass);
+  } else {
+    printAsTable(checked, not_checked, folder);
+  }
+  return pass ? 0 : static_cast<int>(ErrorCode::check_failed);
+}
+
+}  // namespace
+
+void addCheck(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("check", "Compare the propagation models with a folder of reference figures");
+  command->fallthrough();
+  command->footer(R"(
+Every dataset in the folder that is known by name is run: its largest difference from the reference is shown beside what
+is allowed. Datasets that no model answers to, that are absent or that are unknown are named and passed over.
+
+Examples:
+  emscape check reference
+  emscape check reference --json     {"datasets": [{"name", "cases", "max_abs_error", "tolerance", "unit", "pass"}], "pass"}
+
+Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not, 3 for a file that is malformed.)");
+  auto dir = std::make_shared<std::string>();
+  command->add_option("DIR", *dir, "Folder of datasets, one a folder")->required();
+  command->callback([dir, &global, &action] { action = [dir, &global] { return check(*dir, global); }; });
+}
+
+}  // namespace emscape::app

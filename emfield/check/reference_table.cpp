@@ -1,0 +1,132 @@
+#include "emfield/check/reference_table.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+#include "base/whole_file.h"
+
+namespace emscape::emfield {
+namespace {
+
+struct Line {
+  int number;
+  std::vector<std::string> cells;
+};
+
+std::string trimmed(std::string_view text) {
+  const auto first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return "";
+  return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
+}
+
+/// The lines of a file that are not blank, cut at commas.
+std::vector<Line> readLines(const std::filesystem::path& file) {
+  const std::vector<std::uint8_t> bytes = readWhole(file);
+  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::vector<Line> lines;
+  int number = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = text.substr(begin, end - begin);
+    begin = end + 1;
+    ++number;
+    if (trimmed(line).empty()) continue;
+    lines.push_back({number, {}});
+    for (std::size_t cell = 0; cell <= line.size();) {
+      const std::size_t comma = std::min(line.find(',', cell), line.size());
+      lines.back().cells.push_back(trimmed(line.substr(cell, comma - cell)));
+      cell = comma + 1;
+    }
+  }
+  return lines;
+}
+
+double parseNumber(const std::string& cell, const FilePlace& place, std::string_view what) {
+  double value = 0;
+  const char* end = cell.data() + cell.size();
+  const auto [stop, error] = std::from_chars(cell.data(), end, value);
+  if (error != std::errc() || stop != end || !std::isfinite(value)) {
+    throw Error(ErrorCode::bad_input, place, fmt::format("{}: '{}' is not a finite number", what, cell));
+  }
+  return value;
+}
+
+}  // namespace
+
+ReferenceTable::ReferenceTable(const std::filesystem::path& file,
+                               const std::vector<std::string_view>& columns)
+    : file_(file.string()) {
+  std::vector<Line> lines = readLines(file);
+  if (lines.size() < 2) {
+    throw Error(ErrorCode::bad_input, {file_, 0, 0},
+                "no cases; expected column names and a row for each case");
+  }
+  names_ = lines.front().cells;
+  for (const std::string_view column : columns) {
+    if (std::find(names_.begin(), names_.end(), column) == names_.end()) {
+      throw Error(ErrorCode::bad_input, {file_, lines.front().number, 0},
+                  fmt::format("column '{}' is missing", column));
+    }
+  }
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    if (lines[i].cells.size() != names_.size()) {
+      throw Error(ErrorCode::bad_input, {file_, lines[i].number, 0},
+                  fmt::format("{} cells where the first line names {} columns", lines[i].cells.size(),
+                              names_.size()));
+    }
+    rows_.push_back({lines[i].number, std::move(lines[i].cells)});
+  }
+}
+
+double ReferenceTable::number(int row, std::string_view column) const {
+  return parseNumber(text(row, column), place(row), column);
+}
+
+int ReferenceTable::integer(int row, std::string_view column) const {
+  const double value = number(row, column);
+  if (value != std::trunc(value) || std::fabs(value) > 1e9) {
+    throw Error(ErrorCode::bad_input, place(row),
+                fmt::format("{}: '{}' is not a whole number", column, text(row, column)));
+  }
+  return static_cast<int>(value);
+}
+
+const std::string& ReferenceTable::text(int row, std::string_view column) const {
+  const auto name = std::find(names_.begin(), names_.end(), column);
+  if (name == names_.end()) {
+    throw Error(ErrorCode::bad_input, {file_, 1, 0}, fmt::format("column '{}' is missing", column));
+  }
+  return rows_.at(static_cast<std::size_t>(row)).cells[static_cast<std::size_t>(name - names_.begin())];
+}
+
+FilePlace ReferenceTable::place(int row) const {
+  return {file_, rows_.at(static_cast<std::size_t>(row)).line, 0};
+}
+
+std::vector<ReferenceProfile> readReferenceProfiles(const std::filesystem::path& file) {
+  std::vector<ReferenceProfile> profiles;
+  for (const Line& line : readLines(file)) {
+    const FilePlace place{file.string(), line.number, 0};
+    const double intervals = parseNumber(line.cells[0], place, "n_intervals");
+    if (!(intervals >= 1) || line.cells.size() != intervals + 3) {
+      throw Error(ErrorCode::bad_input, place,
+                  fmt::format("n_intervals is {} but {} heights follow; expected one more than intervals",
+                              line.cells[0], static_cast<long long>(line.cells.size()) - 2));
+    }
+    ReferenceProfile& profile = profiles.emplace_back();
+    profile.step_m = parseNumber(line.cells[1], place, "step_m");
+    if (profile.step_m <= 0) {
+      throw Error(ErrorCode::bad_input, place, fmt::format("step_m: {} is not above 0 m", profile.step_m));
+    }
+    for (std::size_t i = 2; i < line.cells.size(); ++i) {
+      profile.heights_msl_m.push_back(parseNumber(line.cells[i], place, fmt::format("h_{}", i - 2)));
+    }
+  }
+  return profiles;
+}
+
+}  // namespace emscape::emfield

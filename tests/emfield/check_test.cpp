@@ -1,0 +1,183 @@
+// The frame of `emscape check`: tables of reference figures, and what it makes of a folder.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "emfield/check/reference_check.h"
+#include "emfield/check/reference_table.h"
+#include "emfield/models/model_limits.h"
+#include "tests/reference_dir.h"
+
+namespace emscape::emfield {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+class CheckFolder : public testing::Test {
+ protected:
+  CheckFolder()
+      : root_(fs::temp_directory_path() / ("emscape-check-" + std::to_string(::getpid()) + "-" +
+                                           testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    fs::create_directories(root_);
+  }
+  ~CheckFolder() override { fs::remove_all(root_); }
+
+  fs::path write(const std::string& name, const std::string& text) const {
+    fs::create_directories((root_ / name).parent_path());
+    std::ofstream(root_ / name) << text;
+    return root_ / name;
+  }
+
+  template <class Do>
+  static std::string messageOf(Do run) {
+    try {
+      run();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::bad_input);
+      return error.what();
+    }
+    return "nothing was thrown";
+  }
+
+  const fs::path root_;
+};
+
+TEST_F(CheckFolder, ReadsATableByColumnNames) {
+  const ReferenceTable table(write("t.csv", "a,b,c\r\n1,-2.5e-3,x y\r\n\r\n4,,z\r\n"), {"a", "c"});
+  ASSERT_EQ(table.rows(), 2);
+  EXPECT_EQ(table.integer(0, "a"), 1);
+  EXPECT_EQ(table.number(0, "b"), -2.5e-3);
+  EXPECT_EQ(table.text(0, "c"), "x y");
+  EXPECT_FALSE(table.has(1, "b"));
+  EXPECT_EQ(table.place(1).line, 4);
+}
+
+TEST_F(CheckFolder, NamesFileAndLineOfAMalformedTable) {
+  const auto message = [this](const std::string& text) {
+    const fs::path file = write("t.csv", text);
+    return messageOf([&] {
+      const ReferenceTable table(file, {"a", "b"});
+      for (int i = 0; i < table.rows(); ++i) table.integer(i, "a");
+    });
+  };
+  EXPECT_THAT(message(""), EndsWith("t.csv: no cases; expected column names and a row for each case"));
+  EXPECT_THAT(message("a,b\n"), HasSubstr("t.csv: no cases"));
+  EXPECT_THAT(message("a,c\n1,2\n"), EndsWith("t.csv:1: column 'b' is missing"));
+  EXPECT_THAT(message("a,b\n1,2\n1\n"), EndsWith("t.csv:3: 1 cells where the first line names 2 columns"));
+  EXPECT_THAT(message("a,b\n1,2\nx,2\n"), EndsWith("t.csv:3: a: 'x' is not a finite number"));
+  EXPECT_THAT(message("a,b\n,2\n"), EndsWith("t.csv:2: a: '' is not a finite number"));
+  EXPECT_THAT(message("a,b\nnan,2\n"), EndsWith("t.csv:2: a: 'nan' is not a finite number"));
+  EXPECT_THAT(message("a,b\n1.5,2\n"), EndsWith("t.csv:2: a: '1.5' is not a whole number"));
+  EXPECT_THAT(messageOf([this] { ReferenceTable(root_ / "none.csv", {}); }), HasSubstr("none.csv"));
+}
+
+TEST_F(CheckFolder, NamesFileAndLineOfAMalformedProfile) {
+  const auto message = [this](const std::string& text) {
+    const fs::path file = write("profiles.csv", text);
+    return messageOf([&] { readReferenceProfiles(file); });
+  };
+  EXPECT_THAT(
+      message("1,90,5,6\n2,90,5,6\n"),
+      EndsWith("profiles.csv:2: n_intervals is 2 but 2 heights follow; expected one more than intervals"));
+  EXPECT_THAT(message("1,0,5,6\n"), EndsWith("profiles.csv:1: step_m: 0 is not above 0 m"));
+  EXPECT_THAT(message("1,90,5,\n"), EndsWith("profiles.csv:1: h_1: '' is not a finite number"));
+  EXPECT_THAT(message("1\n"), HasSubstr("profiles.csv:1: n_intervals is 1 but"));
+  const auto profiles = readReferenceProfiles(write("profiles.csv", "1,90,5,6\n2,30,1,2,3\n"));
+  ASSERT_EQ(profiles.size(), 2u);
+  EXPECT_EQ(profiles[1].step_m, 30);
+  EXPECT_THAT(profiles[1].heights_msl_m, testing::ElementsAre(1, 2, 3));
+}
+
+TEST_F(CheckFolder, TellsWhatIsPresentAbsentAndUnknown) {
+  write("geoid/check_points.csv", "");
+  write("radar/mystery.csv", "");
+  write("p9999/cases.csv", "");
+  write("README.md", "");
+  const ReferenceFolder found = lookInto(root_);
+  ASSERT_EQ(found.present.size(), 1u);
+  EXPECT_EQ(found.present[0]->name, "geoid");
+  EXPECT_EQ(found.absent.size(), referenceDatasets().size() - 1);
+  EXPECT_THAT(found.unknown, testing::ElementsAre("p9999", "radar/mystery.csv"));
+}
+
+TEST_F(CheckFolder, RefusesAFolderWithoutDatasets) {
+  EXPECT_THAT(messageOf([this] { lookInto(root_); }), HasSubstr("holds no dataset that is known"));
+  EXPECT_THAT(messageOf([this] { lookInto(root_ / "none"); }), EndsWith("none: no such folder"));
+}
+
+TEST(FigureCheck, KeepsTheLargestDifferenceAndItsLine) {
+  FigureCheck figure{"loss_db", 0.1, "dB"};
+  figure.compare(1, 1, 2);
+  EXPECT_EQ(figure.worst_line, 0);
+  figure.compare(1, 1.25, 3);
+  figure.compare(1, 1.125, 4);
+  EXPECT_EQ(figure.max_abs_error, 0.25);
+  EXPECT_EQ(figure.worst_line, 3);
+  EXPECT_FALSE(figure.pass());
+}
+
+TEST(FigureCheck, CountsNaNAsAMiss) {
+  FigureCheck figure{"loss_db", 0.1, "dB"};
+  figure.compare(std::nan(""), 1, 2);
+  figure.compare(1, 1, 3);
+  EXPECT_FALSE(figure.pass());
+  EXPECT_EQ(figure.worst_line, 2);
+}
+
+TEST(FigureCheck, ComparesRelatively) {
+  FigureCheck figure{"gamma", 0.01, "relative"};
+  figure.compareRelative(202, 200, 2);
+  EXPECT_NEAR(figure.max_abs_error, 0.01, 1e-15);
+  figure.compareRelative(0, 0, 3);
+  EXPECT_EQ(figure.worst_line, 2);
+}
+
+/// Every dataset with a model meets its tolerance.
+class Reference : public testing::TestWithParam<int> {};
+
+TEST_P(Reference, IsMet) {
+  const ReferenceDataset& dataset = referenceDatasets()[static_cast<std::size_t>(GetParam())];
+  if (dataset.check == nullptr) GTEST_SKIP() << "no model answers to " << dataset.name;
+  const auto path = test::referenceFile("reference/" + dataset.name);
+  if (!path) GTEST_SKIP() << "no " << dataset.name << " below " << test::referenceDir();
+  const DatasetCheck result = dataset.check(*path);
+  EXPECT_GT(result.cases, 0);
+  for (const FigureCheck& figure : result.figures) {
+    EXPECT_LE(figure.max_abs_error, figure.tolerance) << figure.figure << ", line " << figure.worst_line;
+  }
+}
+
+std::string datasetTestName(const testing::TestParamInfo<int>& info) {
+  std::string name = referenceDatasets()[static_cast<std::size_t>(info.param)].name;
+  for (char& c : name) {
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  }
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(Datasets, Reference, testing::Range(0, static_cast<int>(referenceDatasets().size())),
+                         datasetTestName);
+
+constexpr ModelLimit kFrequency{"frequency", "MHz", 1e6, 20, 20000, Beyond::refused, "of the model's data"};
+
+TEST(ModelLimits, HoldFromLeastToMostAndNotForNaN) {
+  EXPECT_TRUE(kFrequency.holds(20e6));
+  EXPECT_TRUE(kFrequency.holds(20e9));
+  EXPECT_FALSE(kFrequency.holds(19.999e6));
+  EXPECT_FALSE(kFrequency.holds(20.001e9));
+  EXPECT_FALSE(kFrequency.holds(std::nan("")));
+}
+
+TEST(ModelLimits, GiveTheMessageAndTheTable) {
+  EXPECT_EQ(outsideMessage(kFrequency, 15e6), "frequency 15 MHz is outside 20..20000 MHz: refused");
+  const ModelLimit* const limits[] = {&kFrequency};
+  EXPECT_THAT(limitsTable(limits),
+              EndsWith("| frequency | MHz | 20 | 20000 | refused | of the model's data |\n"));
+}
+
+}  // namespace
+}  // namespace emscape::emfield
