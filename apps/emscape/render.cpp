@@ -10,11 +10,11 @@
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/frame_source.h"
+#include "apps/emscape/painter.h"
 #include "apps/emscape/picture_sink.h"
-#include "apps/emscape/scene.h"
 #include "base/log.h"
 #include "base/stopwatch.h"
-#include "render/renderer.h"
+#include "render/reconstruction.h"
 
 namespace emscape::app {
 namespace {
@@ -39,22 +39,10 @@ struct RenderOptions {
   bool show_emitters = true;
 };
 
-/// The options that say how a picture looks, read: wrong ones are told before anything is computed.
-struct Look {
-  render::ImageSize size;
-  render::Pattern pattern;
-  render::Interpolation interpolation;
-  render::CameraSpec camera;
-  render::Theme theme;
-  render::RenderSettings settings;
-};
-
+/// The options that say how pictures look, read: wrong ones are told before anything is computed.
 Look lookOf(const RenderOptions& options) {
   Look look;
   look.size = render::parseImageSize(options.size);
-  // Files are not in a hurry: `auto` casts every pixel.
-  look.pattern = options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays);
-  look.interpolation = render::parseInterpolation(options.interpolate);
   look.camera = render::parseCamera(options.camera);
   look.theme = render::parseTheme(options.theme);
   look.settings.mode = render::parseCompositingMode(options.mode);
@@ -62,68 +50,12 @@ Look lookOf(const RenderOptions& options) {
   look.settings.mida_gamma = options.mida_gamma;
   look.settings.exact = options.exact;
   look.settings.vertical_exaggeration = options.exaggeration;
+  look.transfer = options.transfer;
+  look.colors_span_range = !options.range.empty();
+  look.show_terrain = options.show_terrain;
+  look.show_emitters = options.show_emitters;
   return look;
 }
-
-/// Draws frames of one scene; camera and colours stay as they were fitted to the first.
-class Painter {
- public:
-  Painter(const RenderOptions& options, const Look& look, const FrameSource& source)
-      : options_(options), look_(look), source_(source) {
-    renderer_.setSettings(look.settings);
-    annotations_.title = source.name();
-    annotations_.theme = look.theme;
-    annotations_.note = fmt::format("{}, {} rays, step {:g} voxel", options.mode,
-                                    render::toString(look.pattern), options.step_voxels);
-  }
-
-  double castMilliseconds() const { return cast_ms_; }
-
-  render::Image8 paint(const Frame& frame) {
-    const volume::DenseVolume& volume = *frame.volume;
-    renderer_.setVolume(frame.volume);
-    annotations_.time = fmt::format("t = {:g} s", volume.info.time_s);
-    annotations_.time_utc = volume.info.time_utc;
-    if (options_.show_emitters) annotations_.markers = frame.markers;
-    if (!fitted_) fitTo(volume);
-    render::FrameReport report;
-    const render::Image cast = renderer_.render(look_.size, {look_.pattern, look_.interpolation}, &report);
-    cast_ms_ += report.total_ms();
-    return render::compose(cast, renderer_.camera(), renderer_.sceneBox(), annotations_,
-                           [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
-  }
-
- private:
-  /// By how frequent the values are, unless the user gave the range or the function.
-  render::TransferFunction functionFor(const volume::DenseVolume& volume) const {
-    if (!options_.transfer.empty()) return render::readTransferFunction(options_.transfer, volume.info);
-    return options_.range.empty() ? render::defaultTransferFunction(volume)
-                                  : render::defaultTransferFunction(volume.info);
-  }
-
-  void fitTo(const volume::DenseVolume& volume) {
-    const LoadedScenario* scene = source_.scene();
-    const render::TransferFunction function = functionFor(volume);
-    renderer_.setTransferFunction(function);
-    if (options_.show_terrain && scene && scene->terrain) {
-      renderer_.setHeightField(heightFieldOf(*scene->terrain, volume.grid));
-    }
-    annotations_.georeferenced = volume.grid.georeferenced;
-    annotations_.legend = render::legendOf(volume.info, function);
-    if (scene && volume.info.categorical) annotations_.legend->categories = categoriesOf(*scene->scenario);
-    renderer_.setCamera(render::makeCamera(look_.camera, renderer_.sceneBox(), look_.size,
-                                           render::overlayMargins(look_.size, annotations_)));
-    fitted_ = true;
-  }
-
-  const RenderOptions& options_;
-  const Look& look_;
-  const FrameSource& source_;
-  render::Renderer renderer_;
-  render::Annotations annotations_;
-  bool fitted_ = false;
-  double cast_ms_ = 0;
-};
 
 bool isOnePicture(const std::vector<std::string>& outputs) {
   return std::all_of(outputs.begin(), outputs.end(), [](const std::string& output) {
@@ -133,11 +65,17 @@ bool isOnePicture(const std::vector<std::string>& outputs) {
 
 int renderPictures(RenderOptions options, const GlobalOptions& global) {
   const Look look = lookOf(options);
+  // Files are not in a hurry: `auto` casts every pixel.
+  const render::FramePlan plan{
+      options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays),
+      render::parseInterpolation(options.interpolate)};
   const std::string device = chooseBackend(global);
   if (!options.range.empty()) options.selection.range = parseRange(options.range);
   options.selection.first_only = options.selection.times.empty() && isOnePicture(options.outputs);
   const std::unique_ptr<FrameSource> source = openFrameSource(options.selection, global);
-  Painter painter(options, look, *source);
+  Painter painter(look, *source);
+  const std::string note = fmt::format("{}, {} rays, step {:g} voxel", options.mode,
+                                       render::toString(plan.pattern), options.step_voxels);
   std::vector<std::unique_ptr<PictureSink>> sinks;
   for (const std::string& output : options.outputs) {
     sinks.push_back(
@@ -145,11 +83,14 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
   }
 
   Stopwatch watch;
+  double cast_ms = 0;
   {
     ProgressBar progress(global, "drawing", source->count());
     BackgroundWriter writer(2);  // PNG and video are packed while the next picture is cast
     for (int index = 0; index < source->count(); ++index) {
-      writer.push([&sinks, index, picture = painter.paint(source->frame(index))] {
+      painter.setFrame(source->frame(index));
+      cast_ms += painter.draw(plan).total_ms();
+      writer.push([&sinks, index, picture = painter.picture(note)] {
         for (const auto& sink : sinks) sink->add(index + 1, picture);
       });
       progress.show(index + 1);
@@ -166,7 +107,7 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
                {"mode", options.mode},
                {"frames", source->count()},
                {"outputs", options.outputs},
-               {"cast_ms", painter.castMilliseconds()},
+               {"cast_ms", cast_ms},
                {"seconds", seconds}});
   } else {
     logInfo(fmt::format("{} picture{} in {:.1f} s: {}", source->count(), source->count() == 1 ? "" : "s",
