@@ -95,6 +95,8 @@ struct BrickStep {
 struct SkipView {
   static constexpr int kEdgeBits = 3;
   static constexpr float kNever = 2.0F;
+  /// Samples nearer to a face (voxels) than rounding can tell apart are looked at anew.
+  static constexpr float kFaceMargin = 1e-3F;
 
   const float* highest = nullptr;  ///< one a brick: no f of a sample in it is larger
   /// The same, but kNever where some sample in it has an opacity (except in maximum projection, where opacity
@@ -114,8 +116,6 @@ struct SkipView {
   }
 
   EMSCAPE_HD BrickStep at(const VolumeView& volume, const Vec3f& position, const Vec3f& direction) const {
-    // Samples nearer to a face than rounding can tell apart are looked at anew.
-    constexpr float kFaceMargin = 1e-3F;
     float leave = 1e9F;
     const int x = along(position.x, direction.x, volume.dims.x, dims.x, leave);
     const int y = along(position.y, direction.y, volume.dims.y, dims.y, leave);

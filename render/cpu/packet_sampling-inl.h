@@ -168,38 +168,46 @@ HWY_INLINE Color lookUp(const Rgba* table, I index) {
 class BrickWalk {
  public:
   HWY_INLINE BrickWalk(const RaycastTask& task, const Vec3F& direction)
-      : skip_(task.skip), voxels_(task.volume.dims), direction_(direction) {}
+      : levels_(task.skip.levels),
+        x_(direction.x, task.volume.dims.x),
+        y_(direction.y, task.volume.dims.y),
+        z_(direction.z, task.volume.dims.z),
+        row_(hn::Set(kI, task.skip.dims.x)),
+        rows_(hn::Set(kI, task.skip.dims.y)) {}
 
   /// @param level  receives SkipView::levels of the brick
   /// @return voxels along the ray that surely stay in it
   HWY_INLINE F look(const Vec3F& position, F& level) const {
-    constexpr float kFaceMargin = 1e-3F;
-    F leave = hn::Set(kF, 1e9F);
-    const I x = along(position.x, direction_.x, voxels_.x, skip_.dims.x, leave);
-    const I y = along(position.y, direction_.y, voxels_.y, skip_.dims.y, leave);
-    const I z = along(position.z, direction_.z, voxels_.z, skip_.dims.z, leave);
-    const I brick = (z * hn::Set(kI, skip_.dims.y) + y) * hn::Set(kI, skip_.dims.x) + x;
-    level = hn::GatherIndex(kF, skip_.levels, brick);
-    return hn::Max(leave - hn::Set(kF, kFaceMargin), hn::Zero(kF));
+    I x, y, z;
+    const F leave =
+        hn::Min(hn::Min(x_.along(position.x, x), y_.along(position.y, y)), z_.along(position.z, z));
+    level = hn::GatherIndex(kF, levels_, (z * rows_ + y) * row_ + x);
+    return hn::Max(leave - hn::Set(kF, SkipView::kFaceMargin), hn::Zero(kF));
   }
 
  private:
-  HWY_INLINE I along(F position, F direction, int voxels, int bricks, F& leave) const {
-    const F held = hn::Min(hn::Max(position, hn::Zero(kF)), hn::Set(kF, static_cast<float>(voxels - 1)));
-    const I brick = hn::ShiftRight<SkipView::kEdgeBits>(hn::ConvertTo(kI, held));
-    const M forward = hn::Gt(direction, hn::Zero(kF));
-    const I ahead = brick + hn::IfThenElseZero(hn::RebindMask(kI, forward), hn::Set(kI, 1));
-    const M has_face =
-        hn::And(hn::Ne(direction, hn::Zero(kF)),
-                hn::RebindMask(kF, hn::And(hn::Gt(ahead, hn::Zero(kI)), hn::Lt(ahead, hn::Set(kI, bricks)))));
-    const F distance = (hn::ConvertTo(kF, hn::ShiftLeft<SkipView::kEdgeBits>(ahead)) - position) / direction;
-    leave = hn::IfThenElse(has_face, hn::Min(leave, distance), leave);
-    return brick;
-  }
+  struct Axis {
+    F last, voxels_per_unit;
+    I ahead;  ///< 1 where the ray leaves a brick by its upper face
 
-  const SkipView& skip_;
-  const Dims voxels_;
-  const Vec3F& direction_;
+    HWY_INLINE Axis(F direction, int voxels)
+        : last(hn::Set(kF, static_cast<float>(voxels - 1))),
+          voxels_per_unit(hn::IfThenElse(hn::Eq(direction, hn::Zero(kF)), hn::Set(kF, -1e30F),
+                                         hn::Set(kF, 1.0F) / direction)),
+          ahead(hn::IfThenElseZero(hn::RebindMask(kI, hn::Gt(direction, hn::Zero(kF))), hn::Set(kI, 1))) {}
+
+    /// @return distance to the brick's far face, not beyond it in the outer half of the border's voxels
+    HWY_INLINE F along(F position, I& brick) const {
+      const F held = hn::Min(hn::Max(position, hn::Zero(kF)), last);
+      brick = hn::ShiftRight<SkipView::kEdgeBits>(hn::ConvertTo(kI, held));
+      const F face = hn::ConvertTo(kF, hn::ShiftLeft<SkipView::kEdgeBits>(brick + ahead));
+      return (face - position) * voxels_per_unit;
+    }
+  };
+
+  const float* levels_;
+  const Axis x_, y_, z_;
+  const I row_, rows_;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -110,7 +110,8 @@ HWY_INLINE Rays setRays(const RaycastTask& task, const Pixel* pixels, const floa
           hn::Load(f, parts[6])};
 }
 
-/// The modes, lane by lane; see render/compositing.h for what they are.
+/// The modes, lane by lane; see render/compositing.h for what they are. live() gives the lanes for which a
+/// later sample can matter; add() those that the sample changed.
 struct DvrLanes {
   static constexpr bool kNeedsColor = true;
   Color sum;
@@ -119,8 +120,9 @@ struct DvrLanes {
     return task.exact ? active : hn::And(active, hn::Le(sum.a, hn::Set(kF, kOpaqueEnough)));
   }
   HWY_INLINE M canSkip(F level) const { return hn::Lt(level, hn::Set(kF, SkipView::kNever)); }
-  HWY_INLINE void add(const RaycastTask& /*task*/, M /*active*/, F /*f*/, const Color& sample) {
+  HWY_INLINE M add(const RaycastTask& /*task*/, M /*active*/, F /*f*/, const Color& sample) {
     sum = sum.plus(sample, hn::Set(kF, 1.0F) - sum.a);
+    return hn::Gt(sample.a, hn::Zero(kF));
   }
   HWY_INLINE Color result(const RaycastTask& /*task*/) const { return sum; }
 };
@@ -133,8 +135,10 @@ struct MipLanes {
     return hn::And(active, hn::Lt(highest, hn::Set(kF, task.volume_highest_f)));
   }
   HWY_INLINE M canSkip(F level) const { return hn::Le(level, highest); }
-  HWY_INLINE void add(const RaycastTask& /*task*/, M active, F f, const Color& /*sample*/) {
-    highest = hn::IfThenElse(active, hn::Max(highest, f), highest);
+  HWY_INLINE M add(const RaycastTask& /*task*/, M active, F f, const Color& /*sample*/) {
+    const M raised = hn::And(active, hn::Gt(f, highest));
+    highest = hn::IfThenElse(raised, f, highest);
+    return raised;
   }
   HWY_INLINE Color result(const RaycastTask& task) const {
     const M any = hn::Ge(highest, hn::Zero(kF));
@@ -153,13 +157,14 @@ struct MidaLanes {
     return hn::Or(hn::And(active, hn::Le(sum.a, hn::Set(kF, kOpaqueEnough))), mip.live(task, active));
   }
   HWY_INLINE M canSkip(F level) const { return mip.canSkip(level); }
-  HWY_INLINE void add(const RaycastTask& task, M active, F f, const Color& sample) {
+  HWY_INLINE M add(const RaycastTask& task, M active, F f, const Color& sample) {
     const F one = hn::Set(kF, 1.0F);
     const F before = hn::Max(mip.highest, hn::Zero(kF));
     const F delta = hn::IfThenElseZero(active, hn::Max(f - before, hn::Zero(kF)));
-    mip.add(task, active, f, sample);
+    const M raised = mip.add(task, active, f, sample);
     const F beta = one - delta * hn::Set(kF, 1.0F + (task.mida_gamma < 0.0F ? task.mida_gamma : 0.0F));
     sum = sum.times(beta).plus(sample, one - beta * sum.a);
+    return hn::Or(raised, hn::Gt(sample.a, hn::Zero(kF)));
   }
   HWY_INLINE Color result(const RaycastTask& task) const {
     if (task.mida_gamma <= 0.0F) return sum;
@@ -174,22 +179,25 @@ HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long
   const F step = hn::Set(kF, task.step_voxels);
   const F half = hn::Set(kF, 0.5F);
   const F one = hn::Set(kF, 1.0F);
-  const F whole = hn::Floor(rays.length / step);
+  const F per_step = hn::Set(kF, 1.0F / task.step_voxels);
+  const F whole = hn::Floor(rays.length * per_step);
   const bool skips = task.skip.levels != nullptr;
   const BrickWalk bricks(task, rays.direction);
   Lanes lanes;
   F n = hn::Zero(kF);
   F next_brick = hn::Zero(kF);
   M active = hn::Lt(n, whole);
+  M unchanged = active;  // lanes whose last sample changed nothing
   while (true) {
-    if (skips) {
-      // Lanes that reach another brick look at it, and pass over it until there is something to sample.
-      M look = hn::And(active, hn::Ge(n, next_brick));
+    // Lanes in a new brick look whether they can pass over it, and over those behind it. While most lanes
+    // find something to show this would be in vain.
+    M look = hn::And(hn::And(active, unchanged), hn::Ge(n, next_brick));
+    if (skips && 2 * hn::CountTrue(kF, look) >= hn::CountTrue(kF, active)) {
       while (!hn::AllFalse(kF, look)) {
         const Vec3F position = rays.start.along(rays.direction, (n + half) * step);
         F level;
         const F leave = bricks.look(position, level);
-        const F beyond = hn::Min(n + one + hn::Floor(leave / step), whole);
+        const F beyond = hn::Min(n + one + hn::Floor(leave * per_step), whole);
         next_brick = hn::IfThenElse(look, beyond, next_brick);
         look = hn::And(look, lanes.canSkip(level));
         n = hn::IfThenElse(look, beyond, n);
@@ -204,7 +212,7 @@ HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long
     const F f = normalized(task.transfer, value);
     Color color = Color::zero();
     if (Lanes::kNeedsColor) color = lookUp(task.transfer.samples, tableIndex(task.transfer, f)).where(shown);
-    lanes.add(task, shown, f, color);
+    unchanged = hn::Not(lanes.add(task, shown, f, color));
     samples += static_cast<long long>(hn::CountTrue(kF, active));
     n = n + one;
     active = hn::And(lanes.live(task, active), hn::Lt(n, whole));
@@ -218,7 +226,8 @@ HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long
     const F f = normalized(task.transfer, sampleVolume(task.volume, position, shown));
     Color color = Color::zero();
     if (Lanes::kNeedsColor) {
-      color = lookUp(task.transfer.samples, tableIndex(task.transfer, f)).where(shown).shortened(rest / step);
+      color =
+          lookUp(task.transfer.samples, tableIndex(task.transfer, f)).where(shown).shortened(rest * per_step);
     }
     lanes.add(task, shown, f, color);
   }
