@@ -80,8 +80,8 @@ void ReadyVolume::fillBelowMask() {
 }
 
 VolumeView ReadyVolume::view() const {
-  if (masked_below_ == 0) return {volume_->values.data(), volume_->grid.dims, nullptr, 0};
-  return {filled_.values.data(), volume_->grid.dims, first_valid_k_.data(), masked_below_};
+  if (masked_below_ == 0) return {volume_->values.data(), volume_->grid.dims, nullptr, 0, has_nan_};
+  return {filled_.values.data(), volume_->grid.dims, first_valid_k_.data(), masked_below_, has_nan_};
 }
 
 }  // namespace emscape::render

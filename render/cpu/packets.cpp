@@ -25,8 +25,9 @@ HWY_INLINE void clipAxis(D origin, D direction, double lower, double upper, D& b
   const hn::ScalableTag<double> d;
   const D lo = hn::Set(d, lower);
   const D hi = hn::Set(d, upper);
-  const D to_lower = (lo - origin) / direction;
-  const D to_upper = (hi - origin) / direction;
+  const D per_unit = hn::Set(d, 1.0) / direction;
+  const D to_lower = (lo - origin) * per_unit;
+  const D to_upper = (hi - origin) * per_unit;
   const auto parallel = hn::Eq(direction, hn::Zero(d));
   const auto inside = hn::And(hn::Gt(origin, lo), hn::Lt(origin, hi));
   const D far = hn::Set(d, 1e300);
