@@ -5,8 +5,10 @@
 namespace emscape::render {
 namespace {
 
-constexpr Named<CompositingMode> kModes[] = {
-    {CompositingMode::dvr, "dvr"}, {CompositingMode::mida, "mida"}, {CompositingMode::mip, "mip"}};
+constexpr Named<CompositingMode> kModes[] = {{CompositingMode::dvr, "dvr"},
+                                             {CompositingMode::mida, "mida"},
+                                             {CompositingMode::mip, "mip"},
+                                             {CompositingMode::iso, "iso"}};
 
 }  // namespace
 

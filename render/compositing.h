@@ -10,7 +10,7 @@
 
 namespace emscape::render {
 
-enum class CompositingMode { dvr, mida, mip };
+enum class CompositingMode { dvr, mida, mip, iso };
 const char* toString(CompositingMode mode);
 /// @throws Error (usage) that lists the names
 CompositingMode parseCompositingMode(const std::string& name);
@@ -43,9 +43,13 @@ struct TransferView {
 
 /// What every compositor offers: samples come front to back; `f` is normalised, `sample` premultiplied and
 /// corrected for its length.
-///   add(f, sample)                          takes one sample
+///   kNeedsColor           false: add() does not look at `sample`
 ///   canSkip(level)        whether the samples of a brick change nothing; see SkipView::levels
-///   done()                whether no later sample can matter (any more than early termination allows)
+///   ignores(f, sample)    whether a sample changes nothing. It is then not added, nor is done() asked: so a
+///                         ray ends at the same sample whether or not bricks are skipped
+///   add(f, sample)        takes one sample
+///   done(ahead, next)     whether nothing from sample `next` on can matter (any more than early termination
+///                         allows); ahead.exceeds(next, f): whether any sample from there on can exceed f
 ///   result(transfer)      the ray's colour, premultiplied
 /// `volume_highest_f` is the largest f that any sample can have.
 
@@ -53,6 +57,7 @@ constexpr float kOpaqueEnough = 0.99F;
 
 /// Direct volume rendering: emission and absorption.
 struct DvrCompositor {
+  static constexpr bool kNeedsColor = true;
   bool exact = false;
   Rgba sum;
 
@@ -60,13 +65,18 @@ struct DvrCompositor {
       : exact(exact_cast) {}
   EMSCAPE_HD void add(float /*f*/, const Rgba& sample) { sum = over(sum, sample); }
   EMSCAPE_HD bool canSkip(float level) const { return level < SkipView::kNever; }
-  EMSCAPE_HD bool done() const { return !exact && sum.a > kOpaqueEnough; }
+  EMSCAPE_HD bool ignores(float /*f*/, const Rgba& sample) const { return !(sample.a > 0.0F); }
+  template <class Ahead>
+  EMSCAPE_HD bool done(Ahead& /*ahead*/, int /*next*/) const {
+    return !exact && sum.a > kOpaqueEnough;
+  }
   EMSCAPE_HD Rgba result(const TransferView& /*transfer*/) const { return sum; }
 };
 
 /// Maximum intensity projection: the colour of the largest value, its opacity relative to the function's
 /// largest.
 struct MipCompositor {
+  static constexpr bool kNeedsColor = false;
   float volume_highest = 1;
   float highest = -1;
 
@@ -74,7 +84,11 @@ struct MipCompositor {
       : volume_highest(volume_highest_f) {}
   EMSCAPE_HD void add(float f, const Rgba& /*sample*/) { highest = f > highest ? f : highest; }
   EMSCAPE_HD bool canSkip(float level) const { return level <= highest; }
-  EMSCAPE_HD bool done() const { return highest >= volume_highest; }
+  EMSCAPE_HD bool ignores(float f, const Rgba& /*sample*/) const { return f <= highest; }
+  template <class Ahead>
+  EMSCAPE_HD bool done(Ahead& /*ahead*/, int /*next*/) const {
+    return highest >= volume_highest;
+  }
   EMSCAPE_HD Rgba result(const TransferView& transfer) const {
     return highest >= 0.0F ? transfer.projected[transfer.index(highest)] : Rgba{};
   }
@@ -83,6 +97,7 @@ struct MipCompositor {
 /// Maximum intensity difference accumulation (Bruckner and Groeller 2009): a new maximum fades what lies
 /// before it. gamma = -1 is DVR, 0 is MIDA; above 0 the picture blends towards MIP.
 struct MidaCompositor {
+  static constexpr bool kNeedsColor = true;
   float gamma = 0;
   bool exact = false;
   MipCompositor mip;
@@ -99,7 +114,13 @@ struct MidaCompositor {
     sum = sum * beta + sample * through;
   }
   EMSCAPE_HD bool canSkip(float level) const { return mip.canSkip(level); }
-  EMSCAPE_HD bool done() const { return !exact && sum.a > kOpaqueEnough && mip.done(); }
+  EMSCAPE_HD bool ignores(float f, const Rgba& sample) const {
+    return !(sample.a > 0.0F) && mip.ignores(f, sample);
+  }
+  template <class Ahead>
+  EMSCAPE_HD bool done(Ahead& ahead, int next) const {
+    return !exact && sum.a > kOpaqueEnough && !ahead.exceeds(next, mip.highest);
+  }
   EMSCAPE_HD Rgba result(const TransferView& transfer) const {
     return gamma <= 0.0F ? sum : sum * (1.0F - gamma) + mip.result(transfer) * gamma;
   }

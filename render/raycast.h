@@ -13,6 +13,9 @@
 #include "render/compositing.h"
 #include "render/ground.h"
 #include "render/image.h"
+#include "render/isosurface.h"
+#include "render/ray_pieces.h"
+#include "render/shading.h"
 #include "render/volume_view.h"
 
 namespace emscape::render {
@@ -76,6 +79,8 @@ struct RaycastTask {
   TransferView transfer;
   SkipView skip;
   GroundView ground;
+  ShadingView shading;
+  IsoView iso;
   float step_voxels = 1;
   float mida_gamma = 0;
   float volume_highest_f = 1;
@@ -95,37 +100,40 @@ struct RaycastTask {
   template <class Compositor, class Sampler>
   EMSCAPE_HD Rgba castVolume(int x, int y, double limit) const {
     const Ray ray = camera.ray(x, y);
-    RayInterval inside = clip(ray, volume.lower(), volume.upper());
-    if (limit < inside.end) inside.end = limit;
+    const RayInterval inside = insideOf(ray, limit);
     Compositor compositor(exact, mida_gamma, volume_highest_f);
-    if (inside.end > inside.begin) {
-      march<Compositor, Sampler>(vecCast<float>(ray.origin + ray.direction * inside.begin),
-                                 vecCast<float>(ray.direction), static_cast<float>(inside.end - inside.begin),
-                                 compositor);
-    }
+    if (inside.end > inside.begin) march<Compositor, Sampler>(piecesOf(ray, inside), compositor);
     return compositor.result(transfer);
   }
 
-  template <class Compositor, class Sampler>
-  EMSCAPE_HD Rgba castPixel(int x, int y) const {
-    const GroundHit hit = groundAt(x, y);
-    const Rgba front = castVolume<Compositor, Sampler>(x, y, hit.found ? hit.distance : 1e300);
-    return hit.found ? over(front, hit.color) : front;
+  /// The isosurface as a pixel shows it, premultiplied.
+  template <class Sampler>
+  EMSCAPE_HD Rgba castSurface(int x, int y, double limit) const {
+    const Ray ray = camera.ray(x, y);
+    const RayInterval inside = insideOf(ray, limit);
+    if (!(inside.end > inside.begin)) return {};
+    const RayPieces pieces = piecesOf(ray, inside);
+    const IsoHit hit = firstCrossing<Sampler>(volume, skip, pieces, iso.value, inside.begin > 0.0);
+    if (!hit.found) return {};
+    const Rgba color{iso.r * iso.opacity, iso.g * iso.opacity, iso.b * iso.opacity, iso.opacity};
+    const Vec3f to_viewer = shading.toViewer(pieces.direction);
+    if (hit.cap) return shading.lit(color, entryNormal(volume, pieces.start, pieces.direction), to_viewer);
+    const Vec3f gradient = gradientAt<Sampler>(volume, pieces.at(hit.distance), hit.value);
+    if (!(dot(gradient, gradient) > 0.0F)) return color;
+    return shading.lit(color, shading.normal(gradient), to_viewer);
   }
 
-  /// @param start  where the ray enters; `length` voxels of it are sampled
   template <class Compositor, class Sampler>
-  EMSCAPE_HD void march(const Vec3f& start, const Vec3f& direction, float length,
-                        Compositor& compositor) const {
-    const int whole = static_cast<int>(length / step_voxels);
+  EMSCAPE_HD void march(const RayPieces& pieces, Compositor& compositor) const {
+    LookAhead ahead(skip, volume, pieces);
+    const Vec3f to_viewer = shading.toViewer(pieces.direction);
     int next_brick = 0;  // the first sample that may lie in another brick than the last one looked at
-    for (int n = 0; n < whole; ++n) {
-      const Vec3f position = start + direction * ((static_cast<float>(n) + 0.5F) * step_voxels);
+    for (int n = 0; n < pieces.count; ++n) {
+      const Vec3f position = pieces.at(pieces.middle(n));
       if (n >= next_brick && skip.levels != nullptr) {
-        const BrickStep brick = skip.at(volume, position, direction);
-        const float samples = brick.leave / step_voxels;
-        next_brick = n + 1 + (samples < static_cast<float>(whole) ? static_cast<int>(samples) : whole);
-        if (compositor.canSkip(brick.level)) {
+        const BrickStep brick = skip.at(volume, position, pieces.direction);
+        next_brick = n + 1 + pieces.stepsIn(brick.leave);
+        if (compositor.canSkip(skip.levels[brick.index])) {
           n = next_brick - 1;
           continue;
         }
@@ -133,15 +141,29 @@ struct RaycastTask {
       float value = 0;
       if (!Sampler::sample(volume, position, value)) continue;
       const float f = transfer.normalized(value);
-      compositor.add(f, transfer.samples[transfer.index(f)]);
-      if (compositor.done()) return;
+      Rgba sample = transfer.samples[transfer.index(f)];
+      if (compositor.ignores(f, sample)) continue;
+      if (Compositor::kNeedsColor && sample.a > 0.0F) {
+        if (shading.shades_fog) {
+          const Vec3f gradient = gradientAt<Sampler>(volume, position, value);
+          sample = shading.litFog(sample, gradient * transfer.scale, to_viewer);
+        }
+        if (n == pieces.whole) sample = shortened(sample, pieces.last() / step_voxels);
+      }
+      compositor.add(f, sample);
+      if (compositor.done(ahead, n + 1)) return;
     }
-    const float rest = length - static_cast<float>(whole) * step_voxels;
-    if (!(rest > 0.0F)) return;
-    float value = 0;
-    if (!Sampler::sample(volume, start + direction * (length - 0.5F * rest), value)) return;
-    const float f = transfer.normalized(value);
-    compositor.add(f, shortened(transfer.samples[transfer.index(f)], rest / step_voxels));
+  }
+
+ private:
+  EMSCAPE_HD RayInterval insideOf(const Ray& ray, double limit) const {
+    RayInterval inside = clip(ray, volume.lower(), volume.upper());
+    if (limit < inside.end) inside.end = limit;
+    return inside;
+  }
+  EMSCAPE_HD RayPieces piecesOf(const Ray& ray, const RayInterval& inside) const {
+    return {vecCast<float>(ray.origin + ray.direction * inside.begin), vecCast<float>(ray.direction),
+            static_cast<float>(inside.end - inside.begin), step_voxels};
   }
 };
 

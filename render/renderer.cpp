@@ -52,6 +52,16 @@ CameraView viewOf(const Camera& camera, const IndexSpace& space, ImageSize size)
   return view;
 }
 
+/// The light stands a little above and to the left of the viewer.
+ShadingView shadingOf(const Camera& camera, const IndexSpace& space) {
+  constexpr double kLeft = 0.35, kAbove = 0.45;
+  const Vec3d& spacing = space.spacing_m;
+  ShadingView shading;
+  shading.voxel = vecCast<float>(spacing / std::max({spacing.x, spacing.y, spacing.z}));
+  shading.to_light = vecCast<float>(normalized(camera.up * kAbove - camera.right * kLeft - camera.forward));
+  return shading;
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -92,8 +102,21 @@ struct Renderer::Impl {
       table.emplace(function, settings.step_voxels);
       skip_current = false;
     }
-    if (!skip_current) skip = table->skipLevels(volume.bricks(), settings.mode);
+    if (!skip_current) {
+      skip = table->skipLevels(volume.bricks(), settings.mode, static_cast<float>(isoValue()));
+    }
     skip_current = true;
+  }
+
+  double isoValue() const {
+    return std::isnan(settings.iso_value) ? 0.5 * (function.lowest() + function.highest())
+                                          : settings.iso_value;
+  }
+
+  IsoView iso() const {
+    const double value = isoValue();
+    const Rgb color = function.color(value);
+    return {static_cast<float>(value), static_cast<float>(settings.iso_opacity), color.r, color.g, color.b};
   }
 
   RaycastTask task(ImageSize size) {
@@ -101,10 +124,16 @@ struct Renderer::Impl {
     prepareGround();
     prepareTransfer();
     RaycastTask task;
-    task.camera = viewOf(camera, IndexSpace(shown, box()), size);
+    const IndexSpace space(shown, box());
+    task.camera = viewOf(camera, space, size);
     task.volume = volume.view();
     task.transfer = table->view();
-    if (settings.skip_empty) task.skip = {skip.highest.data(), skip.levels.data(), volume.bricks().dims};
+    task.skip = {skip.highest.data(), settings.skip_empty ? skip.levels.data() : nullptr,
+                 volume.bricks().dims};
+    task.shading = shadingOf(camera, space);
+    task.shading.shades_fog = settings.shading && settings.mode != CompositingMode::mip &&
+                              !volume.volume().info.categorical;
+    task.iso = iso();
     if (ground) {
       task.ground = ground->view();
       if (ground_layer.size != size) ground_layer.reset(size);
@@ -176,9 +205,13 @@ void Renderer::setSettings(const RenderSettings& settings) {
   requireRange("step (voxels)", settings.step_voxels, 0.05, 10);
   requireRange("MIDA gamma", settings.mida_gamma, -1, 1);
   requireRange("vertical exaggeration", settings.vertical_exaggeration, 0, 1000);
+  requireRange("iso opacity", settings.iso_opacity, 0, 1);
+  if (std::isinf(settings.iso_value)) throw Error(ErrorCode::bad_input, "iso value: must be finite");
   if (settings.step_voxels != impl_->settings.step_voxels) impl_->table.reset();
   if (settings.vertical_exaggeration != impl_->settings.vertical_exaggeration) impl_->dropGround();
-  if (settings.mode != impl_->settings.mode) impl_->skip_current = false;
+  if (settings.mode != impl_->settings.mode || settings.iso_value != impl_->settings.iso_value) {
+    impl_->skip_current = false;
+  }
   impl_->settings = settings;
 }
 
@@ -187,6 +220,9 @@ const RenderSettings& Renderer::settings() const {
 }
 const TransferFunction& Renderer::transferFunction() const {
   return impl_->function;
+}
+double Renderer::isoValue() const {
+  return impl_->isoValue();
 }
 const Camera& Renderer::camera() const {
   return impl_->camera;

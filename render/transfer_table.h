@@ -24,9 +24,13 @@ class TransferTable {
   TransferTable(const TransferFunction& function, double step_voxels);
 
   TransferView view() const;
-  SkipLevels skipLevels(const volume::BricksView& bricks, CompositingMode mode) const;
+  /// @param iso_value  of the isosurface, in that mode
+  SkipLevels skipLevels(const volume::BricksView& bricks, CompositingMode mode, float iso_value) const;
 
  private:
+  /// Whether any value of a range has an opacity.
+  bool anyVisible(const volume::ValueRange& range) const;
+
   std::vector<Rgba> samples_;
   std::vector<Rgba> projected_;
   std::vector<int> visible_before_;  ///< how many entries before each have an opacity

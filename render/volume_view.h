@@ -87,7 +87,7 @@ struct NearestSampler {
 
 /// What a ray finds of the brick around a position.
 struct BrickStep {
-  float level = 0;  ///< see SkipView::levels
+  long long index = 0;
   float leave = 0;  ///< voxels along the ray that surely stay in it
 };
 
@@ -100,7 +100,8 @@ struct SkipView {
 
   const float* highest = nullptr;  ///< one a brick: no f of a sample in it is larger
   /// The same, but kNever where some sample in it has an opacity (except in maximum projection, where opacity
-  /// does not matter). Null: nothing is skipped.
+  /// does not matter). For an isosurface: kNever where samples lie on both sides of it. Null: nothing is
+  /// skipped.
   const float* levels = nullptr;
   Dims dims;
 
@@ -120,9 +121,8 @@ struct SkipView {
     const int x = along(position.x, direction.x, volume.dims.x, dims.x, leave);
     const int y = along(position.y, direction.y, volume.dims.y, dims.y, leave);
     const int z = along(position.z, direction.z, volume.dims.z, dims.z, leave);
-    const long long brick = (static_cast<long long>(z) * dims.y + y) * dims.x + x;
     const float sure = leave - kFaceMargin;
-    return {levels[brick], sure > 0.0F ? sure : 0.0F};
+    return {(static_cast<long long>(z) * dims.y + y) * dims.x + x, sure > 0.0F ? sure : 0.0F};
   }
 };
 

@@ -30,12 +30,15 @@ constexpr std::array<Pixel, kTilePixels> zOrder() {
 }
 constexpr std::array<Pixel, kTilePixels> kZOrder = zOrder();
 
-template <class Compositor, class Sampler>
+/// RaycastTask::castVolume() or castSurface() for one kind of compositing and sampling.
+using CastPixel = Rgba (RaycastTask::*)(int, int, double) const;
+
+template <CastPixel kCast>
 EMSCAPE_SIMD_CLONES void castPlain(const RaycastTask& task, const Pixel* pixels, const float* limits,
                                    int count, Rgba* fronts) {
   for (int n = 0; n < count; ++n) {
     const double limit = limits != nullptr ? limits[n] : 1e300;
-    fronts[n] = task.castVolume<Compositor, Sampler>(pixels[n].x, pixels[n].y, limit);
+    fronts[n] = (task.*kCast)(pixels[n].x, pixels[n].y, limit);
   }
 }
 
@@ -45,13 +48,15 @@ template <class Sampler>
 CastPlain plainOf(CompositingMode mode) {
   switch (mode) {
     case CompositingMode::mida:
-      return castPlain<MidaCompositor, Sampler>;
+      return castPlain<&RaycastTask::castVolume<MidaCompositor, Sampler>>;
     case CompositingMode::mip:
-      return castPlain<MipCompositor, Sampler>;
+      return castPlain<&RaycastTask::castVolume<MipCompositor, Sampler>>;
+    case CompositingMode::iso:
+      return castPlain<&RaycastTask::castSurface<Sampler>>;
     case CompositingMode::dvr:
       break;
   }
-  return castPlain<DvrCompositor, Sampler>;
+  return castPlain<&RaycastTask::castVolume<DvrCompositor, Sampler>>;
 }
 
 bool isSet(const StopFlag* stop) {
@@ -63,7 +68,8 @@ class PieceCaster {
  public:
   explicit PieceCaster(const CpuCast& cast)
       : cast_(cast),
-        in_packets_(!cast.plain && !cast.nearest && packetsCanCast(cast.task.volume)),
+        in_packets_(!cast.plain && !cast.nearest && cast.mode != CompositingMode::iso &&
+                    !cast.task.shading.shades_fog && packetsCanCast(cast.task.volume)),
         plain_(cast.nearest ? plainOf<NearestSampler>(cast.mode) : plainOf<TrilinearSampler>(cast.mode)) {}
 
   /// @return samples taken, as far as they are counted

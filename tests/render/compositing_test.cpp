@@ -76,12 +76,45 @@ TEST(Compositing, MidaWithGammaOneIsMip) {
   expectNear(composite<MidaCompositor>(1).result(transfer), projected[2]);  // f = 0.9
 }
 
+/// What lies ahead, as LookAhead tells it.
+struct Ahead {
+  float highest;
+  bool exceeds(int /*next*/, float f) const { return highest > f; }
+};
+
 TEST(Compositing, MidaDoesNotEndWhileALaterSampleMayExceedTheMaximum) {
-  MidaCompositor opaque(false, 0, 1.0F);
-  opaque.add(0.5F, {1, 1, 1, 1});
-  EXPECT_FALSE(opaque.done());
-  opaque.add(1.0F, {1, 1, 1, 1});
-  EXPECT_TRUE(opaque.done());
+  MidaCompositor compositor(false, 0, 1.0F);
+  compositor.add(0.5F, {1, 1, 1, 1});
+  Ahead higher{0.6F}, same{0.5F};
+  EXPECT_FALSE(compositor.done(higher, 1));
+  EXPECT_TRUE(compositor.done(same, 1));
+}
+
+TEST(Compositing, MidaDoesNotEndBeforeItIsOpaqueNorIfExact) {
+  MidaCompositor thin(false, 0, 1.0F);
+  thin.add(0.5F, {0.98F, 0.98F, 0.98F, 0.98F});
+  MidaCompositor exact(true, 0, 1.0F);
+  exact.add(0.5F, {1, 1, 1, 1});
+  Ahead nothing{-1};
+  EXPECT_FALSE(thin.done(nothing, 1));
+  EXPECT_FALSE(exact.done(nothing, 1));
+}
+
+TEST(Compositing, IgnoredSamplesChangeNothing) {
+  const Rgba clear;
+  const Rgba faint{0, 0, 0, 0.01F};
+  EXPECT_TRUE(DvrCompositor(true, 0, 1).ignores(0.9F, clear));
+  EXPECT_FALSE(DvrCompositor(true, 0, 1).ignores(0.0F, faint));
+  MidaCompositor mida(true, 0, 1);
+  EXPECT_FALSE(mida.ignores(0.4F, clear));
+  mida.add(0.4F, faint);
+  EXPECT_TRUE(mida.ignores(0.4F, clear));
+  EXPECT_FALSE(mida.ignores(0.5F, clear));
+  EXPECT_FALSE(mida.ignores(0.1F, faint));
+  MipCompositor mip(true, 0, 1);
+  mip.add(0.4F, clear);
+  EXPECT_TRUE(mip.ignores(0.4F, faint));
+  EXPECT_FALSE(mip.ignores(0.5F, clear));
 }
 
 TEST(Compositing, MidaDoesNotSkipTransparentSamplesThatRaiseTheMaximum) {
@@ -96,12 +129,14 @@ TEST(Compositing, DvrEndsEarlyUnlessExact) {
   DvrCompositor early(false, 0, 1);
   DvrCompositor exact(true, 0, 1);
   for (DvrCompositor* compositor : {&early, &exact}) compositor->add(0.5F, {0.99F, 0.99F, 0.99F, 0.995F});
-  EXPECT_TRUE(early.done());
-  EXPECT_FALSE(exact.done());
+  Ahead more{1};
+  EXPECT_TRUE(early.done(more, 1));
+  EXPECT_FALSE(exact.done(more, 1));
 }
 
 TEST(Compositing, ModesHaveNames) {
-  for (CompositingMode mode : {CompositingMode::dvr, CompositingMode::mida, CompositingMode::mip}) {
+  for (CompositingMode mode :
+       {CompositingMode::dvr, CompositingMode::mida, CompositingMode::mip, CompositingMode::iso}) {
     EXPECT_EQ(parseCompositingMode(toString(mode)), mode);
   }
   EXPECT_THROW(parseCompositingMode("xray"), Error);

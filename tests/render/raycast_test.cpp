@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
+#include <string>
 
 #include "render/renderer.h"
 #include "tests/render/scenes.h"
@@ -171,37 +173,136 @@ TEST(Categories, AreDrawnInTheirOwnColoursWithoutOthersBetween) {
   EXPECT_NEAR(from_east.b, categoryColor(2).b, 1e-4);
 }
 
-TEST(Skipping, DoesNotChangeThePicture) {
-  const ImageSize size{90, 60};
-  for (unsigned seed = 1; seed <= 4; ++seed) {
-    auto volume = testing::makeEmeVolume({37, 29, 23}, seed);
-    if (seed == 3) volume->values[4000] = std::numeric_limits<float>::quiet_NaN();
-    for (CompositingMode mode : {CompositingMode::dvr, CompositingMode::mida, CompositingMode::mip}) {
-      for (double opacity_from : {-40.0, -10.0, 12.0}) {
-        Renderer renderer;
-        renderer.setVolume(volume);
-        const TransferFunction function =
-            testing::makeFunction({{-50, {1, 0, 0}}, {30, {0, 1, 1}}}, {{-50, 0},
-                                                                        {opacity_from, 0},
-                                                                        {opacity_from, 0.1},
-                                                                        {opacity_from + 4, 0.1},
-                                                                        {opacity_from + 4, 0},
-                                                                        {30, 0}});
-        renderer.setTransferFunction(function);
-        renderer.setCamera(makeCamera(parseCamera("orbit:azimuth_deg=33"), renderer.sceneBox(), size));
-        RenderSettings settings;
-        settings.mode = mode;
-        settings.step_voxels = 0.7;
-        settings.skip_empty = false;
-        renderer.setSettings(settings);
-        const Image every_sample = renderer.render(size);
-        settings.skip_empty = true;
-        renderer.setSettings(settings);
-        EXPECT_TRUE(renderer.render(size).pixels == every_sample.pixels)
-            << toString(mode) << opacity_from << seed;
+constexpr CompositingMode kModes[] = {CompositingMode::dvr, CompositingMode::mida, CompositingMode::mip,
+                                      CompositingMode::iso};
+
+/// Draws a scene with and without skipping, one renderer kept for each: nothing of an earlier scene may
+/// remain.
+class SkippingPair {
+ public:
+  template <class Change>
+  void change(const Change& change) {
+    change(every_sample_);
+    change(skipping_);
+  }
+  void set(RenderSettings settings) {
+    settings.skip_empty = false;
+    every_sample_.setSettings(settings);
+    settings.skip_empty = true;
+    skipping_.setSettings(settings);
+  }
+  void expectEqual(const std::string& scene) {
+    const ImageSize size{40, 30};
+    const Image expected = every_sample_.render(size);
+    const Image skipped = skipping_.render(size);
+    EXPECT_TRUE(skipped.pixels == expected.pixels) << scene;
+    for (const Rgba& pixel : expected.pixels) drawn_ += pixel.a > 0 ? 1 : 0;
+  }
+  long long drawn() const { return drawn_; }
+
+ private:
+  Renderer every_sample_, skipping_;
+  long long drawn_ = 0;
+};
+
+/// Steps, gaps and jumps between -60 and 40.
+TransferFunction randomFunction(std::mt19937& random) {
+  std::uniform_real_distribution<double> part(0, 1);
+  TransferFunction function = testing::makeFunction({{-60, {1, 0, 0}}, {40, {0, 1, 1}}}, {});
+  double at = -60;
+  while (at < 40) {
+    const double opacity = part(random) < 0.5 ? 0 : std::pow(part(random), 3);
+    function.opacities.push_back({at, opacity});
+    if (part(random) < 0.5) function.opacities.push_back({at, part(random) < 0.5 ? 0 : part(random)});
+    at += 1 + 30 * part(random) * part(random);
+  }
+  return function;
+}
+
+std::shared_ptr<volume::DenseVolume> randomVolume(std::mt19937& random) {
+  const auto below = [&](int count) { return static_cast<int>(random() % static_cast<unsigned>(count)); };
+  auto volume =
+      testing::makeEmeVolume({1 + below(40), 1 + below(40), 1 + below(30)}, static_cast<unsigned>(below(99)));
+  if (below(3) == 0) volume->first_valid_k.clear();
+  if (below(3) == 0) {
+    for (float& value : volume->values) value = below(4) == 0 ? value : -60.0F;  // scattered peaks
+  }
+  if (below(3) == 0) {
+    for (int n = below(200); n >= 0; --n) {
+      volume->values[random() % volume->values.size()] = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return volume;
+}
+
+TEST(Skipping, DoesNotChangeThePictureAfterAnyChange) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> part(0, 1);
+  SkippingPair pair;
+  for (int scene = 0; scene < 12; ++scene) {
+    const auto volume = randomVolume(random);
+    CameraSpec camera;
+    camera.azimuth_deg = 360 * part(random);
+    camera.elevation_deg = 180 * part(random) - 90;
+    camera.distance = 0.2 + 1.5 * part(random);  // some eyes are inside
+    pair.change([&](Renderer& renderer) {
+      renderer.setVolume(volume);
+      renderer.setCamera(makeCamera(camera, renderer.sceneBox(), {40, 30}));
+    });
+    for (int edit = 0; edit < 3; ++edit) {
+      const TransferFunction function = randomFunction(random);
+      pair.change([&](Renderer& renderer) { renderer.setTransferFunction(function); });
+      for (CompositingMode mode : kModes) {
+        for (int variant = 0; variant < 4; ++variant) {
+          RenderSettings settings;
+          settings.mode = mode;
+          settings.shading = variant % 2 == 1;
+          settings.plain = variant < 2;
+          settings.exact = part(random) < 0.5;
+          settings.step_voxels = 0.2 + 2 * part(random) * part(random);
+          settings.iso_value = 80 * part(random) - 50;
+          settings.mida_gamma = 2 * part(random) - 1;
+          pair.set(settings);
+          pair.expectEqual(std::string(toString(mode)) + (settings.plain ? " plain" : " packets") +
+                           (settings.shading ? " shaded" : "") + (settings.exact ? " exact" : "") +
+                           ", scene " + std::to_string(scene) + ", edit " + std::to_string(edit));
+        }
       }
     }
   }
+  EXPECT_GT(pair.drawn(), 100000);  // there was something to be seen
+}
+
+TEST(Mida, EndsEarlyOnlyWhereNoLaterSampleOfTheRayExceedsTheMaximum) {
+  // An opaque wall, fog behind it, and behind that in one half of the picture a peak that must show.
+  auto volume = makeVolume({64, 16, 4}, {1, 1, 1}, [](int i, int j, int) {
+    if (i == 60 && j >= 10) return 1.0F;
+    return i == 2 ? 0.5F : 0.2F;
+  });
+  const TransferFunction function = testing::makeFunction(
+      {{0, {0, 0, 1}}, {1, {1, 0, 0}}}, {{0, 0}, {0.1, 0.01}, {0.4, 0.01}, {0.5, 0.995}, {1, 1}});
+  const ImageSize size{2, 1};
+  Renderer renderer;
+  renderer.setVolume(volume);
+  renderer.setTransferFunction(function);
+  renderer.setCamera(makeCamera(
+      parseCamera("orbit:azimuth_deg=270,elevation_deg=0,projection=orthographic,fov_deg=7,distance=1"),
+      renderer.sceneBox(), size));
+  RenderSettings settings;
+  settings.mode = CompositingMode::mida;
+  settings.plain = true;
+  settings.exact = true;
+  renderer.setSettings(settings);
+  const Image exact = renderer.render(size);
+  settings.exact = false;
+  renderer.setSettings(settings);
+  const Image early = renderer.render(size);
+  // From the west the north (large j) is on the left.
+  EXPECT_EQ(early.at(0, 0), exact.at(0, 0));  // nothing shows through the peak
+  EXPECT_FALSE(early.at(1, 0) == exact.at(1, 0));
+  EXPECT_NEAR(early.at(1, 0).a, exact.at(1, 0).a, 0.01);
+  EXPECT_GT(early.at(0, 0).r, 0.7F);
+  EXPECT_LT(early.at(1, 0).r, 0.6F);
 }
 
 TEST(Rays, ProjectBackToTheirPixels) {

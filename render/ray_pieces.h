@@ -1,0 +1,77 @@
+/// A ray inside the volume, cut into the pieces that it is sampled in, and what lies ahead on it.
+#pragma once
+
+#include "base/host_device.h"
+#include "base/vec.h"
+#include "render/volume_view.h"
+
+namespace emscape::render {
+
+/// The part of a ray in the box of voxels, from where it enters: pieces of one step, the last one shorter.
+struct RayPieces {
+  Vec3f start;
+  Vec3f direction;   ///< of unit length: distances are in voxels
+  float length = 0;  ///< >= 0
+  float step = 1;    ///< > 0
+  int whole = 0;     ///< number of pieces of a whole step
+  int count = 0;     ///< number of pieces
+
+  EMSCAPE_HD RayPieces(const Vec3f& first, const Vec3f& along, float length_voxels, float step_voxels)
+      : start(first),
+        direction(along),
+        length(length_voxels),
+        step(step_voxels),
+        whole(static_cast<int>(length_voxels / step_voxels)),
+        count(whole + (last() > 0.0F ? 1 : 0)) {}
+
+  /// Length of the last piece, if it is shorter than a step.
+  EMSCAPE_HD float last() const { return length - static_cast<float>(whole) * step; }
+  /// Distance of the middle of piece n, 0 <= n < count.
+  EMSCAPE_HD float middle(int n) const {
+    return n < whole ? (static_cast<float>(n) + 0.5F) * step : length - 0.5F * last();
+  }
+  /// Distance of the joint before piece n; n = count: of the end.
+  EMSCAPE_HD float joint(int n) const { return n <= whole ? static_cast<float>(n) * step : length; }
+  EMSCAPE_HD Vec3f at(float distance) const { return start + direction * distance; }
+  /// How many whole steps a distance holds, at most `count`.
+  EMSCAPE_HD int stepsIn(float distance) const {
+    const float steps = distance / step;
+    return steps < static_cast<float>(count) ? static_cast<int>(steps) : count;
+  }
+};
+
+/// The largest f that the samples ahead on a ray can have, by the bricks that they lie in. It is remembered
+/// until the ray has left the brick that holds it; what is answered does not depend on when it was asked
+/// before.
+class LookAhead {
+ public:
+  EMSCAPE_HD LookAhead(const SkipView& skip, const VolumeView& volume, const RayPieces& pieces)
+      : skip_(skip), volume_(volume), pieces_(pieces) {}
+
+  /// Whether the sample of any piece from `next` on can have a larger f.
+  EMSCAPE_HD bool exceeds(int next, float f) {
+    if (next >= until_) walk(next);
+    return highest_ > f;
+  }
+
+ private:
+  EMSCAPE_HD void walk(int next) {
+    highest_ = -1.0F;
+    until_ = pieces_.count;
+    while (next < pieces_.count) {
+      const BrickStep brick = skip_.at(volume_, pieces_.at(pieces_.middle(next)), pieces_.direction);
+      next += 1 + pieces_.stepsIn(brick.leave);
+      if (skip_.highest[brick.index] < highest_) continue;
+      highest_ = skip_.highest[brick.index];
+      until_ = next;
+    }
+  }
+
+  const SkipView& skip_;
+  const VolumeView& volume_;
+  const RayPieces& pieces_;
+  float highest_ = 0;
+  int until_ = 0;
+};
+
+}  // namespace emscape::render

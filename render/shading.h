@@ -1,0 +1,97 @@
+/// Light on surfaces and fog: the gradient of a volume as a normal, and Blinn and Phong's reflection.
+/// Single source for host and device.
+#pragma once
+
+#include <cmath>
+
+#include "base/host_device.h"
+#include "base/vec.h"
+#include "render/image.h"
+#include "render/volume_view.h"
+
+namespace emscape::render {
+
+/// One directional light and the shape of voxels. *Drawn* directions are those of the scene as it is seen:
+/// voxels have their spacing there and heights are stretched.
+struct ShadingView {
+  // The light is white and stands near the viewer: what faces it keeps its colour.
+  static constexpr float kAmbient = 0.3F;
+  static constexpr float kDiffuse = 0.7F;
+  static constexpr float kSpecular = 0.25F;
+  static constexpr float kShininess = 32;
+  /// Gradient (parts of the transfer function's interval per voxel) at which fog is shaded by half.
+  static constexpr float kFaintGradient = 0.003F;
+
+  bool shades_fog = false;  ///< samples of DVR and MIDA are shaded; isosurfaces always are
+  Vec3f voxel{1, 1, 1};     ///< edges of a voxel as drawn; their scale does not matter
+  Vec3f to_light{0, 0, 1};  ///< drawn direction, of unit length
+
+  /// Drawn unit vector to the viewer. @param direction  of the ray, in index space
+  EMSCAPE_HD Vec3f toViewer(const Vec3f& direction) const {
+    return normalized(Vec3f{-direction.x * voxel.x, -direction.y * voxel.y, -direction.z * voxel.z});
+  }
+  /// Drawn unit normal of a surface of constant value. @param gradient  in index space, not zero
+  EMSCAPE_HD Vec3f normal(const Vec3f& gradient) const {
+    return normalized(Vec3f{gradient.x / voxel.x, gradient.y / voxel.y, gradient.z / voxel.z});
+  }
+
+  /// A premultiplied colour as lit; its opacity stays. Both sides of a surface are the same.
+  EMSCAPE_HD Rgba lit(const Rgba& color, const Vec3f& surface_normal, const Vec3f& to_viewer) const {
+    const Vec3f n = dot(surface_normal, to_viewer) < 0.0F ? -surface_normal : surface_normal;
+    const float toward = dot(n, to_light);
+    const float diffuse = kAmbient + kDiffuse * (toward > 0.0F ? toward : 0.0F);
+    const float half = dot(n, normalized(to_light + to_viewer));
+    const float specular = half > 0.0F ? kSpecular * std::pow(half, kShininess) * color.a : 0.0F;
+    return {held(color.r * diffuse + specular, color.a), held(color.g * diffuse + specular, color.a),
+            held(color.b * diffuse + specular, color.a), color.a};
+  }
+
+  /// A sample of fog as lit: where the value hardly changes there is no surface, and the colour stays.
+  /// @param gradient  of f, per voxel, in index space
+  EMSCAPE_HD Rgba litFog(const Rgba& sample, const Vec3f& gradient, const Vec3f& to_viewer) const {
+    const float squared = dot(gradient, gradient);
+    if (!(squared > 0.0F)) return sample;
+    const float strength = squared / (squared + kFaintGradient * kFaintGradient);
+    const Rgba shaded = lit(sample, normal(gradient), to_viewer);
+    return {lerp(sample.r, shaded.r, strength), lerp(sample.g, shaded.g, strength),
+            lerp(sample.b, shaded.b, strength), sample.a};
+  }
+
+ private:
+  EMSCAPE_HD static float held(float value, float most) { return value < most ? value : most; }
+};
+
+/// Difference of values along one axis, per voxel: central, one voxel to either side; shorter at the border
+/// of the volume; one-sided where a neighbour is masked or NaN; 0 where both are.
+/// @param axis   unit vector; position and voxels are the position's component along it and the voxels there
+/// @param value  at the centre
+template <class Sampler>
+EMSCAPE_HD float differenceAlong(const VolumeView& volume, const Vec3f& center, const Vec3f& axis,
+                                 float position, int voxels, float value) {
+  const float last = static_cast<float>(voxels - 1);
+  const float held = position > 0.0F ? (position < last ? position : last) : 0.0F;
+  float before = held > 1.0F ? 1.0F : held;
+  float after = last - held > 1.0F ? 1.0F : last - held;
+  const Vec3f middle = center + axis * (held - position);
+  float low = 0, high = 0;
+  if (!Sampler::sample(volume, middle - axis * before, low)) {
+    low = value;
+    before = 0;
+  }
+  if (!Sampler::sample(volume, middle + axis * after, high)) {
+    high = value;
+    after = 0;
+  }
+  const float apart = before + after;
+  return apart > 0.0F ? (high - low) / apart : 0.0F;
+}
+
+/// Gradient of the sampled field in index space, per voxel. @param value  the sample at the position
+template <class Sampler>
+EMSCAPE_HD Vec3f gradientAt(const VolumeView& volume, const Vec3f& position, float value) {
+  return {differenceAlong<Sampler>(volume, position, {1, 0, 0}, position.x, volume.dims.x, value),
+          differenceAlong<Sampler>(volume, position, {0, 1, 0}, position.y, volume.dims.y, value),
+          differenceAlong<Sampler>(volume, position, {0, 0, 1}, position.z, volume.dims.z, value)};
+}
+
+}  // namespace emscape::render
