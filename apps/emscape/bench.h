@@ -1,0 +1,12 @@
+/// The subcommands of `emscape bench`, one file each.
+#pragma once
+
+#include "apps/emscape/command.h"
+
+namespace emscape::app {
+
+void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action);
+void addBenchRender(CLI::App& bench, const GlobalOptions& global, Action& action);
+void addBenchReconstruction(CLI::App& bench, const GlobalOptions& global, Action& action);
+
+}  // namespace emscape::app

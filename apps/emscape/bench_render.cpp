@@ -1,0 +1,97 @@
+/// emscape bench render: how long one frame takes.
+#include <fmt/core.h>
+
+#include <memory>
+#include <vector>
+
+#include "apps/emscape/bench.h"
+#include "apps/emscape/bench_scene.h"
+#include "apps/emscape/bench_statistics.h"
+#include "apps/emscape/interrupt.h"
+
+namespace emscape::app {
+namespace {
+
+struct BenchRenderOptions {
+  BenchSceneOptions scene;
+  std::string rays = "full";
+  std::string interpolate = "float";
+  std::string picture;
+  int frames = 20;
+};
+
+/// As it looks before black.
+render::Image8 onBlack(const render::Image& image) {
+  render::Image8 picture = render::quantize(image);
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
+  return picture;
+}
+
+int benchRender(const BenchRenderOptions& options, const GlobalOptions& global) {
+  const render::FramePlan plan{render::parsePattern(options.rays),
+                               render::parseInterpolation(options.interpolate)};
+  BenchScene scene(options.scene, global);
+  render::Image image;
+  render::FrameReport report;
+  scene.draw(plan, image, report);  // warm up
+  std::vector<double> times_ms;
+  for (int frame = 0; frame < options.frames; ++frame) {
+    stopIfInterrupted();
+    scene.turnTo(0);
+    times_ms.push_back(scene.draw(plan, image, report));
+  }
+  if (!options.picture.empty()) render::writePng(options.picture, onBlack(image));
+
+  const render::RayLoad load = scene.loadOf(render::sourceLattices(render::Pattern::full, scene.size()));
+  const double gsamples_per_s = static_cast<double>(load.samples) / medianOf(times_ms) / 1e6;
+  if (global.json) {
+    Json result = scene.json();
+    result.update({{"pattern", options.rays},
+                   {"interpolate", options.interpolate},
+                   {"frames", options.frames},
+                   {"rays", report.rays},
+                   {"rays_in_box", load.rays},
+                   {"samples", load.samples},
+                   {"samples_taken", report.samples},
+                   {"ms", spreadJson(times_ms)},
+                   {"gsamples_per_s", gsamples_per_s}});
+    printJson(result);
+    return 0;
+  }
+  fmt::print("{}\n{} rays, median of {} frames of one view\n\n", scene.summary(), options.rays,
+             options.frames);
+  fmt::print("frame (ms)   median {:.2f}, min {:.2f}, max {:.2f}\n", medianOf(times_ms),
+             *std::min_element(times_ms.begin(), times_ms.end()),
+             *std::max_element(times_ms.begin(), times_ms.end()));
+  fmt::print("rays         {} cast; of a full picture {} meet the volume\n", report.rays, load.rays);
+  fmt::print("samples      {:.1f} million of a full picture, {:.1f} million taken: {:.3f} G/s\n",
+             static_cast<double>(load.samples) / 1e6, static_cast<double>(report.samples) / 1e6,
+             gsamples_per_s);
+  return 0;
+}
+
+}  // namespace
+
+void addBenchRender(CLI::App& bench, const GlobalOptions& global, Action& action) {
+  CLI::App* command = bench.add_subcommand("render", "Time frames of a volume");
+  command->fallthrough();
+  command->footer(R"(
+One view, drawn again and again; nothing is kept from frame to frame but what belongs to the volume and the colours. Samples are
+the positions on all rays of a full picture between the faces of the volume's box, whether they are taken or not; samples per
+second: those over the median time.
+
+Example:
+  emscape bench render scenarios/eme_200.yaml --size 1200x900 --exact --no-skip --json)");
+  auto options = std::make_shared<BenchRenderOptions>();
+  addBenchSceneOptions(*command, options->scene);
+  command->add_option("--rays", options->rays, "Pixels that are cast, the rest interpolated; as for render");
+  command->add_option("--interpolate", options->interpolate,
+                      "Precision of interpolated pixels: float or 8bit");
+  command->add_option("--frames", options->frames, "Frames that are timed, after one to warm up")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--picture", options->picture, "NAME.png: writes the frame, before black");
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return benchRender(*options, global); }; });
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,157 @@
+#include "apps/emscape/bench_scene.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "base/log.h"
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "base/units.h"
+
+namespace emscape::app {
+namespace {
+
+render::RenderSettings settingsOf(const BenchSceneOptions& options) {
+  render::RenderSettings settings;
+  settings.mode = render::parseCompositingMode(options.mode);
+  settings.step_voxels = options.step_voxels;
+  settings.mida_gamma = options.mida_gamma;
+  settings.exact = options.exact;
+  settings.skip_empty = options.skip_empty;
+  settings.vertical_exaggeration = options.exaggeration;
+  return settings;
+}
+
+/// A camera carried clockwise, as seen from above, about the vertical through its target.
+render::CameraSpec turned(render::CameraSpec spec, double angle_deg) {
+  if (spec.kind == render::CameraSpec::Kind::orbit) {
+    spec.azimuth_deg = std::remainder(spec.azimuth_deg + angle_deg, 360.0);
+    return spec;
+  }
+  const double s = std::sin(degToRad(angle_deg));
+  const double c = std::cos(degToRad(angle_deg));
+  const Vec3d from_target = *spec.eye_m - *spec.target_m;
+  spec.eye_m = *spec.target_m + Vec3d{c * from_target.x + s * from_target.y,
+                                      c * from_target.y - s * from_target.x, from_target.z};
+  return spec;
+}
+
+Json triple(const Vec3d& v) {
+  return {v.x, v.y, v.z};
+}
+
+/// Among drawn positions, as render::Camera has it.
+Json cameraJson(const render::Camera& camera) {
+  return {
+      {"projection", camera.projection == render::Projection::perspective ? "perspective" : "orthographic"},
+      {"eye_m", triple(camera.eye_m)},
+      {"forward", triple(camera.forward)},
+      {"up", triple(camera.up)},
+      {"half_height", camera.half_height},
+      {"shift", {camera.shift_x, camera.shift_y}}};
+}
+
+Json transferJson(const render::TransferFunction& function) {
+  Json colors = Json::array();
+  for (const auto& point : function.colors)
+    colors.push_back({point.at, point.color.r, point.color.g, point.color.b});
+  Json opacities = Json::array();
+  for (const auto& point : function.opacities) opacities.push_back({point.at, point.opacity});
+  return {{"name", function.name}, {"colors", colors}, {"opacities", opacities}};
+}
+
+}  // namespace
+
+BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& global)
+    : device_(chooseBackend(global)),
+      mode_(options.mode),
+      camera_text_(options.camera),
+      size_(render::parseImageSize(options.size)),
+      camera_(render::parseCamera(options.camera)) {
+  renderer_.setSettings(settingsOf(options));
+  FrameSelection selection = options.selection;
+  selection.first_only = selection.times.empty();
+  const std::unique_ptr<FrameSource> source = openFrameSource(selection, global);
+  name_ = source->name();
+  volume_ = source->frame(0).volume;
+  for (const std::string& warning : source->warnings()) logWarning(warning);
+  renderer_.setVolume(volume_);
+  renderer_.setTransferFunction(options.transfer.empty()
+                                    ? render::defaultTransferFunction(*volume_)
+                                    : render::readTransferFunction(options.transfer, volume_->info));
+  turnTo(0);
+}
+
+void BenchScene::turnTo(double angle_deg) {
+  renderer_.setCamera(render::makeCamera(turned(camera_, angle_deg), renderer_.sceneBox(), size_));
+}
+
+double BenchScene::draw(const render::FramePlan& plan, render::Image& image, render::FrameReport& report) {
+  Stopwatch watch;
+  report = renderer_.draw(plan, size_, image);
+  return watch.lap_ms();
+}
+
+double BenchScene::restore(render::Image& image) {
+  Stopwatch watch;
+  renderer_.restore(image);
+  return watch.lap_ms();
+}
+
+render::RayLoad BenchScene::loadOf(const std::vector<render::Lattice>& pixels) const {
+  return render::rayLoadOf(pixels, size_, renderer_.camera(), volume_->grid, renderer_.sceneBox(),
+                           renderer_.settings().step_voxels);
+}
+
+Json BenchScene::json() const {
+  const Dims& dims = volume_->grid.dims;
+  const render::SceneBox box = renderer_.sceneBox();
+  return {{"device", device_},
+          {"threads", threadCount()},
+          {"volume",
+           {{"name", name_},
+            {"quantity", volume_->info.quantity},
+            {"dims", {dims.x, dims.y, dims.z}},
+            {"drawn_lower_m", triple(box.lower_m)},
+            {"drawn_upper_m", triple(box.drawnUpper_m())},
+            {"vertical_exaggeration", box.vertical_exaggeration}}},
+          {"size", {size_.width, size_.height}},
+          {"mode", mode_},
+          {"step_voxels", renderer_.settings().step_voxels},
+          {"early_termination", !renderer_.settings().exact},
+          {"skip_empty", renderer_.settings().skip_empty},
+          {"camera_option", camera_text_},
+          {"camera", cameraJson(renderer_.camera())},
+          {"transfer", transferJson(renderer_.transferFunction())}};
+}
+
+std::string BenchScene::summary() const {
+  const Dims& dims = volume_->grid.dims;
+  return fmt::format("{}: {} x {} x {} voxels, {} x {} pixels, {}, step {:g} voxel; device {} ({} threads)",
+                     name_, dims.x, dims.y, dims.z, size_.width, size_.height, mode_,
+                     renderer_.settings().step_voxels, device_, threadCount());
+}
+
+void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
+  command
+      .add_option("INPUT", options.selection.input,
+                  "Volume (.raw .dat .vdb .nvdb .vti) or scenario, which is computed for one instant")
+      ->required();
+  command.add_option("--size", options.size, "Picture size in pixels, WxH");
+  command.add_option("--mode", options.mode, "How samples become a pixel, as for render");
+  command.add_option("--step", options.step_voxels, "Distance of samples, in voxels");
+  command.add_option("--mida-gamma", options.mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)");
+  command.add_flag("--exact", options.exact, "No early end of rays");
+  command.add_flag("!--no-skip", options.skip_empty, "Sample empty bricks too");
+  command.add_option("--camera", options.camera, "As for render");
+  command.add_option("--transfer", options.transfer,
+                     "Colours and opacities (JSON); default: fitted to the values");
+  command.add_option("--exaggeration", options.exaggeration, "Vertical exaggeration; 0: chosen from the box");
+  command.add_option("--quantity", options.selection.quantity, "Quantity or channel; default: the first");
+  command.add_option("--time", options.selection.times, "Instant, in seconds; default: the first");
+  command.add_flag("--allow-missing-terrain", options.selection.allow_missing_terrain,
+                   "Compute although elevation data is missing");
+}
+
+}  // namespace emscape::app

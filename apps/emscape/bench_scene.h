@@ -1,0 +1,65 @@
+/// What the benches of the renderer draw: one volume, alone, from views around it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/frame_source.h"
+#include "render/ray_load.h"
+#include "render/renderer.h"
+
+namespace emscape::app {
+
+struct BenchSceneOptions {
+  FrameSelection selection;
+  std::string size = "1200x900";
+  std::string mode = "dvr";
+  std::string camera = "orbit";
+  std::string transfer;
+  double step_voxels = 1;
+  double mida_gamma = 0;
+  double exaggeration = 0;
+  bool exact = false;
+  bool skip_empty = true;
+};
+
+void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options);
+
+/// A scene that is ready to be drawn. No ground, no labels.
+class BenchScene {
+ public:
+  /// @throws Error (usage, bad_input)
+  BenchScene(const BenchSceneOptions& options, const GlobalOptions& global);
+
+  render::ImageSize size() const { return size_; }
+  const render::Renderer& renderer() const { return renderer_; }
+
+  /// Turns the camera about the vertical through its target, away from where the option put it. What was
+  /// computed for the view before is not used again, even if it is the same.
+  void turnTo(double angle_deg);
+  /// Draws, and says how long it took by the clock on the wall (ms).
+  double draw(const render::FramePlan& plan, render::Image& image, render::FrameReport& report);
+  double restore(render::Image& image);
+
+  /// Work of a set of pixels in this view.
+  render::RayLoad loadOf(const std::vector<render::Lattice>& pixels) const;
+
+  /// What was drawn and how: device, threads, volume, size, mode, step_voxels, ...
+  Json json() const;
+  /// The same in a line.
+  std::string summary() const;
+
+ private:
+  const std::string device_;
+  const std::string mode_;
+  const std::string camera_text_;
+  const render::ImageSize size_;
+  const render::CameraSpec camera_;
+  std::string name_;
+  std::shared_ptr<const volume::DenseVolume> volume_;
+  render::Renderer renderer_;
+};
+
+}  // namespace emscape::app
