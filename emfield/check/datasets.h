@@ -7,6 +7,25 @@
 
 namespace emscape::emfield {
 
+// check_atmosphere.cpp
+DatasetCheck checkSpecificGasAttenuation(const std::filesystem::path& folder);
+DatasetCheck checkSlantGasAttenuation(const std::filesystem::path& folder);
+DatasetCheck checkRain(const std::filesystem::path& folder);
+
+// check_detection.cpp
+DatasetCheck checkSwerling(const std::filesystem::path& file);
+DatasetCheck checkDetectionProbability(const std::filesystem::path& file);
+DatasetCheck checkRadarEquation(const std::filesystem::path& file);
+DatasetCheck checkFreeSpaceConversions(const std::filesystem::path& file);
+
+// check_diffraction.cpp
+DatasetCheck checkKnifeEdge(const std::filesystem::path& file);
+
+// check_itm.cpp
+DatasetCheck checkItmPointToPoint(const std::filesystem::path& folder);
+DatasetCheck checkItmPublished(const std::filesystem::path& folder);
+DatasetCheck checkItmArea(const std::filesystem::path& folder);
+
 // check_geoid.cpp
 DatasetCheck checkGeoid(const std::filesystem::path& folder);
 

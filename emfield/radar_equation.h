@@ -1,0 +1,140 @@
+/// The radar range equation, jamming and noise: closed forms for one radar, one target and one jammer.
+///
+/// A path's excess over free space is given one way, in dB, and counts twice for an echo: with the one-way
+/// voltage factor F it is -20 log10 F, and an echo has F^4. Gases and rain count in the same way. Jamming
+/// goes one way.
+#pragma once
+
+#include <cmath>
+
+#include "base/host_device.h"
+#include "base/units.h"
+
+namespace emscape::emfield {
+
+/// A radar that receives through the antenna it transmits with.
+struct RadarLink {
+  double power_w = 0;       ///< peak, > 0
+  double frequency_hz = 0;  ///< > 0
+  double gain_dbi = 0;      ///< toward the target
+  double losses_db = 0;     ///< transmitter's, receiver's and processing losses together
+  double bandwidth_hz = 0;  ///< of the receiver, > 0
+  double noise_temperature_k = kReferenceTemperature_K;  ///< of the system, > 0
+};
+
+/// A jammer of noise that fills its band evenly.
+struct JammerLink {
+  double eirp_w = 0;                   ///< toward the radar, > 0
+  double bandwidth_hz = 0;             ///< > 0
+  double radar_gain_dbi = 0;           ///< of the radar's antenna toward the jammer
+  double polarization_loss_db = 0;     ///< between jammer and radar
+  double radar_receive_losses_db = 0;  ///< the radar's, on receiving
+};
+
+/// Echo power (W) at the radar's receiver:
+///   S = P G^2 lambda^2 sigma / ((4 pi)^3 R^4 L A^2)
+/// @param range_m    > 0
+/// @param rcs_m2     radar cross-section, >= 0
+/// @param excess_db  loss of the path above free space, one way
+/// @see Skolnik, Introduction to Radar Systems, 3rd ed., eq. (1.6)
+EMSCAPE_HD inline double echoPower_w(const RadarLink& radar, double rcs_m2, double range_m,
+                                     double excess_db = 0) {
+  const double four_pi = 4 * kPi;
+  const double lambda_m = wavelength_m(radar.frequency_hz);
+  const double range2_m2 = range_m * range_m;
+  return radar.power_w * lambda_m * lambda_m * rcs_m2 /
+         (four_pi * four_pi * four_pi * range2_m2 * range2_m2) *
+         std::pow(10.0, (2 * radar.gain_dbi - radar.losses_db - 2 * excess_db) / 10);
+}
+
+/// Jamming power (W) in the radar's band, at its receiver:
+///   J = EIRP Gr lambda^2 / ((4 pi R)^2 L A) min(1, Br / Bj)
+EMSCAPE_HD inline double jammingPower_w(const RadarLink& radar, const JammerLink& jammer, double range_m,
+                                        double excess_db = 0) {
+  const double spread = wavelength_m(radar.frequency_hz) / (4 * kPi * range_m);
+  const double in_band =
+      jammer.bandwidth_hz > radar.bandwidth_hz ? radar.bandwidth_hz / jammer.bandwidth_hz : 1;
+  return jammer.eirp_w * spread * spread * in_band *
+         std::pow(10.0, (jammer.radar_gain_dbi - jammer.polarization_loss_db -
+                         jammer.radar_receive_losses_db - excess_db) /
+                            10);
+}
+
+/// Noise power (W) of a bandwidth at a system's noise temperature.
+EMSCAPE_HD inline double noisePower_w(double bandwidth_hz, double noise_temperature_k) {
+  return kBoltzmann * noise_temperature_k * bandwidth_hz;
+}
+
+/// Noise temperature (K) of a receiver with a noise figure (dB, >= 0): T0 (F - 1).
+EMSCAPE_HD inline double noiseTemperature_k(double noise_figure_db) {
+  return kReferenceTemperature_K * (std::pow(10.0, noise_figure_db / 10) - 1);
+}
+/// Noise figure (dB) of a receiver of a noise temperature (K, >= 0).
+EMSCAPE_HD inline double noiseFigureDb(double noise_temperature_k) {
+  return 10 * std::log10(1 + noise_temperature_k / kReferenceTemperature_K);
+}
+/// Noise temperature (K) of antenna, line and receiver, referred to the antenna's terminals:
+///   Ts = Ta + Tl (L - 1) + L T0 (F - 1)
+/// @param line_loss_db  between antenna and receiver, >= 0
+/// @see Blake, Radar Range-Performance Analysis, 1980, ch. 4
+EMSCAPE_HD inline double systemNoiseTemperature_k(double antenna_temperature_k, double line_temperature_k,
+                                                  double line_loss_db, double noise_figure_db) {
+  const double line = std::pow(10.0, line_loss_db / 10);
+  return antenna_temperature_k + line_temperature_k * (line - 1) + line * noiseTemperature_k(noise_figure_db);
+}
+
+/// Signal-to-noise ratio (dB) of one pulse.
+EMSCAPE_HD inline double radarSnrDb(const RadarLink& radar, double rcs_m2, double range_m,
+                                    double excess_db = 0) {
+  return 10 * std::log10(echoPower_w(radar, rcs_m2, range_m, excess_db) /
+                         noisePower_w(radar.bandwidth_hz, radar.noise_temperature_k));
+}
+
+/// Range (m) at which the signal-to-noise ratio of one pulse has fallen to a value, in free space.
+EMSCAPE_HD inline double radarRange_m(const RadarLink& radar, double rcs_m2, double snr_db) {
+  return std::pow(10.0, (radarSnrDb(radar, rcs_m2, 1) - snr_db) / 40);
+}
+
+/// Jammer-to-signal ratio (dB) at the radar's receiver.
+/// @param range_m         to the target
+/// @param jammer_range_m  to the jammer; for self-screening the target's
+EMSCAPE_HD inline double jammerToSignalDb(const RadarLink& radar, double rcs_m2, double range_m,
+                                          const JammerLink& jammer, double jammer_range_m,
+                                          double excess_db = 0, double jammer_excess_db = 0) {
+  return 10 * std::log10(jammingPower_w(radar, jammer, jammer_range_m, jammer_excess_db) /
+                         echoPower_w(radar, rcs_m2, range_m, excess_db));
+}
+
+/// Range (m) below which a target shows through the jamming of a jammer that it carries itself: where J/S has
+/// risen to the value that the radar bears, in free space. J/S grows with R^2.
+/// @param bearable_db  J/S at which the radar still detects
+EMSCAPE_HD inline double selfScreeningBurnThrough_m(const RadarLink& radar, double rcs_m2,
+                                                    const JammerLink& jammer, double bearable_db) {
+  return std::pow(10.0, (bearable_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, 1)) / 20);
+}
+
+/// The same for a jammer that stands off at a range of its own: J/S grows with R^4.
+EMSCAPE_HD inline double standOffBurnThrough_m(const RadarLink& radar, double rcs_m2,
+                                               const JammerLink& jammer, double jammer_range_m,
+                                               double bearable_db) {
+  return std::pow(10.0, (bearable_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, jammer_range_m)) / 40);
+}
+
+/// A polarisation ellipse.
+struct PolarizationEllipse {
+  double tilt_rad = 0;     ///< of the major axis from the horizontal
+  double axial_ratio = 0;  ///< minor axis over major, -1..1: 0 linear, 1 right and -1 left circular
+};
+
+/// Loss (dB) from the mismatch of two polarisations, both seen along the same direction; infinite for
+/// orthogonal ones.
+/// @see Blake 1980; C. A. Balanis, Antenna Theory, section 2.12 (in axial ratios)
+inline double polarizationMismatchLossDb(const PolarizationEllipse& a, const PolarizationEllipse& b) {
+  const double a2 = a.axial_ratio * a.axial_ratio, b2 = b.axial_ratio * b.axial_ratio;
+  const double factor = 0.5 + (4 * a.axial_ratio * b.axial_ratio +
+                               (1 - a2) * (1 - b2) * std::cos(2 * (a.tilt_rad - b.tilt_rad))) /
+                                  (2 * (1 + a2) * (1 + b2));
+  return -10 * std::log10(factor > 1 ? 1 : factor);
+}
+
+}  // namespace emscape::emfield
