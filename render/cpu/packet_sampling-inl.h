@@ -52,6 +52,10 @@ struct Color {
     return {hn::IfThenElseZero(mask, r), hn::IfThenElseZero(mask, g), hn::IfThenElseZero(mask, b),
             hn::IfThenElseZero(mask, a)};
   }
+  static HWY_INLINE Color chosen(M mask, const Color& yes, const Color& no) {
+    return {hn::IfThenElse(mask, yes.r, no.r), hn::IfThenElse(mask, yes.g, no.g),
+            hn::IfThenElse(mask, yes.b, no.b), hn::IfThenElse(mask, yes.a, no.a)};
+  }
   /// See render::shortened().
   HWY_INLINE Color shortened(F part) const {
     const F one = hn::Set(kF, 1.0F);
@@ -61,6 +65,36 @@ struct Color {
     const F shorter = hn::IfThenElse(opaque, one, one - through);
     return times(hn::IfThenElse(visible, shorter / a, one));
   }
+};
+
+/// Rays of a packet, in the volume's index space.
+struct Rays {
+  Vec3F start;      ///< where they enter the box
+  Vec3F direction;  ///< of unit length
+  F length;         ///< in the box and before the limit; 0 where a ray meets no sample
+  M enters;         ///< rays that begin outside the box
+};
+
+/// The pieces that rays are sampled in; see RayPieces. Counts are whole numbers.
+struct Pieces {
+  F step, per_step, length;
+  F whole, count;
+  F last;  ///< length of the last piece, if it is shorter than a step
+
+  HWY_INLINE Pieces(const Rays& rays, float step_voxels)
+      : step(hn::Set(kF, step_voxels)),
+        per_step(hn::Set(kF, 1.0F / step_voxels)),
+        length(rays.length),
+        whole(hn::Floor(length / step)),
+        count(whole),
+        last(hn::Max(hn::NegMulAdd(whole, step, length), hn::Zero(kF))) {
+    count = count + hn::IfThenElseZero(hn::Gt(last, hn::Zero(kF)), hn::Set(kF, 1.0F));
+  }
+  HWY_INLINE F middle(F n) const {
+    const F half = hn::Set(kF, 0.5F);
+    return hn::IfThenElse(hn::Lt(n, whole), (n + half) * step, hn::NegMulAdd(half, last, length));
+  }
+  HWY_INLINE F joint(F n) const { return hn::IfThenElse(hn::Le(n, whole), n * step, length); }
 };
 
 #if HWY_TARGET == HWY_SCALAR
@@ -168,20 +202,19 @@ HWY_INLINE Color lookUp(const Rgba* table, I index) {
 class BrickWalk {
  public:
   HWY_INLINE BrickWalk(const RaycastTask& task, const Vec3F& direction)
-      : levels_(task.skip.levels),
-        x_(direction.x, task.volume.dims.x),
+      : x_(direction.x, task.volume.dims.x),
         y_(direction.y, task.volume.dims.y),
         z_(direction.z, task.volume.dims.z),
         row_(hn::Set(kI, task.skip.dims.x)),
         rows_(hn::Set(kI, task.skip.dims.y)) {}
 
-  /// @param level  receives SkipView::levels of the brick
+  /// @param brick  receives the index of the brick around a position
   /// @return voxels along the ray that surely stay in it
-  HWY_INLINE F look(const Vec3F& position, F& level) const {
+  HWY_INLINE F look(const Vec3F& position, I& brick) const {
     I x, y, z;
     const F leave =
         hn::Min(hn::Min(x_.along(position.x, x), y_.along(position.y, y)), z_.along(position.z, z));
-    level = hn::GatherIndex(kF, levels_, (z * rows_ + y) * row_ + x);
+    brick = (z * rows_ + y) * row_ + x;
     return hn::Max(leave - hn::Set(kF, SkipView::kFaceMargin), hn::Zero(kF));
   }
 
@@ -205,7 +238,6 @@ class BrickWalk {
     }
   };
 
-  const float* levels_;
   const Axis x_, y_, z_;
   const I row_, rows_;
 };

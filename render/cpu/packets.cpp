@@ -8,17 +8,12 @@
 #include <hwy/contrib/math/math-inl.h>
 
 #include "render/cpu/packet_sampling-inl.h"
+#include "render/cpu/packet_shading-inl.h"
+#include "render/cpu/packet_surface-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace emscape::render {
 namespace HWY_NAMESPACE {
-
-/// Rays of a packet, in the volume's index space.
-struct Rays {
-  Vec3F start;      ///< where they enter the box
-  Vec3F direction;  ///< of unit length
-  F length;         ///< in the box and before the limit; 0 where a ray meets no sample
-};
 
 /// The part of rays inside the box along one axis; see render::clipAxis().
 HWY_INLINE void clipAxis(D origin, D direction, double lower, double upper, D& begin, D& end) {
@@ -40,7 +35,7 @@ HWY_INLINE void clipAxis(D origin, D direction, double lower, double upper, D& b
 
 /// Rays of half a packet (doubles are twice as wide); pixels by x and y, both as whole numbers in doubles.
 HWY_INLINE void setHalf(const RaycastTask& task, const double* x, const double* y, const double* limits,
-                        float* const to[7]) {
+                        float* const to[8]) {
   const hn::ScalableTag<double> d;
   const hn::Rebind<float, hn::ScalableTag<double>> narrow;
   const CameraView& camera = task.camera;
@@ -87,12 +82,13 @@ HWY_INLINE void setHalf(const RaycastTask& task, const double* x, const double* 
   store(dy, to[4]);
   store(dz, to[5]);
   store(end - begin, to[6]);
+  store(begin, to[7]);
 }
 
 HWY_INLINE Rays setRays(const RaycastTask& task, const Pixel* pixels, const float* limits, int count) {
   constexpr std::size_t kLanes = hn::MaxLanes(hn::ScalableTag<float>());
   HWY_ALIGN double x[kLanes], y[kLanes], end[kLanes];
-  HWY_ALIGN float parts[7][kLanes];
+  HWY_ALIGN float parts[8][kLanes];
   for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
     const Pixel pixel = pixels[lane < count ? lane : 0];
     x[lane] = pixel.x;
@@ -101,23 +97,66 @@ HWY_INLINE Rays setRays(const RaycastTask& task, const Pixel* pixels, const floa
   }
   const std::size_t half = hn::Lanes(hn::ScalableTag<double>());
   for (std::size_t lane = 0; lane < kLanes; lane += half) {
-    float* const to[7] = {parts[0] + lane, parts[1] + lane, parts[2] + lane, parts[3] + lane,
-                          parts[4] + lane, parts[5] + lane, parts[6] + lane};
+    float* const to[8] = {parts[0] + lane, parts[1] + lane, parts[2] + lane, parts[3] + lane,
+                          parts[4] + lane, parts[5] + lane, parts[6] + lane, parts[7] + lane};
     setHalf(task, x + lane, y + lane, end + lane, to);
   }
   const hn::ScalableTag<float> f;
   return {{hn::Load(f, parts[0]), hn::Load(f, parts[1]), hn::Load(f, parts[2])},
           {hn::Load(f, parts[3]), hn::Load(f, parts[4]), hn::Load(f, parts[5])},
-          hn::Load(f, parts[6])};
+          hn::Load(f, parts[6]),
+          hn::Gt(hn::Load(f, parts[7]), hn::Zero(f))};
 }
 
+/// See LookAhead.
+class LanesAhead {
+ public:
+  HWY_INLINE LanesAhead(const RaycastTask& task, const Rays& rays, const Pieces& pieces,
+                        const BrickWalk& bricks)
+      : task_(task),
+        rays_(rays),
+        pieces_(pieces),
+        bricks_(bricks),
+        highest_(hn::Zero(kF)),
+        until_(hn::Zero(kF)) {}
+
+  /// Those of some lanes on whose ray a sample from `next` on can have a larger f.
+  HWY_INLINE M exceeds(M lanes, F next, F f) {
+    const M stale = hn::And(lanes, hn::Ge(next, until_));
+    if (!hn::AllFalse(kF, stale)) walk(stale, next);
+    return hn::And(lanes, hn::Gt(highest_, f));
+  }
+
+ private:
+  HWY_INLINE void walk(M lanes, F next) {
+    highest_ = hn::IfThenElse(lanes, hn::Set(kF, -1.0F), highest_);
+    until_ = hn::IfThenElse(lanes, pieces_.count, until_);
+    for (M on = hn::And(lanes, hn::Lt(next, pieces_.count)); !hn::AllFalse(kF, on);
+         on = hn::And(on, hn::Lt(next, pieces_.count))) {
+      I brick;
+      const F leave = bricks_.look(rays_.start.along(rays_.direction, pieces_.middle(next)), brick);
+      const F found = hn::GatherIndex(kF, task_.skip.highest, brick);
+      next = hn::Min(next + hn::Set(kF, 1.0F) + hn::Floor(leave * pieces_.per_step), pieces_.count);
+      const M higher = hn::And(on, hn::Ge(found, highest_));
+      highest_ = hn::IfThenElse(higher, found, highest_);
+      until_ = hn::IfThenElse(higher, next, until_);
+    }
+  }
+
+  const RaycastTask& task_;
+  const Rays& rays_;
+  const Pieces& pieces_;
+  const BrickWalk& bricks_;
+  F highest_, until_;
+};
+
 /// The modes, lane by lane; see render/compositing.h for what they are. live() gives the lanes for which a
-/// later sample can matter; add() those that the sample changed.
+/// sample from `next` on can matter; add() those that the sample changed.
 struct DvrLanes {
   static constexpr bool kNeedsColor = true;
   Color sum;
   HWY_INLINE DvrLanes() : sum(Color::zero()) {}
-  HWY_INLINE M live(const RaycastTask& task, M active) const {
+  HWY_INLINE M live(const RaycastTask& task, LanesAhead& /*ahead*/, M active, F /*next*/) const {
     return task.exact ? active : hn::And(active, hn::Le(sum.a, hn::Set(kF, kOpaqueEnough)));
   }
   HWY_INLINE M canSkip(F level) const { return hn::Lt(level, hn::Set(kF, SkipView::kNever)); }
@@ -132,7 +171,7 @@ struct MipLanes {
   static constexpr bool kNeedsColor = false;
   F highest;
   HWY_INLINE MipLanes() : highest(hn::Set(kF, -1.0F)) {}
-  HWY_INLINE M live(const RaycastTask& task, M active) const {
+  HWY_INLINE M live(const RaycastTask& task, LanesAhead& /*ahead*/, M active, F /*next*/) const {
     return hn::And(active, hn::Lt(highest, hn::Set(kF, task.volume_highest_f)));
   }
   HWY_INLINE M canSkip(F level) const { return hn::Le(level, highest); }
@@ -153,9 +192,11 @@ struct MidaLanes {
   Color sum;
   MipLanes mip;
   HWY_INLINE MidaLanes() : sum(Color::zero()) {}
-  HWY_INLINE M live(const RaycastTask& task, M active) const {
+  HWY_INLINE M live(const RaycastTask& task, LanesAhead& ahead, M active, F next) const {
     if (task.exact) return active;
-    return hn::Or(hn::And(active, hn::Le(sum.a, hn::Set(kF, kOpaqueEnough))), mip.live(task, active));
+    const M opaque = hn::And(active, hn::Gt(sum.a, hn::Set(kF, kOpaqueEnough)));
+    if (hn::AllFalse(kF, opaque)) return active;
+    return hn::Or(hn::AndNot(opaque, active), ahead.exceeds(opaque, next, mip.highest));
   }
   HWY_INLINE M canSkip(F level) const { return mip.canSkip(level); }
   HWY_INLINE M add(const RaycastTask& task, M active, F f, const Color& sample) {
@@ -175,76 +216,83 @@ struct MidaLanes {
 };
 
 /// Marches a packet of rays; see RaycastTask::march().
-template <class Lanes>
+template <class Lanes, bool kShades>
 HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long& samples) {
-  const F step = hn::Set(kF, task.step_voxels);
-  const F half = hn::Set(kF, 0.5F);
   const F one = hn::Set(kF, 1.0F);
-  const F per_step = hn::Set(kF, 1.0F / task.step_voxels);
-  const F whole = hn::Floor(rays.length * per_step);
-  const bool skips = task.skip.levels != nullptr;
+  const F half = hn::Set(kF, 0.5F);
+  const Pieces pieces(rays, task.step_voxels);
   const BrickWalk bricks(task, rays.direction);
+  const Light light(task.shading, rays.direction);
+  LanesAhead ahead(task, rays, pieces, bricks);
   Lanes lanes;
+  // The sample of some lanes; returns those that it changed.
+  const auto take = [&](const Vec3F& position, M shown, bool last) HWY_ATTR {
+    const F value = sampleVolume(task.volume, position, shown);
+    const F f = normalized(task.transfer, value);
+    Color color = Color::zero();
+    if (Lanes::kNeedsColor) {
+      color = lookUp(task.transfer.samples, tableIndex(task.transfer, f)).where(shown);
+      const M visible = hn::Gt(color.a, hn::Zero(kF));
+      if (kShades && !hn::AllFalse(kF, visible)) {
+        const F scale = hn::Set(kF, task.transfer.scale);
+        const Vec3F gradient = gradientAt(task.volume, position, value, visible);
+        color = light.litFog(color, {gradient.x * scale, gradient.y * scale, gradient.z * scale});
+      }
+      if (last) color = color.shortened(pieces.last * pieces.per_step);
+    }
+    return lanes.add(task, shown, f, color);
+  };
+
   F n = hn::Zero(kF);
   F next_brick = hn::Zero(kF);
-  M active = hn::Lt(n, whole);
+  M active = hn::Lt(n, pieces.whole);
   M unchanged = active;  // lanes whose last sample changed nothing
   while (true) {
     // Lanes in a new brick look whether they can pass over it, and over those behind it. While most lanes
     // find something to show this would be in vain.
     M look = hn::And(hn::And(active, unchanged), hn::Ge(n, next_brick));
-    if (skips && 2 * hn::CountTrue(kF, look) >= hn::CountTrue(kF, active)) {
+    if (task.skip.levels != nullptr && 2 * hn::CountTrue(kF, look) >= hn::CountTrue(kF, active)) {
       while (!hn::AllFalse(kF, look)) {
-        const Vec3F position = rays.start.along(rays.direction, (n + half) * step);
-        F level;
-        const F leave = bricks.look(position, level);
-        const F beyond = hn::Min(n + one + hn::Floor(leave * per_step), whole);
+        I brick;
+        const F leave = bricks.look(rays.start.along(rays.direction, (n + half) * pieces.step), brick);
+        const F beyond = hn::Min(n + one + hn::Floor(leave * pieces.per_step), pieces.whole);
         next_brick = hn::IfThenElse(look, beyond, next_brick);
-        look = hn::And(look, lanes.canSkip(level));
+        look = hn::And(look, lanes.canSkip(hn::GatherIndex(kF, task.skip.levels, brick)));
         n = hn::IfThenElse(look, beyond, n);
-        active = hn::And(active, hn::Lt(n, whole));
+        active = hn::And(active, hn::Lt(n, pieces.whole));
         look = hn::And(look, active);
       }
     }
     if (hn::AllFalse(kF, active)) break;
-    const Vec3F position = rays.start.along(rays.direction, (n + half) * step);
-    M shown = active;
-    const F value = sampleVolume(task.volume, position, shown);
-    const F f = normalized(task.transfer, value);
-    Color color = Color::zero();
-    if (Lanes::kNeedsColor) color = lookUp(task.transfer.samples, tableIndex(task.transfer, f)).where(shown);
-    unchanged = hn::Not(lanes.add(task, shown, f, color));
+    const Vec3F position = rays.start.along(rays.direction, (n + half) * pieces.step);
+    unchanged = hn::Not(take(position, active, false));
     samples += static_cast<long long>(hn::CountTrue(kF, active));
     n = n + one;
-    active = hn::And(lanes.live(task, active), hn::Lt(n, whole));
+    active = hn::And(lanes.live(task, ahead, active, n), hn::Lt(n, pieces.whole));
   }
-  // The last piece of each ray is shorter than a step.
-  const F rest = rays.length - whole * step;
-  M last = lanes.live(task, hn::Gt(rest, hn::Zero(kF)));
-  if (!hn::AllFalse(kF, last)) {
-    const Vec3F position = rays.start.along(rays.direction, rays.length - half * rest);
-    M shown = last;
-    const F f = normalized(task.transfer, sampleVolume(task.volume, position, shown));
-    Color color = Color::zero();
-    if (Lanes::kNeedsColor) {
-      color =
-          lookUp(task.transfer.samples, tableIndex(task.transfer, f)).where(shown).shortened(rest * per_step);
-    }
-    lanes.add(task, shown, f, color);
+  const M rest = lanes.live(task, ahead, hn::Lt(pieces.whole, pieces.count), pieces.whole);
+  if (!hn::AllFalse(kF, rest)) {
+    take(rays.start.along(rays.direction, pieces.middle(pieces.whole)), rest, true);
   }
   return lanes.result(task);
 }
 
-template <class Lanes>
-HWY_INLINE long long castAll(const RaycastTask& task, const Pixel* pixels, const float* limits, int count,
-                             Rgba* fronts) {
+HWY_INLINE Color castSurface(const RaycastTask& task, const Rays& rays, long long& /*samples*/) {
+  return SurfaceSearch(task, rays).color();
+}
+
+using CastPacket = Color (*)(const RaycastTask&, const Rays&, long long&);
+
+template <CastPacket kCast>
+HWY_NOINLINE long long castAll(const RaycastTask& task, const Pixel* pixels, const float* limits, int count,
+                               Rgba* fronts) {
   constexpr int kLanes = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
   HWY_ALIGN float rgba[4 * kLanes];
   long long samples = 0;
   for (int first = 0; first < count; first += kLanes) {
     const int used = count - first < kLanes ? count - first : kLanes;
     const Rays rays = setRays(task, pixels + first, limits != nullptr ? limits + first : nullptr, used);
-    const Color color = castPacket<Lanes>(task, rays, samples);
+    const Color color = kCast(task, rays, samples);
     hn::StoreInterleaved4(color.r, color.g, color.b, color.a, kF, rgba);
     for (int lane = 0; lane < used; ++lane) {
       fronts[first + lane] = {rgba[4 * lane], rgba[4 * lane + 1], rgba[4 * lane + 2], rgba[4 * lane + 3]};
@@ -255,14 +303,20 @@ HWY_INLINE long long castAll(const RaycastTask& task, const Pixel* pixels, const
 
 long long cast(const RaycastTask& task, CompositingMode mode, const Pixel* pixels, const float* limits,
                int count, Rgba* fronts) {
+  const bool shades = task.shading.shades_fog;
   switch (mode) {
     case CompositingMode::mida:
-      return castAll<MidaLanes>(task, pixels, limits, count, fronts);
+      return shades ? castAll<castPacket<MidaLanes, true>>(task, pixels, limits, count, fronts)
+                    : castAll<castPacket<MidaLanes, false>>(task, pixels, limits, count, fronts);
     case CompositingMode::mip:
-      return castAll<MipLanes>(task, pixels, limits, count, fronts);
-    default:
-      return castAll<DvrLanes>(task, pixels, limits, count, fronts);
+      return castAll<castPacket<MipLanes, false>>(task, pixels, limits, count, fronts);
+    case CompositingMode::iso:
+      return castAll<castSurface>(task, pixels, limits, count, fronts);
+    case CompositingMode::dvr:
+      break;
   }
+  return shades ? castAll<castPacket<DvrLanes, true>>(task, pixels, limits, count, fronts)
+                : castAll<castPacket<DvrLanes, false>>(task, pixels, limits, count, fronts);
 }
 
 }  // namespace HWY_NAMESPACE

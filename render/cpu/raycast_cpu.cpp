@@ -68,8 +68,7 @@ class PieceCaster {
  public:
   explicit PieceCaster(const CpuCast& cast)
       : cast_(cast),
-        in_packets_(!cast.plain && !cast.nearest && cast.mode != CompositingMode::iso &&
-                    !cast.task.shading.shades_fog && packetsCanCast(cast.task.volume)),
+        in_packets_(!cast.plain && !cast.nearest && packetsCanCast(cast.task.volume)),
         plain_(cast.nearest ? plainOf<NearestSampler>(cast.mode) : plainOf<TrilinearSampler>(cast.mode)) {}
 
   /// @return samples taken, as far as they are counted

@@ -16,11 +16,14 @@ inline void setRandomScene(Renderer& renderer, std::mt19937& random, ImageSize s
   auto volume =
       makeEmeVolume({between(1, 30), between(1, 30), between(1, 20)}, static_cast<unsigned>(between(1, 99)));
   RenderSettings settings;
-  settings.mode = static_cast<CompositingMode>(between(0, 2));
+  settings.mode = static_cast<CompositingMode>(between(0, 3));
+  settings.shading = between(0, 1) == 1;
   settings.step_voxels = 0.3 + 0.1 * between(0, 12);
   settings.exact = between(0, 1) == 1;
   settings.mida_gamma = 0.5 * between(-2, 2);
   settings.vertical_exaggeration = between(1, 3);
+  settings.iso_value = between(-40, 10);
+  settings.iso_opacity = 0.25 * between(1, 4);
   renderer.setSettings(settings);
   renderer.setVolume(volume);
   renderer.setTransferFunction(defaultTransferFunction(*volume));
