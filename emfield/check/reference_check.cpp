@@ -32,9 +32,9 @@ bool DatasetCheck::pass() const {
 
 const std::vector<ReferenceDataset>& referenceDatasets() {
   static const std::vector<ReferenceDataset> datasets = {
-      {"itm_p2p", nullptr},
-      {"itm_p2p_published", nullptr},
-      {"itm_area", nullptr},
+      {"itm_p2p", checkItmPointToPoint},
+      {"itm_p2p_published", checkItmPublished},
+      {"itm_area", checkItmArea},
       {"p528", nullptr},
       {"p526_delta_bullington", nullptr},
       {"p676_13_specific", checkSpecificGasAttenuation},

@@ -17,13 +17,25 @@ std::string_view toString(Beyond beyond) {
   return "";
 }
 
+/// With a space before it, if there is one.
+std::string unitOf(const ModelLimit& limit) {
+  return limit.unit.empty() ? "" : fmt::format(" {}", limit.unit);
+}
+
+std::string rangeOf(const ModelLimit& limit) {
+  return fmt::format("outside {:.6g}..{:.6g}{}: {}", limit.least, limit.most, unitOf(limit),
+                     toString(limit.beyond));
+}
+
 }  // namespace
 
+std::string outsideMessage(const ModelLimit& limit) {
+  return fmt::format("{} {}", limit.parameter, rangeOf(limit));
+}
+
 std::string outsideMessage(const ModelLimit& limit, double value_si) {
-  const std::string unit = limit.unit.empty() ? "" : fmt::format(" {}", limit.unit);
-  return fmt::format("{} {:.6g}{} is outside {:.6g}..{:.6g}{}: {}", limit.parameter,
-                     value_si / limit.si_per_unit, unit, limit.least, limit.most, unit,
-                     toString(limit.beyond));
+  return fmt::format("{} {:.6g}{} is {}", limit.parameter, value_si / limit.si_per_unit, unitOf(limit),
+                     rangeOf(limit));
 }
 
 std::string limitsTable(const ModelLimit* const* limits, int count) {

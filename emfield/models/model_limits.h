@@ -9,12 +9,16 @@
 /// docs/models.md holds limitsTable() of every model word for word; a test compares.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <string_view>
 
 #include "base/host_device.h"
 
 namespace emscape::emfield {
+
+/// For parameters that have no upper limit.
+constexpr double kNoLimit = HUGE_VAL;
 
 /// What becomes of a value outside its limits.
 enum class Beyond {
@@ -40,6 +44,8 @@ struct ModelLimit {
   }
 };
 
+/// "frequency outside 20..20000 MHz: refused".
+std::string outsideMessage(const ModelLimit& limit);
 /// "frequency 15 MHz is outside 20..20000 MHz: refused", for a value in SI units.
 std::string outsideMessage(const ModelLimit& limit, double value_si);
 
