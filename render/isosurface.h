@@ -5,6 +5,7 @@
 #include "base/vec.h"
 #include "render/ray_pieces.h"
 #include "render/volume_view.h"
+#include "volume/dense_volume.h"
 
 namespace emscape::render {
 
@@ -50,10 +51,10 @@ EMSCAPE_HD IsoHit refineCrossing(const VolumeView& volume, const RayPieces& piec
     const bool crossed = (middle.value >= iso) != (near.value >= iso);
     (crossed ? far : near) = middle;
   }
-  const float part = (iso - near.value) / (far.value - near.value);
+  const float part = (iso - near.value) / (far.value - near.value);  // NaN between infinities
   IsoHit hit;
   hit.found = true;
-  hit.distance = lerp(near.distance, far.distance, part);
+  hit.distance = part <= 1.0F ? lerp(near.distance, far.distance, part) : far.distance;
   hit.value = iso;
   return hit;
 }
@@ -102,5 +103,10 @@ EMSCAPE_HD inline Vec3f entryNormal(const VolumeView& volume, const Vec3f& start
   if (y <= z) return {0, direction.y > 0.0F ? -1.0F : 1.0F, 0};
   return {0, 0, direction.z > 0.0F ? -1.0F : 1.0F};
 }
+
+/// Checks that an isosurface can show something of a volume or of the series that it belongs to.
+/// @throws Error (bad_input) that says what the values are: for indices, and for a value that is neither
+/// among the volume's own nor in the range of its series
+void checkIsoValue(double value, const volume::DenseVolume& volume);
 
 }  // namespace emscape::render

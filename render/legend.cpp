@@ -121,6 +121,14 @@ double contentWidth(const Style& style, const Legend& legend) {
   return std::max(content, widestText(headingOf(legend), style.text_px) * 1.08);
 }
 
+/// A line across the bar with an arrowhead at its left end.
+void drawIsoMark(Canvas& canvas, const Style& style, double left, double y, double width) {
+  const double head = 6 * style.unit;
+  canvas.line({left, y}, {left + width, y}, style.rimInk(0.9), 4 * style.unit);
+  canvas.line({left, y}, {left + width, y}, style.textInk(), 2 * style.unit);
+  canvas.polygon({{left - 1.6 * head, y - head}, {left - 1.6 * head, y + head}, {left, y}}, style.textInk());
+}
+
 void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double left) {
   const TransferFunction& function = legend.function;
   const double top = topOf(canvas, style, legend);
@@ -159,6 +167,11 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
     canvas.line({right, y}, {right + 5 * style.unit, y}, style.textInk(0.9), 1.2 * style.unit);
     canvas.textWithRim(ticks.texts[i], {right + 9 * style.unit, y}, style.small_px, style.textInk(),
                        style.rimInk());
+  }
+  if (legend.iso_value) {
+    // A value beyond the bar is marked at its end.
+    const double y = std::clamp(yOf(*legend.iso_value), top, bottom);
+    drawIsoMark(canvas, style, bar_left, y, bar_width);
   }
   drawHeading(canvas, style, legend, left, top - 10 * style.unit);
   canvas.textWithRim("opacity", {left, bottom + 12 * style.unit}, 0.85 * style.small_px, style.mutedInk(0.9),

@@ -1,6 +1,7 @@
 /// What stands beside the picture of a volume: colour bar or categories, at round values.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@ struct Legend {
   std::string quantity;  ///< as written: "Power density"
   std::string unit;      ///< "dBW/m²"; may be empty
   TransferFunction function;
+  std::optional<double> iso_value;   ///< marked on the colour bar
   bool whole_numbers = false;        ///< counts: no ticks between
   std::vector<Category> categories;  ///< categorical volumes: those to be listed
 };

@@ -54,7 +54,7 @@ CameraView viewOf(const Camera& camera, const IndexSpace& space, ImageSize size)
 
 /// The light stands a little above and to the left of the viewer.
 ShadingView shadingOf(const Camera& camera, const IndexSpace& space) {
-  constexpr double kLeft = 0.35, kAbove = 0.45;
+  constexpr double kLeft = 0.3, kAbove = 0.4;
   const Vec3d& spacing = space.spacing_m;
   ShadingView shading;
   shading.voxel = vecCast<float>(spacing / std::max({spacing.x, spacing.y, spacing.z}));
@@ -131,8 +131,8 @@ struct Renderer::Impl {
     task.skip = {skip.highest.data(), settings.skip_empty ? skip.levels.data() : nullptr,
                  volume.bricks().dims};
     task.shading = shadingOf(camera, space);
-    task.shading.shades_fog = settings.shading && settings.mode != CompositingMode::mip &&
-                              !volume.volume().info.categorical;
+    task.shading.shades_fog =
+        settings.shading && settings.mode != CompositingMode::mip && !volume.volume().info.categorical;
     task.iso = iso();
     if (ground) {
       task.ground = ground->view();

@@ -14,13 +14,13 @@ namespace emscape::render {
 /// One directional light and the shape of voxels. *Drawn* directions are those of the scene as it is seen:
 /// voxels have their spacing there and heights are stretched.
 struct ShadingView {
-  // The light is white and stands near the viewer: what faces it keeps its colour.
-  static constexpr float kAmbient = 0.3F;
-  static constexpr float kDiffuse = 0.7F;
-  static constexpr float kSpecular = 0.25F;
+  // A white light near the viewer. What faces it is somewhat brighter than without, what turns away darker.
+  static constexpr float kAmbient = 0.45F;
+  static constexpr float kDiffuse = 0.75F;
+  static constexpr float kSpecular = 0.3F;
   static constexpr float kShininess = 32;
   /// Gradient (parts of the transfer function's interval per voxel) at which fog is shaded by half.
-  static constexpr float kFaintGradient = 0.003F;
+  static constexpr float kFaintGradient = 0.02F;
 
   bool shades_fog = false;  ///< samples of DVR and MIDA are shaded; isosurfaces always are
   Vec3f voxel{1, 1, 1};     ///< edges of a voxel as drawn; their scale does not matter

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "apps/emscape/scene.h"
+#include "render/isosurface.h"
 
 namespace emscape::app {
 
@@ -62,8 +63,11 @@ void Painter::fitTo(const volume::DenseVolume& volume) {
   if (look_.show_terrain && scene && scene->terrain) {
     renderer_.setHeightField(heightFieldOf(*scene->terrain, volume.grid));
   }
+  const bool shows_surface = look_.settings.mode == render::CompositingMode::iso;
+  if (shows_surface) render::checkIsoValue(renderer_.isoValue(), volume);
   annotations_.georeferenced = volume.grid.georeferenced;
   annotations_.legend = render::legendOf(volume.info, function);
+  if (shows_surface) annotations_.legend->iso_value = renderer_.isoValue();
   if (scene && volume.info.categorical) annotations_.legend->categories = categoriesOf(*scene->scenario);
   placeCamera(look_.camera);
   fitted_ = true;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <memory>
 
 #include "apps/emscape/background_writer.h"
@@ -32,6 +33,9 @@ struct RenderOptions {
   std::string theme = "dark";
   double step_voxels = 1;
   double mida_gamma = 0;
+  double iso_value = std::numeric_limits<double>::quiet_NaN();
+  double iso_opacity = 1;
+  bool shading = false;
   double exaggeration = 0;
   double frames_per_s = 10;
   bool exact = false;
@@ -48,6 +52,9 @@ Look lookOf(const RenderOptions& options) {
   look.settings.mode = render::parseCompositingMode(options.mode);
   look.settings.step_voxels = options.step_voxels;
   look.settings.mida_gamma = options.mida_gamma;
+  look.settings.iso_value = options.iso_value;
+  look.settings.iso_opacity = options.iso_opacity;
+  look.settings.shading = options.shading;
   look.settings.exact = options.exact;
   look.settings.vertical_exaggeration = options.exaggeration;
   look.transfer = options.transfer;
@@ -141,7 +148,7 @@ Examples:
       ->required();
   command->add_option("--size", options->size, "Picture size in pixels, WxH");
   command->add_option("--mode", options->mode, "How samples become a pixel")
-      ->check(CLI::IsMember({"dvr", "mida", "mip"}));
+      ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
   command->add_option("--rays", options->rays, "Pixels that are cast, the rest interpolated; auto: all")
       ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter"}));
   command->add_option("--interpolate", options->interpolate, "Precision of interpolated pixels")
@@ -166,6 +173,11 @@ Examples:
       ->check(CLI::Range(0.05, 10.0));
   command->add_option("--mida-gamma", options->mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
       ->check(CLI::Range(-1.0, 1.0));
+  command->add_option("--iso-value", options->iso_value,
+                      "Value of the isosurface, in the quantity's unit; default: the middle of the colours");
+  command->add_option("--iso-opacity", options->iso_opacity, "Opacity of the isosurface")
+      ->check(CLI::Range(0.0, 1.0));
+  command->add_flag("--shading", options->shading, "Light on the fog of dvr and mida; iso always has it");
   command->add_option("--theme", options->theme, "Background")->check(CLI::IsMember({"dark", "light"}));
   command->add_option("--fps", options->frames_per_s, "Frames a second of a video")
       ->check(CLI::Range(0.1, 240.0));

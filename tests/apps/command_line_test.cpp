@@ -100,6 +100,15 @@ TEST(CommandLine, AMissingInputIsToldWithItsName) {
   EXPECT_TRUE(folder.files().empty());
 }
 
+TEST(CommandLine, AnIsoValueThatNoVoxelHasIsToldWithTheRange) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run({"render", shippedScenario("quick.yaml"), "-o", folder / "x.png", "--size",
+                                    "64x48", "--mode", "iso", "--iso-value", "999"});
+  EXPECT_EQ(result.status, kBadInput);
+  EXPECT_THAT(result.err, HasSubstr("iso value 999 dBW/m2: power_density_dbwm2 ranges from "));
+  EXPECT_TRUE(folder.files().empty());
+}
+
 TEST(CommandLine, JsonIsAloneOnStandardOutput) {
   const TemporaryFolder folder;
   const std::string quick = shippedScenario("quick.yaml");

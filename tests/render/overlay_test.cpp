@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "base/error.h"
@@ -117,6 +118,30 @@ TEST(Overlay, DegenerateTransferFunctionsDoNotBreakTheLegend) {
 TEST(Overlay, ThemesHaveNames) {
   EXPECT_EQ(parseTheme("light"), Theme::light);
   EXPECT_THROW(parseTheme("blue"), Error);
+}
+
+TEST(Overlay, MarksTheIsoValueOnTheColourBar) {
+  const ImageSize size{600, 400};
+  Annotations annotations =
+      everything(testing::makeFunction({{0, {0, 0, 0}}, {10, {1, 1, 1}}}, {{0, 0}, {10, 0.1}}));
+  const Camera camera = makeCamera({}, kBox, size, overlayMargins(size, annotations));
+  const Image8 plain = compose(Image(size), camera, kBox, annotations);
+  double last_row = size.height;
+  for (double value : {-5.0, 2.0, 8.0, 50.0}) {  // beyond the bar: at its ends
+    annotations.legend->iso_value = value;
+    const Image8 marked = compose(Image(size), camera, kBox, annotations);
+    double rows = 0, count = 0;
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        if (std::equal(marked.at(x, y), marked.at(x, y) + 4, plain.at(x, y))) continue;
+        rows += y;
+        ++count;
+      }
+    }
+    ASSERT_GT(count, 20);
+    EXPECT_LT(rows / count, last_row);
+    last_row = rows / count;
+  }
 }
 
 }  // namespace

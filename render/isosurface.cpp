@@ -1,0 +1,28 @@
+#include "render/isosurface.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "volume/statistics.h"
+
+namespace emscape::render {
+
+void checkIsoValue(double value, const volume::DenseVolume& volume) {
+  const volume::VolumeInfo& info = volume.info;
+  if (info.categorical) {
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("iso value {:g}: {} holds indices, which have no isosurface", value, info.quantity));
+  }
+  const volume::Statistics values = volume::statisticsOf(volume);
+  const float lowest = std::min(values.min, info.range_min);
+  const float highest = std::max(values.max, info.range_max);
+  if (value >= lowest && value <= highest) return;
+  throw Error(ErrorCode::bad_input,
+              fmt::format("iso value {:g}{}{}: {} ranges from {:g} to {:g}", value,
+                          info.unit.empty() ? "" : " ", info.unit, info.quantity, lowest, highest));
+}
+
+}  // namespace emscape::render
