@@ -19,6 +19,7 @@ DatasetCheck checkRadarEquation(const std::filesystem::path& file);
 DatasetCheck checkFreeSpaceConversions(const std::filesystem::path& file);
 
 // check_diffraction.cpp
+DatasetCheck checkDeltaBullington(const std::filesystem::path& folder);
 DatasetCheck checkKnifeEdge(const std::filesystem::path& file);
 
 // check_itm.cpp

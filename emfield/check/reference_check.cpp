@@ -36,7 +36,7 @@ const std::vector<ReferenceDataset>& referenceDatasets() {
       {"itm_p2p_published", checkItmPublished},
       {"itm_area", checkItmArea},
       {"p528", nullptr},
-      {"p526_delta_bullington", nullptr},
+      {"p526_delta_bullington", checkDeltaBullington},
       {"p676_13_specific", checkSpecificGasAttenuation},
       {"p676_13_slant", checkSlantGasAttenuation},
       {"p838_3", checkRain},

@@ -1,0 +1,153 @@
+/// Diffraction loss of a smooth spherical earth: the first term of the residue series, ITU-R P.526-15 section
+/// 3.1.1, and its interpolation up to a clear path, section 3.2.
+#pragma once
+
+#include <cmath>
+
+#include "base/host_device.h"
+#include "emfield/models/ground_constants.h"
+
+namespace emscape::emfield {
+
+/// What the first term needs of frequency, polarisation and ground; P.526 writes km, MHz and GHz, here are
+/// metres.
+template <class Real>
+struct FirstTermGround {
+  Real admittance;    ///< K a^(1/3), m^(1/3): eq. (15), (16)
+  Real range_scale;   ///< X a^(2/3) / (beta d), m^(-1/3): eq. (18)
+  Real height_scale;  ///< Y a^(1/3) / (beta h), m^(-2/3): eq. (20)
+};
+
+template <class Real>
+FirstTermGround<Real> firstTermGround(double frequency_hz, const GroundConstants& ground,
+                                      LinearPolarization polarization) {
+  const double ghz = frequency_hz / 1e9;
+  const double permittivity = ground.relative_permittivity;
+  const double loss = 18 * ground.conductivity_s_per_m / ghz;
+  // a^(1/3) in m^(1/3) is 10 times that in km^(1/3)
+  double admittance =
+      0.36 / std::cbrt(ghz) * std::pow((permittivity - 1) * (permittivity - 1) + loss * loss, -0.25);
+  if (polarization == LinearPolarization::vertical) {
+    admittance *= std::sqrt(permittivity * permittivity + loss * loss);
+  }
+  return {Real(admittance), Real(2.188 * std::cbrt(ghz)), Real(9.575 * std::cbrt(ghz * ghz))};
+}
+
+/// Gain of an antenna's height (dB), eq. (22), (23), with its lower bound.
+/// @param b  beta Y, > = 0
+template <class Real>
+EMSCAPE_HD Real heightGainDb(Real b, Real admittance) {
+  const Real least = 2 + 20 * std::log10(admittance);
+  Real gain;
+  if (b > 2) {
+    gain = Real(17.6) * std::sqrt(b - Real(1.1)) - 5 * std::log10(b - Real(1.1)) - 8;
+  } else {
+    gain = 20 * std::log10(b + Real(0.1) * b * b * b);
+  }
+  return gain > least ? gain : least;
+}
+
+/// First term (dB), eq. (13): negative well within the horizon, where it does not hold.
+/// @param distance_m, height1_m, height2_m  >= 0, heights above the smooth surface
+/// @param earth_radius_m  effective
+template <class Real>
+EMSCAPE_HD Real firstTermLossDb(const FirstTermGround<Real>& ground, Real distance_m, Real height1_m,
+                                Real height2_m, Real earth_radius_m) {
+  const Real inverse_root = 1 / std::cbrt(earth_radius_m);
+  const Real k = ground.admittance * inverse_root;
+  const Real k2 = k * k, k4 = k2 * k2;
+  const Real beta = (1 + Real(1.6) * k2 + Real(0.67) * k4) / (1 + Real(4.5) * k2 + Real(1.53) * k4);  // (17)
+  const Real x = ground.range_scale * beta * inverse_root * inverse_root * distance_m;
+  const Real distance_db =  // (21)
+      x >= Real(1.6) ? 11 + 10 * std::log10(x) - Real(17.6) * x
+                     : -20 * std::log10(x) - Real(5.6488) * std::pow(x, Real(1.425));
+  const Real per_height = ground.height_scale * beta * beta * inverse_root;
+  return -distance_db - heightGainDb(per_height * height1_m, k) - heightGainDb(per_height * height2_m, k);
+}
+
+/// A smooth earth, partly sea.
+template <class Real>
+struct SphericalEarth {
+  Real earth_radius_m;  ///< effective
+  Real wavelength_m;
+  Real sea_fraction;  ///< of the path, 0..1
+  FirstTermGround<Real> land, sea;
+
+  EMSCAPE_HD Real firstTermDb(Real distance_m, Real height1_m, Real height2_m, Real radius_m) const {
+    Real loss_db = 0;
+    if (sea_fraction < 1) {
+      loss_db += (1 - sea_fraction) * firstTermLossDb(land, distance_m, height1_m, height2_m, radius_m);
+    }
+    if (sea_fraction > 0) {
+      loss_db += sea_fraction * firstTermLossDb(sea, distance_m, height1_m, height2_m, radius_m);
+    }
+    return loss_db;
+  }
+};
+
+/// Largest ratio of the clearance that a path needs to be free of loss to sqrt(lambda d1 d2 / d): P.526 eq.
+/// (27), 17.456 in km and m.
+template <class Real>
+constexpr Real kRequiredClearance = Real(0.5520071);
+
+/// The clearance of a line of sight over a smooth earth where a ray would be reflected.
+template <class Real>
+struct LeastClearance {
+  Real clearance_m;
+  Real required_m;  ///< to be free of loss
+};
+
+/// @param height1_m, height2_m  >= 0, not both 0; within their common horizon
+/// @see P.526-15 eq. (25) to (27)
+template <class Real>
+EMSCAPE_HD LeastClearance<Real> leastClearance(const SphericalEarth<Real>& earth, Real distance_m,
+                                               Real height1_m, Real height2_m) {
+  const Real sum = height1_m + height2_m;
+  const Real c = (height1_m - height2_m) / sum;
+  const Real m = distance_m * distance_m / (4 * earth.earth_radius_m * sum);
+  const Real m1 = m + 1;
+  Real argument = Real(1.5) * c * std::sqrt(3 * m / (m1 * m1 * m1));
+  argument = argument > 1 ? Real(1) : argument < -1 ? Real(-1) : argument;
+  const Real b = 2 * std::sqrt(m1 / (3 * m)) * std::cos(Real(1.0471975511965976) + std::acos(argument) / 3);
+  const Real d1 = distance_m / 2 * (1 + b), d2 = distance_m - d1;
+  const Real diameter = 2 * earth.earth_radius_m;
+  const Real clearance =
+      ((height1_m - d1 * d1 / diameter) * d2 + (height2_m - d2 * d2 / diameter) * d1) / distance_m;
+  const Real zone = earth.wavelength_m * d1 * d2 / distance_m;
+  return {clearance, kRequiredClearance<Real> * std::sqrt(zone > 0 ? zone : Real(0))};
+}
+
+/// Loss (dB) of a smooth earth, >= 0; `clear_above` says that no greater height2_m has a loss either.
+template <class Real>
+struct SphericalEarthLoss {
+  Real loss_db;
+  bool clear_above;
+};
+
+/// @param distance_m  > 0
+/// @accuracy float within 0.01 dB of double
+/// @see P.526-15 section 3.2
+template <class Real>
+EMSCAPE_HD SphericalEarthLoss<Real> sphericalEarthLoss(const SphericalEarth<Real>& earth, Real distance_m,
+                                                       Real height1_m, Real height2_m) {
+  const Real roots = std::sqrt(height1_m) + std::sqrt(height2_m);
+  Real radius_m = earth.earth_radius_m;
+  Real part = 1;
+  if (distance_m < std::sqrt(2 * radius_m) * roots) {
+    const LeastClearance<Real> least = leastClearance(earth, distance_m, height1_m, height2_m);
+    // an antenna on the ground needs a clearance of 0, and is not clear
+    const bool is_raised = least.required_m > 0;
+    if (is_raised && least.clearance_m > least.required_m) {
+      // the clearance rises with height2_m and the need is largest half way
+      const Real most = kRequiredClearance<Real> * std::sqrt(earth.wavelength_m * distance_m) / 2;
+      return {0, least.clearance_m > most};
+    }
+    // eq. (28): the radius that would put the horizon at this distance
+    radius_m = distance_m / roots * (distance_m / roots) / 2;
+    part = is_raised ? 1 - least.clearance_m / least.required_m : Real(1);
+  }
+  const Real loss_db = earth.firstTermDb(distance_m, height1_m, height2_m, radius_m);
+  return {loss_db > 0 ? part * loss_db : Real(0), false};
+}
+
+}  // namespace emscape::emfield
