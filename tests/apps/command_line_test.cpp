@@ -134,20 +134,5 @@ TEST(CommandLine, GlobalOptionsMayStandBeforeTheSubcommand) {
   EXPECT_EQ(json::parse(result.out).at("ok"), true);
 }
 
-TEST(Bench, FieldHasTheKeysThatOthersRelyOn) {
-  const ProgramResult result =
-      run({"bench", "field", shippedScenario("quick.yaml"), "--repeats", "1", "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json bench = json::parse(result.out);
-  EXPECT_EQ(bench.at("device"), "cpu");
-  EXPECT_EQ(bench.at("grid"), json({40, 40, 20}));
-  EXPECT_EQ(bench.at("emitters"), 2);
-  for (const char* stage : {"fan", "plane", "combine", "product"})
-    EXPECT_TRUE(bench.at("stages_ms").at(stage).is_number());
-  for (const char* kind : {"all_moved", "one_moved", "beams_turned"})
-    EXPECT_GT(bench.at("update_ms").at(kind), 0.0);
-  EXPECT_GT(bench.at("voxels_per_s"), 0.0);
-}
-
 }  // namespace
 }  // namespace emscape::test
