@@ -1,0 +1,115 @@
+#include "render/silhouette.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace emscape::render {
+namespace {
+
+const Vec3d kLower{-0.5, -0.5, -0.5};
+
+bool meets(const CameraView& camera, const Vec3d& upper, int x, int y) {
+  const RayInterval inside = clip(camera.ray(x, y), kLower, upper);
+  return inside.end > inside.begin;
+}
+
+/// Holds a silhouette to the test of every single ray.
+void expectExact(const CameraView& camera, const Vec3d& upper, const std::string& name) {
+  Silhouette silhouette;
+  findSilhouette(camera, kLower, upper, silhouette);
+  ASSERT_EQ(silhouette.rows.size(), static_cast<std::size_t>(camera.size.height));
+  long long wrong = 0;
+  long long hits = 0;
+  for (int y = 0; y < camera.size.height; ++y) {
+    for (int x = 0; x < camera.size.width; ++x) {
+      const bool hit = meets(camera, upper, x, y);
+      hits += hit ? 1 : 0;
+      wrong += hit != silhouette.rows[static_cast<std::size_t>(y)].contains(x) ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(wrong, 0) << name << " of " << hits << " at " << camera.size.width << "x" << camera.size.height;
+  EXPECT_EQ(silhouette.count(), hits) << name;
+}
+
+/// A view whose axes are scaled as voxels that are no cubes scale them.
+CameraView viewFrom(const Vec3d& eye, const Vec3d& target, const Vec3d& scale, ImageSize size) {
+  const auto scaled = [&](const Vec3d& v) { return Vec3d{v.x * scale.x, v.y * scale.y, v.z * scale.z}; };
+  CameraView view;
+  view.eye = eye;
+  const Vec3d toward = target - eye;
+  const Vec3d forward = normalized(Vec3d{toward.x / scale.x, toward.y / scale.y, toward.z / scale.z});
+  const Vec3d right = normalized(cross(forward, Vec3d{0.01, 0.02, 1}));
+  view.forward = scaled(forward);
+  view.right = scaled(right);
+  view.up = scaled(cross(right, forward));
+  view.size = size;
+  return view;
+}
+
+TEST(Silhouette, IsThatOfEveryRayForAnyCamera) {
+  std::mt19937 random(5);
+  const auto between = [&](double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random);
+  };
+  for (int n = 0; n < 400; ++n) {
+    const Vec3d upper{between(0.5, 60), between(0.5, 60), between(0.5, 40)};
+    const double far = n % 3 == 0 ? 20 : 150;  // a third of the eyes lie in the box or close to it
+    const Vec3d eye{between(-far, far), between(-far, far), between(-far, far)};
+    const Vec3d target{between(0, upper.x), between(0, upper.y), between(0, upper.z)};
+    const ImageSize size{1 + static_cast<int>(random() % 70), 1 + static_cast<int>(random() % 70)};
+    CameraView view = viewFrom(eye, target, {1, between(0.3, 3), between(0.3, 3)}, size);
+    view.orthographic = n % 4 == 0;
+    view.half_height = view.orthographic ? between(1, 60) : between(0.05, 2);
+    view.shift_x = between(-0.3, 0.3);
+    view.shift_y = between(-0.3, 0.3);
+    expectExact(view, upper, "view " + std::to_string(n));
+  }
+}
+
+TEST(Silhouette, FillsThePictureFromInsideTheBox) {
+  CameraView view = viewFrom({5, 6, 7}, {50, 3, 4}, {1, 1, 1}, {40, 30});
+  Silhouette silhouette;
+  findSilhouette(view, kLower, {20, 20, 20}, silhouette);
+  EXPECT_EQ(silhouette.count(), 40 * 30);
+}
+
+TEST(Silhouette, IsEmptyForABoxBehindTheEye) {
+  CameraView view = viewFrom({-100, 5, 5}, {-200, 5, 5}, {1, 1, 1}, {40, 30});
+  Silhouette silhouette;
+  findSilhouette(view, kLower, {20, 20, 20}, silhouette);
+  EXPECT_EQ(silhouette.count(), 0);
+  view.orthographic = true;
+  view.half_height = 50;
+  findSilhouette(view, kLower, {20, 20, 20}, silhouette);
+  EXPECT_EQ(silhouette.count(), 0);
+}
+
+TEST(Silhouette, IsExactForABoxAcrossTheEyesPlane) {
+  for (const bool orthographic : {false, true}) {
+    CameraView view = viewFrom({10, -3, 25}, {10, 100, 25}, {1, 1, 1}, {90, 70});
+    view.orthographic = orthographic;
+    view.half_height = orthographic ? 40 : 1.2;
+    view.eye.y = 8;  // beside the box, whose ends lie before and behind it
+    expectExact(view, {20, 20, 20}, "across");
+  }
+}
+
+TEST(Silhouette, IsExactForViewsAlongAnAxis) {
+  for (const ImageSize size : {ImageSize{1, 1}, ImageSize{64, 64}, ImageSize{33, 20}}) {
+    for (const bool orthographic : {false, true}) {
+      CameraView view;
+      view.eye = {9.5, 9.5, 100};
+      view.forward = {0, 0, -1};
+      view.right = {1, 0, 0};
+      view.up = {0, 1, 0};
+      view.half_height = orthographic ? 16 : 0.2;
+      view.orthographic = orthographic;
+      view.size = size;
+      expectExact(view, {19.5, 19.5, 9.5}, "axis");
+    }
+  }
+}
+
+}  // namespace
+}  // namespace emscape::render
