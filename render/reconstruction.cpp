@@ -1,6 +1,7 @@
 #include "render/reconstruction.h"
 
 #include "base/parallel.h"
+#include "base/simd.h"
 #include "render/names.h"
 
 namespace emscape::render {
@@ -53,54 +54,48 @@ struct Bits8Arithmetic {
 
 /// Fills every second pixel of a row from its left and right neighbours, starting at first_x (0 or 1).
 template <class Arithmetic>
-void fillRow(Image& image, int y, int first_x) {
-  const int width = image.size.width;
-  Rgba* row = &image.at(0, y);
-  for (int x = first_x; x < width; x += 2) {
-    const bool has_left = x > 0;
-    const bool has_right = x + 1 < width;
-    if (has_left && has_right) {
-      row[x] = Arithmetic::mean(row[x - 1], row[x + 1]);
-    } else if (has_left || has_right) {
-      row[x] = Arithmetic::copy(row[has_left ? x - 1 : x + 1]);
-    }
-  }
+void fillRow(Rgba* row, int width, int first_x) {
+  if (width == 1) return;
+  if (first_x == 0) row[0] = Arithmetic::copy(row[1]);
+  int x = first_x == 0 ? 2 : 1;
+  for (; x + 1 < width; x += 2) row[x] = Arithmetic::mean(row[x - 1], row[x + 1]);
+  if (x < width) row[x] = Arithmetic::copy(row[x - 1]);
 }
 
-/// Fills the even pixels of an odd row from the rows above and below.
+/// Fills every second pixel of an odd row, from the left one on, from the rows above and below.
 template <class Arithmetic>
 void fillFromRowsBeside(Image& image, int y) {
-  const bool has_below = y + 1 < image.size.height;
-  for (int x = 0; x < image.size.width; x += 2) {
-    image.at(x, y) = has_below ? Arithmetic::mean(image.at(x, y - 1), image.at(x, y + 1))
-                               : Arithmetic::copy(image.at(x, y - 1));
-  }
-}
-
-/// A checkerboard's odd row may consist of one missing pixel alone: it has neighbours only above and below.
-template <class Arithmetic>
-void fillSingleColumn(Image& image) {
-  for (int y = 1; y < image.size.height; y += 2) fillFromRowsBeside<Arithmetic>(image, y);
-}
-
-template <class Arithmetic>
-void interpolateWith(Pattern pattern, Image& image) {
-  const int height = image.size.height;
-  if (pattern == Pattern::quarter) {
-    parallelFor(height / 2, kRowGrain, [&](int begin, int end) {
-      for (int j = begin; j < end; ++j) fillFromRowsBeside<Arithmetic>(image, 2 * j + 1);
-    });
-  }
-  if (pattern == Pattern::checkerboard && image.size.width == 1) {
-    fillSingleColumn<Arithmetic>(image);
+  const int width = image.size.width;
+  Rgba* row = &image.at(0, y);
+  const Rgba* above = row - width;
+  if (y + 1 == image.size.height) {
+    for (int x = 0; x < width; x += 2) row[x] = Arithmetic::copy(above[x]);
     return;
   }
-  parallelFor(height, kRowGrain, [&](int begin, int end) {
-    for (int y = begin; y < end; ++y) {
-      const bool starts_left = pattern == Pattern::checkerboard && y % 2 == 1;
-      fillRow<Arithmetic>(image, y, starts_left ? 0 : 1);
-    }
-  });
+  const Rgba* below = row + width;
+  for (int x = 0; x < width; x += 2) row[x] = Arithmetic::mean(above[x], below[x]);
+}
+
+/// Fills some rows. Rows beside each other may be filled at the same time: of other rows only source pixels
+/// are read.
+template <class Arithmetic>
+void fillRows(Pattern pattern, Image& image, int begin, int end) {
+  const int width = image.size.width;
+  for (int y = begin; y < end; ++y) {
+    const bool odd_row = y % 2 == 1;
+    // A checkerboard's odd row may consist of one missing pixel alone: it has neighbours only above and
+    // below.
+    const bool single = pattern == Pattern::checkerboard && width == 1;
+    if (odd_row && (pattern == Pattern::quarter || single)) fillFromRowsBeside<Arithmetic>(image, y);
+    fillRow<Arithmetic>(&image.at(0, y), width, odd_row && pattern == Pattern::checkerboard ? 0 : 1);
+  }
+}
+
+EMSCAPE_SIMD_CLONES void fillRowsFloat(Pattern pattern, Image& image, int begin, int end) {
+  fillRows<FloatArithmetic>(pattern, image, begin, end);
+}
+EMSCAPE_SIMD_CLONES void fillRows8(Pattern pattern, Image& image, int begin, int end) {
+  fillRows<Bits8Arithmetic>(pattern, image, begin, end);
 }
 
 }  // namespace
@@ -161,11 +156,8 @@ long long pixelCount(const std::vector<Lattice>& lattices) {
 
 void interpolate(Pattern pattern, Interpolation interpolation, Image& image) {
   if (pattern == Pattern::full || image.size.count() == 0) return;
-  if (interpolation == Interpolation::float32) {
-    interpolateWith<FloatArithmetic>(pattern, image);
-  } else {
-    interpolateWith<Bits8Arithmetic>(pattern, image);
-  }
+  const auto fill = interpolation == Interpolation::float32 ? fillRowsFloat : fillRows8;
+  parallelFor(image.size.height, kRowGrain, [&](int begin, int end) { fill(pattern, image, begin, end); });
 }
 
 }  // namespace emscape::render
