@@ -245,6 +245,33 @@ TEST_F(IsoPicture, ACapIsLitAsTheFlatFaceThatItIs) {
   }
 }
 
+TEST_F(IsoPicture, IsLitByItsNormalAsDrawn) {
+  // The same scene as drawn: cubes, and flat boxes that are stretched to cubes.
+  const auto slope = [](int i, int j, int k) {
+    return 0.1F * static_cast<float>(i) + 0.2F * static_cast<float>(j) + 0.3F * static_cast<float>(k);
+  };
+  const auto cubes = makeVolume({16, 16, 16}, {10, 10, 10}, slope);
+  const auto boxes = makeVolume({16, 16, 16}, {10, 10, 4}, slope);
+  settings_.iso_value = 4.5;
+  settings_.vertical_exaggeration = 1;
+  const char* camera = "orbit:azimuth_deg=50,elevation_deg=40";
+  const Rgba expected = look(cubes, camera);
+  const Rgba unlike = look(boxes, camera);
+  settings_.vertical_exaggeration = 2.5;
+  const Rgba stretched = look(boxes, camera);
+  EXPECT_NEAR(stretched.r, expected.r, 1e-5);
+  EXPECT_NEAR(stretched.b, expected.b, 1e-5);
+  EXPECT_GT(std::abs(unlike.r - expected.r), 1e-3);
+}
+
+TEST_F(IsoPicture, OfCategoriesIsDrawnWithoutValuesBetweenThem) {
+  auto volume = makeVolume({8, 8, 8}, {1, 1, 1}, [](int i, int, int) { return i < 4 ? 0.0F : 9.0F; });
+  volume->info.categorical = true;
+  settings_.iso_value = 5;
+  settings_.shading = true;
+  EXPECT_EQ(look(volume, "orbit:azimuth_deg=270,elevation_deg=0").a, 1);
+}
+
 TEST_F(IsoPicture, RefusesImpossibleSettings) {
   Renderer renderer;
   settings_.iso_opacity = 1.5;
