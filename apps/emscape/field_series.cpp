@@ -38,7 +38,7 @@ scenario::Snapshot FieldSeries::snapshot(int step) const {
 scenario::Snapshot FieldSeries::update(int step) {
   stopIfInterrupted();
   scenario::Snapshot now = snapshot(step);
-  solver_.update(now);
+  changed_ = solver_.update(now).any;
   return now;
 }
 

@@ -46,6 +46,9 @@ class FieldSeries {
   std::vector<std::shared_ptr<const volume::DenseVolume>> compute(int step,
                                                                   const std::vector<ValueRange>& ranges);
 
+  /// Whether the last step that was computed differs from the one computed before it.
+  bool changed() const { return changed_; }
+
   /// Those of the solver so far.
   std::vector<std::string> warnings() const { return solver_.warnings(); }
 
@@ -55,6 +58,7 @@ class FieldSeries {
   LoadedScenario input_;
   std::vector<double> times_s_;
   emfield::FieldSolver solver_;
+  bool changed_ = true;
 };
 
 }  // namespace emscape::app

@@ -48,9 +48,11 @@ class ComputedFrames : public FrameSource {
   }
 
   int count() const override { return series_.count(); }
+  double time_s(int index) const override { return series_.time_s(index); }
   Frame frame(int index) override {
     const std::shared_ptr<const volume::DenseVolume> volume = series_.compute(index, ranges_)[channel_];
-    return {volume, markersOf(series_.snapshot(index), series_.input().terrain.get(), volume->grid)};
+    return {volume, markersOf(series_.snapshot(index), series_.input().terrain.get(), volume->grid),
+            series_.changed()};
   }
   std::string name() const override { return series_.input().scenario->name; }
   const LoadedScenario* scene() const override { return &series_.input(); }
@@ -93,6 +95,7 @@ class StoredFrames : public FrameSource {
   }
 
   int count() const override { return static_cast<int>(files_.size()); }
+  double time_s(int index) const override { return files_[static_cast<std::size_t>(index)].time_s; }
   Frame frame(int index) override {
     stopIfInterrupted();
     auto volume = std::make_shared<volume::DenseVolume>(
@@ -101,7 +104,7 @@ class StoredFrames : public FrameSource {
       volume->info.range_min = range_->min;
       volume->info.range_max = range_->max;
     }
-    Frame frame{volume, {}};
+    Frame frame{volume, {}, true};
     if (scene_ && volume->grid.georeferenced) {
       const scenario::Snapshot snapshot =
           scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), volume->info.time_s);

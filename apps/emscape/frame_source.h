@@ -19,6 +19,7 @@ namespace emscape::app {
 struct Frame {
   std::shared_ptr<const volume::DenseVolume> volume;
   std::vector<render::Marker> markers;
+  bool changed = true;  ///< false: the volume's values are those of the frame asked for before
 };
 
 /// What to draw of an input.
@@ -36,6 +37,8 @@ class FrameSource {
  public:
   virtual ~FrameSource() = default;
   virtual int count() const = 0;
+  /// Of the scenario, ascending.
+  virtual double time_s(int index) const = 0;
   /// The frame with index 0..count() - 1. @throws Error, Interrupted
   virtual Frame frame(int index) = 0;
 

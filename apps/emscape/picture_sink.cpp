@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 class OnePng : public PictureSink {
  public:
   explicit OnePng(fs::path file) : file_(std::move(file)) {}
-  void add(int /*number*/, const render::Image8& picture) override {
+  void add(int /*number*/, const render::Image8& picture, int /*frames*/) override {
     render::writePng(file_.string(), picture);
   }
   void finish() override {}
@@ -32,7 +32,7 @@ class PngFolder : public PictureSink {
     if (error)
       throw Error(ErrorCode::other, {folder_.string(), 0, 0}, "cannot make the folder: " + error.message());
   }
-  void add(int number, const render::Image8& picture) override {
+  void add(int number, const render::Image8& picture, int /*frames*/) override {
     render::writePng(volume::seriesFile(folder_, name_, number, "png").string(), picture);
   }
   void finish() override {}
@@ -46,7 +46,9 @@ class Video : public PictureSink {
  public:
   Video(fs::path file, render::ImageSize size, double frames_per_s)
       : video_(std::move(file), size, frames_per_s) {}
-  void add(int /*number*/, const render::Image8& picture) override { video_.add(picture); }
+  void add(int /*number*/, const render::Image8& picture, int frames) override {
+    for (int n = 0; n < frames; ++n) video_.add(picture);
+  }
   void finish() override { video_.finish(); }
 
  private:

@@ -14,7 +14,8 @@ class PictureSink {
  public:
   virtual ~PictureSink() = default;
   /// @param number  counts from 1
-  virtual void add(int number, const render::Image8& picture) = 0;
+  /// @param frames  of a video: for so many the picture is seen
+  virtual void add(int number, const render::Image8& picture, int frames) = 0;
   /// After the last picture: what was written lies under its final name.
   virtual void finish() = 0;
 };

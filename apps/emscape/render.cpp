@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "apps/emscape/background_writer.h"
 #include "apps/emscape/command.h"
@@ -13,6 +14,9 @@
 #include "apps/emscape/frame_source.h"
 #include "apps/emscape/painter.h"
 #include "apps/emscape/picture_sink.h"
+#include "apps/emscape/playback.h"
+#include "apps/emscape/playback_report.h"
+#include "base/error.h"
 #include "base/log.h"
 #include "base/stopwatch.h"
 #include "render/reconstruction.h"
@@ -37,10 +41,17 @@ struct RenderOptions {
   double iso_opacity = 1;
   bool shading = false;
   double exaggeration = 0;
-  double frames_per_s = 10;
+  std::optional<double> frames_per_s;
   bool exact = false;
   bool show_terrain = true;
   bool show_emitters = true;
+  bool realtime = false;
+  double speed = 1;
+  std::optional<double> duration_s;
+  std::optional<double> epsilon_ms;
+  std::optional<double> budget_ms;
+  double orbit_rate_deg_s = 0;
+  bool verify = false;
 };
 
 /// The options that say how pictures look, read: wrong ones are told before anything is computed.
@@ -70,7 +81,19 @@ bool isOnePicture(const std::vector<std::string>& outputs) {
   });
 }
 
+using Sinks = std::vector<std::unique_ptr<PictureSink>>;
+
+Sinks openSinks(const RenderOptions& options, const Look& look, const FrameSource& source, int pictures,
+                double frames_per_s) {
+  Sinks sinks;
+  for (const std::string& output : options.outputs) {
+    sinks.push_back(makePictureSink(output, source.name(), pictures, look.size, frames_per_s));
+  }
+  return sinks;
+}
+
 int renderPictures(RenderOptions options, const GlobalOptions& global) {
+  if (options.outputs.empty()) throw Error(ErrorCode::usage, "--output is required (but for --realtime)");
   const Look look = lookOf(options);
   // Files are not in a hurry: `auto` casts every pixel.
   const render::FramePlan plan{
@@ -83,11 +106,7 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
   Painter painter(look, *source);
   const std::string note = fmt::format("{}, {} rays, step {:g} voxel", options.mode,
                                        render::toString(plan.pattern), options.step_voxels);
-  std::vector<std::unique_ptr<PictureSink>> sinks;
-  for (const std::string& output : options.outputs) {
-    sinks.push_back(
-        makePictureSink(output, source->name(), source->count(), look.size, options.frames_per_s));
-  }
+  const Sinks sinks = openSinks(options, look, *source, source->count(), options.frames_per_s.value_or(10));
 
   Stopwatch watch;
   double cast_ms = 0;
@@ -98,7 +117,7 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
       painter.setFrame(source->frame(index));
       cast_ms += painter.draw(plan).total_ms();
       writer.push([&sinks, index, picture = painter.picture(note)] {
-        for (const auto& sink : sinks) sink->add(index + 1, picture);
+        for (const auto& sink : sinks) sink->add(index + 1, picture, 1);
       });
       progress.show(index + 1);
     }
@@ -123,6 +142,88 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
   return 0;
 }
 
+PlaybackOptions playbackOptionsOf(const RenderOptions& options) {
+  PlaybackOptions playback;
+  constexpr double kBudget_ms = 40;  // the paper's bound of real time
+  playback.frames_per_s = options.frames_per_s.value_or(1000 / options.budget_ms.value_or(kBudget_ms));
+  playback.speed = options.speed;
+  playback.duration_s = options.duration_s;
+  playback.orbit_rate_deg_s = options.orbit_rate_deg_s;
+  playback.verify = options.verify;
+  if (options.rays != "auto") playback.controller.pattern = render::parsePattern(options.rays);
+  playback.controller.interpolation = render::parseInterpolation(options.interpolate);
+  playback.controller.budget_ms = options.budget_ms.value_or(1000 / playback.frames_per_s);
+  playback.controller.epsilon_ms = options.epsilon_ms;
+  return playback;
+}
+
+int playInRealTime(RenderOptions options, const GlobalOptions& global) {
+  const Look look = lookOf(options);
+  const PlaybackOptions playback_options = playbackOptionsOf(options);
+  const std::string device = chooseBackend(global);
+  if (!options.range.empty()) options.selection.range = parseRange(options.range);
+  const std::unique_ptr<FrameSource> source = openFrameSource(options.selection, global);
+  constexpr int kSeveral = 2;
+  const Sinks sinks = openSinks(options, look, *source, kSeveral, playback_options.frames_per_s);
+
+  // Long enough for the moments when packing lags behind.
+  constexpr long long kWaitingBytes = 256LL << 20;
+  BackgroundWriter writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * look.size.count()))));
+  int number = 0;
+  Display display;
+  if (!sinks.empty()) {
+    display = [&](const render::Image8& picture, int slots) {
+      writer.push([&sinks, picture, slots, n = ++number] {
+        for (const auto& sink : sinks) sink->add(n, picture, slots);
+      });
+    };
+  }
+  Playback playback(playback_options, look, *source, display);
+  const PlaybackReport report = playback.play([](const PlaybackEvent& event) { logInfo(lineOf(event)); });
+  writer.finish();
+  for (const auto& sink : sinks) sink->finish();
+  for (const std::string& warning : source->warnings()) logWarning(warning);
+
+  logInfo(summaryOf(report));
+  if (global.json) {
+    Json json{{"device", device},           {"size", {look.size.width, look.size.height}},
+              {"mode", options.mode},       {"rays", options.rays},
+              {"outputs", options.outputs}, {"budget_ms", playback_options.controller.budget_ms}};
+    json.update(toJson(report));
+    printJson(json);
+  }
+  if (report.unequal() > 0) {
+    throw Error(ErrorCode::check_failed,
+                fmt::format("{} of {} settled pictures differ from a full cast", report.unequal(),
+                            report.count(render::ControllerState::idle)));
+  }
+  return 0;
+}
+
+/// Options that only --realtime takes.
+void addPlaybackOptions(CLI::App& command, RenderOptions& options) {
+  CLI::Option* realtime = command.add_flag(
+      "--realtime", options.realtime,
+      "Play against the wall clock, without a window: interpolated while it changes, exact when it settles");
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    return command.add_option(name, value, help)->needs(realtime);
+  };
+  add("--speed", options.speed, "Scenario seconds in a second")->check(CLI::Range(1e-3, 1e3));
+  add("--duration", options.duration_s, "Seconds of playing; default: the whole series")
+      ->check(CLI::Range(0.0, 1e6));
+  add("--budget", options.budget_ms, "Milliseconds between two pictures; default: as --fps says, else 40")
+      ->check(CLI::Range(1.0, 1e5));
+  add("--epsilon", options.epsilon_ms,
+      "Milliseconds without a change before the picture is made exact; default: measured")
+      ->check(CLI::Range(0.0, 1e6));
+  add("--orbit-rate", options.orbit_rate_deg_s, "Degrees a second that the camera goes round")
+      ->check(CLI::Range(-360.0, 360.0));
+  command
+      .add_flag("--verify", options.verify,
+                "Compare each settled picture with a full cast; status 5 if one differs")
+      ->needs(realtime);
+}
+
 }  // namespace
 
 void addRender(CLI::App& app, const GlobalOptions& global, Action& action) {
@@ -136,16 +237,15 @@ Examples:
   emscape render scenarios/jacksboro.yaml -o now.png --times 30
   emscape render scenarios/jacksboro.yaml -o film.mp4 -o frames --times 0:120:0.5 --camera orbit:azimuth_deg=200
   emscape render out/jacksboro.pvd -o film.mp4 --scenario scenarios/jacksboro.yaml
-  emscape render engine_256x256x110_uint8.raw -o engine.png --mode mida)");
+  emscape render engine_256x256x110_uint8.raw -o engine.png --mode mida
+  emscape render scenarios/jacksboro.yaml --realtime --size 1200x900 --fps 25 --orbit-rate 10)");
   auto options = std::make_shared<RenderOptions>();
   command
       ->add_option("INPUT", options->selection.input,
                    "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes")
       ->required();
-  command
-      ->add_option("-o,--output", options->outputs,
-                   "NAME.png, NAME.mp4 or a folder for frames; may be given several times")
-      ->required();
+  command->add_option("-o,--output", options->outputs,
+                      "NAME.png, NAME.mp4 or a folder for frames; may be given several times");
   command->add_option("--size", options->size, "Picture size in pixels, WxH");
   command->add_option("--mode", options->mode, "How samples become a pixel")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
@@ -179,15 +279,20 @@ Examples:
       ->check(CLI::Range(0.0, 1.0));
   command->add_flag("--shading", options->shading, "Light on the fog of dvr and mida; iso always has it");
   command->add_option("--theme", options->theme, "Background")->check(CLI::IsMember({"dark", "light"}));
-  command->add_option("--fps", options->frames_per_s, "Frames a second of a video")
+  command
+      ->add_option("--fps", options->frames_per_s,
+                   "Frames a second of a video (default 10); with --realtime: at most so many are shown")
       ->check(CLI::Range(0.1, 240.0));
   command->add_flag("--exact", options->exact, "No early end of rays");
   command->add_option("--terrain", options->show_terrain, "Draw the ground: on or off");
   command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off");
   command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,
                     "Compute although elevation data is missing; the holes are drawn as such");
+  addPlaybackOptions(*command, *options);
   command->callback([options, &global, &action] {
-    action = [options, &global] { return renderPictures(*options, global); };
+    action = [options, &global] {
+      return options->realtime ? playInRealTime(*options, global) : renderPictures(*options, global);
+    };
   });
 }
 

@@ -1,0 +1,289 @@
+#include "apps/emscape/playback.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "apps/emscape/interrupt.h"
+#include "base/error.h"
+#include "base/stopwatch.h"
+
+namespace emscape::app {
+namespace {
+
+using render::ControllerAction;
+using render::ControllerState;
+using render::SceneEvent;
+using Milliseconds = std::chrono::duration<double, std::milli>;
+
+bool sameBits(const render::Image& a, const render::Image& b) {
+  return a.size == b.size &&
+         std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(render::Rgba)) == 0;
+}
+
+}  // namespace
+
+Playback::Playback(const PlaybackOptions& options, const Look& look, FrameSource& source, Display display)
+    : options_(options),
+      look_(look),
+      source_(source),
+      display_(std::move(display)),
+      controller_(options.controller),
+      painter_(look, source),
+      period_ms_(1000 / options.frames_per_s) {
+  if (options.orbit_rate_deg_s != 0 && look.camera.kind != render::CameraSpec::Kind::orbit) {
+    throw Error(ErrorCode::usage, "--orbit-rate: the camera must be an orbit");
+  }
+  report_.frames_per_s = options.frames_per_s;
+}
+
+Playback::~Playback() {
+  stop_ = true;
+}
+
+PlaybackReport Playback::play(const std::function<void(const PlaybackEvent&)>& done) {
+  done_ = done;
+  beginField(0);
+  pending_ = field_.take();
+  painter_.setFrame(pending_->frame);  // fits camera and colours, which is no part of playing
+  start_ = Clock::now();
+  raise(SceneEvent::field);
+  for (double now = 0; now < end_ms(); now = now_ms()) {
+    stopIfInterrupted();
+    takeField();
+    raiseEvents();
+    if (restoration_.done()) endRestoration();
+    act(controller_.next(now_ms()));
+  }
+  if (restoration_.active()) {
+    stop_ = true;
+    endRestoration();
+  }
+  report_.seconds = now_ms() / 1000;
+  report_.epsilon_ms = controller_.epsilon_ms();
+  PlaybackEvent none;
+  countSlots(slotAt(end_ms()) - 1, none);
+  passOn();
+  return std::move(report_);
+}
+
+double Playback::now_ms() const {
+  return Milliseconds(Clock::now() - start_ - stood_still_).count();
+}
+
+long long Playback::slotAt(double time_ms) const {
+  return static_cast<long long>(std::floor(time_ms / period_ms_));
+}
+
+double Playback::slotBegin_ms(long long slot) const {
+  return static_cast<double>(slot) * period_ms_;
+}
+
+int Playback::stepDueAt(long long slot) const {
+  const double time_s = source_.time_s(0) + slotBegin_ms(slot) / 1000 * options_.speed;
+  constexpr double kRounding_s = 1e-9;
+  int step = shown_step_;
+  while (step > 0 && source_.time_s(step) > time_s + kRounding_s) --step;
+  while (step + 1 < source_.count() && source_.time_s(step + 1) <= time_s + kRounding_s) ++step;
+  return step;
+}
+
+bool Playback::isDue(long long slot) const {
+  if (slot == 0 || options_.orbit_rate_deg_s != 0) return true;
+  const int step = stepDueAt(slot);
+  return step != stepDueAt(slot - 1) && unchanged_steps_.count(step) == 0;
+}
+
+double Playback::end_ms() const {
+  if (options_.duration_s) return *options_.duration_s * 1000;
+  const int last = source_.count() - 1;
+  const double length_s = source_.time_s(last) - source_.time_s(0);
+  const double step_s = last > 0 ? length_s / last : 1;
+  return (length_s + step_s) / options_.speed * 1000;
+}
+
+void Playback::waitUntil(double time_ms) {
+  const double until_ms = std::min({time_ms, slotBegin_ms(slotAt(now_ms()) + 1), end_ms()});
+  bell_.wait(start_ + stood_still_ + std::chrono::duration_cast<Clock::duration>(Milliseconds(until_ms)));
+}
+
+void Playback::beginField(int step) {
+  field_.start([this, step] {
+    Stopwatch watch;
+    NewField field;
+    field.step = step;
+    field.frame = source_.frame(step);
+    field.ms = watch.lap_ms();
+    return field;
+  });
+}
+
+/// The step that will be due when it is computed, but no other than a later one.
+void Playback::beginNextField() {
+  const int newest = pending_ ? pending_->step : shown_step_;
+  if (field_.active() || computed_ || newest + 1 >= source_.count()) return;
+  const double now = now_ms();
+  const long long slot = std::max(slotAt(now) + 1, slotAt(now + field_ms_));
+  const int step = std::max(newest + 1, stepDueAt(slot));
+  report_.field_steps_skipped += step - newest - 1;
+  beginField(step);
+}
+
+void Playback::takeField() {
+  if (!field_.done()) return;
+  computed_ = field_.take();
+  field_ms_ = computed_->ms;
+}
+
+void Playback::raise(SceneEvent event) {
+  const bool stops = controller_.state() == ControllerState::restore;
+  controller_.event(event, now_ms());
+  settled_ = false;
+  if (stops) event_ms_ = now_ms();
+}
+
+/// At most once in a slot: events between two frames could not be shown.
+void Playback::raiseEvents() {
+  const long long slot = slotAt(now_ms());
+  if (slot <= begun_slot_) return;
+  if (computed_ && computed_->step <= stepDueAt(slot)) {
+    pending_ = std::exchange(computed_, std::nullopt);
+    if (pending_->frame.changed) {
+      raise(SceneEvent::field);
+    } else {
+      unchanged_steps_.insert(pending_->step);
+    }
+  }
+  if (options_.orbit_rate_deg_s != 0 && slot > view_slot_) {
+    view_slot_ = slot;
+    raise(SceneEvent::view);
+  }
+}
+
+void Playback::act(const ControllerAction& action) {
+  switch (action.kind) {
+    case ControllerAction::Kind::draw:
+      drawFrame(action.plan);
+      break;
+    case ControllerAction::Kind::restore:
+      beginRestoration();
+      break;
+    case ControllerAction::Kind::stop_restore:
+      stop_ = true;
+      endRestoration();
+      break;
+    case ControllerAction::Kind::wait:
+      if (controller_.state() == ControllerState::idle) settle();
+      waitUntil(action.until_ms);
+      break;
+  }
+}
+
+void Playback::drawFrame(const render::FramePlan& plan) {
+  PlaybackEvent event;
+  const double begin_ms = now_ms();
+  const long long slot = slotAt(begin_ms);
+  begun_slot_ = slot;
+  if (event_ms_) event.abort_latency_ms = begin_ms - *std::exchange(event_ms_, std::nullopt);
+  if (pending_) {
+    painter_.setFrame(pending_->frame);
+    shown_step_ = pending_->step;
+    event.field_ms = pending_->ms;
+    ++report_.field_updates;
+    pending_.reset();
+  }
+  if (options_.orbit_rate_deg_s != 0) {
+    painter_.setAzimuth(look_.camera.azimuth_deg + options_.orbit_rate_deg_s * slotBegin_ms(slot) / 1000);
+  }
+  event.prepare_ms = now_ms() - begin_ms;
+  drawn_ = painter_.draw(plan);
+  beginNextField();  // beside what follows, and what the frame leaves of its slot
+  event.labels_ms = show();
+  event.rays = drawn_.rays;
+  event.cast_ms = drawn_.cast_ms;
+  event.interpolate_ms = drawn_.interpolate_ms;
+  event.restored = drawn_.pattern == render::Pattern::full;
+  if (told_pattern_ != drawn_.pattern) event.reason = controller_.reason();
+  told_pattern_ = drawn_.pattern;
+  countSlots(slot, event);
+  report(event);
+  controller_.frameDone({drawn_.total_ms(), event.prepare_ms + std::max(event.field_ms, event.labels_ms)});
+}
+
+void Playback::beginRestoration() {
+  stop_ = false;
+  restoration_.start([this] { return painter_.restore(&stop_); });
+}
+
+void Playback::endRestoration() {
+  const render::FrameReport restored = restoration_.take();
+  PlaybackEvent event;
+  event.state = ControllerState::restore;
+  event.rays = restored.rays;
+  event.cast_ms = restored.cast_ms;
+  event.restored = controller_.restoreDone(restored.complete);
+  if (event.restored) event.labels_ms = show();
+  report(event);
+}
+
+/// The picture is exact from now on.
+void Playback::settle() {
+  if (pending_) {  // the field is as it was, but not the time
+    painter_.setFrame(pending_->frame);
+    shown_step_ = pending_->step;
+    pending_.reset();
+    beginNextField();
+    show();
+  }
+  if (settled_) return;
+  settled_ = true;
+  PlaybackEvent event;
+  event.state = ControllerState::idle;
+  event.restored = true;
+  if (options_.verify) {
+    const Clock::time_point begin = Clock::now();
+    event.equals_full = sameBits(painter_.image(), painter_.fullCast());
+    stood_still_ += Clock::now() - begin;
+  }
+  report(event);
+}
+
+/// Counts slots up to this one, in which a frame was drawn: late if it came after the last that asked for it.
+void Playback::countSlots(long long slot, PlaybackEvent& event) {
+  for (long long s = accounted_slot_ + 1; s <= slot; ++s) {
+    if (!isDue(s)) continue;
+    ++report_.due;
+    event.late = now_ms() > slotBegin_ms(s + 1);
+  }
+  accounted_slot_ = std::max(accounted_slot_, slot);
+}
+
+/// Puts the picture on display. @return what that took (ms)
+double Playback::show() {
+  if (!display_) return 0;
+  Stopwatch watch;
+  passOn();
+  displayed_ = painter_.picture(
+      fmt::format("{} rays, {}", render::toString(drawn_.pattern), render::toString(controller_.state())));
+  displayed_since_ = slotAt(now_ms());
+  return watch.lap_ms();
+}
+
+void Playback::passOn() {
+  if (!displayed_) return;
+  const long long until = std::min(slotAt(now_ms()), slotAt(end_ms()));
+  display_(*displayed_, static_cast<int>(std::max(until - displayed_since_, 0LL)));
+  displayed_.reset();
+}
+
+void Playback::report(PlaybackEvent event) {
+  event.time_ms = now_ms();
+  event.scenario_s = source_.time_s(shown_step_);
+  event.pattern = drawn_.pattern;
+  done_(event);
+  report_.events.push_back(std::move(event));
+}
+
+}  // namespace emscape::app
