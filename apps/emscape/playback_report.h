@@ -17,7 +17,7 @@ struct PlaybackEvent {
   render::ControllerState state = render::ControllerState::busy;
   render::Pattern pattern = render::Pattern::full;  ///< of the busy frame
   long long rays = 0;
-  double field_ms = 0;  ///< 0: the field was not new
+  double field_ms = 0;    ///< 0: the field was not new
   double prepare_ms = 0;  ///< for the new field or view
   double cast_ms = 0;
   double interpolate_ms = 0;

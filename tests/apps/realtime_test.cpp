@@ -1,0 +1,206 @@
+// emscape render --realtime: the loop from the field to the settled picture. No test asserts speed: the
+// machine may be busy with others.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::Each;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::Not;
+
+const std::string& quick() {
+  static const std::string file = shippedScenario("quick.yaml");
+  return file;
+}
+
+/// Plays the quick scenario, small and with every settled picture verified; returns what it reports.
+json play(const Arguments& more, const std::string& input = quick(), const std::string& size = "97x75") {
+  Arguments arguments{"render", input, "--realtime", "--size", size, "--verify", "--json"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const ProgramResult result = run(arguments);
+  EXPECT_EQ(result.status, 0) << result.err;
+  return result.status == 0 ? json::parse(result.out) : json();
+}
+
+std::vector<std::string> all(const json& report, const char* key) {
+  std::vector<std::string> values;
+  for (const json& frame : report.at("frames")) values.push_back(frame.at(key));
+  return values;
+}
+
+void expectSettledPicturesAreExact(const json& report) {
+  EXPECT_EQ(report.at("settled"), report.at("settled_equal_full"));
+  for (const json& frame : report.at("frames")) {
+    EXPECT_EQ(frame.at("equals_full"), frame.at("state") == "IDLE" ? json(true) : json(nullptr)) << frame;
+  }
+}
+
+TEST(Realtime, GoesFromBusyToRestoreToIdleAtEveryStepAndSettlesExactly) {
+  for (const char* pattern : {"columns", "checkerboard", "quarter"}) {
+    const json report = play({"--rays", pattern, "--speed", "4", "--epsilon", "20"});
+    EXPECT_THAT(all(report, "state"), IsSupersetOf({"BUSY", "RESTORE", "IDLE"})) << pattern;
+    EXPECT_EQ(all(report, "state").front(), "BUSY");
+    EXPECT_THAT(all(report, "pattern"), Each(pattern));
+    EXPECT_GT(report.at("restores").at("done"), 0);
+    EXPECT_GT(report.at("settled"), 0);
+    expectSettledPicturesAreExact(report);
+  }
+}
+
+TEST(Realtime, ABusyFrameAndItsRestorationCastEveryPixelOnce) {
+  const json report = play({"--rays", "quarter", "--speed", "4", "--epsilon", "10"});
+  long long busy_rays = 0;
+  for (const json& frame : report.at("frames")) {
+    if (frame.at("state") == "BUSY") busy_rays = frame.at("rays");
+    if (frame.at("state") == "RESTORE" && frame.at("restored")) {
+      EXPECT_EQ(busy_rays, 49 * 38);
+      EXPECT_EQ(busy_rays + frame.at("rays").get<long long>(), 97 * 75);
+    }
+  }
+}
+
+TEST(Realtime, AFullFrameSettlesWithoutARestoration) {
+  const json report = play({"--rays", "full", "--speed", "4"});
+  EXPECT_THAT(all(report, "state"), Contains("IDLE"));
+  EXPECT_THAT(all(report, "state"), Not(Contains("RESTORE")));
+  expectSettledPicturesAreExact(report);
+}
+
+TEST(Realtime, AMovingCameraKeepsItBusy) {
+  const json report =
+      play({"--rays", "columns", "--orbit-rate", "30", "--duration", "1", "--epsilon", "1000"});
+  EXPECT_THAT(all(report, "state"), Each("BUSY"));
+  EXPECT_GT(report.at("busy_frames"), 1);
+  EXPECT_EQ(report.at("due"), 25);
+}
+
+TEST(Realtime, EventsDuringARestorationAbortItAndTheNextFrameBegins) {
+  // Slow rays, restorations that begin at once, and a camera that leaves them little time.
+  const json report = play({"--rays", "quarter", "--orbit-rate", "30", "--duration", "2", "--epsilon", "0",
+                            "--fps", "10", "--step", "0.05", "--exact"},
+                           quick(), "400x300");
+  const int aborted = report.at("restores").at("aborted");
+  int begun_after_abort = 0;
+  for (const json& frame : report.at("frames")) {
+    if (frame.at("abort_latency_ms").is_null()) continue;
+    ++begun_after_abort;
+    EXPECT_EQ(frame.at("state"), "BUSY");
+    EXPECT_LT(frame.at("abort_latency_ms"), 1000);
+  }
+  EXPECT_GE(begun_after_abort, aborted - 1);  // the last one may have been stopped by the end
+  EXPECT_LE(begun_after_abort, aborted);
+  expectSettledPicturesAreExact(report);
+}
+
+TEST(Realtime, StepsThatAreShownComeInOrderAndInTime) {
+  const json report = play({"--speed", "8"});
+  double scenario_s = 0;
+  for (const json& frame : report.at("frames")) {
+    EXPECT_GE(frame.at("scenario_s"), scenario_s);
+    scenario_s = frame.at("scenario_s");
+    EXPECT_LE(scenario_s, frame.at("time_s").get<double>() * 8 + 1e-6);
+  }
+  EXPECT_GT(scenario_s, 0);
+  EXPECT_EQ(report.at("due"), 5);
+}
+
+TEST(Realtime, TimesSayWhenTheFieldIsNew) {
+  const json report = play({"--times", "0:1:0.1", "--rays", "quarter"});
+  EXPECT_EQ(report.at("due"), 11);
+  EXPECT_EQ(report.at("field_updates").get<int>() + report.at("field_steps_skipped").get<int>(), 11);
+}
+
+TEST(Realtime, AScenarioInWhichNothingChangesIsDrawnOnce) {
+  const TemporaryFolder folder;
+  std::string text = readFile(quick());
+  const std::size_t scan = text.find("    scan:");
+  text.erase(scan, text.find('\n', scan) - scan + 1);
+  writeFile(folder / "still.yaml", text);
+  const json report = play({"--speed", "4", "--rays", "quarter"}, folder / "still.yaml");
+  EXPECT_EQ(report.at("busy_frames"), 1);
+  EXPECT_EQ(report.at("due"), 1);
+  EXPECT_EQ(report.at("settled"), 1);
+}
+
+TEST(Realtime, PlaysVolumesFromFiles) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--format", "vdb", "--times", "0:2:1"}).status, 0);
+  const json report = play({"--speed", "4", "--rays", "quarter"}, folder / "s");
+  EXPECT_EQ(report.at("due"), 3);
+  expectSettledPicturesAreExact(report);
+}
+
+TEST(Realtime, SaysEachFrameAndWhyItsPattern) {
+  const ProgramResult result =
+      run({"render", quick(), "--realtime", "--size", "64x48", "--rays", "columns", "--duration", "0.5"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("BUSY    columns"));
+  EXPECT_THAT(result.err, HasSubstr("(columns was asked for)"));
+  EXPECT_THAT(result.err, HasSubstr("a second asked"));
+  const ProgramResult quiet =
+      run({"render", quick(), "--realtime", "--size", "64x48", "--duration", "0.2", "--quiet"});
+  EXPECT_EQ(quiet.status, 0);
+  EXPECT_EQ(quiet.err, "");
+}
+
+TEST(Realtime, WritesThePicturesThatWereShown) {
+  const TemporaryFolder folder;
+  const json report = play({"-o", folder / "f", "--rays", "quarter", "--duration", "1", "--speed", "2"});
+  int pictures = 0;
+  for (const json& frame : report.at("frames")) {
+    if (frame.at("state") == "BUSY" || (frame.at("state") == "RESTORE" && frame.at("restored"))) ++pictures;
+  }
+  EXPECT_EQ(folder.files().size(), static_cast<std::size_t>(pictures));
+  EXPECT_THAT(folder.files(), Contains("f/quick_0001.png"));
+}
+
+TEST(Realtime, AVideoLastsAsLongAsThePlaying) {
+  if (std::system("command -v ffprobe >/dev/null") != 0) GTEST_SKIP() << "ffprobe is not installed";
+  const TemporaryFolder folder;
+  play({"-o", folder / "v.mp4", "--duration", "1", "--fps", "10"});
+  const std::string command =
+      "ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 " + (folder / "v.mp4") +
+      " >" + (folder / "count");
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(readFile(folder / "count").substr(0, 2), "10");
+}
+
+TEST(Realtime, CtrlCEndsIt) {
+  RunningProgram program({"render", quick(), "--realtime", "--size", "64x48", "--duration", "60"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  program.signal(SIGINT);
+  EXPECT_EQ(program.wait().status, 130);
+}
+
+TEST(Realtime, WrongUsageIsTold) {
+  const std::vector<std::pair<Arguments, std::string>> wrong{
+      {{"render", quick(), "--realtime", "--orbit-rate", "5", "--camera",
+        "lookat:eye_x_m=0,eye_y_m=-9000,eye_z_m=5000,target_x_m=0,target_y_m=0,target_z_m=0"},
+       "--orbit-rate"},
+      {{"render", quick(), "--realtime", "-o", "picture.png"}, "picture.png"},
+      {{"render", quick(), "--realtime", "--budget", "0"}, "--budget"},
+      {{"render", quick(), "-o", "x.png", "--orbit-rate", "5"}, "--realtime"},
+      {{"render", quick()}, "--output"},
+  };
+  for (const auto& [arguments, named] : wrong) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(named));
+  }
+}
+
+}  // namespace
+}  // namespace emscape::test
