@@ -24,26 +24,41 @@ struct ItmProfile {
 
 namespace itm_detail {
 
-/// Sums over the posts first..last: of the heights above `base_m`, and of the same times the post's distance
-/// from `center`, in posts.
+/// Sums run in four lanes, so that additions need not wait for each other.
+constexpr int kLanes = 4;
+
+/// Sum over the posts first..last of the heights above `base_m`.
+template <class Real, class Height>
+EMSCAPE_HD Real sumHeights(const Height* heights_m, int first, int last, Real base_m) {
+  Real sum[kLanes] = {};
+  int i = first;
+  for (; i + kLanes - 1 <= last; i += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) sum[lane] += Real(heights_m[i + lane]) - base_m;
+  }
+  for (; i <= last; ++i) sum[0] += Real(heights_m[i]) - base_m;
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+/// The same, and the sum of the heights times the post's distance from `center` (in posts).
 template <class Real>
 struct HeightSums {
-  Real plain = 0;
-  Real weighted = 0;
+  Real plain;
+  Real weighted;
 };
-
-/// In four lanes, so that additions need not wait for each other.
 template <class Real, class Height>
 EMSCAPE_HD HeightSums<Real> sumHeights(const Height* heights_m, int first, int last, Real base_m,
                                        Real center) {
-  Real plain[4] = {};
-  Real weighted[4] = {};
+  Real plain[kLanes] = {};
+  Real weighted[kLanes] = {};
+  Real from_center[kLanes];
+  for (int lane = 0; lane < kLanes; ++lane) from_center[lane] = Real(first + lane) - center;
   int i = first;
-  for (; i + 3 <= last; i += 4) {
-    for (int lane = 0; lane < 4; ++lane) {
+  for (; i + kLanes - 1 <= last; i += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
       const Real height_m = Real(heights_m[i + lane]) - base_m;
       plain[lane] += height_m;
-      weighted[lane] += height_m * (Real(i + lane) - center);
+      weighted[lane] += height_m * from_center[lane];
+      from_center[lane] += kLanes;
     }
   }
   for (; i <= last; ++i) {
@@ -85,11 +100,11 @@ EMSCAPE_HD FittedLine<Real> fitLine(const Height* heights_m, int intervals, doub
 
 template <class Height>
 EMSCAPE_HD bool hasEveryHeight(const ItmProfile<Height>& profile) {
-  bool every = true;
+  int missing = 0;
   for (int i = 0; i <= profile.intervals; ++i) {
-    every &= profile.heights_msl_m[i] - profile.heights_msl_m[i] == 0;  // false for NaN and infinity
+    missing |= !(profile.heights_msl_m[i] - profile.heights_msl_m[i] == 0);  // NaN and infinity
   }
-  return every;
+  return missing == 0;
 }
 
 /// Mean of the profile without the tenth at either end.
@@ -98,8 +113,7 @@ EMSCAPE_HD Real meanHeight_m(const ItmProfile<Height>& profile) {
   const int tenth = static_cast<int>(0.1 * profile.intervals);
   const Real base_m = profile.heights_msl_m[tenth];
   const int posts = profile.intervals - 2 * tenth + 1;
-  return base_m + sumHeights(profile.heights_msl_m, tenth, profile.intervals - tenth, base_m, Real(0)).plain /
-                      Real(posts);
+  return base_m + sumHeights(profile.heights_msl_m, tenth, profile.intervals - tenth, base_m) / Real(posts);
 }
 
 /// Distance of each terminal's horizon.
@@ -147,43 +161,71 @@ EMSCAPE_HD HorizonDistances findHorizons(const ItmProfile<Height>& profile, ItmP
   return horizons;
 }
 
-/// The value that stands at place `rank` (from 0) when the values are put in descending order. Reorders them.
-///
-/// Each round sorts the values into buckets and keeps the one in which the value lies: two or three passes
-/// over smooth data, whatever their order.
+/// The value at place `rank` (from 0) of the few values in ascending order. Reorders them.
 template <class Real>
 EMSCAPE_HD Real valueAtRank(Real* values, int count, int rank) {
-  constexpr int kBuckets = 64;
-  constexpr int kFew = 12;
-  while (count > kFew) {
-    Real least = values[0];
-    Real most = values[0];
-    for (int i = 1; i < count; ++i) {
-      least = values[i] < least ? values[i] : least;
-      most = values[i] > most ? values[i] : most;
-    }
-    if (!(most > least)) return most;
-    // the largest value falls into the last bucket, the smallest into the first: every round drops some
-    const Real scale = (kBuckets - 1) / (most - least);
-    short members[kBuckets] = {};
-    for (int i = 0; i < count; ++i) ++members[static_cast<int>((values[i] - least) * scale)];
-    int bucket = kBuckets - 1;
-    for (; rank >= members[bucket]; --bucket) rank -= members[bucket];
-    int kept = 0;
-    for (int i = 0; i < count; ++i) {
-      const Real value = values[i];
-      values[kept] = value;
-      kept += static_cast<int>((value - least) * scale) == bucket;
-    }
-    count = kept;
-  }
   for (int i = 1; i < count; ++i) {
     const Real value = values[i];
     int place = i;
-    for (; place > 0 && values[place - 1] < value; --place) values[place] = values[place - 1];
+    for (; place > 0 && values[place - 1] > value; --place) values[place] = values[place - 1];
     values[place] = value;
   }
   return values[rank];
+}
+
+/// Difference of the `tenth`-th largest and the `tenth`-th smallest of the values.
+///
+/// Values are counted in buckets, and only those of the two buckets in question sorted: two passes, whatever
+/// the values' order.
+/// @tparam kMost  largest count, <= 255
+template <int kMost, class Real>
+EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
+  constexpr int kBuckets = 128;
+  static_assert(kMost <= 255, "places and counts are bytes");
+  // in lanes, so that comparisons need not wait for each other
+  Real lane_least[kLanes] = {values[0], values[0], values[0], values[0]};
+  Real lane_most[kLanes] = {values[0], values[0], values[0], values[0]};
+  for (int i = 0; i < count; i += kLanes) {
+    const int first = i + kLanes <= count ? i : count - kLanes;
+    for (int lane = 0; lane < kLanes; ++lane) {
+      lane_least[lane] = smaller(lane_least[lane], values[first + lane]);
+      lane_most[lane] = larger(lane_most[lane], values[first + lane]);
+    }
+  }
+  const Real least = smaller(smaller(lane_least[0], lane_least[1]), smaller(lane_least[2], lane_least[3]));
+  const Real most = larger(larger(lane_most[0], lane_most[1]), larger(lane_most[2], lane_most[3]));
+  if (!(most > least)) return 0;
+
+  unsigned char bucket[kMost];
+  unsigned char members[kBuckets] = {};
+  unsigned char more_members[kBuckets] = {};  // counted in turn, so that equal buckets need not wait
+  const Real scale = (kBuckets - 1) / (most - least);
+  for (int i = 0; i < count; ++i)
+    bucket[i] = static_cast<unsigned char>(static_cast<int>((values[i] - least) * scale));
+  for (int i = 0; i + 1 < count; i += 2) {
+    ++members[bucket[i]];
+    ++more_members[bucket[i + 1]];
+  }
+  if (count % 2 == 1) ++members[bucket[count - 1]];
+  for (int i = 0; i < kBuckets; ++i) members[i] = static_cast<unsigned char>(members[i] + more_members[i]);
+  int low = 0;
+  int low_rank = tenth - 1;
+  for (; low_rank >= members[low]; ++low) low_rank -= members[low];
+  int high = kBuckets - 1;
+  int high_rank = tenth - 1;
+  for (; high_rank >= members[high]; --high) high_rank -= members[high];
+  high_rank = members[high] - 1 - high_rank;  // from below
+
+  Real low_values[kMost];
+  Real high_values[kMost];
+  int low_count = 0;
+  int high_count = 0;
+  for (int i = 0; i < count; ++i) {
+    if (bucket[i] != low && bucket[i] != high) continue;
+    if (bucket[i] == low) low_values[low_count++] = values[i];
+    if (bucket[i] == high) high_values[high_count++] = values[i];
+  }
+  return valueAtRank(high_values, high_count, high_rank) - valueAtRank(low_values, low_count, low_rank);
 }
 
 /// Delta h: interdecile range of the terrain's heights between two distances, above the line fitted to them,
@@ -199,22 +241,22 @@ EMSCAPE_HD Real irregularityBetween_m(const ItmProfile<Height>& profile, double 
   constexpr int kMostSamples = 10 * 25 - 5;
 
   Real above_m[kMostSamples];
-  const double spacing = (end - begin) / (samples - 1);
-  for (int i = 0; i < samples; ++i) {
-    const double at = begin + i * spacing;
-    int post = static_cast<int>(at);
+  // positions in posts, in fixed point: 32 bits for the fraction
+  constexpr double kOne = 4294967296.0;
+  const auto spacing = static_cast<long long>((end - begin) / (samples - 1) * kOne);
+  auto at = static_cast<long long>(begin * kOne);
+  for (int i = 0; i < samples; ++i, at += spacing) {
+    int post = static_cast<int>(at >> 32);
     if (post >= profile.intervals) post = profile.intervals - 1;
+    const Real fraction = Real(at - (static_cast<long long>(post) << 32)) * Real(1 / kOne);
     const Real here_m = profile.heights_msl_m[post];
-    above_m[i] = here_m + (Real(profile.heights_msl_m[post + 1]) - here_m) * Real(at - post);
+    above_m[i] = here_m + (Real(profile.heights_msl_m[post + 1]) - here_m) * fraction;
   }
   const FittedLine<Real> line = fitLine<Real>(above_m, samples - 1, 0, samples - 1);
   const Real slope_m = (line.at_end_m - line.at_start_m) / (samples - 1);
   for (int i = 0; i < samples; ++i) above_m[i] -= line.at_start_m + slope_m * i;
 
-  Real copy_m[kMostSamples];
-  for (int i = 0; i < samples; ++i) copy_m[i] = above_m[i];
-  const Real range_m =
-      valueAtRank(above_m, samples, tenth - 1) - valueAtRank(copy_m, samples, samples - tenth);
+  const Real range_m = interdecileRange<kMostSamples>(above_m, samples, tenth);
   return range_m / (1 - Real(0.8) * Real(std::exp(-(end_m - begin_m) / 50e3)));
 }
 

@@ -1,13 +1,17 @@
 // The frame of `emscape check`: tables of reference figures, and what it makes of a folder.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "emfield/check/reference_check.h"
 #include "emfield/check/reference_table.h"
+#include "emfield/models/itm.h"
 #include "emfield/models/model_limits.h"
 #include "tests/reference_dir.h"
 
@@ -177,6 +181,13 @@ TEST(ModelLimits, GiveTheMessageAndTheTable) {
   const ModelLimit* const limits[] = {&kFrequency};
   EXPECT_THAT(limitsTable(limits),
               EndsWith("| frequency | MHz | 20 | 20000 | refused | of the model's data |\n"));
+}
+
+/// docs/models.md, word for word.
+TEST(ModelLimits, StandInTheDocumentation) {
+  std::ifstream file(fs::path(EMSCAPE_SOURCE_DIR) / "docs" / "models.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_THAT(text, HasSubstr(limitsTable(kItmLimits)));
 }
 
 }  // namespace
