@@ -65,7 +65,7 @@ PlaybackReport Playback::play(const std::function<void(const PlaybackEvent&)>& d
   report_.epsilon_ms = controller_.epsilon_ms();
   PlaybackEvent none;
   countSlots(slotAt(end_ms()) - 1, none);
-  passOn();
+  if (display_) passOn(end_ms());
   return std::move(report_);
 }
 
@@ -264,18 +264,20 @@ void Playback::countSlots(long long slot, PlaybackEvent& event) {
 double Playback::show() {
   if (!display_) return 0;
   Stopwatch watch;
-  passOn();
-  displayed_ = painter_.picture(
+  render::Image8 picture = painter_.picture(
       fmt::format("{} rays, {}", render::toString(drawn_.pattern), render::toString(controller_.state())));
-  displayed_since_ = slotAt(now_ms());
+  const bool is_first = !displayed_;
+  passOn(now_ms());
+  displayed_ = std::move(picture);
+  if (is_first) displayed_since_ = 0;
   return watch.lap_ms();
 }
 
-void Playback::passOn() {
-  if (!displayed_) return;
-  const long long until = std::min(slotAt(now_ms()), slotAt(end_ms()));
-  display_(*displayed_, static_cast<int>(std::max(until - displayed_since_, 0LL)));
-  displayed_.reset();
+/// What was on display has been there until now.
+void Playback::passOn(double now_ms) {
+  const long long slot = slotAt(std::min(now_ms, end_ms()));
+  if (displayed_) display_(*displayed_, static_cast<int>(slot - displayed_since_));
+  displayed_since_ = slot;
 }
 
 void Playback::report(PlaybackEvent event) {

@@ -77,7 +77,7 @@ class Playback {
 
   void countSlots(long long slot, PlaybackEvent& event);
   double show();
-  void passOn();
+  void passOn(double now_ms);
   void report(PlaybackEvent event);
 
   const PlaybackOptions options_;
@@ -108,7 +108,7 @@ class Playback {
   bool settled_ = true;
 
   std::optional<render::Image8> displayed_;
-  long long displayed_since_ = 0;  // slot
+  long long displayed_since_ = 0;  // slot; the first picture stands for the time before it too
 
   StopFlag stop_{false};
   Bell bell_;

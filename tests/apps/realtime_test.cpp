@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -87,11 +88,25 @@ TEST(Realtime, AMovingCameraKeepsItBusy) {
 }
 
 TEST(Realtime, EventsDuringARestorationAbortItAndTheNextFrameBegins) {
-  // Slow rays, restorations that begin at once, and a camera that leaves them little time.
-  const json report = play({"--rays", "quarter", "--orbit-rate", "30", "--duration", "2", "--epsilon", "0",
-                            "--fps", "10", "--step", "0.05", "--exact"},
-                           quick(), "400x300");
+  // Slow rays, restorations that begin at once, and a camera that leaves them half of the time that they
+  // need.
+  const auto orbit = [](double frames_per_s) {
+    return play({"--rays", "quarter", "--orbit-rate", "30", "--duration", "2", "--epsilon", "0", "--fps",
+                 std::to_string(frames_per_s), "--step", "0.05", "--exact"},
+                quick(), "640x480");
+  };
+  std::vector<double> busy_ms;
+  const json unhurried = orbit(5);
+  for (const json& frame : unhurried.at("frames")) {
+    if (frame.at("state") == "BUSY") busy_ms.push_back(frame.at("cast_ms"));
+  }
+  ASSERT_FALSE(busy_ms.empty());
+  std::nth_element(busy_ms.begin(), busy_ms.begin() + static_cast<std::ptrdiff_t>(busy_ms.size() / 2),
+                   busy_ms.end());
+  const json report = orbit(std::clamp(1000 / (2 * busy_ms[busy_ms.size() / 2]), 0.5, 240.0));
+
   const int aborted = report.at("restores").at("aborted");
+  EXPECT_GT(aborted, 0);
   int begun_after_abort = 0;
   for (const json& frame : report.at("frames")) {
     if (frame.at("abort_latency_ms").is_null()) continue;
