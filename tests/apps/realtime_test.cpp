@@ -42,7 +42,9 @@ std::vector<std::string> all(const json& report, const char* key) {
 }
 
 void expectSettledPicturesAreExact(const json& report) {
-  EXPECT_EQ(report.at("settled"), report.at("settled_equal_full"));
+  if (report.at("settled") > 0) {
+    EXPECT_EQ(report.at("settled"), report.at("settled_equal_full"));
+  }
   for (const json& frame : report.at("frames")) {
     EXPECT_EQ(frame.at("equals_full"), frame.at("state") == "IDLE" ? json(true) : json(nullptr)) << frame;
   }
