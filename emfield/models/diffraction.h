@@ -36,8 +36,16 @@ constexpr ModelLimit kDiffractionDistance{"distance",
                                           1000,
                                           Beyond::warned,
                                           "far beyond the horizon scattering in the troposphere is stronger"};
+constexpr ModelLimit kDiffractionAboveGround{
+    "antenna height above ground",
+    "m",
+    1,
+    1,
+    100000,
+    Beyond::clamped,
+    "as in P.1812: the loss of a smooth earth has no bound at the ground itself"};
 constexpr const ModelLimit* kDiffractionLimits[] = {&kDiffractionFrequency, &kDiffractionHeight,
-                                                    &kDiffractionDistance};
+                                                    &kDiffractionAboveGround, &kDiffractionDistance};
 
 /// What a path's loss depends on besides terrain and antennas.
 struct DiffractionParameters {
@@ -65,6 +73,12 @@ struct Diffraction {
   SphericalEarth<Real> earth;
   Real half_curvature;  ///< 1 / (2 a): the earth's bulge is this times d1 d2
 
+  /// Height of an antenna, no lower above its ground than kDiffractionAboveGround.
+  static EMSCAPE_HD Real raised_m(Real antenna_m, Real ground_m) {
+    const Real lowest = ground_m + Real(kDiffractionAboveGround.least);
+    return antenna_m > lowest ? antenna_m : lowest;
+  }
+
   /// nu of an obstacle that stands `above_m` over the line of sight, P.526 eq. (26) in metres.
   EMSCAPE_HD Real nuOf(Real above_m, Real d1_m, Real d2_m) const {
     return above_m * std::sqrt(2 * (d1_m + d2_m) / (earth.wavelength_m * d1_m * d2_m));
@@ -87,6 +101,7 @@ Diffraction<Real> diffractionModel(const DiffractionParameters& parameters) {
 template <class Real>
 EMSCAPE_HD Real bullingtonLossDb(Real nu, Real distance_m) {
   const Real edge_db = knifeEdgeDb(nu);
+  if (edge_db == 0) return 0;
   return edge_db + (1 - std::exp(-edge_db / 6)) * (10 + Real(2e-5) * distance_m);
 }
 
@@ -116,7 +131,7 @@ struct TerrainTrend {
   Real tx_ground_msl_m, rx_ground_msl_m;
 };
 
-/// Heights of the antennas above the smooth surface (m), >= 0.
+/// Heights of the antennas above the smooth surface (m).
 template <class Real>
 struct EffectiveHeights {
   Real tx_m, rx_m;
@@ -199,7 +214,7 @@ EMSCAPE_HD Real bullingtonNu(const Diffraction<Real>& model, const double* range
 }
 
 /// Loss of one path, from a profile whose last post lies below the receiver.
-/// @param tx_msl_m, rx_msl_m  of the antennas; one below its ground counts as on it
+/// @param tx_msl_m, rx_msl_m  of the antennas; see kDiffractionAboveGround
 /// @return all NaN for a path of no length and over missing terrain (NaN)
 /// @accuracy float within 0.02 dB of double to 500 km, 20 MHz to 40 GHz
 template <class Real>
@@ -215,8 +230,8 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const Diffraction<Real>& model,
   TerrainTrend<Real> trend;
   trend.tx_ground_msl_m = 0;
   trend.rx_ground_msl_m = Real(profile.height_msl_m[last]) - base;
-  const Real tx = tx_msl_m > base ? tx_msl_m - base : Real(0);
-  const Real rx = rx_msl_m - base > trend.rx_ground_msl_m ? rx_msl_m - base : trend.rx_ground_msl_m;
+  const Real tx = model.raised_m(tx_msl_m - base, 0);
+  const Real rx = model.raised_m(rx_msl_m - base, trend.rx_ground_msl_m);
   const auto heightOf = [&](int i) { return Real(profile.height_msl_m[i]) - base; };
 
   TerrainSums sums;

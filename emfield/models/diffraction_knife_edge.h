@@ -8,6 +8,10 @@
 
 namespace emscape::emfield {
 
+/// 20 / ln(10).
+template <class Real>
+constexpr Real kDbPerNeper = Real(8.685889638065037);
+
 /// Below this nu the approximation is 0.
 template <class Real>
 constexpr Real kKnifeEdgeClear = Real(-0.78);
@@ -25,7 +29,7 @@ EMSCAPE_HD Real knifeEdgeDb(Real nu) {
   const Real root = std::sqrt(above * above + 1);
   // root + above would cancel for above < 0
   const Real sum = above >= 0 ? root + above : 1 / (root - above);
-  return Real(6.9) + 20 * std::log10(sum);
+  return Real(6.9) + kDbPerNeper<Real> * std::log(sum);
 }
 
 /// Auxiliary functions of the Fresnel integrals for x >= 1: C = 1/2 + f sin - g cos, S = 1/2 - f cos - g sin
