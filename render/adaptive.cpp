@@ -1,0 +1,317 @@
+#include "render/adaptive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/parallel.h"
+#include "base/simd.h"
+#include "render/adaptive_predict.h"
+
+namespace emscape::render {
+namespace {
+
+constexpr int kLatticeStep = 4;
+/// Pixels that a pass looks at, along a tile's side: 16 of them make one packet of rays.
+constexpr int kTile = 4;
+/// Rows of tiles for one thread at a time.
+constexpr int kTileRowGrain = 4;
+
+Pixel pixelAt(int x, int y) {
+  return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
+}
+
+/// The midpoints of one pass: the centres of cells, or the middles of their sides.
+struct Pass {
+  int reach;  ///< distance of the nearest known pixels, along either axis
+  bool diagonal;
+  double tolerance;  ///< part of the frame's
+
+  int firstY() const { return diagonal ? reach : 0; }
+  int stepY() const { return diagonal ? 2 * reach : reach; }
+  int stepX() const { return 2 * reach; }
+  int firstX(int y) const { return diagonal || y / reach % 2 == 0 ? reach : 0; }
+};
+constexpr Pass kPasses[] = {{2, true, 0.35}, {2, false, 0.5}, {1, true, 0.7}, {1, false, 1.0}};
+
+// --- A pixel as a vector ---
+
+using Lanes = float __attribute__((vector_size(16)));
+
+struct PixelLanes {
+  Lanes lanes;
+};
+inline PixelLanes operator+(const PixelLanes& p, const PixelLanes& q) {
+  return {p.lanes + q.lanes};
+}
+inline PixelLanes operator-(const PixelLanes& p, const PixelLanes& q) {
+  return {p.lanes - q.lanes};
+}
+inline PixelLanes operator*(const PixelLanes& p, float s) {
+  return {p.lanes * s};
+}
+inline PixelLanes lesser(const PixelLanes& p, const PixelLanes& q) {
+  return {p.lanes < q.lanes ? p.lanes : q.lanes};
+}
+inline PixelLanes greater(const PixelLanes& p, const PixelLanes& q) {
+  return {p.lanes > q.lanes ? p.lanes : q.lanes};
+}
+inline float largestChannel(const PixelLanes& p) {
+  using Order = int __attribute__((vector_size(16)));
+  const PixelLanes pairs = greater(p, {__builtin_shuffle(p.lanes, Order{2, 3, 2, 3})});
+  return std::max(pairs.lanes[0], pairs.lanes[1]);
+}
+
+}  // namespace
+
+template <>
+inline PixelLanes uniform<PixelLanes>(float value) {
+  return {Lanes{value, value, value, value}};
+}
+
+namespace {
+
+/// 1 for an error of less than 1/64 level, one more for every doubling.
+std::uint8_t classOf(float error_levels) {
+  constexpr int kSmallestExponent = 127 - 6;
+  std::int32_t bits = 0;
+  static_assert(sizeof bits == sizeof error_levels, "float has 32 bits");
+  std::memcpy(&bits, &error_levels, sizeof bits);
+  return static_cast<std::uint8_t>(
+      std::clamp((bits >> 23) - kSmallestExponent + 2, 1, AdaptiveFrame::kErrorClasses - 1));
+}
+
+/// The picture as midpoints see it.
+struct KnownPixels {
+  Rgba* pixels = nullptr;
+  ImageSize size;
+
+  bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < size.width && y < size.height; }
+  Rgba* address(int x, int y) const { return pixels + static_cast<std::ptrdiff_t>(y) * size.width + x; }
+  static PixelLanes load(const Rgba* pixel) {
+    PixelLanes color;
+    std::memcpy(&color, pixel, sizeof color);
+    return color;
+  }
+  static void store(const PixelLanes& color, Rgba* pixel) {
+    std::memcpy(static_cast<void*>(pixel), &color, sizeof color);
+  }
+
+  /// Along the direction in which the next known pixels lie `step` further in memory.
+  static Along<PixelLanes> along(const Rgba* middle, std::ptrdiff_t step) {
+    return predictAlong(load(middle - step), load(middle + step), load(middle - 3 * step),
+                        load(middle + 3 * step));
+  }
+};
+
+/// Along the direction (dx, dy) from a midpoint near the picture's edge. What lies beyond the edge follows
+/// from the curvature on the other side.
+Along<PixelLanes> alongAtEdge(const KnownPixels& known, int x, int y, int dx, int dy) {
+  const auto at = [&](int steps) { return KnownPixels::load(known.address(x + steps * dx, y + steps * dy)); };
+  const bool has_low = known.contains(x - 3 * dx, y - 3 * dy);
+  const bool has_high = known.contains(x + 3 * dx, y + 3 * dy);
+  const PixelLanes a = at(-1);
+  const PixelLanes b = at(1);
+  if (!has_low && !has_high) return predictAlong(a, b);
+  const PixelLanes low = has_low ? at(-3) : at(3) + (a - b) * 3;
+  const PixelLanes high = has_high ? at(3) : low + (b - a) * 3;
+  return predictAlong(a, b, low, high);
+}
+
+/// @return false: no direction has a pixel at either end
+bool predictAtEdge(const KnownPixels& known, const Pass& pass, int x, int y,
+                   Prediction<PixelLanes>& prediction) {
+  Along<PixelLanes> found[2];
+  int count = 0;
+  const int r = pass.reach;
+  for (const auto& [dx, dy] : {std::pair<int, int>{r, pass.diagonal ? r : 0}, {pass.diagonal ? -r : 0, r}}) {
+    if (known.contains(x - dx, y - dy) && known.contains(x + dx, y + dy)) {
+      found[count++] = alongAtEdge(known, x, y, dx, dy);
+    }
+  }
+  if (count > 0) prediction = count == 2 ? predict(found[0], found[1]) : predict(found[0]);
+  return count > 0;
+}
+
+/// What one pass works on.
+struct PassTask {
+  Pass pass;
+  KnownPixels known;
+  const Silhouette& inside;
+  float tolerance_levels;
+  std::uint8_t* classes;
+};
+
+/// One row of a tile: midpoints first_x, first_x + pass.stepX(), ... below end_x.
+inline void predictRow(const PassTask& task, int first_x, int end_x, int y, std::vector<Pixel>& queue) {
+  const int reach = task.pass.reach;
+  const std::ptrdiff_t width = task.known.size.width;
+  const std::ptrdiff_t step_p = task.pass.diagonal ? reach * (width + 1) : reach;
+  const std::ptrdiff_t step_q = task.pass.diagonal ? reach * (width - 1) : reach * width;
+  const bool rows_known = y >= 3 * reach && y + 3 * reach < task.known.size.height;
+  for (int x = first_x; x < end_x; x += task.pass.stepX()) {
+    Rgba* pixel = task.known.address(x, y);
+    Prediction<PixelLanes> prediction;
+    bool predicted = true;
+    if (rows_known && x >= 3 * reach && x + 3 * reach < task.known.size.width) {
+      prediction = predict(KnownPixels::along(pixel, step_p), KnownPixels::along(pixel, step_q));
+    } else {
+      predicted = predictAtEdge(task.known, task.pass, x, y, prediction);
+    }
+    std::uint8_t& error_class = task.classes[pixel - task.known.pixels];
+    if (predicted && prediction.error_levels <= task.tolerance_levels) {
+      KnownPixels::store(prediction.color, pixel);
+      error_class = classOf(prediction.error_levels);
+    } else {
+      error_class = 0;
+      queue.push_back(pixelAt(x, y));
+    }
+  }
+}
+
+/// A row of tiles of a pass, one tile after the other.
+EMSCAPE_SIMD_CLONES void predictTiles(const PassTask& task, int first_y, std::vector<Pixel>& queue) {
+  const int step_x = task.pass.stepX();
+  const int step_y = task.pass.stepY();
+  const int end_y = std::min(first_y + kTile * step_y, task.known.size.height);
+  int begin = task.known.size.width;
+  int end = 0;
+  for (int y = first_y; y < end_y; y += step_y) {
+    const Span& row = task.inside.rows[static_cast<std::size_t>(y)];
+    if (row.end <= row.begin) continue;
+    begin = std::min(begin, row.begin);
+    end = std::max(end, row.end);
+  }
+  for (int tile_x = begin / (kTile * step_x) * (kTile * step_x); tile_x < end; tile_x += kTile * step_x) {
+    for (int y = first_y; y < end_y; y += step_y) {
+      const Span& row = task.inside.rows[static_cast<std::size_t>(y)];
+      const int offset = tile_x + task.pass.firstX(y);
+      const int before = std::max(0, row.begin - offset);
+      predictRow(task, offset + (before + step_x - 1) / step_x * step_x,
+                 std::min(tile_x + kTile * step_x, row.end), y, queue);
+    }
+  }
+}
+
+/// A row of tiles of the lattice.
+void queueLattice(ImageSize size, const Silhouette& inside, int first_y, std::vector<Pixel>& queue) {
+  constexpr int kSide = kTile * kLatticeStep;
+  for (int tile_x = 0; tile_x < size.width; tile_x += kSide) {
+    const int end_x = std::min(tile_x + kSide, size.width);
+    for (int y = first_y; y < std::min(first_y + kSide, size.height); y += kLatticeStep) {
+      for (int x = tile_x; x < end_x; x += kLatticeStep) {
+        if (inside.rows[static_cast<std::size_t>(y)].contains(x)) queue.push_back(pixelAt(x, y));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+double nextTolerance_levels(double tolerance_levels, double cost, double budget) {
+  // Rays become fewer about with the square root of the tolerance; less than the square is damped.
+  constexpr double kResponse = 1.5;
+  const double factor = std::clamp(std::pow(cost / budget, kResponse), 0.5, 2.0);
+  return std::clamp(tolerance_levels * factor, kLeastTolerance_levels, kLargestTolerance_levels);
+}
+
+long long AdaptiveFrame::draw(Image& image, const Silhouette& inside, double tolerance_levels,
+                              const Caster& cast) {
+  size_ = image.size;
+  classes_.resize(image.pixels.size());
+  clear(image, inside);
+  long long rays = 0;
+  const auto castQueued = [&] {
+    joinQueues();
+    rays += static_cast<long long>(queue_.size());
+    return queue_.empty() || cast(queue_);
+  };
+  queueRows(kTile * kLatticeStep,
+            [&](int first_y, std::vector<Pixel>& queue) { queueLattice(size_, inside, first_y, queue); });
+  if (!castQueued()) return -1;
+  for (const Pass& pass : kPasses) {
+    const PassTask task{pass,
+                        {image.pixels.data(), size_},
+                        inside,
+                        static_cast<float>(tolerance_levels * pass.tolerance),
+                        classes_.data()};
+    queueRows(kTile * pass.stepY(), [&](int first_y, std::vector<Pixel>& queue) {
+      predictTiles(task, first_y + pass.firstY(), queue);
+    });
+    if (!castQueued()) return -1;
+  }
+  return rays;
+}
+
+const std::vector<Pixel>& AdaptiveFrame::missing() {
+  const int rows = (size_.height + kTile - 1) / kTile;
+  const auto forEachMissing = [this](int tile_row, const auto& visit) {
+    const int end_y = std::min((tile_row + 1) * kTile, size_.height);
+    for (int tile_x = 0; tile_x < size_.width; tile_x += kTile) {
+      const int end_x = std::min(tile_x + kTile, size_.width);
+      for (int y = tile_row * kTile; y < end_y; ++y) {
+        const std::uint8_t* classes = &classes_[static_cast<std::size_t>(y) * size_.width];
+        for (int x = tile_x; x < end_x; ++x) {
+          if (classes[x] != 0) visit(x, y, classes[x]);
+        }
+      }
+    }
+  };
+  // A counting sort: how many there are of each class in each row of tiles, then where each begins.
+  places_.assign(static_cast<std::size_t>(rows), {});
+  parallelFor(rows, kTileRowGrain, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      auto& counts = places_[static_cast<std::size_t>(row)];
+      forEachMissing(row,
+                     [&](int, int, int error_class) { ++counts[static_cast<std::size_t>(error_class)]; });
+    }
+  });
+  std::uint32_t total = 0;
+  for (std::size_t error_class = kErrorClasses - 1; error_class > 0; --error_class) {
+    for (auto& places : places_) {
+      const std::uint32_t count = places[error_class];
+      places[error_class] = total;
+      total += count;
+    }
+  }
+  missing_.resize(total);
+  parallelFor(rows, kTileRowGrain, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      auto& places = places_[static_cast<std::size_t>(row)];
+      forEachMissing(row, [&](int x, int y, int error_class) {
+        missing_[places[static_cast<std::size_t>(error_class)]++] = pixelAt(x, y);
+      });
+    }
+  });
+  return missing_;
+}
+
+void AdaptiveFrame::clear(Image& image, const Silhouette& inside) {
+  constexpr int kRowGrain = 32;
+  parallelFor(size_.height, kRowGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const Span& row = inside.rows[static_cast<std::size_t>(y)];
+      Rgba* pixels = image.pixels.data() + static_cast<std::size_t>(y) * size_.width;
+      std::fill(pixels, pixels + row.begin, Rgba{});
+      std::fill(pixels + row.end, pixels + size_.width, Rgba{});
+      std::uint8_t* classes = classes_.data() + static_cast<std::size_t>(y) * size_.width;
+      std::fill(classes, classes + size_.width, std::uint8_t{0});
+    }
+  });
+}
+
+void AdaptiveFrame::queueRows(int tile_height, const RowQueuer& row) {
+  const int rows = (size_.height + tile_height - 1) / tile_height;
+  if (queues_.size() < static_cast<std::size_t>(rows)) queues_.resize(static_cast<std::size_t>(rows));
+  for (std::vector<Pixel>& queue : queues_) queue.clear();
+  parallelFor(rows, kTileRowGrain, [&](int begin, int end) {
+    for (int r = begin; r < end; ++r) row(r * tile_height, queues_[static_cast<std::size_t>(r)]);
+  });
+}
+
+void AdaptiveFrame::joinQueues() {
+  queue_.clear();
+  for (const std::vector<Pixel>& queue : queues_) queue_.insert(queue_.end(), queue.begin(), queue.end());
+}
+
+}  // namespace emscape::render

@@ -1,0 +1,111 @@
+/// Predicting a pixel from the known ones around it, and by how much the prediction may be wrong: single
+/// source for host and device over plain data.
+///
+/// A midpoint lies half-way between two known pixels along each of two directions. Along a direction the four
+/// nearest known pixels give a cubic prediction, (9 (a + b) - (c + d)) / 16, that may leave the linear one,
+/// (a + b) / 2, by no more than a quarter of the step between a and b: edges do not ring. The direction along
+/// which the picture changes less counts more.
+///
+/// Color is Rgba, or a vector of the four channels that has the operators and the functions below.
+#pragma once
+
+#include "base/host_device.h"
+#include "render/image.h"
+
+namespace emscape::render {
+
+/// A level of 255 in units of a colour's components, and the other way round.
+constexpr float kLevel = 1.0F / 255;
+constexpr float kLevels = 255;
+
+// --- What a Color needs besides +, - and a product with a float ---
+
+EMSCAPE_HD inline float lesser(float a, float b) {
+  return a < b ? a : b;
+}
+EMSCAPE_HD inline float greater(float a, float b) {
+  return a > b ? a : b;
+}
+EMSCAPE_HD inline Rgba operator-(const Rgba& p, const Rgba& q) {
+  return {p.r - q.r, p.g - q.g, p.b - q.b, p.a - q.a};
+}
+EMSCAPE_HD inline Rgba lesser(const Rgba& p, const Rgba& q) {
+  return {lesser(p.r, q.r), lesser(p.g, q.g), lesser(p.b, q.b), lesser(p.a, q.a)};
+}
+EMSCAPE_HD inline Rgba greater(const Rgba& p, const Rgba& q) {
+  return {greater(p.r, q.r), greater(p.g, q.g), greater(p.b, q.b), greater(p.a, q.a)};
+}
+EMSCAPE_HD inline float largestChannel(const Rgba& p) {
+  return greater(greater(p.r, p.g), greater(p.b, p.a));
+}
+/// A colour of equal components.
+template <class Color>
+EMSCAPE_HD Color uniform(float value);
+template <>
+EMSCAPE_HD inline Rgba uniform<Rgba>(float value) {
+  return {value, value, value, value};
+}
+
+// --- Predictions ---
+
+/// A prediction along one direction; sizes are those of the largest channel.
+template <class Color>
+struct Along {
+  Color color;
+  float step = 0;  ///< |a - b|
+  float bend = 0;  ///< |cubic - linear| before it is limited
+};
+
+/// From the two nearest pixels of a direction, and the next two beyond them.
+template <class Color>
+EMSCAPE_HD Along<Color> predictAlong(const Color& a, const Color& b, const Color& beyond_a,
+                                     const Color& beyond_b) {
+  const Color zero = uniform<Color>(0);
+  const Color sum = a + b;
+  const Color difference = a - b;
+  const Color step = greater(difference, zero - difference);
+  const Color bend = (sum - (beyond_a + beyond_b)) * (1.0F / 16);
+  const Color limit = step * 0.25F + uniform<Color>(0.5F * kLevel);
+  const Color limited = greater(lesser(bend, limit), zero - limit);
+  return {greater(sum * 0.5F + limited, zero), largestChannel(step),
+          largestChannel(greater(bend, zero - bend))};
+}
+/// From the two nearest alone.
+template <class Color>
+EMSCAPE_HD Along<Color> predictAlong(const Color& a, const Color& b) {
+  const Color difference = a - b;
+  return {(a + b) * 0.5F, largestChannel(greater(difference, uniform<Color>(0) - difference)), 0.0F};
+}
+
+/// A pixel as it is predicted, and an estimate of its error in levels: what the tolerance is held against.
+template <class Color>
+struct Prediction {
+  Color color;
+  float error_levels = 0;
+};
+
+/// Steps beyond this say that an edge may pass, however well the predictions agree.
+constexpr float kSteep = 8 * kLevel;
+
+EMSCAPE_HD inline float steepness(float step) {
+  return 0.5F * greater(step - kSteep, 0.0F);
+}
+
+/// From both directions: their disagreement, half the bend of the straighter one, and the steepness of the
+/// calmer one.
+template <class Color>
+EMSCAPE_HD Prediction<Color> predict(const Along<Color>& p, const Along<Color>& q) {
+  constexpr float kNoise = 0.5F * kLevel;
+  const Color apart = p.color - q.color;
+  const float share = (q.step + kNoise) / (p.step + q.step + 2 * kNoise);
+  const float disagreement = largestChannel(greater(apart, uniform<Color>(0) - apart));
+  return {q.color + apart * share,
+          (disagreement + 0.5F * lesser(p.bend, q.bend) + steepness(lesser(p.step, q.step))) * kLevels};
+}
+/// From one direction, at the picture's edge: half its step stands for the disagreement.
+template <class Color>
+EMSCAPE_HD Prediction<Color> predict(const Along<Color>& p) {
+  return {p.color, (0.5F * p.step + 0.5F * p.bend + steepness(p.step)) * kLevels};
+}
+
+}  // namespace emscape::render
