@@ -105,21 +105,18 @@ EMSCAPE_HD Real bullingtonLossDb(Real nu, Real distance_m) {
   return edge_db + (1 - std::exp(-edge_db / 6)) * (10 + Real(2e-5) * distance_m);
 }
 
-/// nu of the edge where the steepest rays meet.
+/// nu of the edge where the steepest rays meet. With the rays' slopes t and r over the line of sight the edge
+/// stands at d r / (t + r), and as high as t times that: nu = sqrt(2 d t r / lambda).
 /// @param slope_to_rx  (h_rs - h_ts) / d
-/// @param tx_slope     largest slope from the transmitter to an obstacle, above slope_to_rx
-/// @param rx_slope     the same from the receiver
+/// @param tx_slope     largest slope from the transmitter to an obstacle, >= slope_to_rx
+/// @param rx_slope     the same from the receiver, >= -slope_to_rx
 /// @see P.526-15 eq. (54), (55)
 template <class Real>
 EMSCAPE_HD Real bullingtonEdgeNu(const Diffraction<Real>& model, Real distance_m, Real slope_to_rx,
                                  Real tx_slope, Real rx_slope) {
-  // h_ts + tx_slope x = h_rs + rx_slope (d - x)
-  const Real above_tx = tx_slope - slope_to_rx, above_rx = rx_slope + slope_to_rx;
-  Real x = distance_m * above_rx / (above_tx + above_rx);
-  // Both rays rise over the line of sight. In single precision the second one's surplus may come out as 0.
-  const Real edge = distance_m * Real(1e-6);
-  x = x > edge ? (x < distance_m - edge ? x : distance_m - edge) : edge;
-  return model.nuOf(above_tx * x, x, distance_m - x);
+  const Real product = (tx_slope - slope_to_rx) * (rx_slope + slope_to_rx);
+  // Rounding may put the second factor below 0 where both are next to nothing.
+  return std::sqrt(2 * distance_m / model.earth.wavelength_m * (product > 0 ? product : Real(0)));
 }
 
 /// What the terrain does to the smooth surface under it.
