@@ -27,7 +27,13 @@ DatasetCheck checkItmPointToPoint(const std::filesystem::path& folder);
 DatasetCheck checkItmPublished(const std::filesystem::path& folder);
 DatasetCheck checkItmArea(const std::filesystem::path& folder);
 
+// check_p528.cpp
+DatasetCheck checkP528(const std::filesystem::path& folder);
+
 // check_geoid.cpp
 DatasetCheck checkGeoid(const std::filesystem::path& folder);
+
+// check_two_ray.cpp
+DatasetCheck checkTwoRay(const std::filesystem::path& file);
 
 }  // namespace emscape::emfield

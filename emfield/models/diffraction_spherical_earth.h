@@ -91,6 +91,27 @@ struct SphericalEarth {
 template <class Real>
 constexpr Real kRequiredClearance = Real(0.5520071);
 
+/// Range (m) from the lower of two antennas to where a smooth earth reflects a ray to the higher.
+///
+/// P.526 gives the point by b, which solves m b^3 - (m + 1) b + c = 0, through an arc cosine. Here 1 - b is
+/// found from the lower antenna's side, by Newton's method from the quadratic that small ones solve: it keeps
+/// its digits there, also in single precision, and takes half the time.
+/// @param low_m, high_m  heights, 0 < low_m <= high_m, within their common horizon
+/// @see P.526-15 eq. (25)
+template <class Real>
+EMSCAPE_HD Real reflectionFromLower_m(Real distance_m, Real low_m, Real high_m, Real earth_radius_m) {
+  const Real sum = low_m + high_m;
+  const Real m = distance_m * distance_m / (4 * earth_radius_m * sum);
+  const Real rest = 2 * low_m / sum;  // 1 - c
+  const Real linear = 1 - 2 * m;
+  Real u = 2 * rest / (linear + std::sqrt(linear * linear + 12 * m * rest));  // 1 - b
+  for (int i = 0; i < 4; ++i) {
+    const Real value = u * (linear + m * u * (3 - u)) - rest;
+    u -= value / (linear + 3 * m * u * (2 - u));
+  }
+  return distance_m * u / 2;
+}
+
 /// The clearance of a line of sight over a smooth earth where a ray would be reflected.
 template <class Real>
 struct LeastClearance {
@@ -98,26 +119,15 @@ struct LeastClearance {
   Real required_m;  ///< to be free of loss
 };
 
-/// P.526 gives the point by b, which solves m b^3 - (m + 1) b + c = 0, through an arc cosine. Here 1 - b is
-/// found from the lower antenna's side, by Newton's method from the quadratic that small ones solve: it keeps
-/// its digits there, also in single precision, and takes half the time.
 /// @param height1_m, height2_m  > 0, within their common horizon
-/// @see P.526-15 eq. (25) to (27)
+/// @see P.526-15 eq. (24), (27)
 template <class Real>
 EMSCAPE_HD LeastClearance<Real> leastClearance(const SphericalEarth<Real>& earth, Real distance_m,
                                                Real height1_m, Real height2_m) {
   const Real low = height1_m < height2_m ? height1_m : height2_m;
   const Real high = height1_m < height2_m ? height2_m : height1_m;
-  const Real sum = low + high;
-  const Real m = distance_m * distance_m / (4 * earth.earth_radius_m * sum);
-  const Real rest = 2 * low / sum;  // 1 - c
-  const Real linear = 1 - 2 * m;
-  Real u = 2 * rest / (linear + std::sqrt(linear * linear + 12 * m * rest));  // 1 - b
-  for (int i = 0; i < 4; ++i) {
-    const Real value = u * (linear + m * u * (3 - u)) - rest;
-    u -= value / (linear + 3 * m * u * (2 - u));
-  }
-  const Real d_low = distance_m * u / 2, d_high = distance_m - d_low;
+  const Real d_low = reflectionFromLower_m(distance_m, low, high, earth.earth_radius_m);
+  const Real d_high = distance_m - d_low;
   const Real diameter = 2 * earth.earth_radius_m;
   const Real clearance =
       ((low - d_low * d_low / diameter) * d_high + (high - d_high * d_high / diameter) * d_low) / distance_m;

@@ -19,7 +19,7 @@ GroundConstants waterConstants(double frequency_hz, double temperature_c, double
   // what salt does to them
   const double salt_still = still * std::exp(s * (-3.33330e-3 + 4.74868e-6 * s));
   const double salt_f1 =
-      f1 * (1 + s * (2.3232e-3 + t * (-7.9208e-5 + t * (3.6764e-6 + t * (3.5594e-7 + t * 8.9795e-9)))));
+      f1 * (1 + s * (2.3232e-3 + t * (-7.9208e-5 + t * (3.6764e-6 + t * (-3.5594e-7 + t * 8.9795e-9)))));
   const double salt_between = between * std::exp(s * (-6.28908e-3 + 1.76032e-4 * s - 9.22144e-5 * t));
   const double salt_f2 = f2 * (1 + s * (-1.99723e-2 + 1.81176e-4 * t));
   const double salt_fast = fast * (1 + s * (-2.04265e-3 + 1.57883e-4 * t));
