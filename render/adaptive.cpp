@@ -215,20 +215,18 @@ double nextTolerance_levels(double tolerance_levels, double cost, double budget)
   return std::clamp(tolerance_levels * factor, kLeastTolerance_levels, kLargestTolerance_levels);
 }
 
-long long AdaptiveFrame::draw(Image& image, const Silhouette& inside, double tolerance_levels,
-                              const Caster& cast) {
+bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double tolerance_levels,
+                         const Caster& cast) {
   size_ = image.size;
   classes_.resize(image.pixels.size());
   clear(image, inside);
-  long long rays = 0;
   const auto castQueued = [&] {
     joinQueues();
-    rays += static_cast<long long>(queue_.size());
     return queue_.empty() || cast(queue_);
   };
   queueRows(kTile * kLatticeStep,
             [&](int first_y, std::vector<Pixel>& queue) { queueLattice(size_, inside, first_y, queue); });
-  if (!castQueued()) return -1;
+  if (!castQueued()) return false;
   for (const Pass& pass : kPasses) {
     const PassTask task{pass,
                         {image.pixels.data(), size_},
@@ -238,9 +236,9 @@ long long AdaptiveFrame::draw(Image& image, const Silhouette& inside, double tol
     queueRows(kTile * pass.stepY(), [&](int first_y, std::vector<Pixel>& queue) {
       predictTiles(task, first_y + pass.firstY(), queue);
     });
-    if (!castQueued()) return -1;
+    if (!castQueued()) return false;
   }
-  return rays;
+  return true;
 }
 
 const std::vector<Pixel>& AdaptiveFrame::missing() {

@@ -46,8 +46,8 @@ class AdaptiveFrame {
   /// @param inside  the pixels that may show something; one row for each of the image's
   /// @param tolerance_levels  see kDefaultTolerance_levels; 0: only what is predicted without doubt is not
   /// cast
-  /// @return rays that were cast, -1 if it was stopped
-  long long draw(Image& image, const Silhouette& inside, double tolerance_levels, const Caster& cast);
+  /// @return false if it was stopped
+  bool draw(Image& image, const Silhouette& inside, double tolerance_levels, const Caster& cast);
 
   /// The pixels of the last frame that were predicted, those with the largest estimated error first (to a
   /// factor of two, neighbours together). All of them cast, the image is that of the pattern `full`.

@@ -10,7 +10,8 @@ namespace {
 constexpr Named<Pattern> kPatterns[] = {{Pattern::full, "full"},
                                         {Pattern::columns, "columns"},
                                         {Pattern::checkerboard, "checkerboard"},
-                                        {Pattern::quarter, "quarter"}};
+                                        {Pattern::quarter, "quarter"},
+                                        {Pattern::adaptive, "adaptive"}};
 constexpr Named<Interpolation> kInterpolations[] = {{Interpolation::float32, "float"},
                                                     {Interpolation::bits8, "8bit"}};
 
@@ -109,7 +110,7 @@ Pattern parsePattern(const std::string& name) {
 
 const std::vector<Pattern>& allPatterns() {
   static const std::vector<Pattern> patterns{Pattern::full, Pattern::columns, Pattern::checkerboard,
-                                             Pattern::quarter};
+                                             Pattern::quarter, Pattern::adaptive};
   return patterns;
 }
 
@@ -130,6 +131,8 @@ std::vector<Lattice> sourceLattices(Pattern pattern, ImageSize size) {
       return withoutEmpty({lattice(size, 0, 0, 2, 2), lattice(size, 1, 1, 2, 2)});
     case Pattern::quarter:
       return withoutEmpty({lattice(size, 0, 0, 2, 2)});
+    case Pattern::adaptive:
+      break;
   }
   return {};
 }
@@ -144,6 +147,8 @@ std::vector<Lattice> missingLattices(Pattern pattern, ImageSize size) {
       return withoutEmpty({lattice(size, 1, 0, 2, 2), lattice(size, 0, 1, 2, 2)});
     case Pattern::quarter:
       return withoutEmpty({lattice(size, 1, 0, 2, 2), lattice(size, 0, 1, 2, 2), lattice(size, 1, 1, 2, 2)});
+    case Pattern::adaptive:
+      break;
   }
   return {};
 }
@@ -155,7 +160,7 @@ long long pixelCount(const std::vector<Lattice>& lattices) {
 }
 
 void interpolate(Pattern pattern, Interpolation interpolation, Image& image) {
-  if (pattern == Pattern::full || image.size.count() == 0) return;
+  if (pattern == Pattern::full || pattern == Pattern::adaptive || image.size.count() == 0) return;
   const auto fill = interpolation == Interpolation::float32 ? fillRowsFloat : fillRows8;
   parallelFor(image.size.height, kRowGrain, [&](int begin, int end) { fill(pattern, image, begin, end); });
 }

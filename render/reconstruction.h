@@ -10,12 +10,12 @@
 
 namespace emscape::render {
 
-/// Source pixels: all; x even; (x + y) even; x and y even.
-enum class Pattern { full, columns, checkerboard, quarter };
+/// Source pixels: all; x even; (x + y) even; x and y even; those that cannot be predicted (adaptive.h).
+enum class Pattern { full, columns, checkerboard, quarter, adaptive };
 const char* toString(Pattern pattern);
 /// @throws Error (usage) that lists the names
 Pattern parsePattern(const std::string& name);
-/// Every pattern, that with the most rays first.
+/// Every pattern, that with the most rays first; adaptive, whose rays depend on the picture, is the last.
 const std::vector<Pattern>& allPatterns();
 
 /// A pixel of a list to be cast.
@@ -41,13 +41,14 @@ struct Lattice {
 };
 
 /// The source pixels of a pattern, and those that are left; together they are the image, each pixel once.
-/// Empty lattices are left out.
+/// Empty lattices are left out. None for adaptive.
 std::vector<Lattice> sourceLattices(Pattern pattern, ImageSize size);
 std::vector<Lattice> missingLattices(Pattern pattern, ImageSize size);
 long long pixelCount(const std::vector<Lattice>& lattices);
 
 /// Fills every pixel that is not a source pixel from those that are. An edge pixel with one neighbour copies
-/// it. 8-bit interpolation rounds half up and leaves source pixels as they were cast.
+/// it. 8-bit interpolation rounds half up and leaves source pixels as they were cast. Nothing is done for
+/// adaptive.
 void interpolate(Pattern pattern, Interpolation interpolation, Image& image);
 
 }  // namespace emscape::render

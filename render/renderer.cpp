@@ -80,6 +80,8 @@ struct Renderer::Impl {
   GroundLayer ground_layer;       ///< of the camera; its size is 0 x 0 when it must be computed anew
   Image volume_layer;             ///< the volume alone, cut off by the ground
   Pattern drawn = Pattern::full;  ///< of the last frame
+  AdaptiveFrame adaptive;
+  Silhouette silhouette;
 
   const volume::Grid& grid() const {
     if (!volume.isSet()) throw Error(ErrorCode::other, "Renderer: no volume is set");
@@ -146,20 +148,62 @@ struct Renderer::Impl {
   }
 
   /// @param shows_ground  false: the volume alone, cut off by the ground
+  CpuCast castOf(const RaycastTask& prepared, bool shows_ground) {
+    CpuCast cast{prepared, settings.mode, volume.volume().info.categorical, settings.plain};
+    cast.ground = ground ? &ground_layer : nullptr;
+    cast.shows_ground = shows_ground;
+    return cast;
+  }
+
   /// @return false if it was stopped
   bool cast(const std::vector<Lattice>& lattices, bool shows_ground, Image& image, FrameReport& report,
             const StopFlag* stop) {
     Stopwatch watch;
     const RaycastTask prepared = task(image.size);
-    CpuCast cast{prepared, settings.mode, volume.volume().info.categorical, settings.plain};
-    cast.ground = ground ? &ground_layer : nullptr;
-    cast.shows_ground = shows_ground;
+    const CpuCast cast = castOf(prepared, shows_ground);
     for (const Lattice& lattice : lattices) {
       report.complete = castCpu(cast, lattice, image, stop, report.samples);
       if (!report.complete) break;
       report.rays += lattice.count();
     }
     report.cast_ms += watch.lap_ms();
+    return report.complete;
+  }
+
+  /// @return false if it was stopped
+  bool drawAdaptive(double tolerance_levels, bool shows_ground, Image& image, FrameReport& report,
+                    const StopFlag* stop) {
+    Stopwatch all;
+    const RaycastTask prepared = task(image.size);
+    const CpuCast cast = castOf(prepared, shows_ground);
+    if (ground && shows_ground) {
+      wholePicture(image.size, silhouette);
+    } else {
+      findSilhouette(prepared.camera, prepared.volume.lower(), prepared.volume.upper(), silhouette);
+    }
+    report.complete =
+        adaptive.draw(image, silhouette, tolerance_levels, [&](const std::vector<Pixel>& pixels) {
+          Stopwatch watch;
+          const bool complete = castCpu(cast, pixels, image, stop, report.samples);
+          report.rays += static_cast<long long>(pixels.size());
+          report.cast_ms += watch.lap_ms();
+          return complete;
+        });
+    report.interpolate_ms = all.lap_ms() - report.cast_ms;
+    return report.complete;
+  }
+
+  /// Casts what the last frame left out. @return false if it was stopped
+  bool castMissing(Image& image, FrameReport& report, const StopFlag* stop) {
+    if (drawn != Pattern::adaptive) {
+      return cast(missingLattices(drawn, image.size), true, image, report, stop);
+    }
+    Stopwatch watch;
+    const RaycastTask prepared = task(image.size);
+    const std::vector<Pixel>& missing = adaptive.missing();
+    report.complete = castCpu(castOf(prepared, true), missing, image, stop, report.samples);
+    if (report.complete) report.rays = static_cast<long long>(missing.size());
+    report.cast_ms = watch.lap_ms();
     return report.complete;
   }
 
@@ -264,21 +308,23 @@ FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, Image& image, 
                          plan.pattern != Pattern::full;
   if (in_layers && impl_->volume_layer.size != size) impl_->volume_layer = Image(size);
   Image& target = in_layers ? impl_->volume_layer : image;
-  if (!impl_->cast(sourceLattices(plan.pattern, size), !in_layers, target, report, stop)) return report;
+  const bool complete =
+      plan.pattern == Pattern::adaptive
+          ? impl_->drawAdaptive(plan.tolerance_levels, !in_layers, target, report, stop)
+          : impl_->cast(sourceLattices(plan.pattern, size), !in_layers, target, report, stop);
+  if (!complete) return report;
   impl_->ground_layer.complete |= plan.pattern == Pattern::full;
   Stopwatch watch;
   interpolate(plan.pattern, plan.interpolation, target);
   if (in_layers) impl_->composeGround(image);
-  report.interpolate_ms = watch.lap_ms();
+  report.interpolate_ms += watch.lap_ms();
   return report;
 }
 
 FrameReport Renderer::restore(Image& image, const StopFlag* stop) {
   FrameReport report;
   report.pattern = impl_->drawn;
-  if (impl_->cast(missingLattices(impl_->drawn, image.size), true, image, report, stop)) {
-    impl_->ground_layer.complete = true;
-  }
+  if (impl_->castMissing(image, report, stop)) impl_->ground_layer.complete = true;
   return report;
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "base/progress.h"
+#include "render/adaptive.h"
 #include "render/camera.h"
 #include "render/compositing.h"
 #include "render/height_field.h"
@@ -32,7 +33,8 @@ struct RenderSettings {
 /// How the pixels of a frame are come by.
 struct FramePlan {
   Pattern pattern = Pattern::full;
-  Interpolation interpolation = Interpolation::float32;
+  Interpolation interpolation = Interpolation::float32;  ///< adaptive predicts in float always
+  double tolerance_levels = kDefaultTolerance_levels;    ///< of adaptive, see AdaptiveFrame::draw()
 };
 
 /// What a frame, or the restoration of one, took.

@@ -250,7 +250,7 @@ Examples:
   command->add_option("--mode", options->mode, "How samples become a pixel")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
   command->add_option("--rays", options->rays, "Pixels that are cast, the rest interpolated; auto: all")
-      ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter"}));
+      ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter", "adaptive"}));
   command->add_option("--interpolate", options->interpolate, "Precision of interpolated pixels")
       ->check(CLI::IsMember({"float", "8bit"}));
   command->add_option("--camera", options->camera,

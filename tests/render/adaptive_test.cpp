@@ -38,6 +38,7 @@ struct Drawing {
       : picture(std::move(value)), image(size), casts(static_cast<std::size_t>(size.count())) {}
 
   void cast(const std::vector<Pixel>& pixels) {
+    rays += static_cast<long long>(pixels.size());
     for (const Pixel& p : pixels) {
       image.at(p.x, p.y) = picture(p.x, p.y);
       ++casts[static_cast<std::size_t>(p.y) * image.size.width + p.x];
@@ -46,10 +47,11 @@ struct Drawing {
   void draw(const Silhouette& inside, double tolerance_levels) {
     std::fill(casts.begin(), casts.end(), 0);
     for (Rgba& pixel : image.pixels) pixel = gray(std::nan(""));
-    rays = frame.draw(image, inside, tolerance_levels, [this](const std::vector<Pixel>& pixels) {
+    rays = 0;
+    EXPECT_TRUE(frame.draw(image, inside, tolerance_levels, [this](const std::vector<Pixel>& pixels) {
       cast(pixels);
       return true;
-    });
+    }));
   }
   void draw(double tolerance_levels) { draw(whole(image.size), tolerance_levels); }
   double largestError_levels() const {
@@ -234,30 +236,34 @@ TEST(Adaptive, TellsWhenItWasStopped) {
     for (Rgba& pixel : image.pixels) pixel = gray(1);
     AdaptiveFrame frame;
     int left = passes;
-    EXPECT_EQ(frame.draw(image, whole(image.size), 0.5,
-                         [&](const std::vector<Pixel>& pixels) {
-                           for (const Pixel& p : pixels) image.at(p.x, p.y) = gray(std::fmod(p.x * 0.37, 1));
-                           return left-- > 0;
-                         }),
-              -1);
+    EXPECT_FALSE(frame.draw(image, whole(image.size), 0.5, [&](const std::vector<Pixel>& pixels) {
+      for (const Pixel& p : pixels) image.at(p.x, p.y) = gray(std::fmod(p.x * 0.37, 1));
+      return left-- > 0;
+    }));
   }
 }
 
-TEST(Adaptive, ReachesAFewLevelsWithATenthOfTheRaysOnAnEmeVolume) {
+/// How pictures of a pattern differ from the full one.
+ImageDifference differenceOf(Renderer& renderer, ImageSize size, const FramePlan& plan, long long& rays) {
+  FrameReport report;
+  const Image8 picture = quantize(renderer.render(size, plan, &report));
+  rays = report.rays;
+  return compare(picture, quantize(renderer.render(size)));
+}
+
+TEST(Adaptive, IsFarBetterThanQuarterOnAnEmeVolumeWithFewerRays) {
   const auto volume = testing::makeEmeVolume({64, 64, 32});
   const ImageSize size{480, 360};
   Renderer renderer;
   renderer.setVolume(volume);
   renderer.setTransferFunction(defaultTransferFunction(*volume));
   renderer.setCamera(makeCamera({}, renderer.sceneBox(), size));
-  const Image full = renderer.render(size);
-  Drawing drawing(size, [&](int x, int y) { return full.at(x, y); });
-  drawing.draw(kDefaultTolerance_levels);
-  const ImageDifference difference = compare(quantize(drawing.image), quantize(full));
-  const ImageDifference quarter =
-      compare(quantize(renderer.render(size, {Pattern::quarter})), quantize(full));
-  EXPECT_LT(drawing.rays, size.count() / 5);
-  EXPECT_GT(difference.psnr_db, quarter.psnr_db + 6);
+  long long quarter_rays = 0;
+  long long rays = 0;
+  const ImageDifference quarter = differenceOf(renderer, size, {Pattern::quarter}, quarter_rays);
+  const ImageDifference adaptive = differenceOf(renderer, size, {Pattern::adaptive}, rays);
+  EXPECT_LT(rays, quarter_rays);
+  EXPECT_GT(adaptive.psnr_db, quarter.psnr_db + 8);
 }
 
 TEST(AdaptiveTolerance, ApproachesABudgetWithoutSwinging) {

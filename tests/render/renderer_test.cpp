@@ -26,7 +26,9 @@ TEST(Restore, IsBitIdenticalToAFullCast) {
         Image image = renderer.render(size, {pattern, interpolation});
         const FrameReport report = renderer.restore(image);
         EXPECT_TRUE(report.complete);
-        EXPECT_EQ(report.rays, pixelCount(missingLattices(pattern, size)));
+        if (pattern != Pattern::adaptive) {
+          EXPECT_EQ(report.rays, pixelCount(missingLattices(pattern, size)));
+        }
         EXPECT_TRUE(image.pixels == full.pixels) << scene << " " << toString(pattern);
       }
     }
