@@ -32,7 +32,14 @@ double pressureOver(double height_km, const TemperatureLayer& layer) {
 
 GasAttenuation gasAttenuation(double frequency_hz, double dry_pressure_hpa, double temperature_k,
                               double vapour_g_m3) {
-  const double f = std::clamp(frequency_hz / 1e9, kGasesFrequency.least, kGasesFrequency.most);
+  return lineByLineGasAttenuation(
+      std::clamp(frequency_hz, kGasesFrequency.least * 1e9, kGasesFrequency.most * 1e9), dry_pressure_hpa,
+      temperature_k, vapour_g_m3);
+}
+
+GasAttenuation lineByLineGasAttenuation(double frequency_hz, double dry_pressure_hpa, double temperature_k,
+                                        double vapour_g_m3) {
+  const double f = frequency_hz / 1e9;
   const double theta = 300 / temperature_k;
   const double p = dry_pressure_hpa;
   const double e = vapour_g_m3 * temperature_k / 216.7;  // eq. (4)

@@ -56,6 +56,10 @@ inline GasAttenuation gasAttenuation(double frequency_hz, const AirState& air) {
                         air.vapour_g_m3);
 }
 
+/// The same without limits of frequency: for models that take the equations below 1 GHz too.
+GasAttenuation lineByLineGasAttenuation(double frequency_hz, double dry_pressure_hpa, double temperature_k,
+                                        double vapour_g_m3);
+
 /// The mean annual global reference atmosphere at a height above mean sea level (m); the vapour falls by e
 /// each 2 km, its mixing ratio no lower than 2e-6.
 /// @param surface_vapour_g_m3  at mean sea level; the reference has 7.5

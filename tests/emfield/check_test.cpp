@@ -13,6 +13,7 @@
 #include "emfield/check/reference_table.h"
 #include "emfield/models/itm.h"
 #include "emfield/models/model_limits.h"
+#include "emfield/models/p528.h"
 #include "tests/reference_dir.h"
 
 namespace emscape::emfield {
@@ -188,6 +189,7 @@ TEST(ModelLimits, StandInTheDocumentation) {
   std::ifstream file(fs::path(EMSCAPE_SOURCE_DIR) / "docs" / "models.md");
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_THAT(text, HasSubstr(limitsTable(kItmLimits)));
+  EXPECT_THAT(text, HasSubstr(limitsTable(kP528Limits)));
 }
 
 }  // namespace
