@@ -25,6 +25,7 @@ using render::Pattern;
 struct BenchReconstructionOptions {
   BenchSceneOptions scene;
   std::vector<std::string> rays;
+  double tolerance_levels = render::kDefaultTolerance_levels;
   int frames = 20;
 };
 
@@ -79,7 +80,7 @@ class MeanDifference {
 /// One pattern and interpolation over all views.
 struct Measured {
   render::FramePlan plan;
-  std::vector<double> busy_ms, restore_ms;
+  std::vector<double> busy_ms, busy_cpu_ms, restore_ms;
   std::vector<double> ratios;  ///< busy_ms to that of the full picture of the same view
   double rays = 0, rays_in_box = 0;
   MeanDifference error;
@@ -88,16 +89,18 @@ struct Measured {
   bool isFull() const { return plan.pattern == Pattern::full; }
 };
 
-/// Every pattern with every interpolation, the full one first; there is nothing to interpolate in it.
-std::vector<Measured> plansFor(const std::vector<std::string>& names) {
+/// Every pattern with every interpolation that it knows, the full one first.
+std::vector<Measured> plansFor(const BenchReconstructionOptions& options) {
   std::vector<Pattern> patterns;
-  for (const std::string& name : names) patterns.push_back(render::parsePattern(name));
-  if (names.empty()) patterns = render::allPatterns();
+  for (const std::string& name : options.rays) patterns.push_back(render::parsePattern(name));
+  if (options.rays.empty()) patterns = render::allPatterns();
   std::vector<Measured> plans(1);
   for (const Pattern pattern : patterns) {
     if (pattern == Pattern::full) continue;
-    for (const Interpolation interpolation : {Interpolation::float32, Interpolation::bits8})
-      plans.emplace_back().plan = {pattern, interpolation};
+    for (const Interpolation interpolation : {Interpolation::float32, Interpolation::bits8}) {
+      if (pattern == Pattern::adaptive && interpolation != Interpolation::float32) continue;
+      plans.emplace_back().plan = {pattern, interpolation, options.tolerance_levels};
+    }
   }
   return plans;
 }
@@ -131,7 +134,9 @@ class ReconstructionBench {
       stopIfInterrupted();
       scene_.turnTo(angle_deg);
       render::FrameReport report;
-      measured.busy_ms.push_back(scene_.draw(measured.plan, image_, report));
+      const Duration busy = scene_.draw(measured.plan, image_, report);
+      measured.busy_ms.push_back(busy.wall_ms);
+      measured.busy_cpu_ms.push_back(busy.cpu_ms);
       if (measured.isFull()) {
         full = image_;
         full8 = render::quantize(full);
@@ -139,14 +144,18 @@ class ReconstructionBench {
       measured.ratios.push_back(measured.busy_ms.back() / plans_.front().busy_ms.back());
       measured.error.add(render::compare(render::quantize(image_), full8));
       measured.rays += static_cast<double>(report.rays);
-      measured.rays_in_box += static_cast<double>(
-          scene_.loadOf(render::sourceLattices(measured.plan.pattern, scene_.size())).rays);
-      measured.restore_ms.push_back(scene_.restore(image_));
+      measured.rays_in_box += static_cast<double>(raysInBox(measured.plan.pattern, report));
+      measured.restore_ms.push_back(scene_.restore(image_).wall_ms);
       measured.restored_equals_full &= image_.pixels == full.pixels;
     }
   }
 
  private:
+  long long raysInBox(Pattern pattern, const render::FrameReport& report) const {
+    if (pattern == Pattern::adaptive) return report.rays;  // it casts no others
+    return scene_.loadOf(render::sourceLattices(pattern, scene_.size())).rays;
+  }
+
   BenchScene& scene_;
   std::vector<Measured> plans_;  ///< the full picture first
   Image image_;
@@ -168,6 +177,7 @@ Json patternsJson(const ReconstructionBench& bench) {
                         {"rays_fraction", measured.rays / bench.pixels()},
                         {"rays_fraction_of_hits", measured.rays_in_box / bench.pixelsInBox()},
                         {"busy_ms", timesJson(measured.busy_ms)},
+                        {"busy_cpu_ms", spreadJson(measured.busy_cpu_ms)},
                         {"restore_ms", timesJson(measured.restore_ms)},
                         {"ratio_to_full", medianOf(measured.ratios)},
                         {"error", measured.error.json()},
@@ -195,7 +205,7 @@ void printTable(const ReconstructionBench& bench) {
 }
 
 int benchReconstruction(const BenchReconstructionOptions& options, const GlobalOptions& global) {
-  std::vector<Measured> plans = plansFor(options.rays);
+  std::vector<Measured> plans = plansFor(options);
   BenchScene scene(options.scene, global);
   ReconstructionBench bench(scene, std::move(plans));
   {
@@ -209,6 +219,7 @@ int benchReconstruction(const BenchReconstructionOptions& options, const GlobalO
   scene.turnTo(0);
   if (global.json) {
     Json result = scene.json();
+    result["tolerance_levels"] = options.tolerance_levels;
     result["frames"] = options.frames;
     result["patterns"] = patternsJson(bench);
     printJson(result);
@@ -242,6 +253,7 @@ Example:
   auto options = std::make_shared<BenchReconstructionOptions>();
   addBenchSceneOptions(*command, options->scene);
   command->add_option("--rays", options->rays, "Patterns beside the full one; default: all")->delimiter(',');
+  addToleranceOption(*command, options->tolerance_levels);
   command->add_option("--frames", options->frames, "Views, after one to warm up")
       ->check(CLI::Range(1, 100000));
   command->callback([options, &global, &action] {

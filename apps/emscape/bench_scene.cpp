@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <ctime>
 
 #include "base/log.h"
 #include "base/parallel.h"
@@ -35,6 +36,15 @@ render::CameraSpec turned(render::CameraSpec spec, double angle_deg) {
   spec.eye_m = *spec.target_m + Vec3d{c * from_target.x + s * from_target.y,
                                       c * from_target.y - s * from_target.x, from_target.z};
   return spec;
+}
+
+template <class Work>
+Duration durationOf(const Work& work) {
+  const std::clock_t cpu_begin = std::clock();
+  Stopwatch watch;
+  work();
+  const double wall_ms = watch.lap_ms();
+  return {wall_ms, 1000.0 * static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC};
 }
 
 Json triple(const Vec3d& v) {
@@ -87,16 +97,12 @@ void BenchScene::turnTo(double angle_deg) {
   renderer_.setCamera(render::makeCamera(turned(camera_, angle_deg), renderer_.sceneBox(), size_));
 }
 
-double BenchScene::draw(const render::FramePlan& plan, render::Image& image, render::FrameReport& report) {
-  Stopwatch watch;
-  report = renderer_.draw(plan, size_, image);
-  return watch.lap_ms();
+Duration BenchScene::draw(const render::FramePlan& plan, render::Image& image, render::FrameReport& report) {
+  return durationOf([&] { report = renderer_.draw(plan, size_, image); });
 }
 
-double BenchScene::restore(render::Image& image) {
-  Stopwatch watch;
-  renderer_.restore(image);
-  return watch.lap_ms();
+Duration BenchScene::restore(render::Image& image) {
+  return durationOf([&] { renderer_.restore(image); });
 }
 
 render::RayLoad BenchScene::loadOf(const std::vector<render::Lattice>& pixels) const {
@@ -155,6 +161,13 @@ void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
   command.add_option("--time", options.selection.times, "Instant, in seconds; default: the first");
   command.add_flag("--allow-missing-terrain", options.selection.allow_missing_terrain,
                    "Compute although elevation data is missing");
+}
+
+void addToleranceOption(CLI::App& command, double& tolerance_levels) {
+  command
+      .add_option("--tolerance", tolerance_levels,
+                  "Of adaptive rays: expected error, in levels of 255, above which a pixel is cast")
+      ->check(CLI::Range(0.0, 255.0));
 }
 
 }  // namespace emscape::app

@@ -26,6 +26,13 @@ struct BenchSceneOptions {
 };
 
 void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options);
+void addToleranceOption(CLI::App& command, double& tolerance_levels);
+
+/// How long something took.
+struct Duration {
+  double wall_ms = 0;
+  double cpu_ms = 0;  ///< of all threads together; on busy cores the steadier of the two
+};
 
 /// A scene that is ready to be drawn. No ground, no labels.
 class BenchScene {
@@ -39,9 +46,8 @@ class BenchScene {
   /// Turns the camera about the vertical through its target, away from where the option put it. What was
   /// computed for the view before is not used again, even if it is the same.
   void turnTo(double angle_deg);
-  /// Draws, and says how long it took by the clock on the wall (ms).
-  double draw(const render::FramePlan& plan, render::Image& image, render::FrameReport& report);
-  double restore(render::Image& image);
+  Duration draw(const render::FramePlan& plan, render::Image& image, render::FrameReport& report);
+  Duration restore(render::Image& image);
 
   /// Work of a set of pixels in this view.
   render::RayLoad loadOf(const std::vector<render::Lattice>& pixels) const;
