@@ -61,6 +61,7 @@ PlaybackReport Playback::play(const std::function<void(const PlaybackEvent&)>& d
     stop_ = true;
     endRestoration();
   }
+  if (field_.active()) field_.take();
   report_.seconds = now_ms() / 1000;
   report_.epsilon_ms = controller_.epsilon_ms();
   PlaybackEvent none;
