@@ -47,7 +47,7 @@ PlaybackReport Playback::play(const std::function<void(const PlaybackEvent&)>& d
   done_ = done;
   beginField(0);
   pending_ = field_.take();
-  painter_.setFrame(pending_->frame);  // fits camera and colours, which is no part of playing
+  rehearse();
   start_ = Clock::now();
   raise(SceneEvent::field);
   for (double now = 0; now < end_ms(); now = now_ms()) {
@@ -130,6 +130,18 @@ void Playback::beginNextField() {
   const int step = std::max(newest + 1, stepDueAt(slot));
   report_.field_steps_skipped += step - newest - 1;
   beginField(step);
+}
+
+/// Draws the first picture a few times: camera and colours are fitted, the memory is there, and the pattern is
+/// chosen before the clock starts.
+void Playback::rehearse() {
+  painter_.setFrame(pending_->frame);
+  constexpr int kFrames = 4;
+  for (int n = 0; n < kFrames; ++n) {
+    controller_.event(SceneEvent::field, 0);
+    painter_.setAzimuth(look_.camera.azimuth_deg);
+    controller_.frameDone({painter_.draw(controller_.next(0).plan).total_ms(), 0});
+  }
 }
 
 void Playback::takeField() {

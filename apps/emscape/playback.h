@@ -61,6 +61,8 @@ class Playback {
   double end_ms() const;
   void waitUntil(double time_ms);
 
+  void rehearse();
+
   // Events
   void beginField(int step);
   void beginNextField();
