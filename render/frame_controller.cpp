@@ -37,7 +37,7 @@ const char* toString(ControllerState state) {
 }
 
 FrameController::FrameController(const ControllerOptions& options)
-    : options_(options), choice_(options.budget_ms) {}
+    : options_(options), choice_(options.budget_ms, options.pattern) {}
 
 void FrameController::event(SceneEvent event, double now_ms) {
   state_ = ControllerState::busy;
@@ -51,7 +51,7 @@ void FrameController::event(SceneEvent event, double now_ms) {
 
 void FrameController::setOptions(const ControllerOptions& options, double now_ms) {
   options_ = options;
-  choice_ = PatternChoice(options.budget_ms);
+  choice_ = PatternChoice(options.budget_ms, options.pattern);
   event(SceneEvent::mode, now_ms);
 }
 
@@ -84,8 +84,7 @@ void FrameController::frameDone(const FrameCost& cost) {
   } else {
     draw_ms_.add(cost.draw_ms);
   }
-  const bool was_chosen = !options_.pattern && drawn_ == choice_.pattern();
-  if (was_chosen && choice_.add(cost)) draw_ms_.clear();
+  if (drawn_ == choice_.pattern() && choice_.add(cost)) draw_ms_.clear();
 }
 
 bool FrameController::restoreDone(bool complete) {
@@ -96,14 +95,7 @@ bool FrameController::restoreDone(bool complete) {
 }
 
 FramePlan FrameController::plan() const {
-  FramePlan plan;
-  plan.pattern = options_.pattern.value_or(choice_.pattern());
-  plan.interpolation = options_.interpolation;
-  return plan;
-}
-
-std::string FrameController::reason() const {
-  return options_.pattern ? std::string(toString(*options_.pattern)) + " was asked for" : choice_.reason();
+  return {choice_.pattern(), options_.interpolation, choice_.tolerance_levels()};
 }
 
 double FrameController::epsilon_ms() const {

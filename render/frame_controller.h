@@ -76,7 +76,7 @@ class FrameController {
   /// How the next busy frame is drawn.
   FramePlan plan() const;
   /// Why with this pattern, as a sentence without its full stop.
-  std::string reason() const;
+  const std::string& reason() const { return choice_.reason(); }
   /// How long nothing must happen before a restoration begins (ms): what was ordered, or the median time of
   /// the last frames of this pattern, 1.5 times that where three of four pixels or more are interpolated, and
   /// at least the floor; the floor as long as nothing is measured.

@@ -8,22 +8,26 @@ namespace emscape::render {
 
 const std::vector<Rung>& patternLadder() {
   static const std::vector<Rung> ladder{
-      {Pattern::full, 1.0}, {Pattern::columns, 0.5}, {Pattern::quarter, 0.25}};
+      {Pattern::full, 1.0}, {Pattern::columns, 0.5}, {Pattern::quarter, 0.25}, {Pattern::adaptive, 0.1}};
   return ladder;
 }
 
-PatternChoice::PatternChoice(double budget_ms)
+PatternChoice::PatternChoice(double budget_ms, std::optional<Pattern> fixed)
     : budget_ms_(budget_ms),
-      reason_(fmt::format("{} until frames are measured against the budget of {:.3g} ms", toString(pattern()),
-                          budget_ms)) {}
+      fixed_(fixed),
+      reason_(fixed ? fmt::format("{} was asked for", toString(*fixed))
+                    : fmt::format("{} until frames are measured against the budget of {:.3g} ms",
+                                  toString(pattern()), budget_ms)) {}
 
 bool PatternChoice::add(const FrameCost& cost) {
   if (warm_up_left_ > 0) {
     --warm_up_left_;
     return false;
   }
-  draw_ms_.add(cost.draw_ms);
   other_ms_.add(cost.other_ms);
+  if (pattern() == Pattern::adaptive) followBudget(cost);
+  if (fixed_) return false;
+  full_ms_.add(cost.draw_ms / shareOf(cost));
   if (frames_since_up_ >= 0) ++frames_since_up_;
   const bool is_miss = cost.total_ms() > budget_ms_;
   misses_in_row_ = is_miss ? misses_in_row_ + 1 : 0;
@@ -33,7 +37,7 @@ bool PatternChoice::add(const FrameCost& cost) {
 }
 
 void PatternChoice::forget() {
-  draw_ms_.clear();
+  full_ms_.clear();
   other_ms_.clear();
   warm_up_left_ = kWarmUpFrames;
   misses_in_row_ = 0;
@@ -42,8 +46,18 @@ void PatternChoice::forget() {
   frames_since_up_ = -1;
 }
 
-double PatternChoice::expected_ms(std::size_t rung_index, const FrameCost& cost) const {
-  return cost.other_ms + cost.draw_ms * patternLadder()[rung_index].ray_share / rung().ray_share;
+double PatternChoice::shareOf(const FrameCost& cost) const {
+  return cost.ray_share > 0 ? cost.ray_share : rung().ray_share;
+}
+
+double PatternChoice::expected_ms(std::size_t rung, double full_ms, double other_ms) const {
+  return other_ms + full_ms * patternLadder()[rung].ray_share;
+}
+
+void PatternChoice::followBudget(const FrameCost& cost) {
+  constexpr double kLeastPart = 0.1;  // where the rest takes it all
+  const double left_ms = std::max(kAdaptiveTarget * budget_ms_ - other_ms_.median(), kLeastPart * budget_ms_);
+  tolerance_levels_ = nextTolerance_levels(tolerance_levels_, cost.draw_ms, left_ms);
 }
 
 bool PatternChoice::goDown(const FrameCost& cost) {
@@ -53,11 +67,12 @@ bool PatternChoice::goDown(const FrameCost& cost) {
                           cost.total_ms(), budget_ms_, toString(pattern()));
     return false;
   }
+  const double full_ms = cost.draw_ms / shareOf(cost);
   std::size_t lower = rung_ + 1;
-  while (lower < last && expected_ms(lower, cost) > budget_ms_) ++lower;
+  while (lower < last && expected_ms(lower, full_ms, cost.other_ms) > budget_ms_) ++lower;
   reason_ = fmt::format("{} took {:.1f} ms of {:.3g} ms; {} is expected to take {:.1f} ms",
                         toString(pattern()), cost.total_ms(), budget_ms_,
-                        toString(patternLadder()[lower].pattern), expected_ms(lower, cost));
+                        toString(patternLadder()[lower].pattern), expected_ms(lower, full_ms, cost.other_ms));
   if (frames_since_up_ >= 0) {
     const bool held = frames_since_up_ >= kHolds * patience_;
     patience_ = held ? kLeastPatience : std::min(2 * patience_, kMostPatience);
@@ -68,13 +83,14 @@ bool PatternChoice::goDown(const FrameCost& cost) {
 }
 
 bool PatternChoice::goUp() {
-  const FrameCost usual{draw_ms_.median(), other_ms_.median()};
+  const double full_ms = full_ms_.median();
+  const double other_ms = other_ms_.median();
   std::size_t higher = 0;
-  while (higher < rung_ && expected_ms(higher, usual) > kHeadroom * budget_ms_) ++higher;
+  while (higher < rung_ && expected_ms(higher, full_ms, other_ms) > kHeadroom * budget_ms_) ++higher;
   if (higher == rung_) return false;
-  reason_ = fmt::format("{} takes {:.1f} ms of {:.3g} ms; {} is expected to take {:.1f} ms",
-                        toString(pattern()), usual.total_ms(), budget_ms_,
-                        toString(patternLadder()[higher].pattern), expected_ms(higher, usual));
+  reason_ = fmt::format("{} leaves enough of {:.3g} ms; {} is expected to take {:.1f} ms",
+                        toString(pattern()), budget_ms_, toString(patternLadder()[higher].pattern),
+                        expected_ms(higher, full_ms, other_ms));
   change(higher);
   frames_since_up_ = 0;
   return true;
@@ -82,10 +98,11 @@ bool PatternChoice::goUp() {
 
 void PatternChoice::change(std::size_t rung_index) {
   rung_ = rung_index;
-  draw_ms_.clear();
+  full_ms_.clear();
   other_ms_.clear();
   misses_in_row_ = 0;
   good_frames_ = 0;
+  tolerance_levels_ = kDefaultTolerance_levels;
 }
 
 }  // namespace emscape::render

@@ -2,23 +2,26 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "render/adaptive.h"
 #include "render/reconstruction.h"
 #include "render/running_median.h"
 
 namespace emscape::render {
 
-/// What one busy frame took (ms). The sum is the least time between two pictures.
+/// What one busy frame took. The sum of the times is the least time between two pictures.
 struct FrameCost {
-  double draw_ms = 0;   ///< casting and interpolating: what the choice of the pattern changes
-  double other_ms = 0;  ///< the rest: the field's update, labels, showing
+  double draw_ms = 0;    ///< casting and interpolating: what the choice of the pattern changes
+  double other_ms = 0;   ///< the rest: the field's update, labels, showing
+  double ray_share = 0;  ///< of all pixels, those that were cast; 0: as many as its pattern usually casts
 
   double total_ms() const { return draw_ms + other_ms; }
 };
 
-/// A pattern that may be chosen, and the part of the pixels that it casts.
+/// A pattern that may be chosen, and the part of the pixels that it usually casts.
 struct Rung {
   Pattern pattern = Pattern::full;
   double ray_share = 1;
@@ -33,6 +36,8 @@ const std::vector<Rung>& patternLadder();
 /// budget and their median, scaled by the shares of rays, promises at most kHeadroom of the budget. Patience
 /// is kLeastPatience frames; a pattern that does not hold for kHolds times as many frames doubles it, up to
 /// kMostPatience. Hence, whatever the times, at most 6 + n / 72 changes upwards in n frames.
+///
+/// With the pattern adaptive, the last one, the tolerance follows what the budget leaves for drawing.
 class PatternChoice {
  public:
   static constexpr double kClearMiss = 1.5;
@@ -40,12 +45,15 @@ class PatternChoice {
   static constexpr int kLeastPatience = 8;
   static constexpr int kMostPatience = 256;
   static constexpr int kHolds = 8;
-  static constexpr int kWarmUpFrames = 1;  ///< these are not judged
+  static constexpr int kWarmUpFrames = 1;         ///< these are not judged
+  static constexpr double kAdaptiveTarget = 0.9;  ///< part of the budget that adaptive frames are to take
 
   /// @param budget_ms  > 0
-  explicit PatternChoice(double budget_ms);
+  /// @param fixed      this pattern always; only its tolerance is chosen
+  explicit PatternChoice(double budget_ms, std::optional<Pattern> fixed = {});
 
-  Pattern pattern() const { return rung().pattern; }
+  Pattern pattern() const { return fixed_.value_or(rung().pattern); }
+  double tolerance_levels() const { return tolerance_levels_; }  ///< for the pattern adaptive
   /// Why, as a sentence without its full stop.
   const std::string& reason() const { return reason_; }
 
@@ -56,15 +64,19 @@ class PatternChoice {
 
  private:
   const Rung& rung() const { return patternLadder()[rung_]; }
-  double expected_ms(std::size_t rung, const FrameCost& cost) const;
+  double shareOf(const FrameCost& cost) const;
+  double expected_ms(std::size_t rung, double full_ms, double other_ms) const;
+  void followBudget(const FrameCost& cost);
   bool goDown(const FrameCost& cost);
   bool goUp();
   void change(std::size_t rung);
 
   double budget_ms_;
+  std::optional<Pattern> fixed_;
   std::size_t rung_ = 0;
+  double tolerance_levels_ = kDefaultTolerance_levels;
   std::string reason_;
-  RunningMedian draw_ms_{kLeastPatience};
+  RunningMedian full_ms_{kLeastPatience};  // what a full frame would take to draw, by the share of rays
   RunningMedian other_ms_{kLeastPatience};
   int warm_up_left_ = kWarmUpFrames;
   int misses_in_row_ = 0;

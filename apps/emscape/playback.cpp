@@ -70,6 +70,11 @@ PlaybackReport Playback::play(const std::function<void(const PlaybackEvent&)>& d
   return std::move(report_);
 }
 
+render::FrameCost Playback::costOf(const render::FrameReport& frame, double other_ms) const {
+  return {frame.total_ms(), other_ms,
+          static_cast<double>(frame.rays) / static_cast<double>(look_.size.count())};
+}
+
 double Playback::now_ms() const {
   return Milliseconds(Clock::now() - start_ - stood_still_).count();
 }
@@ -132,15 +137,15 @@ void Playback::beginNextField() {
   beginField(step);
 }
 
-/// Draws the first picture a few times: camera and colours are fitted, the memory is there, and the pattern is
-/// chosen before the clock starts.
+/// Draws the first picture a few times: camera and colours are fitted, the memory is there, and the pattern
+/// is chosen before the clock starts.
 void Playback::rehearse() {
   painter_.setFrame(pending_->frame);
   constexpr int kFrames = 4;
   for (int n = 0; n < kFrames; ++n) {
     controller_.event(SceneEvent::field, 0);
     painter_.setAzimuth(look_.camera.azimuth_deg);
-    controller_.frameDone({painter_.draw(controller_.next(0).plan).total_ms(), 0});
+    controller_.frameDone(costOf(painter_.draw(controller_.next(0).plan), 0));
   }
 }
 
@@ -222,7 +227,7 @@ void Playback::drawFrame(const render::FramePlan& plan) {
   told_pattern_ = drawn_.pattern;
   countSlots(slot, event);
   report(event);
-  controller_.frameDone({drawn_.total_ms(), event.prepare_ms + std::max(event.field_ms, event.labels_ms)});
+  controller_.frameDone(costOf(drawn_, event.prepare_ms + std::max(event.field_ms, event.labels_ms)));
 }
 
 void Playback::beginRestoration() {

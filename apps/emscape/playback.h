@@ -62,6 +62,7 @@ class Playback {
   void waitUntil(double time_ms);
 
   void rehearse();
+  render::FrameCost costOf(const render::FrameReport& frame, double other_ms) const;
 
   // Events
   void beginField(int step);

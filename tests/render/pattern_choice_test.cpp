@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
 #include <random>
 
@@ -142,6 +144,60 @@ TEST(PatternChoice, DoesNotJudgeTheFirstFrame) {
   choice.forget();
   EXPECT_FALSE(choice.add({4000, 0}));
   EXPECT_EQ(choice.pattern(), lower);
+}
+
+/// Fewer rays with a larger tolerance, as on an EME volume.
+double adaptiveShare(double tolerance_levels, double detail) {
+  return std::clamp(detail / std::sqrt(tolerance_levels), 0.02, 0.6);
+}
+
+TEST(PatternChoice, TheToleranceOfAdaptiveFollowsTheBudget) {
+  PatternChoice choice(40);
+  for (const double full_ms : {300.0, 600.0, 300.0}) {
+    for (int n = 0; n < 60; ++n) {
+      const bool adaptive = choice.pattern() == Pattern::adaptive;
+      const double share =
+          adaptive ? adaptiveShare(choice.tolerance_levels(), 0.1) : shareOf(choice.pattern());
+      choice.add({full_ms * share, 2, share});
+    }
+    ASSERT_EQ(choice.pattern(), Pattern::adaptive);
+    const double draw_ms = full_ms * adaptiveShare(choice.tolerance_levels(), 0.1);
+    EXPECT_NEAR(draw_ms + 2, PatternChoice::kAdaptiveTarget * 40, 1) << full_ms;
+  }
+}
+
+TEST(PatternChoice, LeavesAdaptiveByTheRaysThatItCast) {
+  PatternChoice choice(40);
+  for (int n = 0; n < 20; ++n) choice.add({1000 * shareOf(choice.pattern()), 0});
+  ASSERT_EQ(choice.pattern(), Pattern::adaptive);
+  // 30 ms for 0.9 of the rays: columns would take 17 ms, full 33
+  for (int n = 0; n < 20; ++n) {
+    choice.add(choice.pattern() == Pattern::adaptive ? FrameCost{30, 0, 0.9}
+                                                     : FrameCost{33 * shareOf(choice.pattern()), 0});
+  }
+  EXPECT_EQ(choice.pattern(), Pattern::full);
+}
+
+TEST(PatternChoice, AFixedPatternStaysButItsToleranceFollowsTheBudget) {
+  PatternChoice columns(40, Pattern::columns);
+  EXPECT_EQ(columns.reason(), "columns was asked for");
+  for (int n = 0; n < 20; ++n) EXPECT_FALSE(columns.add({900, 0}));
+  EXPECT_EQ(columns.pattern(), Pattern::columns);
+  PatternChoice adaptive(40, Pattern::adaptive);
+  const double before = adaptive.tolerance_levels();
+  for (int n = 0; n < 20; ++n) EXPECT_FALSE(adaptive.add({900, 0}));
+  EXPECT_EQ(adaptive.pattern(), Pattern::adaptive);
+  EXPECT_GT(adaptive.tolerance_levels(), before);
+}
+
+TEST(PatternChoice, OtherWorkThatTakesTheWholeBudgetLeavesAdaptiveATenth) {
+  PatternChoice choice(40, Pattern::adaptive);
+  double draw_ms = 0;
+  for (int n = 0; n < 60; ++n) {
+    draw_ms = 100 * adaptiveShare(choice.tolerance_levels(), 0.1);
+    choice.add({draw_ms, 50, 0.1});
+  }
+  EXPECT_NEAR(draw_ms, 4, 0.5);
 }
 
 TEST(PatternChoice, NeverFlapsMoreThanStated) {
