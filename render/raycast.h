@@ -119,7 +119,7 @@ struct RaycastTask {
     const Vec3f to_viewer = shading.toViewer(pieces.direction);
     if (hit.cap) return shading.lit(color, entryNormal(volume, pieces.start, pieces.direction), to_viewer);
     const Vec3f gradient = gradientAt<Sampler>(volume, pieces.at(hit.distance), hit.value);
-    if (!(dot(gradient, gradient) > 0.0F)) return color;
+    if (!ShadingView::isSlope(gradient)) return color;
     return shading.lit(color, shading.normal(gradient), to_viewer);
   }
 

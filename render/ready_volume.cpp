@@ -21,10 +21,10 @@ void checkSize(const volume::DenseVolume& volume) {
   }
 }
 
-bool anyNan(const float* values, int count) {
-  int nans = 0;
-  for (int i = 0; i < count; ++i) nans += values[i] != values[i] ? 1 : 0;
-  return nans > 0;
+bool allFinite(const float* values, int count) {
+  int others = 0;
+  for (int i = 0; i < count; ++i) others += values[i] - values[i] != 0.0F ? 1 : 0;
+  return others == 0;
 }
 
 }  // namespace
@@ -45,14 +45,14 @@ void ReadyVolume::set(std::shared_ptr<const volume::DenseVolume> volume) {
   highest_ = -std::numeric_limits<float>::infinity();
   for (long long i = 0; i < bricks.dims.count(); ++i) highest_ = std::max(highest_, bricks.ranges[i].max);
 
-  std::atomic<bool> found{false};
+  std::atomic<bool> all_finite{true};
   const int layer = shown.grid.dims.x * shown.grid.dims.y;
   parallelFor(shown.grid.dims.z, 1, [&](int begin, int end) {
     for (int k = begin; k < end; ++k) {
-      if (anyNan(&shown.values[static_cast<std::size_t>(k) * layer], layer)) found = true;
+      if (!allFinite(&shown.values[static_cast<std::size_t>(k) * layer], layer)) all_finite = false;
     }
   });
-  has_nan_ = found;
+  all_finite_ = all_finite;
 }
 
 void ReadyVolume::fillBelowMask() {
@@ -80,8 +80,8 @@ void ReadyVolume::fillBelowMask() {
 }
 
 VolumeView ReadyVolume::view() const {
-  if (masked_below_ == 0) return {volume_->values.data(), volume_->grid.dims, nullptr, 0, has_nan_};
-  return {filled_.values.data(), volume_->grid.dims, first_valid_k_.data(), masked_below_, has_nan_};
+  if (masked_below_ == 0) return {volume_->values.data(), volume_->grid.dims, nullptr, 0, all_finite_};
+  return {filled_.values.data(), volume_->grid.dims, first_valid_k_.data(), masked_below_, all_finite_};
 }
 
 }  // namespace emscape::render

@@ -24,7 +24,6 @@ class ReadyVolume {
   VolumeView view() const;
   volume::BricksView bricks() const { return bricks_->view(); }
   float highest() const { return highest_; }  ///< of all values that a sample can have
-  bool hasNan() const { return has_nan_; }
 
  private:
   void fillBelowMask();
@@ -35,7 +34,7 @@ class ReadyVolume {
   int masked_below_ = 0;
   std::optional<volume::Bricks> bricks_;
   float highest_ = 0;
-  bool has_nan_ = false;
+  bool all_finite_ = true;
 };
 
 }  // namespace emscape::render

@@ -30,9 +30,15 @@ struct ShadingView {
   EMSCAPE_HD Vec3f toViewer(const Vec3f& direction) const {
     return normalized(Vec3f{-direction.x * voxel.x, -direction.y * voxel.y, -direction.z * voxel.z});
   }
-  /// Drawn unit normal of a surface of constant value. @param gradient  in index space, not zero
+  /// Drawn unit normal of a surface of constant value. @param gradient  in index space; isSlope()
   EMSCAPE_HD Vec3f normal(const Vec3f& gradient) const {
     return normalized(Vec3f{gradient.x / voxel.x, gradient.y / voxel.y, gradient.z / voxel.z});
+  }
+
+  /// Whether a gradient has a direction: it is neither nothing nor infinite.
+  EMSCAPE_HD static bool isSlope(const Vec3f& gradient) {
+    const float squared = dot(gradient, gradient);
+    return squared > 0.0F && squared - squared == 0.0F;
   }
 
   /// A premultiplied colour as lit; its opacity stays. Both sides of a surface are the same.
@@ -49,8 +55,8 @@ struct ShadingView {
   /// A sample of fog as lit: where the value hardly changes there is no surface, and the colour stays.
   /// @param gradient  of f, per voxel, in index space
   EMSCAPE_HD Rgba litFog(const Rgba& sample, const Vec3f& gradient, const Vec3f& to_viewer) const {
+    if (!isSlope(gradient)) return sample;
     const float squared = dot(gradient, gradient);
-    if (!(squared > 0.0F)) return sample;
     const float strength = squared / (squared + kFaintGradient * kFaintGradient);
     const Rgba shaded = lit(sample, normal(gradient), to_viewer);
     return {lerp(sample.r, shaded.r, strength), lerp(sample.g, shaded.g, strength),

@@ -16,7 +16,7 @@ struct VolumeView {
   Dims dims;
   const std::int32_t* first_valid_k = nullptr;  ///< one a column; null: no voxel is masked
   int masked_below = 0;                         ///< no voxel of a layer from here up is masked
-  bool has_nan = false;
+  bool all_finite = true;                       ///< no value is NaN or infinite
 
   EMSCAPE_HD Vec3d lower() const { return {-0.5, -0.5, -0.5}; }
   EMSCAPE_HD Vec3d upper() const { return {dims.x - 0.5, dims.y - 0.5, dims.z - 0.5}; }

@@ -330,7 +330,7 @@ HWY_EXPORT(cast);
 
 bool packetsCanCast(const VolumeView& volume) {
   constexpr long long kMostVoxels = 1LL << 31;
-  return !volume.has_nan && volume.dims.x >= 2 && volume.dims.count() < kMostVoxels;
+  return volume.all_finite && volume.dims.x >= 2 && volume.dims.count() < kMostVoxels;
 }
 
 long long castPackets(const RaycastTask& task, CompositingMode mode, const Pixel* pixels, const float* limits,

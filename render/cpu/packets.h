@@ -9,7 +9,7 @@
 
 namespace emscape::render {
 
-/// Whether packets can cast a volume: no NaN, at least two voxels wide, fewer than 2^31 of them.
+/// Whether packets can cast a volume: no NaN or infinity, at least two voxels wide, fewer than 2^31 of them.
 bool packetsCanCast(const VolumeView& volume);
 
 /// Casts the volume as some pixels show it (see RaycastTask::castVolume()), with the widest vectors that the

@@ -162,6 +162,25 @@ TEST(Nan, DrawsNothingAndHidesNothing) {
   EXPECT_NEAR(lookAlong(some, fog(0.03), kAlongX).a, 1 - std::pow(0.97, 9), 0.02);
 }
 
+TEST(Infinity, ShowsTheEndOfTheColoursAndSpoilsNoPixel) {
+  auto volume = makeVolume({12, 12, 12}, {1, 1, 1}, [](int i, int j, int k) {
+    if ((i + j + k) % 7 == 0) return std::numeric_limits<float>::infinity();
+    return (i + 2 * j + k) % 11 == 0 ? -std::numeric_limits<float>::infinity() : 0.5F;
+  });
+  for (CompositingMode mode :
+       {CompositingMode::dvr, CompositingMode::mida, CompositingMode::mip, CompositingMode::iso}) {
+    RenderSettings settings;
+    settings.mode = mode;
+    settings.shading = true;
+    for (const char* camera : {kAlongX, "orbit:azimuth_deg=70,elevation_deg=11,distance=2,fov_deg=1"}) {
+      const Rgba pixel = lookAlong(volume, fog(0.1), camera, settings);
+      for (float channel : {pixel.r, pixel.g, pixel.b, pixel.a}) {
+        EXPECT_TRUE(channel >= 0 && channel <= 1.0001F) << toString(mode) << channel;
+      }
+    }
+  }
+}
+
 TEST(Categories, AreDrawnInTheirOwnColoursWithoutOthersBetween) {
   auto volume = makeVolume({10, 10, 10}, {1, 1, 1}, [](int i, int, int) { return i < 5 ? 0.0F : 2.0F; });
   volume->info.categorical = true;
