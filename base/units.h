@@ -41,7 +41,7 @@ inline double dbToRatio(double decibels) {
   return std::pow(10.0, decibels / 10.0);
 }
 /// Wavelength in vacuum (m); frequency_hz > 0.
-constexpr double wavelength_m(double frequency_hz) {
+EMSCAPE_HD constexpr double wavelength_m(double frequency_hz) {
   return kSpeedOfLight / frequency_hz;
 }
 
