@@ -1,6 +1,7 @@
 /// emscape check: the propagation models against reference figures.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "apps/emscape/command.h"
@@ -17,7 +18,7 @@ using emfield::FigureCheck;
 using emfield::ReferenceDataset;
 using emfield::ReferenceFolder;
 
-/// A dataset that was run, or that no model answers to.
+/// A dataset that was run.
 struct Outcome {
   const ReferenceDataset* dataset;
   DatasetCheck check;
@@ -52,14 +53,14 @@ void printAsJson(const std::vector<Outcome>& checked, const std::vector<std::str
 }
 
 void printRow(const std::string& name, int cases, const FigureCheck& figure) {
-  fmt::print("{:<40} {:>6}  {:<18} {:>10.3g} {:>10.3g} {:<9} {}\n", name,
+  fmt::print("{:<40} {:>6}  {:<24} {:>10.3g} {:>10.3g} {:<9} {}\n", name,
              cases > 0 ? std::to_string(cases) : "", figure.figure, figure.max_abs_error, figure.tolerance,
              figure.unit, figure.pass() ? "pass" : fmt::format("MISS (line {})", figure.worst_line));
 }
 
 void printAsTable(const std::vector<Outcome>& checked, const std::vector<std::string>& not_checked,
                   const ReferenceFolder& folder) {
-  fmt::print("{:<40} {:>6}  {:<18} {:>10} {:>10} {:<9} {}\n", "dataset", "cases", "figure", "max error",
+  fmt::print("{:<40} {:>6}  {:<24} {:>10} {:>10} {:<9} {}\n", "dataset", "cases", "figure", "max error",
              "tolerance", "unit", "result");
   for (const Outcome& outcome : checked) {
     const auto& figures = outcome.check.figures;
@@ -76,7 +77,6 @@ int check(const std::string& dir, const GlobalOptions& global) {
   const ReferenceFolder folder = emfield::lookInto(dir);
   std::vector<Outcome> checked;
   std::vector<std::string> not_checked;
-  bool pass = true;
   for (const ReferenceDataset* dataset : folder.present) {
     stopIfInterrupted();
     if (dataset->check == nullptr) {
@@ -84,8 +84,11 @@ int check(const std::string& dir, const GlobalOptions& global) {
       continue;
     }
     checked.push_back({dataset, dataset->check(std::filesystem::path(dir) / dataset->name)});
-    pass = pass && checked.back().check.pass();
   }
+  // a folder in which nothing could be checked has not passed
+  const bool pass =
+      !checked.empty() && std::all_of(checked.begin(), checked.end(),
+                                      [](const Outcome& outcome) { return outcome.check.pass(); });
 
   if (global.json) {
     printAsJson(checked, not_checked, folder, pass);
@@ -109,7 +112,8 @@ Examples:
   emscape check reference
   emscape check reference --json     {"datasets": [{"name", "cases", "max_abs_error", "tolerance", "unit", "pass"}], "pass"}
 
-Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not, 3 for a file that is malformed.)");
+Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not or none was run, 3 for a file that
+is malformed.)");
   auto dir = std::make_shared<std::string>();
   command->add_option("DIR", *dir, "Folder of datasets, one a folder")->required();
   command->callback([dir, &global, &action] { action = [dir, &global] { return check(*dir, global); }; });

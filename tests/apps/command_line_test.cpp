@@ -21,7 +21,7 @@ int lines(const std::string& text) {
 }
 
 TEST(CommandLine, HelpAndVersionAreNoErrors) {
-  for (const char* subcommand : {"validate", "info", "simulate", "render", "bench"}) {
+  for (const char* subcommand : {"validate", "info", "simulate", "render", "check", "bench"}) {
     const ProgramResult help = run({subcommand, "--help"});
     EXPECT_EQ(help.status, 0) << subcommand;
     EXPECT_THAT(help.out, HasSubstr("Usage: emscape")) << subcommand;
@@ -37,6 +37,7 @@ TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {
       {},
       {"explode"},
       {"validate"},
+      {"check"},
       {"simulate", quick},
       {"simulate", quick, "-o", folder / "x", "--format", "docx"},
       {"simulate", quick, "-o", folder / "x", "--times", "5:1:1"},

@@ -1,0 +1,83 @@
+// emscape check: tables, exit status, what is passed over. The models' own figures are emfield's tests.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+constexpr const char* kGoodGeoid = "lat_deg,lon_deg_east,N_m\n38.6281550,269.7791550,-31.628\n";
+constexpr const char* kWrongGeoid = "lat_deg,lon_deg_east,N_m\n38.6281550,269.7791550,-32.628\n";
+
+void put(const TemporaryFolder& folder, const std::string& name, const std::string& text) {
+  std::filesystem::create_directories((folder.path() / name).parent_path());
+  writeFile(folder.path() / name, text);
+}
+
+TEST(Check, PassesAFolderWhoseFiguresAreMet) {
+  const TemporaryFolder folder;
+  put(folder, "geoid/check_points.csv", kGoodGeoid);
+  put(folder, "p452/results/x.csv", "");
+  put(folder, "notes/todo.txt", "");
+  const ProgramResult result = run({"check", folder.path().string(), "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report["pass"], true);
+  ASSERT_EQ(report["datasets"].size(), 1u);
+  const json& geoid = report["datasets"][0];
+  EXPECT_EQ(geoid["name"], "geoid");
+  EXPECT_EQ(geoid["cases"], 1);
+  EXPECT_LT(geoid["max_abs_error"], 0.02);
+  EXPECT_EQ(geoid["tolerance"], 0.02);
+  EXPECT_EQ(geoid["unit"], "m");
+  EXPECT_EQ(geoid["pass"], true);
+  EXPECT_EQ(report["not_checked"], json({"p452"}));
+  EXPECT_EQ(report["unknown"], json({"notes"}));
+  EXPECT_THAT(report["absent"], testing::Contains("itm_p2p"));
+}
+
+TEST(Check, FailsWithStatus5AndTheLineOfTheWorstCase) {
+  const TemporaryFolder folder;
+  put(folder, "geoid/check_points.csv", kWrongGeoid);
+  const ProgramResult result = run({"check", folder.path().string()});
+  EXPECT_EQ(result.status, 5);
+  EXPECT_THAT(result.out, HasSubstr("MISS (line 2)"));
+  EXPECT_THAT(result.out, HasSubstr("not checked: absent"));
+  const json report = json::parse(run({"check", folder.path().string(), "--json"}).out);
+  EXPECT_EQ(report["pass"], false);
+  EXPECT_EQ(report["datasets"][0]["pass"], false);
+}
+
+TEST(Check, DoesNotPassWhereNothingCouldBeChecked) {
+  const TemporaryFolder folder;
+  put(folder, "p1812/results/x.csv", "");
+  const ProgramResult result = run({"check", folder.path().string()});
+  EXPECT_EQ(result.status, 5);
+  EXPECT_THAT(result.out, HasSubstr("not checked: no model answers to it"));
+}
+
+TEST(Check, TellsFileAndLineOfAMalformedTable) {
+  const TemporaryFolder folder;
+  put(folder, "geoid/check_points.csv", "lat_deg,lon_deg_east,N_m\n38,269,-31.6\n39,x,-30\n");
+  const ProgramResult result = run({"check", folder.path().string(), "--json"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.err, HasSubstr("check_points.csv:3: lon_deg_east: 'x' is not a finite number"));
+  EXPECT_EQ(result.out, "");
+}
+
+TEST(Check, RefusesAFolderWithoutDatasets) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run({"check", folder.path().string()});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.err, HasSubstr("holds no dataset that is known"));
+}
+
+}  // namespace
+}  // namespace emscape::test
