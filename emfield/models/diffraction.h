@@ -69,7 +69,7 @@ struct TerrainProfile {
 
 /// The model at one frequency, as plain data.
 template <class Real>
-struct Diffraction {
+struct DiffractionModel {
   SphericalEarth<Real> earth;
   Real half_curvature;  ///< 1 / (2 a): the earth's bulge is this times d1 d2
 
@@ -86,8 +86,8 @@ struct Diffraction {
 };
 
 template <class Real>
-Diffraction<Real> diffractionModel(const DiffractionParameters& parameters) {
-  Diffraction<Real> model;
+DiffractionModel<Real> diffractionModel(const DiffractionParameters& parameters) {
+  DiffractionModel<Real> model;
   model.earth.earth_radius_m = Real(parameters.effective_earth_radius_m);
   model.earth.wavelength_m = Real(wavelength_m(parameters.frequency_hz));
   model.earth.sea_fraction = Real(parameters.sea_fraction);
@@ -112,7 +112,7 @@ EMSCAPE_HD Real bullingtonLossDb(Real nu, Real distance_m) {
 /// @param rx_slope     the same from the receiver, >= -slope_to_rx
 /// @see P.526-15 eq. (54), (55)
 template <class Real>
-EMSCAPE_HD Real bullingtonEdgeNu(const Diffraction<Real>& model, Real distance_m, Real slope_to_rx,
+EMSCAPE_HD Real bullingtonEdgeNu(const DiffractionModel<Real>& model, Real distance_m, Real slope_to_rx,
                                  Real tx_slope, Real rx_slope) {
   const Real product = (tx_slope - slope_to_rx) * (rx_slope + slope_to_rx);
   // Rounding may put the second factor below 0 where both are next to nothing.
@@ -186,7 +186,7 @@ struct DeltaBullington {
 /// @return -infinity without a post between
 /// @see P.526-15 eq. (50) to (55)
 template <class Real, class HeightOf>
-EMSCAPE_HD Real bullingtonNu(const Diffraction<Real>& model, const double* range_m, int count, Real tx_m,
+EMSCAPE_HD Real bullingtonNu(const DiffractionModel<Real>& model, const double* range_m, int count, Real tx_m,
                              Real rx_m, HeightOf heightOf) {
   const Real d = Real(range_m[count - 1]);
   const Real slope_to_rx = (rx_m - tx_m) / d;
@@ -215,7 +215,7 @@ EMSCAPE_HD Real bullingtonNu(const Diffraction<Real>& model, const double* range
 /// @return all NaN for a path of no length and over missing terrain (NaN)
 /// @accuracy float within 0.02 dB of double to 500 km, 20 MHz to 40 GHz
 template <class Real>
-EMSCAPE_HD DeltaBullington<Real> deltaBullington(const Diffraction<Real>& model,
+EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& model,
                                                  const TerrainProfile& profile, Real tx_msl_m,
                                                  Real rx_msl_m) {
   DeltaBullington<Real> result;

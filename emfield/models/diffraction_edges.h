@@ -23,8 +23,8 @@ struct MainEdge {
 /// @param first_msl_m, last_msl_m  heights of the path's ends over them
 /// @see P.526-15 eq. (26), with the bulge of the effective earth
 template <class Real>
-EMSCAPE_HD MainEdge<Real> mainEdge(const Diffraction<Real>& model, const TerrainProfile& profile, int first,
-                                   Real first_msl_m, int last, Real last_msl_m) {
+EMSCAPE_HD MainEdge<Real> mainEdge(const DiffractionModel<Real>& model, const TerrainProfile& profile,
+                                   int first, Real first_msl_m, int last, Real last_msl_m) {
   MainEdge<Real> edge;
   const Real begin = Real(profile.range_m[first]);
   const Real d = Real(profile.range_m[last]) - begin;
@@ -41,16 +41,16 @@ EMSCAPE_HD MainEdge<Real> mainEdge(const Diffraction<Real>& model, const Terrain
 /// Loss (dB) of the largest single edge.
 /// @param tx_msl_m, rx_msl_m  heights of the antennas over the first and the last post
 template <class Real>
-EMSCAPE_HD Real singleEdgeLossDb(const Diffraction<Real>& model, const TerrainProfile& profile, Real tx_msl_m,
-                                 Real rx_msl_m) {
+EMSCAPE_HD Real singleEdgeLossDb(const DiffractionModel<Real>& model, const TerrainProfile& profile,
+                                 Real tx_msl_m, Real rx_msl_m) {
   return knifeEdgeDb(mainEdge(model, profile, 0, tx_msl_m, profile.count - 1, rx_msl_m).nu);
 }
 
 /// Loss (dB) of three edges: the main one, and one on either side of it.
 /// @see P.526-13 section 4.4.2, eq. (50) to (52) ("cascaded knife edge"): L = J_p + T (J_t + J_r + C)
 template <class Real>
-EMSCAPE_HD Real deygoutLossDb(const Diffraction<Real>& model, const TerrainProfile& profile, Real tx_msl_m,
-                              Real rx_msl_m) {
+EMSCAPE_HD Real deygoutLossDb(const DiffractionModel<Real>& model, const TerrainProfile& profile,
+                              Real tx_msl_m, Real rx_msl_m) {
   const int last = profile.count - 1;
   const MainEdge<Real> main = mainEdge(model, profile, 0, tx_msl_m, last, rx_msl_m);
   const Real main_db = knifeEdgeDb(main.nu);
@@ -67,7 +67,7 @@ EMSCAPE_HD Real deygoutLossDb(const Diffraction<Real>& model, const TerrainProfi
 /// @see J. Deygout, IEEE Trans. AP-14 (1966), p. 480
 constexpr int kDeepestDeygout = 6;
 template <class Real>
-EMSCAPE_HD Real recursiveDeygoutLossDb(const Diffraction<Real>& model, const TerrainProfile& profile,
+EMSCAPE_HD Real recursiveDeygoutLossDb(const DiffractionModel<Real>& model, const TerrainProfile& profile,
                                        Real tx_msl_m, Real rx_msl_m, int depth) {
   struct Section {
     int first, last;

@@ -91,8 +91,8 @@ class DiffractionSweep {
   /// Stands at the profile's first post, the transmitter.
   /// @param profile   stays alive, as does the scratch memory
   /// @param tx_msl_m  of the antenna; see kDiffractionAboveGround
-  EMSCAPE_HD DiffractionSweep(const Diffraction<Real>& model, const TerrainProfile& profile, Real tx_msl_m,
-                              const DiffractionScratch<Real>& scratch)
+  EMSCAPE_HD DiffractionSweep(const DiffractionModel<Real>& model, const TerrainProfile& profile,
+                              Real tx_msl_m, const DiffractionScratch<Real>& scratch)
       : model_(model), profile_(profile), scratch_(scratch), base_(Real(profile.height_msl_m[0])) {
     tx_ = model.raised_m(tx_msl_m - base_, 0);
     lowered_hull_.points = scratch.lowered_hull;
@@ -134,7 +134,7 @@ class DiffractionSweep {
   EMSCAPE_HD int makeEnvelope(Real distance_m, Real lowest_m);
   EMSCAPE_HD Real smoothNu(Real distance_m, const EffectiveHeights<Real>& heights);
 
-  Diffraction<Real> model_;
+  DiffractionModel<Real> model_;
   TerrainProfile profile_;
   DiffractionScratch<Real> scratch_;
   Real base_;  ///< all heights are from the first post's
@@ -352,8 +352,8 @@ EMSCAPE_HD void DiffractionSweep<Real>::column(const Real* rx_msl_m, int count, 
 /// @param heights_msl_m  `height_count` heights (m), rising
 /// @param loss_db        posts x height_count, height fastest; NaN at the first post
 template <class Real>
-EMSCAPE_HD void diffractionPlane(const Diffraction<Real>& model, const TerrainProfile& profile, Real tx_msl_m,
-                                 const Real* heights_msl_m, int height_count,
+EMSCAPE_HD void diffractionPlane(const DiffractionModel<Real>& model, const TerrainProfile& profile,
+                                 Real tx_msl_m, const Real* heights_msl_m, int height_count,
                                  const DiffractionScratch<Real>& scratch, Real* loss_db) {
   DiffractionSweep<Real> sweep(model, profile, tx_msl_m, scratch);
   for (int post = 0; post < profile.count; ++post) {

@@ -108,7 +108,7 @@ EMSCAPE_HD Real roughnessFactor(RoughnessModel model, Real roughness_m, Real sin
 
 /// The model at one frequency, as plain data.
 template <class Real>
-struct TwoRay {
+struct TwoRayModel {
   SphericalEarth<Real> earth;
   Complex<Real> permittivity;
   LinearPolarization polarization;
@@ -118,8 +118,8 @@ struct TwoRay {
 };
 
 template <class Real>
-TwoRay<Real> twoRayModel(const TwoRayParameters& parameters) {
-  TwoRay<Real> model;
+TwoRayModel<Real> twoRayModel(const TwoRayParameters& parameters) {
+  TwoRayModel<Real> model;
   model.earth.earth_radius_m = Real(parameters.effective_earth_radius_m);
   model.earth.wavelength_m = Real(wavelength_m(parameters.frequency_hz));
   model.earth.sea_fraction = 0;
@@ -181,7 +181,7 @@ EMSCAPE_HD ReflectedPath<Real> reflectedPath(Real earth_radius_m, Real distance_
 /// @param reflected_gain  amplitude of the antennas' patterns along the reflected ray over that along the
 /// direct
 template <class Real>
-EMSCAPE_HD Real interferenceFactor(const TwoRay<Real>& model, const ReflectedPath<Real>& path,
+EMSCAPE_HD Real interferenceFactor(const TwoRayModel<Real>& model, const ReflectedPath<Real>& path,
                                    Real reflected_gain) {
   const Complex<Real> reflection = fresnelReflection(model.permittivity, model.polarization, path.sine);
   const Real amplitude =
@@ -201,8 +201,8 @@ EMSCAPE_HD Real interferenceFactor(const TwoRay<Real>& model, const ReflectedPat
 /// @accuracy float within 0.05 dB of double outside the nulls, where F > -20 dB, up to 1e4 wavelengths of
 /// path difference
 template <class Real>
-EMSCAPE_HD Real twoRayExcessDb(const TwoRay<Real>& model, Real distance_m, Real height1_m, Real height2_m,
-                               Real reflected_gain = 1) {
+EMSCAPE_HD Real twoRayExcessDb(const TwoRayModel<Real>& model, Real distance_m, Real height1_m,
+                               Real height2_m, Real reflected_gain = 1) {
   constexpr Real kDeepestNull = Real(1e-3);
   const Real lowest = Real(kTwoRayHeight.least);
   const Real h1 = height1_m > lowest ? height1_m : lowest, h2 = height2_m > lowest ? height2_m : lowest;

@@ -11,9 +11,13 @@
 
 #include "emfield/check/reference_check.h"
 #include "emfield/check/reference_table.h"
+#include "emfield/models/diffraction.h"
+#include "emfield/models/gases.h"
 #include "emfield/models/itm.h"
 #include "emfield/models/model_limits.h"
 #include "emfield/models/p528.h"
+#include "emfield/models/rain.h"
+#include "emfield/models/two_ray.h"
 #include "tests/reference_dir.h"
 
 namespace emscape::emfield {
@@ -190,6 +194,10 @@ TEST(ModelLimits, StandInTheDocumentation) {
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   EXPECT_THAT(text, HasSubstr(limitsTable(kItmLimits)));
   EXPECT_THAT(text, HasSubstr(limitsTable(kP528Limits)));
+  EXPECT_THAT(text, HasSubstr(limitsTable(kDiffractionLimits)));
+  EXPECT_THAT(text, HasSubstr(limitsTable(kTwoRayLimits)));
+  EXPECT_THAT(text, HasSubstr(limitsTable(kGasesLimits)));
+  EXPECT_THAT(text, HasSubstr(limitsTable(kRainLimits)));
 }
 
 }  // namespace
