@@ -212,7 +212,7 @@ EMSCAPE_HD Real bullingtonNu(const DiffractionModel<Real>& model, const double* 
 
 /// Loss of one path, from a profile whose last post lies below the receiver.
 /// @param tx_msl_m, rx_msl_m  of the antennas; see kDiffractionAboveGround
-/// @return all NaN for a path of no length and over missing terrain (NaN)
+/// @return 0 with a single post; all NaN over missing terrain (NaN)
 /// @accuracy float within 0.02 dB of double to 500 km, 20 MHz to 40 GHz
 template <class Real>
 EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& model,
@@ -220,7 +220,7 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
                                                  Real rx_msl_m) {
   DeltaBullington<Real> result;
   const int last = profile.count - 1;
-  const double distance_m = last > 0 ? profile.range_m[last] : 0;
+  const double distance_m = profile.range_m[last];
   const Real d = Real(distance_m);
   const Real base = Real(profile.height_msl_m[0]);
   // Heights from the first post's on: single precision is for differences.
@@ -230,6 +230,11 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
   const Real tx = model.raised_m(tx_msl_m - base, 0);
   const Real rx = model.raised_m(rx_msl_m - base, trend.rx_ground_msl_m);
   const auto heightOf = [&](int i) { return Real(profile.height_msl_m[i]) - base; };
+
+  if (last == 0) {  // from the antenna to itself
+    result.loss_db = std::isnan(base) ? base : Real(0);
+    return result;
+  }
 
   TerrainSums sums;
   const Real infinity = Real(HUGE_VAL);
@@ -244,7 +249,7 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
     trend.tx_angle = above / d1 > trend.tx_angle ? above / d1 : trend.tx_angle;
     trend.rx_angle = above / d2 > trend.rx_angle ? above / d2 : trend.rx_angle;
   }
-  if (!(distance_m > 0) || std::isnan(sums.v1)) {
+  if (std::isnan(sums.v1)) {
     const Real nan = Real(NAN);
     return {nan, nan, nan, nan, {nan, nan}};
   }

@@ -111,7 +111,7 @@ class DiffractionSweep {
 
   /// Losses (dB) of receivers above the current post.
   /// @param rx_msl_m  `count` heights (m), rising; see kDiffractionAboveGround
-  /// @param loss_db   `count` results; NaN at the first post and from missing terrain (NaN) on
+  /// @param loss_db   `count` results; 0 at the first post, NaN from missing terrain (NaN) on
   EMSCAPE_HD void column(const Real* rx_msl_m, int count, Real* loss_db);
 
  private:
@@ -314,8 +314,9 @@ EMSCAPE_HD Real DiffractionSweep<Real>::lackingDb(Column& column, Real rx_m, Rea
 
 template <class Real>
 EMSCAPE_HD void DiffractionSweep<Real>::column(const Real* rx_msl_m, int count, Real* loss_db) {
-  if (post_ == 0 || std::isnan(sums_.v1)) {
-    for (int j = 0; j < count; ++j) loss_db[j] = Real(NAN);
+  const bool is_unknown = std::isnan(sums_.v1) || std::isnan(base_);
+  if (post_ == 0 || is_unknown) {
+    for (int j = 0; j < count; ++j) loss_db[j] = is_unknown ? Real(NAN) : Real(0);
     return;
   }
   const double distance_m = profile_.range_m[post_];
@@ -350,7 +351,7 @@ EMSCAPE_HD void DiffractionSweep<Real>::column(const Real* rx_msl_m, int count, 
 
 /// A plane of losses: receivers at the same heights above every post.
 /// @param heights_msl_m  `height_count` heights (m), rising
-/// @param loss_db        posts x height_count, height fastest; NaN at the first post
+/// @param loss_db        posts x height_count, height fastest; see DiffractionSweep::column
 template <class Real>
 EMSCAPE_HD void diffractionPlane(const DiffractionModel<Real>& model, const TerrainProfile& profile,
                                  Real tx_msl_m, const Real* heights_msl_m, int height_count,

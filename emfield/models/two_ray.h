@@ -195,7 +195,7 @@ EMSCAPE_HD Real interferenceFactor(const TwoRayModel<Real>& model, const Reflect
 }
 
 /// Loss (dB) over free space; negative in the lobes.
-/// @param distance_m            along the surface, > 0
+/// @param distance_m            along the surface; below 1 m it counts as that
 /// @param height1_m, height2_m  above the surface; see kTwoRayHeight
 /// @return in the nulls no more than 60 dB
 /// @accuracy float within 0.05 dB of double outside the nulls, where F > -20 dB, up to 1e4 wavelengths of
@@ -207,6 +207,7 @@ EMSCAPE_HD Real twoRayExcessDb(const TwoRayModel<Real>& model, Real distance_m, 
   const Real lowest = Real(kTwoRayHeight.least);
   const Real h1 = height1_m > lowest ? height1_m : lowest, h2 = height2_m > lowest ? height2_m : lowest;
   const Real radius_m = model.earth.earth_radius_m;
+  distance_m = distance_m < 1 ? Real(1) : distance_m;  // straight above: finite
   const Real roots = std::sqrt(h1) + std::sqrt(h2);
   if (distance_m >= std::sqrt(2 * radius_m) * roots) {
     const Real loss_db = model.earth.firstTermDb(distance_m, h1, h2, radius_m);

@@ -8,6 +8,8 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "emfield/models/gases.h"
+#include "emfield/models/rain.h"
 #include "emfield/radar_equation.h"
 #include "scenario/emitter.h"
 
@@ -174,6 +176,24 @@ TEST(Traps, RadarPathLossesCountTwiceAndJammingOnce) {
   EXPECT_NEAR(radarSnrDb(radar, 5, 5e4) - radarSnrDb(radar, 5, 1e5), 40 * std::log10(2), 1e-9);
   EXPECT_NEAR(ratioToDb(jammingPower_w(radar, jammer, 5e4) / jammingPower_w(radar, jammer, 1e5)),
               20 * std::log10(2), 1e-9);
+}
+
+TEST(Traps, FieldStrengthUsesEirpAndIsRms) {
+  // ITU's figures for 1 kW at 1 km: 106.9 dBuV/m of ERP, 104.8 of EIRP
+  const double spread_db = ratioToDb(4 * kPi * 1e6);
+  EXPECT_NEAR(30 + kDipoleGain_dbi - spread_db + kFieldStrengthOfPowerDensity_db, 106.92, 0.01);
+  EXPECT_NEAR(30 - spread_db + kFieldStrengthOfPowerDensity_db, 104.77, 0.01);
+  // S = E^2 / Z0 with E as RMS; with the peak value it would be half, 3.01 dB
+  const double field_v_per_m = std::pow(10, (104.768207 - 120) / 20);
+  EXPECT_NEAR(ratioToDb(field_v_per_m * field_v_per_m / kFreeSpaceImpedance), 30 - spread_db, 1e-4);
+}
+
+TEST(Traps, GasesAndRainCountTwiceForAnEcho) {
+  const RadarLink radar = searchRadar();
+  const double one_way_db =
+      40 * (gasAttenuation(radar.frequency_hz, AirState{}).total_db_per_km() +
+            rainCoefficients(radar.frequency_hz, 0, 0).specificAttenuation_db_per_km(10.0));
+  EXPECT_NEAR(radarSnrDb(radar, 5, 4e4) - radarSnrDb(radar, 5, 4e4, one_way_db), 2 * one_way_db, 1e-9);
 }
 
 TEST(Radar, RangeIsWhereTheSnrHasFallen) {

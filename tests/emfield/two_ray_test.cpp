@@ -170,6 +170,15 @@ TEST(TwoRay, FloatIsCloseToDoubleOutsideTheNulls) {
   EXPECT_LT(worst, 0.05);
 }
 
+TEST(Traps, TwoRaysStraightAboveTheAntennaAreFinite) {
+  const auto model = twoRayModel<float>(seaAt(1e9));
+  for (const float d : {0.f, 1e-3f, 1.f, 10.f}) {
+    for (const float h : {0.f, 1.f, 20.f, 5000.f}) {
+      EXPECT_TRUE(std::isfinite(twoRayExcessDb(model, d, 20.f, h))) << d << ", " << h;
+    }
+  }
+}
+
 TEST(Traps, FieldsAddAsPowersAndRaysAsAmplitudes) {
   // A lobe of two equal rays is 6 dB above one, two incoherent powers 3 dB.
   ReflectedPath<double> path{wavelength_m(1e9) / 2, 1, 0.01, 1};
