@@ -170,6 +170,12 @@ struct Renderer::Impl {
     return report.complete;
   }
 
+  /// Whether rays that meet transparent samples alone are transparent.
+  bool transparentShowsNothing() const {
+    return settings.mode == CompositingMode::dvr ||
+           (settings.mode == CompositingMode::mida && settings.mida_gamma <= 0);
+  }
+
   /// @return false if it was stopped
   bool drawAdaptive(double tolerance_levels, bool shows_ground, Image& image, FrameReport& report,
                     const StopFlag* stop) {
@@ -180,6 +186,9 @@ struct Renderer::Impl {
       wholePicture(image.size, silhouette);
     } else {
       findSilhouette(prepared.camera, prepared.volume.lower(), prepared.volume.upper(), silhouette);
+      if (transparentShowsNothing() && prepared.skip.levels != nullptr) {
+        narrowSilhouette(prepared.camera, visibleBoxes(prepared.skip, prepared.volume.dims), silhouette);
+      }
     }
     report.complete =
         adaptive.draw(image, silhouette, tolerance_levels, [&](const std::vector<Pixel>& pixels) {

@@ -111,6 +111,35 @@ double distanceToBox(const Vec3d& p, const Vec3d& lower, const Vec3d& upper) {
       Vec3d{beyond(p.x, lower.x, upper.x), beyond(p.y, lower.y, upper.y), beyond(p.z, lower.z, upper.z)});
 }
 
+/// What a box covers of a picture, unless the eye is in it or too close.
+struct Outline {
+  bool is_known = false;
+  Lines lines;
+};
+
+Outline outlineOf(const CameraView& camera, const Vec3d& lower, const Vec3d& upper) {
+  const Projection3 project(camera);
+  if (camera.orthographic) return {true, outlineOf(project, lower, upper, 0.0)};
+  const double diagonal = length(upper - lower);
+  if (distanceToBox(camera.eye, lower, upper) <= kEyeAtBox * diagonal) return {};
+  // Depths count lengths along `forward`, which is of any length in index space.
+  const double aspect = static_cast<double>(camera.size.width) / camera.size.height;
+  const double reach = length(camera.forward) +
+                       camera.half_height * ((aspect + std::abs(camera.shift_x)) * length(camera.right) +
+                                             (1.0 + std::abs(camera.shift_y)) * length(camera.up));
+  return {true, outlineOf(project, lower, upper, kNearest * diagonal / reach)};
+}
+
+/// The pixels of a row that an outline covers, and at most those that it passes by within kMargin.
+Span spanOf(const Outline& outline, int y, int width) {
+  if (!outline.is_known) return {0, width};
+  const Extent extent = extentBetween(outline.lines, y - kMargin, y + kMargin);
+  const double end = width;
+  const auto first = static_cast<int>(std::ceil(std::clamp(extent.least - kMargin, 0.0, end)));
+  const auto last = static_cast<int>(std::floor(std::clamp(extent.largest + kMargin, -1.0, end - 1.0)));
+  return first <= last ? Span{first, last + 1} : Span{};
+}
+
 }  // namespace
 
 long long Silhouette::count() const {
@@ -122,35 +151,71 @@ long long Silhouette::count() const {
 void findSilhouette(const CameraView& camera, const Vec3d& lower, const Vec3d& upper,
                     Silhouette& silhouette) {
   const ImageSize size = camera.size;
-  wholePicture(size, silhouette);
-  const double diagonal = length(upper - lower);
-  double nearest = 0;
-  bool may_project = true;
-  if (!camera.orthographic) {
-    // Depths count lengths along `forward`, which is of any length in index space.
-    const double aspect = static_cast<double>(size.width) / size.height;
-    const double reach = length(camera.forward) +
-                         camera.half_height * ((aspect + std::abs(camera.shift_x)) * length(camera.right) +
-                                               (1.0 + std::abs(camera.shift_y)) * length(camera.up));
-    nearest = kNearest * diagonal / reach;
-    may_project = distanceToBox(camera.eye, lower, upper) > kEyeAtBox * diagonal;
-  }
-  const Lines lines = may_project ? outlineOf(Projection3(camera), lower, upper, nearest) : Lines{};
+  silhouette.rows.resize(static_cast<std::size_t>(size.height));
+  const Outline outline = outlineOf(camera, lower, upper);
   const auto meets = [&](int x, int y) {
     const RayInterval inside = clip(camera.ray(x, y), lower, upper);
     return inside.end > inside.begin;
   };
   parallelFor(size.height, kRowGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
-      Span& row = silhouette.rows[static_cast<std::size_t>(y)];
-      if (may_project) {
-        const Extent extent = extentBetween(lines, y - kMargin, y + kMargin);
-        const double end = size.width;
-        row.begin = static_cast<int>(std::ceil(std::clamp(extent.least - kMargin, 0.0, end)));
-        row.end = static_cast<int>(std::floor(std::clamp(extent.largest + kMargin, -1.0, end - 1.0))) + 1;
-      }
+      Span row = spanOf(outline, y, size.width);
       while (row.begin < row.end && !meets(row.begin, y)) ++row.begin;
       while (row.begin < row.end && !meets(row.end - 1, y)) --row.end;
+      silhouette.rows[static_cast<std::size_t>(y)] = row.begin < row.end ? row : Span{};
+    }
+  });
+}
+
+std::vector<IndexBox> visibleBoxes(const SkipView& skip, const Dims& voxels) {
+  constexpr int kEdge = 1 << SkipView::kEdgeBits;
+  // Positions of samples are floats; the outer bricks reach to the box' faces and beyond.
+  constexpr double kRounding = 1.0 / 64;
+  const auto lower = [&](int brick) { return (brick > 0 ? brick * kEdge : -1) - kRounding; };
+  const auto upper = [&](int brick, int bricks, int count) {
+    return (brick + 1 < bricks ? (brick + 1) * kEdge : count) + kRounding;
+  };
+  std::vector<IndexBox> boxes;
+  for (int k = 0; k < skip.dims.z; ++k) {
+    for (int j = 0; j < skip.dims.y; ++j) {
+      const float* levels = skip.levels + (static_cast<std::ptrdiff_t>(k) * skip.dims.y + j) * skip.dims.x;
+      int first = 0;
+      int end = skip.dims.x;
+      while (first < end && levels[first] != SkipView::kNever) ++first;
+      while (first < end && levels[end - 1] != SkipView::kNever) --end;
+      if (first == end) continue;
+      boxes.push_back({{lower(first), lower(j), lower(k)},
+                       {upper(end - 1, skip.dims.x, voxels.x), upper(j, skip.dims.y, voxels.y),
+                        upper(k, skip.dims.z, voxels.z)}});
+    }
+  }
+  return boxes;
+}
+
+void narrowSilhouette(const CameraView& camera, const std::vector<IndexBox>& boxes, Silhouette& silhouette) {
+  std::vector<Outline> outlines;
+  std::vector<Extent> heights;
+  for (const IndexBox& box : boxes) {
+    outlines.push_back(outlineOf(camera, box.lower, box.upper));
+    Extent& height = heights.emplace_back();
+    if (!outlines.back().is_known) return;  // it may cover every pixel
+    for (const auto& [p, q] : outlines.back().lines) {
+      height.add(p.y);
+      height.add(q.y);
+    }
+  }
+  parallelFor(camera.size.height, kRowGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      Span& row = silhouette.rows[static_cast<std::size_t>(y)];
+      Span covered{row.end, row.begin};
+      for (std::size_t i = 0; i < outlines.size(); ++i) {
+        if (y < heights[i].least - kMargin || y > heights[i].largest + kMargin) continue;
+        const Span span = spanOf(outlines[i], y, camera.size.width);
+        if (span.end <= span.begin) continue;
+        covered.begin = std::min(covered.begin, span.begin);
+        covered.end = std::max(covered.end, span.end);
+      }
+      row = {std::max(row.begin, covered.begin), std::min(row.end, covered.end)};
       if (row.end <= row.begin) row = {};
     }
   });

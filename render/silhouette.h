@@ -27,6 +27,20 @@ struct Silhouette {
 /// @param silhouette  is written; its memory is used again
 void findSilhouette(const CameraView& camera, const Vec3d& lower, const Vec3d& upper, Silhouette& silhouette);
 
+/// A box in index space.
+struct IndexBox {
+  Vec3d lower, upper;
+};
+
+/// Boxes around all bricks in which some sample has an opacity (SkipView::kNever), one for each row of bricks
+/// that has any. A ray that meets none of them shows nothing in DVR, nor in MIDA.
+/// @param skip  with levels
+std::vector<IndexBox> visibleBoxes(const SkipView& skip, const Dims& voxels);
+
+/// Takes from each span's ends the pixels whose rays meet none of the boxes; rays that pass by closely may
+/// stay.
+void narrowSilhouette(const CameraView& camera, const std::vector<IndexBox>& boxes, Silhouette& silhouette);
+
 /// Every pixel of a picture.
 void wholePicture(ImageSize size, Silhouette& silhouette);
 

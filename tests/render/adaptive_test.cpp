@@ -266,6 +266,32 @@ TEST(Adaptive, IsFarBetterThanQuarterOnAnEmeVolumeWithFewerRays) {
   EXPECT_GT(adaptive.psnr_db, quarter.psnr_db + 8);
 }
 
+TEST(Adaptive, PassesOverWhatIsTransparentAndRestoresIt) {
+  // A small ball in a large empty box, seen from around and from within.
+  const auto volume = testing::makeVolume({64, 48, 40}, {1, 1, 1}, [](int i, int j, int k) {
+    return std::hypot(i - 40, j - 20, k - 12) < 6 ? 0.8F : 0.1F;
+  });
+  const ImageSize size{90, 70};
+  Renderer renderer;
+  renderer.setVolume(volume);
+  renderer.setTransferFunction(
+      testing::makeFunction({{0, {1, 1, 1}}}, {{0, 0}, {0.2, 0}, {0.3, 0.2}, {1, 0.4}}));
+  for (int n = 0; n < 24; ++n) {
+    CameraSpec camera;
+    camera.azimuth_deg = 15 * n;
+    camera.elevation_deg = 7 * n - 80;
+    camera.projection = n % 3 == 0 ? Projection::orthographic : Projection::perspective;
+    if (n % 4 == 1) camera.distance = 0.2;
+    renderer.setCamera(makeCamera(camera, renderer.sceneBox(), size));
+    const Image full = renderer.render(size);
+    FrameReport report;
+    Image image = renderer.render(size, {Pattern::adaptive}, &report);
+    EXPECT_LT(report.rays, size.count() / 3);
+    renderer.restore(image);
+    EXPECT_TRUE(image.pixels == full.pixels) << n;
+  }
+}
+
 TEST(AdaptiveTolerance, ApproachesABudgetWithoutSwinging) {
   for (const double start : {0.07, 0.5, 30.0}) {
     for (const double exponent : {0.2, 0.5, 1.0}) {

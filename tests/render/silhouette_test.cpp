@@ -111,5 +111,62 @@ TEST(Silhouette, IsExactForViewsAlongAnAxis) {
   }
 }
 
+TEST(NarrowSilhouette, KeepsEveryPixelWhoseRayMeetsABox) {
+  std::mt19937 random(8);
+  const auto between = [&](double least, double most) {
+    return std::uniform_real_distribution<double>(least, most)(random);
+  };
+  const Vec3d upper{31.5, 23.5, 15.5};
+  for (int n = 0; n < 200; ++n) {
+    const double far = n % 3 == 0 ? 20 : 120;
+    CameraView view = viewFrom({between(-far, far), between(-far, far), between(-far, far)}, {15, 12, 8},
+                               {1, between(0.3, 3), 1}, {50, 40});
+    view.orthographic = n % 4 == 0;
+    view.half_height = view.orthographic ? 25 : 0.5;
+    std::vector<IndexBox> boxes;
+    for (int i = 0; i < n % 4; ++i) {
+      const Vec3d low{between(0, 20), between(0, 15), between(0, 10)};
+      boxes.push_back({low, low + Vec3d{between(1, 10), between(1, 8), between(1, 5)}});
+    }
+    Silhouette whole;
+    findSilhouette(view, kLower, upper, whole);
+    Silhouette narrowed = whole;
+    narrowSilhouette(view, boxes, narrowed);
+    EXPECT_LE(narrowed.count(), whole.count());
+    for (int y = 0; y < view.size.height; ++y) {
+      const Span& row = narrowed.rows[static_cast<std::size_t>(y)];
+      for (int x = 0; x < view.size.width; ++x) {
+        for (const IndexBox& box : boxes) {
+          const RayInterval inside = clip(view.ray(x, y), box.lower, box.upper);
+          if (inside.end > inside.begin) {
+            EXPECT_TRUE(row.contains(x)) << n << ": " << x << ", " << y;
+          }
+        }
+      }
+    }
+    if (boxes.empty()) {
+      EXPECT_EQ(narrowed.count(), 0);
+    }
+  }
+}
+
+TEST(NarrowSilhouette, BoxesHoldTheBricksThatMayShow) {
+  std::vector<float> levels(4 * 3 * 2, 0.5F);
+  const auto brick = [](int x, int y, int z) { return static_cast<std::size_t>((z * 3 + y) * 4 + x); };
+  levels[brick(1, 0, 0)] = SkipView::kNever;
+  levels[brick(2, 0, 0)] = SkipView::kNever;
+  levels[brick(3, 2, 1)] = SkipView::kNever;
+  const SkipView skip{nullptr, levels.data(), {4, 3, 2}};
+  const std::vector<IndexBox> boxes = visibleBoxes(skip, {30, 20, 10});
+  ASSERT_EQ(boxes.size(), 2U);
+  EXPECT_NEAR(boxes[0].lower.x, 8, 0.1);
+  EXPECT_NEAR(boxes[0].upper.x, 24, 0.1);
+  EXPECT_LT(boxes[0].lower.y, -0.5);  // the outer bricks reach beyond the volume's box
+  EXPECT_GT(boxes[1].upper.x, 29.5);
+  EXPECT_GT(boxes[1].upper.y, 19.5);
+  EXPECT_GT(boxes[1].upper.z, 9.5);
+  EXPECT_NEAR(boxes[1].lower.x, 24, 0.1);
+}
+
 }  // namespace
 }  // namespace emscape::render
