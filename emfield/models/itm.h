@@ -161,18 +161,18 @@ EMSCAPE_HD ItmStatus checkInput(const ItmLink<Real>& link, const ItmQuantiles<Re
                                 unsigned& warnings) {
   for (int end = 0; end < 2; ++end) {
     const Real height_m = link.height_agl_m[end];
-    if (!kItmHeight.holds(height_m)) {
+    if (!holds<kItmHeight>(height_m)) {
       return end == 0 ? ItmStatus::transmitter_height : ItmStatus::receiver_height;
     }
-    if (!kItmProvenHeight.holds(height_m)) {
+    if (!holds<kItmProvenHeight>(height_m)) {
       warnings |= end == 0 ? kItmWarnTransmitterHeight : kItmWarnReceiverHeight;
     }
   }
   if (static_cast<int>(link.climate) < 1 || static_cast<int>(link.climate) > 7) return ItmStatus::climate;
-  if (!kItmSeaLevelRefractivity.holds(link.sea_level_refractivity)) return ItmStatus::refractivity;
-  if (!kItmFrequency.holds(link.frequency_hz)) return ItmStatus::frequency;
-  if (!kItmProvenFrequency.holds(link.frequency_hz)) warnings |= kItmWarnFrequency;
-  if (!kItmPermittivity.holds(link.relative_permittivity)) return ItmStatus::permittivity;
+  if (!holds<kItmSeaLevelRefractivity>(link.sea_level_refractivity)) return ItmStatus::refractivity;
+  if (!holds<kItmFrequency>(link.frequency_hz)) return ItmStatus::frequency;
+  if (!holds<kItmProvenFrequency>(link.frequency_hz)) warnings |= kItmWarnFrequency;
+  if (!holds<kItmPermittivity>(link.relative_permittivity)) return ItmStatus::permittivity;
   if (!(link.conductivity_s_m > kItmConductivity.least)) return ItmStatus::conductivity;
   const int mode = link.variability_mode;
   if (mode < 0 || mode > 23 || mode % 10 > 3) return ItmStatus::variability_mode;
@@ -191,7 +191,7 @@ EMSCAPE_HD ItmStatus checkPath(const ItmPath<Real>& path, unsigned& warnings) {
   for (int end = 0; end < 2; ++end) {
     const ItmTerminal<Real>& terminal = path.terminal[end];
     const Real smooth_m = path.smoothHorizonDistance_m(end);
-    if (!kItmHorizonAngle.holds(terminal.horizon_angle_rad)) {
+    if (!holds<kItmHorizonAngle>(terminal.horizon_angle_rad)) {
       warnings |= end == 0 ? kItmWarnTransmitterHorizonAngle : kItmWarnReceiverHorizonAngle;
     }
     if (terminal.horizon_distance_m < Real(kItmHorizonDistance.least) * smooth_m) {
@@ -202,19 +202,19 @@ EMSCAPE_HD ItmStatus checkPath(const ItmPath<Real>& path, unsigned& warnings) {
     }
   }
   const Real refractivity = path.surface_refractivity;
-  if (!kItmSurfaceRefractivity.holds(refractivity)) {
+  if (!holds<kItmSurfaceRefractivity>(refractivity)) {
     return refractivity > kItmSurfaceRefractivity.most ? ItmStatus::surface_refractivity_too_large
                                                        : ItmStatus::surface_refractivity_too_small;
   }
-  if (!kItmProvenSurfaceRefractivity.holds(refractivity)) warnings |= kItmWarnSurfaceRefractivity;
-  if (!kItmEffectiveEarth.holds(path.effective_earth_radius_m)) return ItmStatus::effective_earth;
+  if (!holds<kItmProvenSurfaceRefractivity>(refractivity)) warnings |= kItmWarnSurfaceRefractivity;
+  if (!holds<kItmEffectiveEarth>(path.effective_earth_radius_m)) return ItmStatus::effective_earth;
   if (path.ground_impedance.re <= std::fabs(path.ground_impedance.im)) return ItmStatus::ground_impedance;
 
   const Real difference_m =
       std::fabs(path.terminal[0].effective_height_m - path.terminal[1].effective_height_m);
   if (path.distance_m < difference_m / Real(0.2)) warnings |= kItmWarnDistanceUnderHeights;
   if (path.distance_m < kItmDistance.least * kItmDistance.si_per_unit) warnings |= kItmWarnDistanceUnder1km;
-  if (!kItmProvenDistance.holds(path.distance_m)) warnings |= kItmWarnDistanceOver1000km;
+  if (!holds<kItmProvenDistance>(path.distance_m)) warnings |= kItmWarnDistanceOver1000km;
   if (path.distance_m > kItmDistance.most * kItmDistance.si_per_unit) warnings |= kItmWarnDistanceOver2000km;
   return ItmStatus::done;
 }
@@ -245,8 +245,8 @@ EMSCAPE_HD void finish(const ItmLink<Real>& link, const ItmQuantiles<Real>& quan
                              itmNormalDeviate(quantiles.situation_percent / 100)};
   result.loss_db = result.free_space_db + itmQuantileDb(path, reference.attenuation_db, link.climate,
                                                         link.variability_mode, deviates);
-  if (!kItmDeviate.holds(deviates.time) || !kItmDeviate.holds(deviates.location) ||
-      !kItmDeviate.holds(deviates.situation)) {
+  if (!holds<kItmDeviate>(deviates.time) || !holds<kItmDeviate>(deviates.location) ||
+      !holds<kItmDeviate>(deviates.situation)) {
     result.warnings |= kItmWarnExtremeVariability;
   }
   if (result.warnings != 0) result.status = ItmStatus::done_with_warnings;
@@ -286,7 +286,7 @@ EMSCAPE_HD ItmResult<Real> itmAreaMode(const ItmArea<Real>& area, const ItmLink<
     return refuse(result, status);
   }
   if (!(area.distance_m > 0)) return refuse(result, ItmStatus::distance);
-  if (!kItmIrregularity.holds(area.irregularity_m)) return refuse(result, ItmStatus::irregularity);
+  if (!holds<kItmIrregularity>(area.irregularity_m)) return refuse(result, ItmStatus::irregularity);
   ItmPath<Real>& path = result.path;
   path.distance_m = area.distance_m;
   path.irregularity_m = area.irregularity_m;

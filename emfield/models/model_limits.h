@@ -38,11 +38,19 @@ struct ModelLimit {
   Beyond beyond;
   std::string_view remark;  ///< why, or what it means; may be empty
 
-  /// NaN is never within.
-  EMSCAPE_HD constexpr bool holds(double value_si) const {
+  /// NaN is never within. On the host; functions for both sides call holds<limit>().
+  constexpr bool holds(double value_si) const {
     return value_si >= least * si_per_unit && value_si <= most * si_per_unit;
   }
 };
+
+/// limit.holds(value), for host and device: device code knows constants, not the objects that hold them.
+template <const ModelLimit& limit>
+EMSCAPE_HD constexpr bool holds(double value_si) {
+  constexpr double least = limit.least * limit.si_per_unit;
+  constexpr double most = limit.most * limit.si_per_unit;
+  return value_si >= least && value_si <= most;
+}
 
 /// "frequency outside 20..20000 MHz: refused".
 std::string outsideMessage(const ModelLimit& limit);

@@ -1,0 +1,58 @@
+/// Links over hills of many sizes, the same in every run: what the benchmarks of ITM compute.
+#pragma once
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "emfield/models/itm.h"
+
+namespace emscape::bench {
+
+struct ItmCases {
+  int intervals = 0;
+  std::vector<float> heights_msl_m;  ///< `intervals` + 1 a case
+  std::vector<emfield::ItmLink<double>> links;
+
+  const float* profile(std::size_t i) const {
+    return heights_msl_m.data() + i * (static_cast<std::size_t>(intervals) + 1);
+  }
+};
+
+inline ItmCases makeItmCases(int count, int intervals) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform;
+  ItmCases cases;
+  cases.intervals = intervals;
+  for (int i = 0; i < count; ++i) {
+    std::vector<float> heights(static_cast<std::size_t>(intervals) + 1, 400.0f);
+    for (double waves = 1; waves < intervals / 2; waves *= 1.7) {
+      const double amplitude_m = 300 * uniform(random) / waves;
+      const double phase = 6.28 * uniform(random);
+      for (std::size_t post = 0; post < heights.size(); ++post) {
+        heights[post] += static_cast<float>(
+            amplitude_m * std::sin(phase + 6.28 * waves * static_cast<double>(post) / intervals));
+      }
+    }
+    cases.heights_msl_m.insert(cases.heights_msl_m.end(), heights.begin(), heights.end());
+    // numbers that a float holds exactly, so that both kinds compute the same link
+    emfield::ItmLink<double> link;
+    link.height_agl_m[0] = static_cast<float>(5 + 100 * uniform(random));
+    link.height_agl_m[1] = static_cast<float>(2 + 50 * uniform(random));
+    link.frequency_hz = static_cast<float>(50e6 * std::pow(100.0, uniform(random)));
+    link.climate = static_cast<emfield::ItmClimate>(1 + i % 7);
+    cases.links.push_back(link);
+  }
+  return cases;
+}
+
+template <class Real>
+emfield::ItmLink<Real> linkAs(const emfield::ItmLink<double>& link) {
+  emfield::ItmLink<Real> same;
+  for (int end = 0; end < 2; ++end) same.height_agl_m[end] = static_cast<Real>(link.height_agl_m[end]);
+  same.frequency_hz = static_cast<Real>(link.frequency_hz);
+  same.climate = link.climate;
+  return same;
+}
+
+}  // namespace emscape::bench
