@@ -51,8 +51,8 @@ void expectSettledPicturesAreExact(const json& report) {
 }
 
 TEST(Realtime, GoesFromBusyToRestoreToIdleAtEveryStepAndSettlesExactly) {
-  for (const char* pattern : {"columns", "checkerboard", "quarter"}) {
-    const json report = play({"--rays", pattern, "--speed", "4", "--epsilon", "20"});
+  for (const char* pattern : {"columns", "checkerboard", "quarter", "adaptive"}) {
+    const json report = play({"--rays", pattern, "--speed", "8", "--epsilon", "20"});
     EXPECT_THAT(all(report, "state"), IsSupersetOf({"BUSY", "RESTORE", "IDLE"})) << pattern;
     EXPECT_EQ(all(report, "state").front(), "BUSY");
     EXPECT_THAT(all(report, "pattern"), Each(pattern));

@@ -195,7 +195,8 @@ TEST(FrameController, EpsilonIsTheUsualFrameTimeByThePapersRule) {
   for (const auto& [pattern, epsilon_ms] : {std::pair{Pattern::full, 30.0},
                                             {Pattern::columns, 30.0},
                                             {Pattern::checkerboard, 30.0},
-                                            {Pattern::quarter, 45.0}}) {
+                                            {Pattern::quarter, 45.0},
+                                            {Pattern::adaptive, 45.0}}) {
     options.pattern = pattern;
     FrameController controller(options);
     eventAndFrame(controller, 0, 700);  // warms up
@@ -227,6 +228,13 @@ TEST(FrameController, ChoosesThePatternByTheBudget) {
   EXPECT_EQ(controller.plan().pattern, Pattern::quarter);
   EXPECT_THAT(controller.reason(), HasSubstr("full took 100.0 ms of 40 ms"));
   EXPECT_EQ(controller.epsilon_ms(), 50);  // nothing is measured with this pattern
+}
+
+TEST(FrameController, TheToleranceOfAdaptiveFollowsTheBudget) {
+  FrameController controller(with(Pattern::adaptive));
+  const double before = controller.plan().tolerance_levels;
+  for (int n = 0; n < 5; ++n) eventAndFrame(controller, n, 100);
+  EXPECT_GT(controller.plan().tolerance_levels, before);
 }
 
 TEST(FrameController, WhatWasDrawnDecidesWhetherThereIsSomethingToRestore) {
