@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "base/host_device.h"
 #include "emfield/models/diffraction_knife_edge.h"
@@ -91,6 +92,9 @@ struct SphericalEarth {
 template <class Real>
 constexpr Real kRequiredClearance = Real(0.5520071);
 
+template <class Real>
+constexpr Real kRounding = std::numeric_limits<Real>::epsilon();
+
 /// Range (m) from the lower of two antennas to where a smooth earth reflects a ray to the higher.
 ///
 /// P.526 gives the point by b, which solves m b^3 - (m + 1) b + c = 0, through an arc cosine. Here 1 - b is
@@ -107,7 +111,9 @@ EMSCAPE_HD Real reflectionFromLower_m(Real distance_m, Real low_m, Real high_m, 
   Real u = 2 * rest / (linear + std::sqrt(linear * linear + 12 * m * rest));  // 1 - b
   for (int i = 0; i < 4; ++i) {
     const Real value = u * (linear + m * u * (3 - u)) - rest;
-    u -= value / (linear + 3 * m * u * (2 - u));
+    const Real step = value / (linear + 3 * m * u * (2 - u));
+    u -= step;
+    if (step * step < kRounding<Real> * u * u) break;  // what is left is of the order of the step's square
   }
   return distance_m * u / 2;
 }

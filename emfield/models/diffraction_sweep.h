@@ -129,7 +129,7 @@ class DiffractionSweep {
   EMSCAPE_HD Real rangeOf(int i) const { return Real(profile_.range_m[i]); }
   EMSCAPE_HD void addObstacle(int i);
   EMSCAPE_HD Real terrainNu(Column& column, Real rx_m, Real slope);
-  EMSCAPE_HD int firstClearOfEarth(const Column& column, const Real* rx_msl_m, int count) const;
+  EMSCAPE_HD int firstClearOfEarth(const Column& column, const Real* rx_msl_m, int count);
   EMSCAPE_HD Real lackingDb(Column& column, Real rx_m, Real slope);
   EMSCAPE_HD int makeEnvelope(Real distance_m, Real lowest_m);
   EMSCAPE_HD Real smoothNu(Real distance_m, const EffectiveHeights<Real>& heights);
@@ -144,7 +144,8 @@ class DiffractionSweep {
   UpperHull<Real> lowered_hull_, plain_hull_;
   Real steepest_ = -Real(HUGE_VAL);        ///< slope from the transmitter to an obstacle, lowered
   Real steepest_plain_ = -Real(HUGE_VAL);  ///< the same to the plain heights
-  // where the smooth earth's largest values were last time
+  // what was found last time: it moves little from post to post
+  int first_clear_ = 0;
   int smooth_tx_ = 1, smooth_rx_ = 1, smooth_clear_ = 1;
 };
 
@@ -270,7 +271,7 @@ EMSCAPE_HD Real DiffractionSweep<Real>::terrainNu(Column& column, Real rx_m, Rea
 /// The first of the receivers from which on the smooth earth has no loss, or `count`.
 template <class Real>
 EMSCAPE_HD int DiffractionSweep<Real>::firstClearOfEarth(const Column& column, const Real* rx_msl_m,
-                                                         int count) const {
+                                                         int count) {
   // Obstacles over the line of sight would put the smooth surface lower, and both antennas higher above it:
   // without them this is the least clearance, and it rises with the receiver.
   const auto isClear = [&](int j) {
@@ -278,15 +279,21 @@ EMSCAPE_HD int DiffractionSweep<Real>::firstClearOfEarth(const Column& column, c
     const EffectiveHeights<Real> least = effectiveHeights(column.trend, tx_, rx_m);
     return sphericalEarthLoss(model_.earth, column.distance_m, least.tx_m, least.rx_m).clear_above;
   };
+  // From the last column's answer in doubling steps, then by halves.
   int begin = 0, end = count;
-  while (begin < end) {
-    const int middle = (begin + end) / 2;
-    if (isClear(middle)) {
-      end = middle;
+  int probe = first_clear_ < count ? first_clear_ : count - 1;
+  for (int step = 1; begin < end; step *= 2) {
+    if (isClear(probe)) {
+      end = probe;
+      const int middle = (begin + end) / 2;
+      probe = end - step > middle ? end - step : middle;
     } else {
-      begin = middle + 1;
+      begin = probe + 1;
+      const int middle = (begin + end) / 2;
+      probe = begin + step - 1 < middle ? begin + step - 1 : middle;
     }
   }
+  first_clear_ = begin;
   return begin;
 }
 
