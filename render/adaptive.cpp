@@ -14,8 +14,8 @@ namespace {
 constexpr int kLatticeStep = 4;
 /// Pixels that a pass looks at, along a tile's side: 16 of them make one packet of rays.
 constexpr int kTile = 4;
-/// Rows of tiles for one thread at a time.
-constexpr int kTileRowGrain = 4;
+/// The same of a block: the rays of a pass may be few, and are to be neighbours none the less.
+constexpr int kBlock = 4 * kTile;
 
 Pixel pixelAt(int x, int y) {
   return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
@@ -23,14 +23,14 @@ Pixel pixelAt(int x, int y) {
 
 /// The midpoints of one pass: the centres of cells, or the middles of their sides.
 struct Pass {
-  int reach;  ///< distance of the nearest known pixels, along either axis
+  int reach;  ///< distance of the nearest known pixels, along either axis; a power of two
   bool diagonal;
   double tolerance;  ///< part of the frame's
 
   int firstY() const { return diagonal ? reach : 0; }
   int stepY() const { return diagonal ? 2 * reach : reach; }
   int stepX() const { return 2 * reach; }
-  int firstX(int y) const { return diagonal || y / reach % 2 == 0 ? reach : 0; }
+  int firstX(int y) const { return diagonal || (y & reach) == 0 ? reach : 0; }
 };
 constexpr Pass kPasses[] = {{2, true, 0.35}, {2, false, 0.5}, {1, true, 0.7}, {1, false, 1.0}};
 
@@ -144,66 +144,75 @@ struct PassTask {
 
 /// One row of a tile: midpoints first_x, first_x + pass.stepX(), ... below end_x.
 inline void predictRow(const PassTask& task, int first_x, int end_x, int y, std::vector<Pixel>& queue) {
+  // Copies: what is written below, a byte, could be any part of the task.
+  const KnownPixels known = task.known;
   const int reach = task.pass.reach;
-  const std::ptrdiff_t width = task.known.size.width;
+  const int step_x = task.pass.stepX();
+  const float tolerance_levels = task.tolerance_levels;
+  const std::ptrdiff_t width = known.size.width;
   const std::ptrdiff_t step_p = task.pass.diagonal ? reach * (width + 1) : reach;
   const std::ptrdiff_t step_q = task.pass.diagonal ? reach * (width - 1) : reach * width;
-  const bool rows_known = y >= 3 * reach && y + 3 * reach < task.known.size.height;
-  for (int x = first_x; x < end_x; x += task.pass.stepX()) {
-    Rgba* pixel = task.known.address(x, y);
+  const bool rows_known = y >= 3 * reach && y + 3 * reach < known.size.height;
+  const int first_known = rows_known ? 3 * reach : known.size.width;
+  const int end_known = known.size.width - 3 * reach;
+  Rgba* const pixels = known.address(0, y);
+  std::uint8_t* const classes = task.classes + static_cast<std::ptrdiff_t>(y) * width;
+  for (int x = first_x; x < end_x; x += step_x) {
     Prediction<PixelLanes> prediction;
     bool predicted = true;
-    if (rows_known && x >= 3 * reach && x + 3 * reach < task.known.size.width) {
-      prediction = predict(KnownPixels::along(pixel, step_p), KnownPixels::along(pixel, step_q));
+    if (x >= first_known && x < end_known) {
+      prediction = predict(KnownPixels::along(pixels + x, step_p), KnownPixels::along(pixels + x, step_q));
     } else {
-      predicted = predictAtEdge(task.known, task.pass, x, y, prediction);
+      predicted = predictAtEdge(known, task.pass, x, y, prediction);
     }
-    std::uint8_t& error_class = task.classes[pixel - task.known.pixels];
-    if (predicted && prediction.error_levels <= task.tolerance_levels) {
-      KnownPixels::store(prediction.color, pixel);
-      error_class = classOf(prediction.error_levels);
+    if (predicted && prediction.error_levels <= tolerance_levels) {
+      KnownPixels::store(prediction.color, pixels + x);
+      classes[x] = classOf(prediction.error_levels);
     } else {
-      error_class = 0;
+      classes[x] = 0;
       queue.push_back(pixelAt(x, y));
     }
   }
 }
 
-/// A row of tiles of a pass, one tile after the other.
-EMSCAPE_SIMD_CLONES void predictTiles(const PassTask& task, int first_y, std::vector<Pixel>& queue) {
-  const int step_x = task.pass.stepX();
-  const int step_y = task.pass.stepY();
-  const int end_y = std::min(first_y + kTile * step_y, task.known.size.height);
-  int begin = task.known.size.width;
-  int end = 0;
-  for (int y = first_y; y < end_y; y += step_y) {
-    const Span& row = task.inside.rows[static_cast<std::size_t>(y)];
-    if (row.end <= row.begin) continue;
-    begin = std::min(begin, row.begin);
-    end = std::max(end, row.end);
-  }
-  for (int tile_x = begin / (kTile * step_x) * (kTile * step_x); tile_x < end; tile_x += kTile * step_x) {
-    for (int y = first_y; y < end_y; y += step_y) {
-      const Span& row = task.inside.rows[static_cast<std::size_t>(y)];
-      const int offset = tile_x + task.pass.firstX(y);
-      const int before = std::max(0, row.begin - offset);
-      predictRow(task, offset + (before + step_x - 1) / step_x * step_x,
-                 std::min(tile_x + kTile * step_x, row.end), y, queue);
+/// Visits a row of blocks of pixels (0, first_y), (step_x, first_y), ...: block by block, tile by tile, row
+/// by row of each tile.
+/// @param visit  gets a row's first pixel
+template <class Visit>
+inline void visitTiles(ImageSize size, int step_x, int step_y, int first_y, const Visit& visit) {
+  const int end_y = std::min(first_y + kBlock * step_y, size.height);
+  for (int block_x = 0; block_x < size.width; block_x += kBlock * step_x) {
+    const int end_x = std::min(block_x + kBlock * step_x, size.width);
+    for (int tile_y = first_y; tile_y < end_y; tile_y += kTile * step_y) {
+      for (int tile_x = block_x; tile_x < end_x; tile_x += kTile * step_x) {
+        for (int y = tile_y; y < std::min(tile_y + kTile * step_y, end_y); y += step_y) visit(tile_x, y);
+      }
     }
   }
 }
 
-/// A row of tiles of the lattice.
+/// A row of blocks of a pass.
+EMSCAPE_SIMD_CLONES void predictBlocks(const PassTask& task, int first_y, std::vector<Pixel>& queue) {
+  const int step_x = task.pass.stepX();
+  visitTiles(task.known.size, step_x, task.pass.stepY(), first_y, [&](int tile_x, int y) {
+    const Span& row = task.inside.rows[static_cast<std::size_t>(y)];
+    const int tile_end_x = tile_x + kTile * step_x;
+    if (tile_end_x <= row.begin || tile_x >= row.end) return;
+    int first_x = tile_x + task.pass.firstX(y);
+    while (first_x < row.begin) first_x += step_x;
+    predictRow(task, first_x, std::min(tile_end_x, row.end), y, queue);
+  });
+}
+
+/// A row of blocks of the lattice.
 void queueLattice(ImageSize size, const Silhouette& inside, int first_y, std::vector<Pixel>& queue) {
-  constexpr int kSide = kTile * kLatticeStep;
-  for (int tile_x = 0; tile_x < size.width; tile_x += kSide) {
-    const int end_x = std::min(tile_x + kSide, size.width);
-    for (int y = first_y; y < std::min(first_y + kSide, size.height); y += kLatticeStep) {
-      for (int x = tile_x; x < end_x; x += kLatticeStep) {
-        if (inside.rows[static_cast<std::size_t>(y)].contains(x)) queue.push_back(pixelAt(x, y));
-      }
+  visitTiles(size, kLatticeStep, kLatticeStep, first_y, [&](int tile_x, int y) {
+    const Span& row = inside.rows[static_cast<std::size_t>(y)];
+    const int end_x = std::min(tile_x + kTile * kLatticeStep, row.end);
+    for (int x = tile_x; x < end_x; x += kLatticeStep) {
+      if (x >= row.begin) queue.push_back(pixelAt(x, y));
     }
-  }
+  });
 }
 
 }  // namespace
@@ -224,7 +233,7 @@ bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double toleranc
     joinQueues();
     return queue_.empty() || cast(queue_);
   };
-  queueRows(kTile * kLatticeStep,
+  queueRows(kBlock * kLatticeStep,
             [&](int first_y, std::vector<Pixel>& queue) { queueLattice(size_, inside, first_y, queue); });
   if (!castQueued()) return false;
   for (const Pass& pass : kPasses) {
@@ -233,8 +242,8 @@ bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double toleranc
                         inside,
                         static_cast<float>(tolerance_levels * pass.tolerance),
                         classes_.data()};
-    queueRows(kTile * pass.stepY(), [&](int first_y, std::vector<Pixel>& queue) {
-      predictTiles(task, first_y + pass.firstY(), queue);
+    queueRows(kBlock * pass.stepY(), [&](int first_y, std::vector<Pixel>& queue) {
+      predictBlocks(task, first_y + pass.firstY(), queue);
     });
     if (!castQueued()) return false;
   }
@@ -242,22 +251,18 @@ bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double toleranc
 }
 
 const std::vector<Pixel>& AdaptiveFrame::missing() {
-  const int rows = (size_.height + kTile - 1) / kTile;
-  const auto forEachMissing = [this](int tile_row, const auto& visit) {
-    const int end_y = std::min((tile_row + 1) * kTile, size_.height);
-    for (int tile_x = 0; tile_x < size_.width; tile_x += kTile) {
-      const int end_x = std::min(tile_x + kTile, size_.width);
-      for (int y = tile_row * kTile; y < end_y; ++y) {
-        const std::uint8_t* classes = &classes_[static_cast<std::size_t>(y) * size_.width];
-        for (int x = tile_x; x < end_x; ++x) {
-          if (classes[x] != 0) visit(x, y, classes[x]);
-        }
+  const int rows = (size_.height + kBlock - 1) / kBlock;
+  const auto forEachMissing = [this](int block_row, const auto& visit) {
+    visitTiles(size_, 1, 1, block_row * kBlock, [&](int tile_x, int y) {
+      const std::uint8_t* classes = &classes_[static_cast<std::size_t>(y) * size_.width];
+      for (int x = tile_x; x < std::min(tile_x + kTile, size_.width); ++x) {
+        if (classes[x] != 0) visit(x, y, classes[x]);
       }
-    }
+    });
   };
-  // A counting sort: how many there are of each class in each row of tiles, then where each begins.
+  // A counting sort: how many there are of each class in each row of blocks, then where each begins.
   places_.assign(static_cast<std::size_t>(rows), {});
-  parallelFor(rows, kTileRowGrain, [&](int begin, int end) {
+  parallelFor(rows, 1, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) {
       auto& counts = places_[static_cast<std::size_t>(row)];
       forEachMissing(row,
@@ -273,7 +278,7 @@ const std::vector<Pixel>& AdaptiveFrame::missing() {
     }
   }
   missing_.resize(total);
-  parallelFor(rows, kTileRowGrain, [&](int begin, int end) {
+  parallelFor(rows, 1, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) {
       auto& places = places_[static_cast<std::size_t>(row)];
       forEachMissing(row, [&](int x, int y, int error_class) {
@@ -298,12 +303,12 @@ void AdaptiveFrame::clear(Image& image, const Silhouette& inside) {
   });
 }
 
-void AdaptiveFrame::queueRows(int tile_height, const RowQueuer& row) {
-  const int rows = (size_.height + tile_height - 1) / tile_height;
+void AdaptiveFrame::queueRows(int block_height, const RowQueuer& row) {
+  const int rows = (size_.height + block_height - 1) / block_height;
   if (queues_.size() < static_cast<std::size_t>(rows)) queues_.resize(static_cast<std::size_t>(rows));
   for (std::vector<Pixel>& queue : queues_) queue.clear();
-  parallelFor(rows, kTileRowGrain, [&](int begin, int end) {
-    for (int r = begin; r < end; ++r) row(r * tile_height, queues_[static_cast<std::size_t>(r)]);
+  parallelFor(rows, 1, [&](int begin, int end) {
+    for (int r = begin; r < end; ++r) row(r * block_height, queues_[static_cast<std::size_t>(r)]);
   });
 }
 

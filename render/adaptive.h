@@ -54,19 +54,20 @@ class AdaptiveFrame {
   const std::vector<Pixel>& missing();
 
  private:
-  /// Appends the rays of a row of tiles that begins at an image row.
+  /// Appends the rays of a row of blocks that begins at an image row.
   using RowQueuer = std::function<void(int first_y, std::vector<Pixel>& queue)>;
 
   void clear(Image& image, const Silhouette& inside);
-  void queueRows(int tile_height, const RowQueuer& row);
+  void queueRows(int block_height, const RowQueuer& row);
   void joinQueues();
 
   ImageSize size_;
   std::vector<std::uint8_t> classes_;       ///< of the estimated error, a byte a pixel; 0: is as it was cast
-  std::vector<std::vector<Pixel>> queues_;  ///< rays to be cast, by rows of tiles
+  std::vector<std::vector<Pixel>> queues_;  ///< rays to be cast, by rows of blocks
   std::vector<Pixel> queue_;                ///< the same, joined
   std::vector<Pixel> missing_;
-  std::vector<std::array<std::uint32_t, kErrorClasses>> places_;  ///< in missing_, by rows of tiles and class
+  std::vector<std::array<std::uint32_t, kErrorClasses>>
+      places_;  ///< in missing_, by rows of blocks and class
 };
 
 }  // namespace emscape::render
