@@ -70,9 +70,12 @@ bool PatternChoice::goDown(const FrameCost& cost) {
   const double full_ms = cost.draw_ms / shareOf(cost);
   std::size_t lower = rung_ + 1;
   while (lower < last && expected_ms(lower, full_ms, cost.other_ms) > budget_ms_) ++lower;
-  reason_ = fmt::format("{} took {:.1f} ms of {:.3g} ms; {} is expected to take {:.1f} ms",
-                        toString(pattern()), cost.total_ms(), budget_ms_,
-                        toString(patternLadder()[lower].pattern), expected_ms(lower, full_ms, cost.other_ms));
+  const Pattern chosen = patternLadder()[lower].pattern;
+  reason_ = fmt::format(
+      "{} took {:.1f} ms of {:.3g} ms; {}", toString(pattern()), cost.total_ms(), budget_ms_,
+      chosen == Pattern::adaptive ? "adaptive casts as many rays as there is time for"
+                                  : fmt::format("{} is expected to take {:.1f} ms", toString(chosen),
+                                                expected_ms(lower, full_ms, cost.other_ms)));
   if (frames_since_up_ >= 0) {
     const bool held = frames_since_up_ >= kHolds * patience_;
     patience_ = held ? kLeastPatience : std::min(2 * patience_, kMostPatience);

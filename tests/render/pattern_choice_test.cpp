@@ -166,6 +166,13 @@ TEST(PatternChoice, TheToleranceOfAdaptiveFollowsTheBudget) {
   }
 }
 
+TEST(PatternChoice, SaysWhyItIsAdaptive) {
+  PatternChoice choice(40);
+  for (int n = 0; n < 3; ++n) choice.add({300 * shareOf(choice.pattern()), 0});
+  ASSERT_EQ(choice.pattern(), Pattern::adaptive);
+  EXPECT_EQ(choice.reason(), "full took 300.0 ms of 40 ms; adaptive casts as many rays as there is time for");
+}
+
 TEST(PatternChoice, LeavesAdaptiveByTheRaysThatItCast) {
   PatternChoice choice(40);
   for (int n = 0; n < 20; ++n) choice.add({1000 * shareOf(choice.pattern()), 0});
