@@ -32,7 +32,7 @@ struct Pass {
   int stepX() const { return 2 * reach; }
   int firstX(int y) const { return diagonal || (y & reach) == 0 ? reach : 0; }
 };
-constexpr Pass kPasses[] = {{2, true, 0.35}, {2, false, 0.5}, {1, true, 0.7}, {1, false, 1.0}};
+constexpr Pass kPasses[] = {{2, true, 0.2}, {2, false, 0.5}, {1, true, 0.5}, {1, false, 1.0}};
 
 // --- A pixel as a vector ---
 

@@ -19,7 +19,7 @@ namespace emscape::render {
 
 /// Estimated error (levels of 255) above which a pixel is cast. The first passes, whose errors spread, are
 /// held to a part of it.
-constexpr double kDefaultTolerance_levels = 0.35;
+constexpr double kDefaultTolerance_levels = 0.6;
 constexpr double kLeastTolerance_levels = 1.0 / 16;
 constexpr double kLargestTolerance_levels = 64;
 

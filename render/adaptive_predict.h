@@ -91,8 +91,8 @@ EMSCAPE_HD inline float steepness(float step) {
   return 0.5F * greater(step - kSteep, 0.0F);
 }
 
-/// From both directions: their disagreement, half the bend of the straighter one, and the steepness of the
-/// calmer one.
+/// From both directions: their disagreement, the bend of the straighter one, and the steepness of the calmer
+/// one.
 template <class Color>
 EMSCAPE_HD Prediction<Color> predict(const Along<Color>& p, const Along<Color>& q) {
   constexpr float kNoise = 0.5F * kLevel;
@@ -100,12 +100,12 @@ EMSCAPE_HD Prediction<Color> predict(const Along<Color>& p, const Along<Color>& 
   const float share = (q.step + kNoise) / (p.step + q.step + 2 * kNoise);
   const float disagreement = largestChannel(greater(apart, uniform<Color>(0) - apart));
   return {q.color + apart * share,
-          (disagreement + 0.5F * lesser(p.bend, q.bend) + steepness(lesser(p.step, q.step))) * kLevels};
+          (disagreement + lesser(p.bend, q.bend) + steepness(lesser(p.step, q.step))) * kLevels};
 }
 /// From one direction, at the picture's edge: half its step stands for the disagreement.
 template <class Color>
 EMSCAPE_HD Prediction<Color> predict(const Along<Color>& p) {
-  return {p.color, (0.5F * p.step + 0.5F * p.bend + steepness(p.step)) * kLevels};
+  return {p.color, (0.5F * p.step + p.bend + steepness(p.step)) * kLevels};
 }
 
 }  // namespace emscape::render
