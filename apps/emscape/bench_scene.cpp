@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "apps/emscape/paper_transfer.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -22,6 +23,14 @@ render::RenderSettings settingsOf(const BenchSceneOptions& options) {
   settings.skip_empty = options.skip_empty;
   settings.vertical_exaggeration = options.exaggeration;
   return settings;
+}
+
+/// One function for all volumes, so that measurements can be compared.
+render::TransferFunction functionFor(const volume::VolumeInfo& info, const std::string& file) {
+  if (!file.empty()) return render::readTransferFunction(file, info);
+  const bool has_range = info.range_max > info.range_min;
+  if (info.categorical || !has_range) return render::defaultTransferFunction(info);
+  return render::parseTransferFunction(kPaperTransfer, "scenarios/transfer/paper.json", info);
 }
 
 /// A camera carried clockwise, as seen from above, about the vertical through its target.
@@ -87,9 +96,7 @@ BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& gl
   volume_ = source->frame(0).volume;
   for (const std::string& warning : source->warnings()) logWarning(warning);
   renderer_.setVolume(volume_);
-  renderer_.setTransferFunction(options.transfer.empty()
-                                    ? render::defaultTransferFunction(*volume_)
-                                    : render::readTransferFunction(options.transfer, volume_->info));
+  renderer_.setTransferFunction(functionFor(volume_->info, options.transfer));
   turnTo(0);
 }
 
@@ -154,7 +161,7 @@ void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
   command.add_flag("!--no-skip", options.skip_empty, "Sample empty bricks too");
   command.add_option("--camera", options.camera, "As for render");
   command.add_option("--transfer", options.transfer,
-                     "Colours and opacities (JSON); default: fitted to the values");
+                     "Colours and opacities (JSON); default: scenarios/transfer/paper.json");
   command.add_option("--exaggeration", options.exaggeration, "Vertical exaggeration; 0: chosen from the box")
       ->check(CLI::Range(0.0, 100.0));
   command.add_option("--quantity", options.selection.quantity, "Quantity or channel; default: the first");

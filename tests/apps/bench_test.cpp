@@ -73,6 +73,15 @@ TEST(Bench, RenderHasTheKeysThatOthersRelyOn) {
   EXPECT_EQ(result.at("skip_empty"), true);
 }
 
+TEST(Bench, TheColorsAreThoseOfTheShippedFunctionUnlessOthersAreGiven) {
+  Arguments arguments{"render", shippedScenario("quick.yaml"), "--size", "16x12", "--frames", "1"};
+  const json by_default = bench(arguments).at("transfer");
+  arguments.insert(arguments.end(), {"--transfer", shippedScenario("transfer/paper.json")});
+  EXPECT_EQ(bench(arguments).at("transfer"), by_default);
+  arguments.back() = shippedScenario("transfer/relative_viridis.json");
+  EXPECT_NE(bench(arguments).at("transfer"), by_default);
+}
+
 TEST(Bench, SamplesAreThoseOfFullRaysWhateverIsSkipped) {
   const TemporaryFolder folder;
   writeFile(folder / "ball.dat", ballDat(20));
@@ -126,9 +135,9 @@ TEST(Bench, ReconstructionHasTheKeysThatOthersRelyOn) {
     EXPECT_TRUE(pattern.at("error").contains("psnr_db"));
     EXPECT_EQ(pattern.at("restored_equals_full"), true);
   }
-  EXPECT_THAT(ways,
-              testing::IsSupersetOf({"full float", "columns float", "columns 8bit", "checkerboard float",
-                                     "checkerboard 8bit", "quarter float", "quarter 8bit"}));
+  EXPECT_THAT(
+      ways, testing::IsSupersetOf({"full float", "columns float", "columns 8bit", "checkerboard float",
+                                   "checkerboard 8bit", "quarter float", "quarter 8bit", "adaptive float"}));
 }
 
 TEST(Bench, TheFullPictureHasNoErrorAndQuarterHas) {
@@ -166,8 +175,7 @@ TEST(Bench, VolumesOfEveryKindOfScanAreRead) {
 TEST(Bench, TheEngineIsReadAsItLies) {
   const auto engine = referenceFile("volumes/engine_256x256x110_uint8.raw");
   if (!engine) GTEST_SKIP() << "the engine volume is not to be had";
-  const json result = bench({"reconstruction", *engine, "--size", "32x32", "--frames", "1", "--transfer",
-                             shippedScenario("transfer/paper.json")});
+  const json result = bench({"reconstruction", *engine, "--size", "32x32", "--frames", "1"});
   EXPECT_EQ(result.at("volume").at("dims"), json({256, 256, 110}));
   for (const json& pattern : result.at("patterns"))
     EXPECT_EQ(pattern.at("error").at("max")[2], 0);  // no blue
