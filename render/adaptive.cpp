@@ -218,19 +218,22 @@ void queueLattice(ImageSize size, const Silhouette& inside, int first_y, std::ve
 }  // namespace
 
 double nextTolerance_levels(double tolerance_levels, double cost, double budget) {
-  // Rays become fewer about with the square root of the tolerance; less than the square is damped.
+  // Times fall about with the square root of the tolerance; less than the square is damped.
   constexpr double kResponse = 1.5;
   const double factor = std::clamp(std::pow(cost / budget, kResponse), 0.5, 2.0);
   return std::clamp(tolerance_levels * factor, kLeastTolerance_levels, kLargestTolerance_levels);
 }
 
-bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double tolerance_levels,
+bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double tolerance_levels, double most_rays,
                          const Caster& cast) {
+  const double held_levels = std::max(tolerance_levels, held_tolerance_levels_);
+  double rays = 0;
   size_ = image.size;
   classes_.resize(image.pixels.size());
   clear(image, inside);
   const auto castQueued = [&] {
     joinQueues();
+    rays += static_cast<double>(queue_.size());
     return queue_.empty() || cast(queue_);
   };
   queueRows(kBlock * kLatticeStep,
@@ -240,14 +243,22 @@ bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double toleranc
     const PassTask task{pass,
                         {image.pixels.data(), size_},
                         inside,
-                        static_cast<float>(tolerance_levels * pass.tolerance),
+                        static_cast<float>(held_levels * pass.tolerance),
                         classes_.data()};
     queueRows(kBlock * pass.stepY(), [&](int first_y, std::vector<Pixel>& queue) {
       predictBlocks(task, first_y + pass.firstY(), queue);
     });
     if (!castQueued()) return false;
   }
+  holdTo(held_levels, rays, most_rays);
   return true;
+}
+
+void AdaptiveFrame::holdTo(double tolerance_levels, double rays, double most_rays) {
+  // Rays become fewer with the fourth to the second root of the tolerance: this comes near in a few frames.
+  constexpr double kAim = 0.98, kResponse = 2;
+  const double factor = std::clamp(std::pow(rays / (kAim * most_rays), kResponse), 1.0 / 16, 16.0);
+  held_tolerance_levels_ = std::min(tolerance_levels * factor, kLargestTolerance_levels);
 }
 
 const std::vector<Pixel>& AdaptiveFrame::missing() {

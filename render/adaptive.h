@@ -23,6 +23,9 @@ constexpr double kDefaultTolerance_levels = 0.6;
 constexpr double kLeastTolerance_levels = 1.0 / 16;
 constexpr double kLargestTolerance_levels = 64;
 
+/// Part of the pixels whose rays meet the volume's box that a frame aims to cast at most: that of `quarter`.
+constexpr double kDefaultRayShare = 0.25;
+
 /// The tolerance of the next frame: that of the last one, moved such that what a frame costs (time, or rays)
 /// approaches a budget smoothly, at most by a factor of two a frame.
 /// @param cost    of the last frame, >= 0
@@ -46,8 +49,11 @@ class AdaptiveFrame {
   /// @param inside  the pixels that may show something; one row for each of the image's
   /// @param tolerance_levels  see kDefaultTolerance_levels; 0: only what is predicted without doubt is not
   /// cast
+  /// @param most_rays  > 0: while frames cast more, the tolerance is raised from one frame to the next, and
+  /// lowered again when they do not
   /// @return false if it was stopped
-  bool draw(Image& image, const Silhouette& inside, double tolerance_levels, const Caster& cast);
+  bool draw(Image& image, const Silhouette& inside, double tolerance_levels, double most_rays,
+            const Caster& cast);
 
   /// The pixels of the last frame that were predicted, those with the largest estimated error first (to a
   /// factor of two, neighbours together). All of them cast, the image is that of the pattern `full`.
@@ -61,7 +67,10 @@ class AdaptiveFrame {
   void queueRows(int block_height, const RowQueuer& row);
   void joinQueues();
 
+  void holdTo(double tolerance_levels, double rays, double most_rays);
+
   ImageSize size_;
+  double held_tolerance_levels_ = 0;        ///< that keeps to most_rays; counts where it is the larger one
   std::vector<std::uint8_t> classes_;       ///< of the estimated error, a byte a pixel; 0: is as it was cast
   std::vector<std::vector<Pixel>> queues_;  ///< rays to be cast, by rows of blocks
   std::vector<Pixel> queue_;                ///< the same, joined

@@ -177,21 +177,24 @@ struct Renderer::Impl {
   }
 
   /// @return false if it was stopped
-  bool drawAdaptive(double tolerance_levels, bool shows_ground, Image& image, FrameReport& report,
+  bool drawAdaptive(const FramePlan& plan, bool shows_ground, Image& image, FrameReport& report,
                     const StopFlag* stop) {
     Stopwatch all;
     const RaycastTask prepared = task(image.size);
     const CpuCast cast = castOf(prepared, shows_ground);
+    long long hits = image.size.count();
     if (ground && shows_ground) {
       wholePicture(image.size, silhouette);
     } else {
       findSilhouette(prepared.camera, prepared.volume.lower(), prepared.volume.upper(), silhouette);
+      hits = silhouette.count();
       if (transparentShowsNothing() && prepared.skip.levels != nullptr) {
         narrowSilhouette(prepared.camera, visibleBoxes(prepared.skip, prepared.volume.dims), silhouette);
       }
     }
-    report.complete =
-        adaptive.draw(image, silhouette, tolerance_levels, [&](const std::vector<Pixel>& pixels) {
+    const double most_rays = std::max(plan.ray_share * static_cast<double>(hits), 1.0);
+    report.complete = adaptive.draw(
+        image, silhouette, plan.tolerance_levels, most_rays, [&](const std::vector<Pixel>& pixels) {
           Stopwatch watch;
           const bool complete = castCpu(cast, pixels, image, stop, report.samples);
           report.rays += static_cast<long long>(pixels.size());
@@ -319,7 +322,7 @@ FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, Image& image, 
   Image& target = in_layers ? impl_->volume_layer : image;
   const bool complete =
       plan.pattern == Pattern::adaptive
-          ? impl_->drawAdaptive(plan.tolerance_levels, !in_layers, target, report, stop)
+          ? impl_->drawAdaptive(plan, !in_layers, target, report, stop)
           : impl_->cast(sourceLattices(plan.pattern, size), !in_layers, target, report, stop);
   if (!complete) return report;
   impl_->ground_layer.complete |= plan.pattern == Pattern::full;

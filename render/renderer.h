@@ -35,6 +35,8 @@ struct FramePlan {
   Pattern pattern = Pattern::full;
   Interpolation interpolation = Interpolation::float32;  ///< adaptive predicts in float always
   double tolerance_levels = kDefaultTolerance_levels;    ///< of adaptive, see AdaptiveFrame::draw()
+  /// Of adaptive: part of the pixels whose ray meets the box that frames keep to, after the first few; > 0
+  double ray_share = kDefaultRayShare;
 };
 
 /// What a frame, or the restoration of one, took.

@@ -114,10 +114,12 @@ class ReconstructionBench {
   double pixels() const { return pixels_; }
   double pixelsInBox() const { return pixels_in_box_; }
 
+  /// Adaptive rays need some frames until they keep to their share.
   void warmUp() {
+    constexpr int kFrames = 6;
     render::FrameReport report;
     for (const Measured& measured : plans_) {
-      scene_.draw(measured.plan, image_, report);
+      for (int frame = 0; frame < kFrames; ++frame) scene_.draw(measured.plan, image_, report);
       scene_.restore(image_);
     }
   }

@@ -44,14 +44,15 @@ struct Drawing {
       ++casts[static_cast<std::size_t>(p.y) * image.size.width + p.x];
     }
   }
-  void draw(const Silhouette& inside, double tolerance_levels) {
+  void draw(const Silhouette& inside, double tolerance_levels, double most_rays = 1e9) {
     std::fill(casts.begin(), casts.end(), 0);
     for (Rgba& pixel : image.pixels) pixel = gray(std::nan(""));
     rays = 0;
-    EXPECT_TRUE(frame.draw(image, inside, tolerance_levels, [this](const std::vector<Pixel>& pixels) {
-      cast(pixels);
-      return true;
-    }));
+    EXPECT_TRUE(
+        frame.draw(image, inside, tolerance_levels, most_rays, [this](const std::vector<Pixel>& pixels) {
+          cast(pixels);
+          return true;
+        }));
   }
   void draw(double tolerance_levels) { draw(whole(image.size), tolerance_levels); }
   double largestError_levels() const {
@@ -188,6 +189,19 @@ TEST(Adaptive, PredictsAsTheFunctionForHostAndDevice) {
   }
 }
 
+TEST(Adaptive, KeepsToItsShareOfRaysAfterSomeFrames) {
+  const ImageSize size{200, 200};
+  Drawing drawing(size, [](int x, int y) { return gray(0.5 + 0.2 * std::sin(0.6 * x) * std::sin(0.5 * y)); });
+  const Silhouette all = whole(size);
+  drawing.draw(all, 0.5);
+  EXPECT_GT(drawing.rays, size.count() / 2);
+  const double most_rays = 0.25 * static_cast<double>(size.count());
+  for (int frame = 0; frame < 12; ++frame) drawing.draw(all, 0.5, most_rays);
+  EXPECT_NEAR(drawing.rays, most_rays, 0.05 * most_rays);
+  for (int frame = 0; frame < 20; ++frame) drawing.draw(all, 0.5);
+  EXPECT_GT(drawing.rays, size.count() / 2) << "the tolerance is that asked for again";
+}
+
 TEST(Adaptive, MissingPixelsComeWorstFirst) {
   Drawing drawing({128, 128}, [](int x, int y) {
     return gray(0.5 + 0.4 * std::sin(0.3 * x) * std::sin(0.31 * y) * std::exp(-0.05 * y));
@@ -214,7 +228,7 @@ TEST(Adaptive, IsTheSameForAnyNumberOfThreads) {
     Drawing drawing({300, 200}, [](int x, int y) { return gray(ripple(7 * x, 3 * y)); });
     std::vector<Pixel> order;
     Silhouette inside = whole(drawing.image.size);
-    drawing.frame.draw(drawing.image, inside, 0.5, [&](const std::vector<Pixel>& pixels) {
+    drawing.frame.draw(drawing.image, inside, 0.5, 1e9, [&](const std::vector<Pixel>& pixels) {
       drawing.cast(pixels);
       order.insert(order.end(), pixels.begin(), pixels.end());
       return true;
@@ -236,7 +250,7 @@ TEST(Adaptive, TellsWhenItWasStopped) {
     for (Rgba& pixel : image.pixels) pixel = gray(1);
     AdaptiveFrame frame;
     int left = passes;
-    EXPECT_FALSE(frame.draw(image, whole(image.size), 0.5, [&](const std::vector<Pixel>& pixels) {
+    EXPECT_FALSE(frame.draw(image, whole(image.size), 0.5, 1e9, [&](const std::vector<Pixel>& pixels) {
       for (const Pixel& p : pixels) image.at(p.x, p.y) = gray(std::fmod(p.x * 0.37, 1));
       return left-- > 0;
     }));
