@@ -255,10 +255,15 @@ bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double toleranc
 }
 
 void AdaptiveFrame::holdTo(double tolerance_levels, double rays, double most_rays) {
-  // Rays become fewer with the fourth to the second root of the tolerance: this comes near in a few frames.
-  constexpr double kAim = 0.98, kResponse = 2;
-  const double factor = std::clamp(std::pow(rays / (kAim * most_rays), kResponse), 1.0 / 16, 16.0);
-  held_tolerance_levels_ = std::min(tolerance_levels * factor, kLargestTolerance_levels);
+  // Rays fall with some power of the tolerance, which the last two frames tell.
+  constexpr double kAim = 0.98;
+  const double fall = std::log(last_rays_ / std::max(rays, 1.0));
+  const double rise = std::log(std::max(tolerance_levels, kLeastTolerance_levels) / last_tolerance_levels_);
+  if (std::abs(rise) > 0.01) power_ = 0.5 * (power_ + std::clamp(fall / rise, 0.2, 1.5));
+  last_rays_ = std::max(rays, 1.0);
+  last_tolerance_levels_ = std::max(tolerance_levels, kLeastTolerance_levels);
+  const double factor = std::clamp(std::pow(last_rays_ / (kAim * most_rays), 1 / power_), 1.0 / 16, 16.0);
+  held_tolerance_levels_ = std::min(last_tolerance_levels_ * factor, kLargestTolerance_levels);
 }
 
 const std::vector<Pixel>& AdaptiveFrame::missing() {

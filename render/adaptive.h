@@ -70,7 +70,9 @@ class AdaptiveFrame {
   void holdTo(double tolerance_levels, double rays, double most_rays);
 
   ImageSize size_;
-  double held_tolerance_levels_ = 0;        ///< that keeps to most_rays; counts where it is the larger one
+  double held_tolerance_levels_ = 0;  ///< keeps to most_rays; counts where it is the larger one
+  double last_tolerance_levels_ = 1, last_rays_ = 1;  ///< of the last frame
+  double power_ = 0.5;                      ///< rays are taken as proportional to 1 / tolerance to this power
   std::vector<std::uint8_t> classes_;       ///< of the estimated error, a byte a pixel; 0: is as it was cast
   std::vector<std::vector<Pixel>> queues_;  ///< rays to be cast, by rows of blocks
   std::vector<Pixel> queue_;                ///< the same, joined

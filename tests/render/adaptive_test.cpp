@@ -191,7 +191,8 @@ TEST(Adaptive, PredictsAsTheFunctionForHostAndDevice) {
 
 TEST(Adaptive, KeepsToItsShareOfRaysAfterSomeFrames) {
   const ImageSize size{200, 200};
-  Drawing drawing(size, [](int x, int y) { return gray(0.5 + 0.2 * std::sin(0.6 * x) * std::sin(0.5 * y)); });
+  Drawing drawing(size,
+                  [](int x, int y) { return gray(0.5 + 0.2 * std::sin(0.35 * x) * std::sin(0.3 * y)); });
   const Silhouette all = whole(size);
   drawing.draw(all, 0.5);
   EXPECT_GT(drawing.rays, size.count() / 2);
