@@ -32,7 +32,7 @@ struct BricksView {
 /// Min-max bricks of a volume. Brick (x, y, z) owns the voxels [x, x + 1) * edge and so on; its range is
 /// taken with an apron of one voxel all around, so that every trilinear sample taken inside the box of its
 /// voxels (which reaches half a voxel beyond their centres) lies within [min, max]. NaN voxels do not count.
-/// Masked voxels count with the floor, as they enter a sample; a brick whose voxels, apron included, are all
+/// Masked voxels count with the value that they hold; a brick whose voxels, apron included, are all
 /// masked or all NaN is empty.
 class Bricks {
  public:

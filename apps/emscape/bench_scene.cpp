@@ -173,7 +173,9 @@ void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
 void addToleranceOption(CLI::App& command, double& tolerance_levels) {
   command
       .add_option("--tolerance", tolerance_levels,
-                  "Of adaptive rays: expected error, in levels of 255, above which a pixel is cast")
+                  "Of adaptive rays: expected error, in levels of 255, above which a pixel is cast; raised "
+                  "where more "
+                  "than a quarter of the pixels would be")
       ->check(CLI::Range(0.0, 255.0));
 }
 
