@@ -12,10 +12,11 @@ extern "C" const char* __tsan_default_suppressions() {
          "deadlock:libgdal.so\n";
 }
 
-// Fontconfig keeps what it has read until the process ends, and cairo does not hand it back.
 extern "C" const char* __lsan_default_options() {
   return "print_suppressions=0";  // what a program writes to standard error is its own
 }
+
+// Fontconfig keeps what it has read until the process ends, and cairo does not hand it back.
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libfontconfig.so\n";
 }

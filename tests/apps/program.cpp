@@ -92,4 +92,9 @@ std::string shippedScenario(const std::string& name) {
   return (fs::path(EMSCAPE_SOURCE_DIR) / "scenarios" / name).string();
 }
 
+const std::string& quick() {
+  static const std::string file = shippedScenario("quick.yaml");
+  return file;
+}
+
 }  // namespace emscape::test

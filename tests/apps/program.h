@@ -54,5 +54,7 @@ std::string readFile(const std::filesystem::path& file);
 void writeFile(const std::filesystem::path& file, const std::string& text);
 /// scenarios/NAME of the source tree.
 std::string shippedScenario(const std::string& name);
+/// The smallest of them.
+const std::string& quick();
 
 }  // namespace emscape::test

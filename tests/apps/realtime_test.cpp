@@ -21,11 +21,6 @@ using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::Not;
 
-const std::string& quick() {
-  static const std::string file = shippedScenario("quick.yaml");
-  return file;
-}
-
 /// Plays the quick scenario, small and with every settled picture verified; returns what it reports.
 json play(const Arguments& more, const std::string& input = quick(), const std::string& size = "97x75") {
   Arguments arguments{"render", input, "--realtime", "--size", size, "--verify", "--json"};

@@ -19,11 +19,6 @@ using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::Not;
 
-const std::string& quick() {
-  static const std::string file = shippedScenario("quick.yaml");
-  return file;
-}
-
 /// A scenario that takes long enough to be interrupted.
 std::string slowScenario(const TemporaryFolder& folder) {
   std::string text = readFile(quick());
