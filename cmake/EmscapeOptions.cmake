@@ -7,13 +7,6 @@ set_property(CACHE EMSCAPE_SANITIZE PROPERTY STRINGS "" address thread)
 set(EMSCAPE_CUDA AUTO CACHE STRING "Device code: AUTO (where CUDA is found), ON (required) or OFF")
 set_property(CACHE EMSCAPE_CUDA PROPERTY STRINGS AUTO ON OFF)
 
-# There is no device code yet: AUTO comes out as OFF.
-if(EMSCAPE_CUDA STREQUAL "ON")
-  message(FATAL_ERROR "EMSCAPE_CUDA=ON: this version has no CUDA code; use AUTO or OFF")
-elseif(NOT EMSCAPE_CUDA MATCHES "^(AUTO|OFF)$")
-  message(FATAL_ERROR "EMSCAPE_CUDA=${EMSCAPE_CUDA}: must be AUTO, ON or OFF")
-endif()
-
 set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)

@@ -1,0 +1,127 @@
+/// CUDA calls with errors as exceptions, and device memory that frees itself. For .cu files and their neighbours.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/error.h"
+
+namespace emscape::cuda {
+
+/// @throws Error (device) that names the call unless it succeeded
+inline void check(cudaError_t status, const char* call) {
+  if (status == cudaSuccess) return;
+  throw Error(ErrorCode::device, std::string("GPU: ") + call + ": " + cudaGetErrorString(status) + " (" +
+                                     cudaGetErrorName(status) + ")");
+}
+
+/// After a kernel's launch. @throws Error (device) that names the kernel
+inline void checkLaunch(const char* kernel) {
+  check(cudaGetLastError(), kernel);
+}
+
+/// An array in device memory.
+template <class T>
+class Buffer {
+ public:
+  Buffer() = default;
+  explicit Buffer(std::size_t count) { resize(count); }
+  Buffer(Buffer&& other) noexcept { swap(other); }
+  Buffer& operator=(Buffer&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  Buffer(const Buffer&) = delete;
+  Buffer& operator=(const Buffer&) = delete;
+  ~Buffer() { cudaFree(data_); }
+
+  /// What was held is lost unless the size stays. @throws Error (device) with the size that was asked for
+  void resize(std::size_t count) {
+    if (count == count_) return;
+    cudaFree(std::exchange(data_, nullptr));
+    count_ = 0;
+    if (count == 0) return;
+    const std::string call = "cudaMalloc of " + std::to_string(count * sizeof(T)) + " bytes";
+    check(cudaMalloc(reinterpret_cast<void**>(&data_), count * sizeof(T)), call.c_str());
+    count_ = count;
+  }
+
+  /// Copies `count` elements from host memory. Without a stream the call returns when they are there.
+  void upload(const T* from, std::size_t count, cudaStream_t stream = nullptr) {
+    resize(count);
+    if (count > 0) {
+      check(cudaMemcpyAsync(data_, from, count * sizeof(T), cudaMemcpyHostToDevice, stream), "upload");
+    }
+  }
+  void upload(const std::vector<T>& from, cudaStream_t stream = nullptr) {
+    upload(from.data(), from.size(), stream);
+  }
+  /// Copies everything to host memory and waits for it.
+  void download(T* to, cudaStream_t stream = nullptr) const {
+    if (count_ == 0) return;
+    check(cudaMemcpyAsync(to, data_, count_ * sizeof(T), cudaMemcpyDeviceToHost, stream), "download");
+    check(cudaStreamSynchronize(stream), "download");
+  }
+
+  T* data() { return data_; }
+  const T* data() const { return data_; }
+  std::size_t size() const { return count_; }
+
+ private:
+  void swap(Buffer& other) {
+    std::swap(data_, other.data_);
+    std::swap(count_, other.count_);
+  }
+
+  T* data_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+/// A stream of work.
+class Stream {
+ public:
+  Stream() { check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "cudaStreamCreate"); }
+  ~Stream() { cudaStreamDestroy(stream_); }
+  Stream(const Stream&) = delete;
+  Stream& operator=(const Stream&) = delete;
+
+  operator cudaStream_t() const { return stream_; }
+  void wait() const { check(cudaStreamSynchronize(stream_), "cudaStreamSynchronize"); }
+
+ private:
+  cudaStream_t stream_ = nullptr;
+};
+
+/// Time between two points of a stream.
+class Timer {
+ public:
+  Timer() {
+    check(cudaEventCreate(&begin_), "cudaEventCreate");
+    check(cudaEventCreate(&end_), "cudaEventCreate");
+  }
+  ~Timer() {
+    cudaEventDestroy(begin_);
+    cudaEventDestroy(end_);
+  }
+  Timer(const Timer&) = delete;
+  Timer& operator=(const Timer&) = delete;
+
+  void begin(cudaStream_t stream) { check(cudaEventRecord(begin_, stream), "cudaEventRecord"); }
+  void end(cudaStream_t stream) { check(cudaEventRecord(end_, stream), "cudaEventRecord"); }
+  /// Waits for the end.
+  double elapsed_ms() const {
+    float ms = 0;
+    check(cudaEventSynchronize(end_), "cudaEventSynchronize");
+    check(cudaEventElapsedTime(&ms, begin_, end_), "cudaEventElapsedTime");
+    return ms;
+  }
+
+ private:
+  cudaEvent_t begin_ = nullptr, end_ = nullptr;
+};
+
+}  // namespace emscape::cuda

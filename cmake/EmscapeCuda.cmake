@@ -1,0 +1,43 @@
+# Device code: whether it is built, for which GPUs, and how a module takes it in.
+if(NOT EMSCAPE_CUDA MATCHES "^(AUTO|ON|OFF)$")
+  message(FATAL_ERROR "EMSCAPE_CUDA=${EMSCAPE_CUDA}: must be AUTO, ON or OFF")
+endif()
+
+set(EMSCAPE_WITH_CUDA FALSE)
+if(NOT EMSCAPE_CUDA STREQUAL "OFF")
+  find_program(CMAKE_CUDA_COMPILER nvcc PATHS /usr/local/cuda/bin)
+  if(CMAKE_CUDA_COMPILER)
+    set(EMSCAPE_WITH_CUDA TRUE)
+  elseif(EMSCAPE_CUDA STREQUAL "ON")
+    message(FATAL_ERROR "EMSCAPE_CUDA=ON: nvcc was not found, neither on PATH nor in /usr/local/cuda/bin")
+  endif()
+endif()
+
+if(EMSCAPE_WITH_CUDA)
+  # Machine code for A100, for Hopper and for Ada; what is newer compiles the last one's PTX when it starts.
+  if(NOT CMAKE_CUDA_ARCHITECTURES)
+    set(CMAKE_CUDA_ARCHITECTURES 80-real 89-real 90)
+  endif()
+  if(EMSCAPE_CCACHE AND NOT CMAKE_CUDA_COMPILER_LAUNCHER)
+    set(CMAKE_CUDA_COMPILER_LAUNCHER "${EMSCAPE_CCACHE}")
+  endif()
+  set(CMAKE_CUDA_STANDARD 17)
+  set(CMAKE_CUDA_STANDARD_REQUIRED ON)
+  set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
+  enable_language(CUDA)
+  find_package(CUDAToolkit REQUIRED)
+endif()
+message(STATUS "Device code: ${EMSCAPE_WITH_CUDA}")
+
+# emscape_cuda_sources(MODULE WITH ... [WITHOUT ...]): sources of a module where device code is built, and those
+# that stand in their place where it is not.
+function(emscape_cuda_sources module)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "WITH;WITHOUT")
+  if(EMSCAPE_WITH_CUDA)
+    target_sources(emscape_${module} PRIVATE ${ARG_WITH})
+    target_link_libraries(emscape_${module} PRIVATE CUDA::cudart_static)
+    target_compile_definitions(emscape_${module} PUBLIC EMSCAPE_WITH_CUDA)
+  else()
+    target_sources(emscape_${module} PRIVATE ${ARG_WITHOUT})
+  endif()
+endfunction()
