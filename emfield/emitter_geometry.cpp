@@ -31,7 +31,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, scenario::Pro
   Stopwatch watch;
   const Station station = makeStation(state.position, state.height_msl_m, k_factor);
   const std::vector<FanCoordinates> coordinates = fanCoordinates(station, columns);
-  locateColumns(station, k_factor, columns, coordinates);
+  locateColumns(station, columns, coordinates);
   shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
   unknown_columns_ = 0;
   if (model == scenario::PropagationModel::free_space) {
@@ -54,14 +54,13 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, scenario::Pro
   times.plane_ms += watch.lap_ms();
 }
 
-void EmitterGeometry::locateColumns(const Station& station, double k_factor, const GridColumns& columns,
+void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns,
                                     const std::vector<FanCoordinates>& coordinates) {
   column_count_ = columns.columns.size();
   arrays_.resize(kArrays * column_count_);
   float* out[kArrays];
   for (int a = 0; a < kArrays; ++a) out[a] = arrays_.data() + a * column_count_;
   const Vec3d& up = station.geodesy.station.up;
-  const double bending_per_m = (1 - 1 / k_factor) / (2 * station.earth_radius_m);
   const double middle_m = 0.5 * (columns.t_m.front() + columns.t_m.back());
   parallelFor(static_cast<int>(column_count_), 4096, [&](int begin, int end) {
     for (int c = begin; c < end; ++c) {
@@ -80,7 +79,7 @@ void EmitterGeometry::locateColumns(const Station& station, double k_factor, con
                                       dot(column.axis, up),
                                       dot(offset, offset),
                                       nearest_t_m,
-                                      coordinates[c].range_m * bending_per_m * level_m};
+                                      refractionLift_m(station, coordinates[c].range_m, level_m)};
       for (int a = 0; a < kArrays; ++a) out[a][c] = static_cast<float>(values[a]);
     }
   });

@@ -53,7 +53,7 @@ class EmitterGeometry {
   std::size_t bytes() const { return (arrays_.size() + shadow_edge_m_.size()) * sizeof(float); }
 
  private:
-  void locateColumns(const Station& station, double k_factor, const GridColumns& columns,
+  void locateColumns(const Station& station, const GridColumns& columns,
                      const std::vector<FanCoordinates>& coordinates);
 
   static constexpr int kArrays = 9;

@@ -25,4 +25,11 @@ inline Station makeStation(const GeodeticPosition& position, double height_msl_m
   return station;
 }
 
+/// What is added to the rise (m) of the straight line to a point so that it starts along the refracted ray.
+/// @param range_m  over the ground
+/// @param level_m  distance of the point in the station's horizontal plane
+inline double refractionLift_m(const Station& station, double range_m, double level_m) {
+  return range_m * level_m * (1 / station.earth_radius_m - 1 / station.effective_earth_radius_m) / 2;
+}
+
 }  // namespace emscape::emfield

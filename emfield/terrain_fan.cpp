@@ -35,17 +35,6 @@ Sector sectorOf(const std::vector<FanCoordinates>& coordinates, double margin_m)
   return {reference + lowest, highest - lowest, false};
 }
 
-/// From 0 beyond the farthest range: every few metres at first, then in proportion to the range, then evenly.
-std::vector<double> fanRanges(double farthest_m, double even_step_m) {
-  constexpr double kNearestStep_m = 2, kGrowth = 0.1;
-  std::vector<double> ranges{0};
-  while (ranges.back() < farthest_m) {
-    const double step_m = std::min(even_step_m, std::max(kNearestStep_m, kGrowth * ranges.back()));
-    ranges.push_back(ranges.back() + step_m);
-  }
-  return ranges;
-}
-
 /// Heights of one azimuth. Positions are exact at knots and linear between: over so short a piece the
 /// geodesic leaves its chord by less than a metre, except near the poles.
 class ProfileReader {
@@ -106,6 +95,16 @@ double FanShape::azimuthIndex(double azimuth_rad) const {
 int FanShape::lastBefore(double range_m) const {
   const auto first_not_before = std::lower_bound(ranges_m.begin(), ranges_m.end(), range_m);
   return std::max(0, static_cast<int>(first_not_before - ranges_m.begin()) - 1);
+}
+
+std::vector<double> fanRanges(double farthest_m, double even_step_m) {
+  constexpr double kNearestStep_m = 2, kGrowth = 0.1;
+  std::vector<double> ranges{0};
+  while (ranges.back() < farthest_m) {
+    const double step_m = std::min(even_step_m, std::max(kNearestStep_m, kGrowth * ranges.back()));
+    ranges.push_back(ranges.back() + step_m);
+  }
+  return ranges;
 }
 
 FanResolution fanResolution(const volume::Grid& grid, const scenario::Terrain* terrain) {

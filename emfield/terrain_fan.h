@@ -38,6 +38,10 @@ struct FanShape {
   int lastBefore(double range_m) const;
 };
 
+/// Ranges of a fan's samples, from 0 to the first one not below farthest_m: every few metres at first, then
+/// in proportion to the range, then evenly.
+std::vector<double> fanRanges(double farthest_m, double even_step_m);
+
 /// The fan that reaches every column: a full circle, or the sector that holds the grid for a station well
 /// outside it.
 /// @param terrain  null: a smooth earth, one interval serves all azimuths
