@@ -15,6 +15,9 @@ struct Device {
   std::size_t free_bytes = 0;  ///< when it was asked
 };
 
+/// What of CUDA is in this build: "CUDA 13.0 for 80-real, 90"; empty for nothing.
+std::string cudaOfBuild();
+
 /// The first GPU of the system that this program can use. Cheap after the first call but for free_bytes.
 Device findDevice();
 

@@ -2,6 +2,10 @@
 
 namespace emscape {
 
+std::string cudaOfBuild() {
+  return {};
+}
+
 Device findDevice() {
   Device device;
   device.why_not = "this build has no CUDA";

@@ -15,7 +15,9 @@ endfunction()
 # Warnings, as errors if asked for, on a target of our own.
 function(emscape_warnings target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
-                                           $<$<BOOL:${EMSCAPE_WERROR}>:-Werror>>)
+                                           $<$<BOOL:${EMSCAPE_WERROR}>:-Werror>>
+    $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra
+                               $<$<BOOL:${EMSCAPE_WERROR}>:-Werror=all-warnings -Xcompiler=-Werror>>)
   if(EMSCAPE_SANITIZE)
     # the sanitizers' own code makes GCC see uninitialised values in the standard headers
     target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)

@@ -1,4 +1,5 @@
-/// CUDA calls with errors as exceptions, and device memory that frees itself. For .cu files and their neighbours.
+/// CUDA calls with errors as exceptions, and device memory that frees itself. For .cu files and their
+/// neighbours.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -12,15 +13,21 @@
 
 namespace emscape::cuda {
 
-/// @throws Error (device) that names the call unless it succeeded
+/// The kernel that this thread launched last: what fails inside a kernel is told by a later call.
+inline thread_local const char* last_kernel = nullptr;
+
+/// @throws Error (device) that names the call, and the kernel launched before it, unless it succeeded
 inline void check(cudaError_t status, const char* call) {
   if (status == cudaSuccess) return;
-  throw Error(ErrorCode::device, std::string("GPU: ") + call + ": " + cudaGetErrorString(status) + " (" +
-                                     cudaGetErrorName(status) + ")");
+  std::string message =
+      std::string("GPU: ") + call + ": " + cudaGetErrorString(status) + " (" + cudaGetErrorName(status) + ")";
+  if (last_kernel != nullptr) message += std::string("; the last kernel launched was ") + last_kernel;
+  throw Error(ErrorCode::device, message);
 }
 
-/// After a kernel's launch. @throws Error (device) that names the kernel
+/// After a kernel's launch. @param kernel  its name, a literal. @throws Error (device) that names the kernel
 inline void checkLaunch(const char* kernel) {
+  last_kernel = kernel;
   check(cudaGetLastError(), kernel);
 }
 
@@ -54,7 +61,8 @@ class Buffer {
   void upload(const T* from, std::size_t count, cudaStream_t stream = nullptr) {
     resize(count);
     if (count > 0) {
-      check(cudaMemcpyAsync(data_, from, count * sizeof(T), cudaMemcpyHostToDevice, stream), "upload");
+      check(cudaMemcpyAsync(data_, from, count * sizeof(T), cudaMemcpyHostToDevice, stream),
+            "cudaMemcpyAsync to the GPU");
     }
   }
   void upload(const std::vector<T>& from, cudaStream_t stream = nullptr) {
@@ -63,8 +71,9 @@ class Buffer {
   /// Copies everything to host memory and waits for it.
   void download(T* to, cudaStream_t stream = nullptr) const {
     if (count_ == 0) return;
-    check(cudaMemcpyAsync(to, data_, count_ * sizeof(T), cudaMemcpyDeviceToHost, stream), "download");
-    check(cudaStreamSynchronize(stream), "download");
+    check(cudaMemcpyAsync(to, data_, count_ * sizeof(T), cudaMemcpyDeviceToHost, stream),
+          "cudaMemcpyAsync from the GPU");
+    check(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
   }
 
   T* data() { return data_; }

@@ -1,0 +1,47 @@
+#include <cuda_runtime_api.h>
+
+#include "base/device.h"
+
+namespace emscape {
+namespace {
+
+/// A GPU that can take this one can take the others: all are compiled for the same architectures.
+__global__ void answer() {}
+
+std::string whyNot(cudaError_t status) {
+  int driver = 0;
+  if (status == cudaErrorInsufficientDriver && cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) {
+    return "there is no NVIDIA driver";
+  }
+  return cudaGetErrorString(status);
+}
+
+}  // namespace
+
+std::string cudaOfBuild() {
+  return "CUDA " + std::to_string(CUDART_VERSION / 1000) + "." + std::to_string(CUDART_VERSION % 1000 / 10) +
+         " for " EMSCAPE_CUDA_ARCHITECTURES;
+}
+
+Device findDevice() {
+  Device device;
+  int count = 0;
+  cudaError_t status = cudaGetDeviceCount(&count);
+  cudaDeviceProp properties{};
+  cudaFuncAttributes attributes{};
+  if (status == cudaSuccess && count == 0) status = cudaErrorNoDevice;
+  if (status == cudaSuccess) status = cudaGetDeviceProperties(&properties, 0);
+  if (status == cudaSuccess) status = cudaSetDevice(0);
+  if (status == cudaSuccess) status = cudaFuncGetAttributes(&attributes, answer);
+  if (status == cudaSuccess) status = cudaMemGetInfo(&device.free_bytes, &device.total_bytes);
+  if (status != cudaSuccess) {
+    device.why_not = whyNot(status);
+    cudaGetLastError();  // takes the error back
+    return device;
+  }
+  device.usable = true;
+  device.name = properties.name;
+  return device;
+}
+
+}  // namespace emscape
