@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/stopwatch.h"
 #include "base/units.h"
 #include "emfield/field_solver_impl.h"
 
@@ -42,41 +41,39 @@ volume::Grid gridOf(const scenario::Region& region) {
   return grid;
 }
 
-FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario_in,
-                        scenario::TerrainPtr terrain_in, FieldOptions options_in)
-    : scenario(std::move(scenario_in)), terrain(std::move(terrain_in)), options(std::move(options_in)) {
+FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
+                        FieldOptions options_in)
+    : options(std::move(options_in)) {
+  setup.scenario = std::move(scenario);
+  setup.terrain = std::move(terrain);
   checkModels();
-  grid = gridOf(scenario->region);
-  channels = channelsOf(*scenario, options.quantities);
-  for (const Channel& channel : channels)
-    channel_states.push_back({recipeOf(channel, *scenario), {}, {}, {}, {}, {}});
-  columns = makeGridColumns(grid, terrain.get());
+  setup.grid = gridOf(setup.scenario->region);
+  setup.channels = channelsOf(*setup.scenario, options.quantities);
+  for (const Channel& channel : setup.channels) setup.recipes.push_back(recipeOf(channel, *setup.scenario));
+  setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
   checkHoles();
-  resolution = fanResolution(grid, terrain.get());
-  if (!columns.first_valid_k.empty()) {
-    for (int j = 0; j < grid.dims.y; ++j) {
-      const auto row = columns.first_valid_k.begin() + static_cast<std::ptrdiff_t>(j) * grid.dims.x;
-      first_row_k.push_back(*std::min_element(row, row + grid.dims.x));
-    }
-  }
-  emitters.resize(scenario->emitters.size());
-  const std::size_t bytes_each = columns.columns.size() * EmitterGeometry::kBytesPerColumn;
-  for (std::size_t e = 0; e < emitters.size(); ++e) {
-    emitters[e].is_cached = options.cache_bytes == 0 || (e + 1) * bytes_each <= options.cache_bytes;
-    const Emitter& emitter = scenario->emitters[e];
+  setup.resolution = fanResolution(setup.grid, setup.terrain.get());
+  for (const Emitter& emitter : setup.scenario->emitters) {
     const double wavelength = wavelength_m(emitter.frequency_hz);
     const double dimension_m = emitter.antenna->apertureDimension_m(wavelength);
-    emitters[e].far_field_m = 2 * dimension_m * dimension_m / wavelength;
+    setup.far_field_m.push_back(2 * dimension_m * dimension_m / wavelength);
   }
-  volumes.resize(channels.size());
+  emitters.resize(setup.scenario->emitters.size());
+  engine = makeCpuEngine(setup, static_cast<int>(emitters.size()) + 1);
+  std::size_t cached_bytes = 0;
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    const std::size_t bytes = engine->slotBytes(static_cast<int>(e));
+    emitters[e].is_cached = options.cache_bytes == 0 || cached_bytes + bytes <= options.cache_bytes;
+    if (emitters[e].is_cached) cached_bytes += bytes;
+  }
 }
 
 void FieldSolver::Impl::checkModels() const {
-  for (const Emitter& emitter : scenario->emitters) {
+  for (const Emitter& emitter : setup.scenario->emitters) {
     if (emitter.propagation != PropagationModel::free_space &&
         emitter.propagation != PropagationModel::horizon) {
       throw Error(
-          ErrorCode::bad_input, {scenario->file},
+          ErrorCode::bad_input, {setup.scenario->file},
           fmt::format(
               "emitter '{}': propagation '{}' cannot be computed by this version; one of free_space, horizon",
               emitter.name, scenario::toString(emitter.propagation)));
@@ -85,21 +82,22 @@ void FieldSolver::Impl::checkModels() const {
 }
 
 std::string FieldSolver::Impl::placeOf(std::size_t column) const {
-  const GeodeticPosition place = fromEcef(columns.columns[column].base_ecef_m);
+  const GeodeticPosition place = fromEcef(setup.columns.columns[column].base_ecef_m);
   return fmt::format("latitude {:.5f}, longitude {:.5f} deg", place.latitude_deg, place.longitude_deg);
 }
 
 void FieldSolver::Impl::checkHoles() const {
+  const GridColumns& columns = setup.columns;
   if (columns.hole_columns == 0 || options.allow_missing_terrain) return;
-  const scenario::GeoBox box = terrain->coverage();
+  const scenario::GeoBox box = setup.terrain->coverage();
   throw Error(
-      ErrorCode::bad_input, {scenario->file},
+      ErrorCode::bad_input, {setup.scenario->file},
       fmt::format(
           "terrain is missing below {} of {} columns of the region, first at {}; the files cover latitude "
           "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts (--allow-missing-terrain draws "
           "holes)",
           columns.hole_columns, columns.columns.size(), placeOf(columns.first_hole), box.south_deg,
-          box.north_deg, box.west_deg, box.east_deg, terrain->voidPosts()));
+          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts()));
 }
 
 FieldChanged FieldSolver::Impl::findChanges(const scenario::Snapshot& snapshot) {
@@ -128,24 +126,24 @@ FieldSolver::FieldSolver(std::shared_ptr<const scenario::Scenario> scenario, sce
 FieldSolver::~FieldSolver() = default;
 
 const volume::Grid& FieldSolver::grid() const {
-  return impl_->grid;
+  return impl_->setup.grid;
 }
 const std::vector<Channel>& FieldSolver::channels() const {
-  return impl_->channels;
+  return impl_->setup.channels;
 }
 const std::vector<float>& FieldSolver::groundHeights_m() const {
-  return impl_->columns.ground_msl_m;
+  return impl_->setup.columns.ground_msl_m;
 }
 StageTimes FieldSolver::stageTimes() const {
-  return impl_->times;
+  return impl_->engine->times();
 }
 const std::vector<std::shared_ptr<const volume::DenseVolume>>& FieldSolver::volumes() const {
-  return impl_->volumes;
+  return impl_->engine->volumes();
 }
 
 FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
   Impl& impl = *impl_;
-  impl.times = {};
+  impl.engine->resetTimes();
   const FieldChanged changed = impl.findChanges(snapshot);
   if (!changed.any) return changed;
 
@@ -153,30 +151,28 @@ FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
   for (const std::vector<int>* list : {&changed.moved, &changed.turned}) {
     for (int e : *list) emitter_changed[e] = true;
   }
+  std::vector<int> recomputed, chosen;
   for (int e : changed.moved) {
-    EmitterCache& cache = impl.emitters[e];
-    if (cache.is_cached) impl.computeGeometry(e, cache.state, cache.geometry);
+    if (impl.emitters[e].is_cached) recomputed.push_back(e);
   }
+  impl.computeGeometry(recomputed, false);
 
-  std::vector<bool> channel_changed(impl.channels.size(), impl.is_first);
-  for (std::size_t c = 0; c < impl.channels.size(); ++c) {
-    for (int e : impl.channels[c].emitters) channel_changed[c] = channel_changed[c] || emitter_changed[e];
-    ChannelState& state = impl.channel_states[c];
-    state.value.resize(static_cast<std::size_t>(impl.grid.dims.count()));
-    if (state.recipe.reduction == Reduction::dominant) state.largest.resize(state.value.size());
+  const std::vector<Channel>& channels = impl.setup.channels;
+  std::vector<bool> channel_changed(channels.size(), impl.is_first);
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    for (int e : channels[c].emitters) channel_changed[c] = channel_changed[c] || emitter_changed[e];
   }
   impl.chooseResting(emitter_changed);
-  std::vector<int> chosen;
   for (std::size_t e = 0; e < impl.emitters.size(); ++e) {
     if (!impl.resting[e]) chosen.push_back(static_cast<int>(e));
   }
   impl.combine(chosen, channel_changed, false);
 
-  Stopwatch watch;
-  for (std::size_t c = 0; c < impl.channels.size(); ++c) {
-    if (channel_changed[c]) impl.makeVolume(c, snapshot);
+  std::vector<VolumeRequest> requests;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (channel_changed[c]) requests.push_back(impl.volumeRequest(static_cast<int>(c), snapshot));
   }
-  impl.times.product_ms = watch.lap_ms();
+  impl.engine->makeVolumes(requests);
   impl.is_first = false;
   return changed;
 }
@@ -184,22 +180,10 @@ FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
 MemoryUse FieldSolver::memoryUse() const {
   const Impl& impl = *impl_;
   MemoryUse use;
-  const double voxels = static_cast<double>(impl.grid.dims.count());
   use.bytes_per_column_and_emitter = EmitterGeometry::kBytesPerColumn;
-  for (const EmitterCache& emitter : impl.emitters) {
-    use.total_bytes += emitter.is_cached ? emitter.geometry.bytes() : 0;
-    use.uncached_emitters += emitter.is_cached ? 0 : 1;
-  }
-  std::size_t channel_bytes = 0;
-  for (const ChannelState& state : impl.channel_states) {
-    for (const auto* buffer : {&state.value, &state.largest, &state.resting_value, &state.resting_largest}) {
-      channel_bytes += buffer->capacity() * sizeof(float);
-    }
-    for (const auto& volume : state.pool) channel_bytes += volume->values.capacity() * sizeof(float);
-  }
-  use.bytes_per_voxel_and_channel =
-      static_cast<double>(channel_bytes) / voxels / std::max<std::size_t>(1, impl.channels.size());
-  use.total_bytes += channel_bytes + impl.columns.columns.size() * sizeof(GridColumn);
+  for (const EmitterCache& emitter : impl.emitters) use.uncached_emitters += emitter.is_cached ? 0 : 1;
+  impl.engine->addMemory(use);
+  use.total_bytes += impl.setup.columns.columns.size() * sizeof(GridColumn);
   return use;
 }
 

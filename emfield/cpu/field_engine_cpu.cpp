@@ -1,0 +1,203 @@
+// The field's stages on the host.
+
+#include <algorithm>
+
+#include "base/stopwatch.h"
+#include "emfield/field_engine.h"
+
+namespace emscape::emfield {
+namespace {
+
+/// Buffers of one channel.
+struct ChannelBuffers {
+  std::vector<float> value, largest;                  ///< accumulator over all emitters
+  std::vector<float> resting_value, resting_largest;  ///< accumulator over the resting emitters alone
+  std::vector<std::shared_ptr<volume::DenseVolume>> pool;
+};
+
+class CpuEngine : public FieldEngine {
+ public:
+  CpuEngine(const FieldSetup& setup, int slots)
+      : setup_(setup),
+        voxels_(static_cast<std::size_t>(setup.grid.dims.count())),
+        slots_(slots),
+        unknown_(setup.scenario->emitters.size()),
+        buffers_(setup.channels.size()),
+        volumes_(setup.channels.size()) {
+    for (std::size_t c = 0; c < buffers_.size(); ++c) {
+      buffers_[c].value.resize(voxels_);
+      if (hasLargest(c)) buffers_[c].largest.resize(voxels_);
+    }
+    const Dims& dims = setup.grid.dims;
+    const std::vector<std::uint16_t>& valid = setup.columns.first_valid_k;
+    for (int j = 0; j < dims.y && !valid.empty(); ++j) {
+      const auto row = valid.begin() + static_cast<std::ptrdiff_t>(j) * dims.x;
+      first_row_k_.push_back(*std::min_element(row, row + dims.x));
+    }
+  }
+
+  std::size_t slotBytes(int) const override {
+    return setup_.columns.columns.size() * EmitterGeometry::kBytesPerColumn;
+  }
+  std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) override;
+  void setResting(const std::vector<bool>& channels) override;
+  void combine(const CombinePass& pass) override;
+  void makeVolumes(const std::vector<VolumeRequest>& requests) override;
+  const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() override { return volumes_; }
+  void resetTimes() override { times_ = {}; }
+  StageTimes times() override { return times_; }
+  void addMemory(MemoryUse& use) const override;
+
+ private:
+  bool hasLargest(std::size_t channel) const {
+    return setup_.recipes[channel].reduction == Reduction::dominant;
+  }
+  std::shared_ptr<volume::DenseVolume> freeVolume(ChannelBuffers& buffers) const;
+  void maskUnknown(const std::vector<int>& emitters, std::vector<std::uint16_t>& first_valid_k) const;
+
+  const FieldSetup& setup_;
+  std::size_t voxels_;
+  std::vector<int> first_row_k_;
+  std::vector<EmitterGeometry> slots_;
+  std::vector<std::vector<bool>> unknown_;  ///< columns unknown to each emitter; empty: none
+  std::vector<ChannelBuffers> buffers_;
+  std::vector<std::shared_ptr<const volume::DenseVolume>> volumes_;
+  StageTimes times_;
+};
+
+std::vector<GeometryFindings> CpuEngine::computeGeometry(const std::vector<GeometryRequest>& requests) {
+  std::vector<GeometryFindings> all;
+  for (const GeometryRequest& request : requests) {
+    EmitterGeometry& geometry = slots_[request.slot];
+    EmitterGeometry::Times spent;
+    geometry.compute(request.state, setup_.scenario->emitters[request.emitter].propagation,
+                     setup_.scenario->atmosphere.k_factor, setup_.columns, setup_.terrain.get(),
+                     setup_.resolution, spent);
+    times_.fan_ms += spent.fan_ms;
+    times_.plane_ms += spent.plane_ms;
+
+    GeometryFindings found;
+    found.unknown_columns = geometry.unknownColumns();
+    std::vector<bool>& unknown = unknown_[request.emitter];
+    unknown.clear();
+    if (found.unknown_columns > 0) {
+      unknown.resize(setup_.columns.columns.size());
+      for (std::size_t c = 0; c < unknown.size(); ++c) unknown[c] = geometry.isUnknown(c);
+      found.first_unknown = std::find(unknown.begin(), unknown.end(), true) - unknown.begin();
+    }
+    const ColumnGeometryView view = geometry.view();
+    const std::vector<float>& t_m = setup_.columns.t_m;
+    const double far_m = setup_.far_field_m[request.emitter];
+    for (std::size_t c = 0; c < setup_.columns.columns.size(); ++c) {
+      found.near_voxels +=
+          nearVoxels(view, c, t_m.data(), static_cast<int>(t_m.size()), static_cast<float>(far_m * far_m));
+    }
+    all.push_back(found);
+  }
+  return all;
+}
+
+void CpuEngine::setResting(const std::vector<bool>& channels) {
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    ChannelBuffers& buffers = buffers_[c];
+    buffers.resting_value.resize(channels[c] ? voxels_ : 0);
+    buffers.resting_largest.resize(channels[c] && hasLargest(c) ? voxels_ : 0);
+    buffers.resting_value.shrink_to_fit();
+    buffers.resting_largest.shrink_to_fit();
+  }
+}
+
+void CpuEngine::combine(const CombinePass& pass) {
+  CombineTask task;
+  task.dims = setup_.grid.dims;
+  task.t_m = setup_.columns.t_m.data();
+  task.first_row_k = first_row_k_.empty() ? nullptr : first_row_k_.data();
+  task.keep = pass.keep;
+  for (std::size_t c = 0; c < buffers_.size(); ++c) {
+    ChannelBuffers& buffers = buffers_[c];
+    auto& value = pass.into_resting ? buffers.resting_value : buffers.value;
+    auto& largest = pass.into_resting ? buffers.resting_largest : buffers.largest;
+    const auto orNull = [](std::vector<float>& array) { return array.empty() ? nullptr : array.data(); };
+    task.reductions.push_back(setup_.recipes[c].reduction);
+    task.accumulators.push_back(pass.channels[c] ? Accumulator{orNull(value), orNull(largest)}
+                                                 : Accumulator{});
+    task.initial.push_back(
+        pass.into_resting ? ConstAccumulator{}
+                          : ConstAccumulator{orNull(buffers.resting_value), orNull(buffers.resting_largest)});
+  }
+  for (const CombinePass::Member& member : pass.members) {
+    task.emitters.push_back(member.emitter);
+    EmitterBeam& beam = task.emitters.back().beam;
+    beam.geometry = slots_[member.slot].view();
+    beam.pattern = setup_.scenario->emitters[member.emitter.emitter_index].antenna->view();
+  }
+  Stopwatch watch;
+  combineCpu(task);
+  times_.combine_ms += watch.lap_ms();
+}
+
+std::shared_ptr<volume::DenseVolume> CpuEngine::freeVolume(ChannelBuffers& buffers) const {
+  for (const auto& candidate : buffers.pool) {
+    if (candidate.use_count() == 1) return candidate;
+  }
+  buffers.pool.push_back(std::make_shared<volume::DenseVolume>());
+  buffers.pool.back()->grid = setup_.grid;
+  buffers.pool.back()->values.resize(voxels_);
+  return buffers.pool.back();
+}
+
+void CpuEngine::maskUnknown(const std::vector<int>& emitters,
+                            std::vector<std::uint16_t>& first_valid_k) const {
+  first_valid_k = setup_.columns.first_valid_k;
+  for (int e : emitters) {
+    const std::vector<bool>& unknown = unknown_[e];
+    if (unknown.empty()) continue;
+    first_valid_k.resize(unknown.size(), 0);
+    for (std::size_t c = 0; c < unknown.size(); ++c) {
+      if (unknown[c]) first_valid_k[c] = static_cast<std::uint16_t>(setup_.grid.dims.z);
+    }
+  }
+}
+
+void CpuEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
+  Stopwatch watch;
+  for (const VolumeRequest& request : requests) {
+    ChannelBuffers& buffers = buffers_[request.channel];
+    volumes_[request.channel].reset();
+    const std::shared_ptr<volume::DenseVolume> volume = freeVolume(buffers);
+    maskUnknown(request.emitters, volume->first_valid_k);
+    ProductTask task;
+    task.dims = setup_.grid.dims;
+    task.product = setup_.recipes[request.channel].product;
+    task.accumulator = buffers.value.data();
+    task.first_valid_k = volume->first_valid_k.empty() ? nullptr : volume->first_valid_k.data();
+    task.values = volume->values.data();
+    volume->info = request.info;
+    setRange(volume->info, productCpu(task));
+    volumes_[request.channel] = volume;
+  }
+  times_.product_ms += watch.lap_ms();
+}
+
+void CpuEngine::addMemory(MemoryUse& use) const {
+  std::size_t channel_bytes = 0;
+  for (const ChannelBuffers& buffers : buffers_) {
+    for (const auto* buffer :
+         {&buffers.value, &buffers.largest, &buffers.resting_value, &buffers.resting_largest}) {
+      channel_bytes += buffer->capacity() * sizeof(float);
+    }
+    for (const auto& volume : buffers.pool) channel_bytes += volume->values.capacity() * sizeof(float);
+  }
+  use.bytes_per_voxel_and_channel = static_cast<double>(channel_bytes) / static_cast<double>(voxels_) /
+                                    static_cast<double>(std::max<std::size_t>(1, buffers_.size()));
+  use.total_bytes += channel_bytes;
+  for (const EmitterGeometry& geometry : slots_) use.total_bytes += geometry.bytes();
+}
+
+}  // namespace
+
+std::unique_ptr<FieldEngine> makeCpuEngine(const FieldSetup& setup, int slots) {
+  return std::make_unique<CpuEngine>(setup, slots);
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,113 @@
+/// The stages of the field on one backend: where their arrays live, and what runs over them.
+///
+/// FieldSolver decides what is computed anew and what is kept; an engine computes it. Emitters, channels and
+/// slots go by index.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "emfield/combine.h"
+#include "emfield/field_solver.h"
+#include "emfield/grid_columns.h"
+#include "emfield/products.h"
+#include "emfield/terrain_fan.h"
+
+namespace emscape::emfield {
+
+/// What stays the same over all updates of a field.
+struct FieldSetup {
+  std::shared_ptr<const scenario::Scenario> scenario;
+  scenario::TerrainPtr terrain;  ///< null: none
+  volume::Grid grid;
+  GridColumns columns;
+  FanResolution resolution;
+  std::vector<Channel> channels;
+  std::vector<ChannelRecipe> recipes;  ///< one a channel
+  std::vector<double> far_field_m;     ///< of each emitter: 2 D^2 / lambda
+};
+
+/// Stages 1 and 2 for one emitter, into a slot.
+struct GeometryRequest {
+  int emitter = 0;
+  int slot = 0;
+  scenario::EmitterState state;
+};
+
+/// What they found.
+struct GeometryFindings {
+  long long unknown_columns = 0;  ///< whose path crosses missing terrain
+  std::size_t first_unknown = 0;  ///< one of them, if there are any
+  long long near_voxels = 0;      ///< nearer than the emitter's far field
+};
+
+/// One pass of stage 3.
+struct CombinePass {
+  struct Member {
+    int slot = 0;
+    /// Without the views of geometry and pattern, which are the engine's. Its shares are in the channels of
+    /// the setup.
+    CombineEmitter emitter;
+  };
+  std::vector<Member> members;
+  std::vector<bool> channels;  ///< those that take part
+  bool into_resting = false;   ///< true: the sums of resting emitters, from nothing
+  bool keep = false;  ///< true: goes on from what the sums hold; false: from the resting emitters' sums
+};
+
+/// Stage 4 for one channel.
+struct VolumeRequest {
+  int channel = 0;
+  volume::VolumeInfo info;    ///< but for the value range
+  std::vector<int> emitters;  ///< that are active in the channel: columns unknown to one of them are masked
+};
+
+class FieldEngine {
+ public:
+  virtual ~FieldEngine() = default;
+
+  /// What a slot keeps of an emitter between updates (bytes).
+  virtual std::size_t slotBytes(int emitter) const = 0;
+
+  /// @return one a request, in their order
+  virtual std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) = 0;
+  /// Which channels have sums of resting emitters from now on; a pass into them fills them.
+  virtual void setResting(const std::vector<bool>& channels) = 0;
+  virtual void combine(const CombinePass& pass) = 0;
+  /// Makes new volumes of some channels; earlier ones that a caller keeps are left alone.
+  virtual void makeVolumes(const std::vector<VolumeRequest>& requests) = 0;
+
+  /// The latest volume of each channel, in host memory.
+  virtual const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() = 0;
+
+  /// Sets the stages' times to 0.
+  virtual void resetTimes() = 0;
+  virtual StageTimes times() = 0;
+  /// Adds what the engine holds to total_bytes and to the bytes of voxels and channels.
+  virtual void addMemory(MemoryUse& use) const = 0;
+};
+
+/// @param setup  must outlive the engine
+/// @param slots  number of slots
+std::unique_ptr<FieldEngine> makeCpuEngine(const FieldSetup& setup, int slots);
+
+/// Value range of a volume in which nothing is above the floor: the floor.
+inline void setRange(volume::VolumeInfo& info, const ValueRange& range) {
+  const bool is_empty = !(range.lowest <= range.highest);
+  info.range_min = is_empty ? info.floor : range.lowest;
+  info.range_max = is_empty ? info.floor : range.highest;
+}
+
+/// Voxels of a column nearer to the emitter than a distance.
+EMSCAPE_HD inline int nearVoxels(const ColumnGeometryView& geometry, std::size_t column, const float* t_m,
+                                 int layers, float limit2_m2) {
+  int count = 0;
+  if (geometry.offset2_m2[column] >= limit2_m2) return count;
+  for (int k = 0; k < layers; ++k) {
+    const float along_m = t_m[k] - geometry.nearest_t_m[column];
+    count += geometry.offset2_m2[column] + along_m * along_m < limit2_m2 ? 1 : 0;
+  }
+  return count;
+}
+
+}  // namespace emscape::emfield
