@@ -10,21 +10,12 @@
 namespace emscape::volume {
 namespace {
 
-struct Interval {
-  int begin, end;
-};
-
-/// The voxels of a brick and its apron along one axis.
-Interval withApron(int brick, int edge, int voxels) {
-  return {std::max(brick * edge - 1, 0), std::min((brick + 1) * edge + 1, voxels)};
-}
-
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr ValueRange kEmpty{kInfinity, -kInfinity};
 
 /// Least and greatest value of each x over the voxel rows of y and z. Elementwise, so that the compiler can
 /// vectorise it; NaN fails both comparisons.
-void foldRows(const DenseVolume& volume, Interval y, Interval z, std::vector<float>& least,
+void foldRows(const DenseVolume& volume, VoxelInterval y, VoxelInterval z, std::vector<float>& least,
               std::vector<float>& greatest) {
   const int voxels = volume.grid.dims.x;
   least.assign(static_cast<std::size_t>(voxels), kInfinity);
@@ -43,7 +34,7 @@ void foldRows(const DenseVolume& volume, Interval y, Interval z, std::vector<flo
 }
 
 /// True if every voxel of the columns of x and y below z_end is masked.
-bool allMasked(const DenseVolume& volume, Interval x, Interval y, int z_end) {
+bool allMasked(const DenseVolume& volume, VoxelInterval x, VoxelInterval y, int z_end) {
   if (volume.first_valid_k.empty()) return false;
   for (int j = y.begin; j < y.end; ++j) {
     for (int i = x.begin; i < x.end; ++i) {
@@ -51,10 +42,6 @@ bool allMasked(const DenseVolume& volume, Interval x, Interval y, int z_end) {
     }
   }
   return true;
-}
-
-int brickCount(int voxels, int edge) {
-  return (voxels + edge - 1) / edge;
 }
 
 }  // namespace
@@ -67,16 +54,16 @@ Bricks::Bricks(const DenseVolume& volume, int edge) : edge_(edge) {
 
 void Bricks::update(const DenseVolume& volume) {
   const Dims& voxels = volume.grid.dims;
-  dims_ = {brickCount(voxels.x, edge_), brickCount(voxels.y, edge_), brickCount(voxels.z, edge_)};
+  dims_ = brickDims(voxels, edge_);
   ranges_.resize(static_cast<std::size_t>(dims_.count()));
   parallelFor(dims_.y * dims_.z, 4, [&](int begin, int end) {
     std::vector<float> least, greatest;
     for (int row = begin; row < end; ++row) {
-      const Interval y = withApron(row % dims_.y, edge_, voxels.y);
-      const Interval z = withApron(row / dims_.y, edge_, voxels.z);
+      const VoxelInterval y = withApron(row % dims_.y, edge_, voxels.y);
+      const VoxelInterval z = withApron(row / dims_.y, edge_, voxels.z);
       foldRows(volume, y, z, least, greatest);
       for (int brick = 0; brick < dims_.x; ++brick) {
-        const Interval x = withApron(brick, edge_, voxels.x);
+        const VoxelInterval x = withApron(brick, edge_, voxels.x);
         ValueRange range = kEmpty;
         if (!allMasked(volume, x, y, z.end)) {
           range.min = *std::min_element(least.begin() + x.begin, least.begin() + x.end);

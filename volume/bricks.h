@@ -18,6 +18,25 @@ struct ValueRange {
   EMSCAPE_HD bool empty() const { return min > max; }
 };
 
+/// Voxels along a brick's edge, unless others are asked for.
+constexpr int kBrickEdge = 8;
+
+/// The voxels of a brick and its apron along one axis.
+struct VoxelInterval {
+  int begin, end;
+};
+EMSCAPE_HD inline VoxelInterval withApron(int brick, int edge, int voxels) {
+  const int begin = brick * edge - 1;
+  const int end = (brick + 1) * edge + 1;
+  return {begin > 0 ? begin : 0, end < voxels ? end : voxels};
+}
+
+/// How many bricks a volume has.
+inline Dims brickDims(const Dims& voxels, int edge) {
+  const auto along = [edge](int count) { return (count + edge - 1) / edge; };
+  return {along(voxels.x), along(voxels.y), along(voxels.z)};
+}
+
 /// Bricks as plain data for host and device; x fastest, then y, then z.
 struct BricksView {
   const ValueRange* ranges = nullptr;
@@ -37,7 +56,7 @@ struct BricksView {
 class Bricks {
  public:
   /// Computed in parallel. @param edge voxels, >= 1; @throws Error (bad_input) for another edge
-  explicit Bricks(const DenseVolume& volume, int edge = 8);
+  explicit Bricks(const DenseVolume& volume, int edge = kBrickEdge);
 
   /// Computes the ranges anew from a volume of the same dims; memory is kept where the dims allow.
   void update(const DenseVolume& volume);

@@ -1,0 +1,266 @@
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "volume/cuda/device_storage.h"
+
+namespace emscape::volume {
+namespace {
+
+using emscape::cuda::Buffer;
+using emscape::cuda::check;
+using emscape::cuda::checkLaunch;
+
+/// Values on their way between host and device are held in slabs of layers of about this size.
+constexpr std::size_t kSlabBytes = std::size_t{64} << 20;
+constexpr int kThreads = 128;
+constexpr int kWarp = 32;
+
+std::string mebibytes(std::size_t bytes) {
+  return std::to_string((bytes + (std::size_t{1} << 20) - 1) >> 20) + " MiB";
+}
+
+std::string dimsText(const Dims& dims) {
+  return std::to_string(dims.x) + " x " + std::to_string(dims.y) + " x " + std::to_string(dims.z);
+}
+
+void checkFits(const Dims& dims, VoxelPrecision precision) {
+  checkDims(dims, {});
+  const bool half = precision == VoxelPrecision::float16;
+  const std::string who =
+      "GPU: a volume of " + dimsText(dims) + " voxels in " + (half ? "16" : "32") + " bit";
+  constexpr int kMostAlong = 16384;
+  if (std::max({dims.x, dims.y, dims.z}) > kMostAlong) {
+    throw Error(ErrorCode::device, who + ": at most " + std::to_string(kMostAlong) + " along each axis");
+  }
+  std::size_t free_bytes = 0, total_bytes = 0;
+  check(cudaMemGetInfo(&free_bytes, &total_bytes), "cudaMemGetInfo");
+  const std::size_t needed = deviceBytes(dims, precision);
+  if (needed <= free_bytes) return;
+  std::string message =
+      who + " needs " + mebibytes(needed) + ", of which " + mebibytes(free_bytes) + " are free";
+  if (!half) message += "; in 16 bit it would need " + mebibytes(deviceBytes(dims, VoxelPrecision::float16));
+  throw Error(ErrorCode::device, message);
+}
+
+/// Layers begin_k .. end_k of each column, from the top down; the layer above end_k is written already.
+__global__ void storeSlab(const float* values, const std::int32_t* first_valid_k, VoxelWriter voxels,
+                          int begin_k, int end_k) {
+  const int columns = voxels.dims.x * voxels.dims.y;
+  const int column = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (column >= columns) return;
+  const int i = column % voxels.dims.x;
+  const int j = column / voxels.dims.x;
+  const int first_valid = first_valid_k == nullptr ? 0 : first_valid_k[column];
+  float above = end_k < voxels.dims.z ? voxels.read(i, j, end_k) : 0.0F;
+  for (int k = end_k - 1; k >= begin_k; --k) {
+    const float value = values[static_cast<long long>(k - begin_k) * columns + column];
+    above = k < first_valid && k + 1 < voxels.dims.z ? above : value;
+    voxels.write(i, j, k, above);
+  }
+}
+
+__global__ void loadSlab(VoxelWriter voxels, const std::int32_t* first_valid_k, float floor, int begin_k,
+                         int end_k, float* values) {
+  const int columns = voxels.dims.x * voxels.dims.y;
+  const int column = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (column >= columns) return;
+  const int i = column % voxels.dims.x;
+  const int j = column / voxels.dims.x;
+  const int first_valid = first_valid_k == nullptr ? 0 : first_valid_k[column];
+  for (int k = begin_k; k < end_k; ++k) {
+    values[static_cast<long long>(k - begin_k) * columns + column] =
+        k < first_valid ? floor : voxels.read(i, j, k);
+  }
+}
+
+__device__ float warpLeast(float value) {
+  for (int lanes = kWarp / 2; lanes > 0; lanes /= 2) {
+    value = fminf(value, __shfl_xor_sync(~0U, value, lanes));
+  }
+  return value;
+}
+
+/// A warp finds the range of one brick; see Bricks.
+__global__ void findBricks(cudaTextureObject_t points, Dims dims, Dims brick_dims,
+                           const std::int32_t* first_valid_k, ValueRange* ranges) {
+  const long long brick = (static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x) / kWarp;
+  const int lane = static_cast<int>(threadIdx.x) % kWarp;
+  if (brick >= brick_dims.count()) return;
+  const long long row = brick / brick_dims.x;
+  const VoxelInterval x = withApron(static_cast<int>(brick % brick_dims.x), kBrickEdge, dims.x);
+  const VoxelInterval y = withApron(static_cast<int>(row % brick_dims.y), kBrickEdge, dims.y);
+  const VoxelInterval z = withApron(static_cast<int>(row / brick_dims.y), kBrickEdge, dims.z);
+  const int width = x.end - x.begin;
+  const int columns = width * (y.end - y.begin);
+  float least = INFINITY, greatest = -INFINITY;
+  bool masked = first_valid_k != nullptr;
+  for (int column = lane; column < columns; column += kWarp) {
+    const int i = x.begin + column % width;
+    const int j = y.begin + column / width;
+    if (masked) masked = z.end - 1 < first_valid_k[static_cast<long long>(j) * dims.x + i];
+    for (int k = z.begin; k < z.end; ++k) {
+      // NaN fails both comparisons
+      const float value = tex3D<float>(points, static_cast<float>(i) + 0.5F, static_cast<float>(j) + 0.5F,
+                                       static_cast<float>(k) + 0.5F);
+      least = value < least ? value : least;
+      greatest = value > greatest ? value : greatest;
+    }
+  }
+  const bool all_masked = __all_sync(~0U, masked) != 0;
+  least = warpLeast(least);
+  greatest = -warpLeast(-greatest);
+  if (lane == 0) {
+    ranges[brick] = all_masked ? ValueRange{INFINITY, -INFINITY} : ValueRange{least, greatest};
+  }
+}
+
+unsigned blocksFor(long long threads) {
+  return static_cast<unsigned>((threads + kThreads - 1) / kThreads);
+}
+
+}  // namespace
+
+DeviceStorage::DeviceStorage(const Dims& dims, VoxelPrecision precision)
+    : dims_(dims), precision_(precision) {
+  checkFits(dims, precision);
+  try {
+    allocate(precision == VoxelPrecision::float16 ? cudaCreateChannelDescHalf()
+                                                  : cudaCreateChannelDesc<float>());
+  } catch (...) {
+    release();
+    throw;
+  }
+}
+
+DeviceStorage::~DeviceStorage() {
+  release();
+}
+
+void DeviceStorage::allocate(const cudaChannelFormatDesc& format) {
+  const cudaExtent extent =
+      make_cudaExtent(static_cast<std::size_t>(dims_.x), static_cast<std::size_t>(dims_.y),
+                      static_cast<std::size_t>(dims_.z));
+  const std::string call = "cudaMalloc3DArray of " + dimsText(dims_) + " voxels";
+  check(cudaMalloc3DArray(&array_, &format, extent, cudaArraySurfaceLoadStore), call.c_str());
+  cudaResourceDesc resource{};
+  resource.resType = cudaResourceTypeArray;
+  resource.res.array.array = array_;
+  check(cudaCreateSurfaceObject(&surface_, &resource), "cudaCreateSurfaceObject");
+  linear_ = makeTexture(cudaFilterModeLinear);
+  point_ = makeTexture(cudaFilterModePoint);
+  brick_dims_ = brickDims(dims_, kBrickEdge);
+  bricks_.resize(static_cast<std::size_t>(brick_dims_.count()));
+  check(cudaEventCreateWithFlags(&written_, cudaEventDisableTiming), "cudaEventCreate");
+  check(cudaEventCreateWithFlags(&read_, cudaEventDisableTiming), "cudaEventCreate");
+}
+
+cudaTextureObject_t DeviceStorage::makeTexture(cudaTextureFilterMode filter) const {
+  cudaResourceDesc resource{};
+  resource.resType = cudaResourceTypeArray;
+  resource.res.array.array = array_;
+  cudaTextureDesc description{};
+  for (cudaTextureAddressMode& mode : description.addressMode) mode = cudaAddressModeClamp;
+  description.filterMode = filter;
+  description.readMode = cudaReadModeElementType;
+  cudaTextureObject_t texture = 0;
+  check(cudaCreateTextureObject(&texture, &resource, &description, nullptr), "cudaCreateTextureObject");
+  return texture;
+}
+
+void DeviceStorage::release() {
+  // What fails here failed before, or the device is lost: there is nothing left to be told.
+  if (read_ != nullptr) cudaEventSynchronize(read_);
+  if (written_ != nullptr) cudaEventSynchronize(written_);
+  if (read_ != nullptr) cudaEventDestroy(read_);
+  if (written_ != nullptr) cudaEventDestroy(written_);
+  if (point_ != 0) cudaDestroyTextureObject(point_);
+  if (linear_ != 0) cudaDestroyTextureObject(linear_);
+  if (surface_ != 0) cudaDestroySurfaceObject(surface_);
+  if (array_ != nullptr) cudaFreeArray(array_);
+}
+
+VoxelWriter DeviceStorage::beginWriting(cudaStream_t stream) {
+  const std::lock_guard<std::mutex> lock(order_);
+  check(cudaStreamWaitEvent(stream, read_, 0), "cudaStreamWaitEvent");
+  check(cudaStreamWaitEvent(stream, written_, 0), "cudaStreamWaitEvent");
+  return voxels();
+}
+
+void DeviceStorage::endWriting(cudaStream_t stream) {
+  findBricks<<<blocksFor(brick_dims_.count() * kWarp), kThreads, 0, stream>>>(point_, dims_, brick_dims_,
+                                                                              firstValidK(), bricks_.data());
+  checkLaunch("findBricks");
+  const std::lock_guard<std::mutex> lock(order_);
+  check(cudaEventRecord(written_, stream), "cudaEventRecord");
+}
+
+void DeviceStorage::beginReading(cudaStream_t stream) const {
+  const std::lock_guard<std::mutex> lock(order_);
+  check(cudaStreamWaitEvent(stream, written_, 0), "cudaStreamWaitEvent");
+}
+
+void DeviceStorage::endReading(cudaStream_t stream) const {
+  const std::lock_guard<std::mutex> lock(order_);
+  // The event stands for the readers before this one too.
+  check(cudaStreamWaitEvent(stream, read_, 0), "cudaStreamWaitEvent");
+  check(cudaEventRecord(read_, stream), "cudaEventRecord");
+}
+
+BricksView DeviceStorage::bricks() const {
+  return {bricks_.data(), brick_dims_, kBrickEdge};
+}
+
+void DeviceStorage::setMask(const std::vector<std::uint16_t>& first_valid_k) {
+  check(cudaEventSynchronize(read_), "cudaEventSynchronize");
+  check(cudaEventSynchronize(written_), "cudaEventSynchronize");
+  const auto highest = std::max_element(first_valid_k.begin(), first_valid_k.end());
+  masked_below_ = highest == first_valid_k.end() ? 0 : *highest;
+  if (masked_below_ == 0) return;
+  const std::vector<std::int32_t> wide(first_valid_k.begin(), first_valid_k.end());
+  first_valid_k_.upload(wide);
+  check(cudaStreamSynchronize(nullptr), "cudaStreamSynchronize");
+}
+
+int DeviceStorage::slabLayers() const {
+  const std::size_t layer_bytes =
+      sizeof(float) * static_cast<std::size_t>(dims_.x) * static_cast<std::size_t>(dims_.y);
+  const std::size_t layers = std::max<std::size_t>(kSlabBytes / layer_bytes, 1);
+  return static_cast<int>(std::min(layers, static_cast<std::size_t>(dims_.z)));
+}
+
+void DeviceStorage::writeFrom(const float* host_values, cudaStream_t stream) {
+  const int layers = slabLayers();
+  const long long columns = static_cast<long long>(dims_.x) * dims_.y;
+  Buffer<float> slab(static_cast<std::size_t>(columns) * static_cast<std::size_t>(layers));
+  for (int end_k = dims_.z; end_k > 0; end_k -= layers) {
+    const int begin_k = std::max(end_k - layers, 0);
+    check(cudaMemcpyAsync(slab.data(), host_values + columns * begin_k,
+                          sizeof(float) * static_cast<std::size_t>(columns * (end_k - begin_k)),
+                          cudaMemcpyHostToDevice, stream),
+          "upload of a volume");
+    storeSlab<<<blocksFor(columns), kThreads, 0, stream>>>(slab.data(), firstValidK(), voxels(), begin_k,
+                                                           end_k);
+    checkLaunch("storeSlab");
+  }
+  check(cudaStreamSynchronize(stream), "upload of a volume");  // the slab goes away
+}
+
+void DeviceStorage::readTo(float* host_values, float floor, cudaStream_t stream) const {
+  const int layers = slabLayers();
+  const long long columns = static_cast<long long>(dims_.x) * dims_.y;
+  Buffer<float> slab(static_cast<std::size_t>(columns) * static_cast<std::size_t>(layers));
+  for (int begin_k = 0; begin_k < dims_.z; begin_k += layers) {
+    const int end_k = std::min(begin_k + layers, dims_.z);
+    loadSlab<<<blocksFor(columns), kThreads, 0, stream>>>(voxels(), firstValidK(), floor, begin_k, end_k,
+                                                          slab.data());
+    checkLaunch("loadSlab");
+    check(cudaMemcpyAsync(host_values + columns * begin_k, slab.data(),
+                          sizeof(float) * static_cast<std::size_t>(columns * (end_k - begin_k)),
+                          cudaMemcpyDeviceToHost, stream),
+          "download of a volume");
+  }
+  check(cudaStreamSynchronize(stream), "download of a volume");
+}
+
+}  // namespace emscape::volume

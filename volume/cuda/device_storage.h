@@ -1,0 +1,100 @@
+/// A DeviceVolume as kernels write and read it. For .cu files and their neighbours.
+#pragma once
+
+#include <cuda_fp16.h>
+#include <cuda_runtime_api.h>
+
+#include <mutex>
+
+#include "base/cuda/cuda_memory.h"
+#include "volume/bricks.h"
+#include "volume/device_volume.h"
+
+#if defined(__CUDACC__)
+#include <surface_indirect_functions.h>
+#endif
+
+namespace emscape::volume {
+
+/// Voxels as a kernel writes them. Each masked voxel takes the value of the first above it that is not.
+struct VoxelWriter {
+  cudaSurfaceObject_t surface = 0;
+  Dims dims;
+  VoxelPrecision precision = VoxelPrecision::float32;
+
+#if defined(__CUDACC__)
+  __device__ void write(int i, int j, int k, float value) const {
+    if (precision == VoxelPrecision::float32) {
+      surf3Dwrite(value, surface, i * static_cast<int>(sizeof value), j, k);
+    } else {
+      const unsigned short bits = __half_as_ushort(__float2half_rn(value));
+      surf3Dwrite(bits, surface, i * static_cast<int>(sizeof bits), j, k);
+    }
+  }
+  __device__ float read(int i, int j, int k) const {
+    if (precision == VoxelPrecision::float32) {
+      return surf3Dread<float>(surface, i * static_cast<int>(sizeof(float)), j, k);
+    }
+    return __half2float(__ushort_as_half(surf3Dread<unsigned short>(surface, i * 2, j, k)));
+  }
+#endif
+};
+
+/// The memory of a DeviceVolume, and who may use it when: all calls below only order work on streams, they do
+/// not wait. Several threads may read at a time, one writes.
+class DeviceStorage {
+ public:
+  /// @throws Error (device) that names the bytes needed and free
+  DeviceStorage(const Dims& dims, VoxelPrecision precision);
+  ~DeviceStorage();
+  DeviceStorage(const DeviceStorage&) = delete;
+  DeviceStorage& operator=(const DeviceStorage&) = delete;
+
+  /// Kernels launched on the stream from here on may write: they wait for those that read. Kernels write
+  /// every voxel, masked ones too.
+  VoxelWriter beginWriting(cudaStream_t stream);
+  /// All kernels that write are launched: the bricks follow, then those who read may begin.
+  void endWriting(cudaStream_t stream);
+
+  /// Kernels launched on the stream from here on may read: they wait for what is being written.
+  void beginReading(cudaStream_t stream) const;
+  void endReading(cudaStream_t stream) const;
+
+  /// Positions are those of voxel centres plus 0.5; beyond the outer centres their values go on.
+  cudaTextureObject_t linearTexture() const { return linear_; }  ///< fractions of 8 bits, as the GPU filters
+  cudaTextureObject_t pointTexture() const { return point_; }
+  /// In device memory; of what endWriting() found.
+  BricksView bricks() const;
+  /// In device memory, one a column; null where no voxel is masked.
+  const std::int32_t* firstValidK() const { return masked_below_ > 0 ? first_valid_k_.data() : nullptr; }
+  int maskedBelow() const { return masked_below_; }
+
+  /// Waits for those who read. @param first_valid_k  one a column, or none
+  void setMask(const std::vector<std::uint16_t>& first_valid_k);
+  /// On the stream: writes all voxels from values in dense order, masked ones not looked at.
+  void writeFrom(const float* host_values, cudaStream_t stream);
+  /// On the stream; waits for it. Masked voxels are given the floor.
+  void readTo(float* host_values, float floor, cudaStream_t stream) const;
+
+ private:
+  void allocate(const cudaChannelFormatDesc& format);
+  cudaTextureObject_t makeTexture(cudaTextureFilterMode filter) const;
+  void release();
+  VoxelWriter voxels() const { return {surface_, dims_, precision_}; }
+  int slabLayers() const;
+
+  Dims dims_;
+  VoxelPrecision precision_;
+  cudaArray_t array_ = nullptr;
+  cudaSurfaceObject_t surface_ = 0;
+  cudaTextureObject_t linear_ = 0, point_ = 0;
+  emscape::cuda::Buffer<std::int32_t> first_valid_k_;
+  int masked_below_ = 0;
+  Dims brick_dims_;
+  emscape::cuda::Buffer<ValueRange> bricks_;
+  mutable std::mutex order_;  ///< of the events below
+  cudaEvent_t written_ = nullptr;
+  cudaEvent_t read_ = nullptr;
+};
+
+}  // namespace emscape::volume
