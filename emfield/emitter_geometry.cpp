@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "emfield/column_geometry.h"
 #include "emfield/shadow.h"
 
 namespace emscape::emfield {
@@ -57,30 +58,12 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, scenario::Pro
 void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns,
                                     const std::vector<FanCoordinates>& coordinates) {
   column_count_ = columns.columns.size();
-  arrays_.resize(kArrays * column_count_);
-  float* out[kArrays];
-  for (int a = 0; a < kArrays; ++a) out[a] = arrays_.data() + a * column_count_;
-  const Vec3d& up = station.geodesy.station.up;
-  const double middle_m = 0.5 * (columns.t_m.front() + columns.t_m.back());
+  arrays_.resize(kColumnNumbers * column_count_);
+  const double middle_m = columns.middle_m();
   parallelFor(static_cast<int>(column_count_), 4096, [&](int begin, int end) {
     for (int c = begin; c < end; ++c) {
-      const GridColumn& column = columns.columns[c];
-      const Vec3d base = column.base_ecef_m - station.ecef_m;
-      const double nearest_t_m = -dot(base, column.axis);
-      const Vec3d offset = base + column.axis * nearest_t_m;
-      const Vec3d middle = base + column.axis * middle_m;
-      const double level_m =
-          std::hypot(dot(middle, station.geodesy.east), dot(middle, station.geodesy.north));
-      const double values[kArrays] = {dot(base, station.geodesy.east),
-                                      dot(base, station.geodesy.north),
-                                      dot(base, up),
-                                      dot(column.axis, station.geodesy.east),
-                                      dot(column.axis, station.geodesy.north),
-                                      dot(column.axis, up),
-                                      dot(offset, offset),
-                                      nearest_t_m,
-                                      refractionLift_m(station, coordinates[c].range_m, level_m)};
-      for (int a = 0; a < kArrays; ++a) out[a][c] = static_cast<float>(values[a]);
+      columnGeometry(station, columns.columns[c], coordinates[c], middle_m, arrays_.data() + c,
+                     column_count_);
     }
   });
 }

@@ -56,9 +56,8 @@ class EmitterGeometry {
   void locateColumns(const Station& station, const GridColumns& columns,
                      const std::vector<FanCoordinates>& coordinates);
 
-  static constexpr int kArrays = 9;
   std::size_t column_count_ = 0;
-  std::vector<float> arrays_;  ///< kArrays x column_count_
+  std::vector<float> arrays_;  ///< kColumnNumbers x column_count_
   std::vector<float> shadow_edge_m_;
   long long unknown_columns_ = 0;
 };

@@ -14,11 +14,17 @@ struct FanCoordinates {
   double range_m = 0;
 };
 
-inline FanCoordinates fanCoordinates(const Station& station, const Vec3d& foot_ecef_m) {
+EMSCAPE_HD inline FanCoordinates fanCoordinates(const Station& station, const Vec3d& foot_ecef_m) {
   const FastInverse inverse = fastInverse(station.geodesy, foot_ecef_m);
   double azimuth = std::atan2(inverse.sin_azimuth, inverse.cos_azimuth);
   if (azimuth < 0) azimuth += 2 * kPi;
   return {azimuth, inverse.distance_m};
+}
+
+/// The same for a column's foot below t (m).
+EMSCAPE_HD inline FanCoordinates fanCoordinates(const Station& station, const GridColumn& column,
+                                                double t_m) {
+  return fanCoordinates(station, column.foot_ecef_m + column.foot_drift * t_m);
 }
 
 /// Fan coordinates of every column's foot at the middle of the grid's height, x fastest.

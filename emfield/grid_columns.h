@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/geo_frame.h"
+#include "base/host_device.h"
 #include "base/vec.h"
 #include "scenario/terrain.h"
 #include "volume/grid.h"
@@ -21,7 +22,7 @@ struct GridColumn {
 };
 
 /// Heights of a column's points above mean sea level at t (m).
-inline double heightMsl_m(const GridColumn& column, double t_m) {
+EMSCAPE_HD inline double heightMsl_m(const GridColumn& column, double t_m) {
   return column.height_msl_m[0] + t_m * (column.height_msl_m[1] + t_m * column.height_msl_m[2]);
 }
 
@@ -37,6 +38,9 @@ struct GridColumns {
   long long hole_columns = 0;
   /// A column over a hole, for messages; -1 if there is none.
   long long first_hole = -1;
+
+  /// z of the middle between the lowest and the highest layer.
+  double middle_m() const { return 0.5 * (t_m.front() + t_m.back()); }
 };
 
 /// @param terrain  null: nothing is below ground

@@ -3,6 +3,7 @@
 
 #include "base/fast_geodesy.h"
 #include "base/geo_frame.h"
+#include "base/host_device.h"
 
 namespace emscape::emfield {
 
@@ -28,7 +29,7 @@ inline Station makeStation(const GeodeticPosition& position, double height_msl_m
 /// What is added to the rise (m) of the straight line to a point so that it starts along the refracted ray.
 /// @param range_m  over the ground
 /// @param level_m  distance of the point in the station's horizontal plane
-inline double refractionLift_m(const Station& station, double range_m, double level_m) {
+EMSCAPE_HD inline double refractionLift_m(const Station& station, double range_m, double level_m) {
   return range_m * level_m * (1 / station.earth_radius_m - 1 / station.effective_earth_radius_m) / 2;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "emfield/fan_chord.h"
 
 namespace emscape::emfield {
 namespace {
@@ -35,66 +36,29 @@ Sector sectorOf(const std::vector<FanCoordinates>& coordinates, double margin_m)
   return {reference + lowest, highest - lowest, false};
 }
 
-/// Heights of one azimuth. Positions are exact at knots and linear between: over so short a piece the
-/// geodesic leaves its chord by less than a metre, except near the poles.
-class ProfileReader {
- public:
-  ProfileReader(const Station& station, const scenario::TerrainView& terrain)
-      : station_(station),
-        terrain_(terrain),
-        chord_m_(std::abs(std::asin(station.geodesy.station.up.z)) < degToRad(80.0) ? 800 : 10) {}
-
-  void read(double azimuth_rad, const std::vector<double>& ranges_m, int count, float* height_msl_m) const {
-    const double sine = std::sin(azimuth_rad), cosine = std::cos(azimuth_rad);
-    double knot_m = 0;
-    FastDirect knot;
-    double latitude_slope = 0, longitude_slope = 0;
-    for (int i = 0; i < count; ++i) {
-      if (i == 0 || ranges_m[i] > knot_m + chord_m_) {
-        knot_m = ranges_m[i];
-        knot = fastDirect(station_.geodesy, sine, cosine, knot_m);
-        const FastDirect next = fastDirect(station_.geodesy, sine, cosine, knot_m + chord_m_);
-        latitude_slope = (next.latitude_rad - knot.latitude_rad) / chord_m_;
-        longitude_slope = std::remainder(next.longitude_rad - knot.longitude_rad, 2 * kPi) / chord_m_;
-      }
-      const double beyond_m = ranges_m[i] - knot_m;
-      height_msl_m[i] = terrain_.heightAt(knot.latitude_rad + beyond_m * latitude_slope,
-                                          knot.longitude_rad + beyond_m * longitude_slope);
-    }
+/// Heights of one azimuth.
+void readProfile(const Station& station, const scenario::TerrainView& terrain, double azimuth_rad,
+                 const std::vector<double>& ranges_m, int count, float* height_msl_m) {
+  const double sine = std::sin(azimuth_rad), cosine = std::cos(azimuth_rad);
+  const double chord_m = fanChordLength_m(station);
+  int index = -1;
+  FanChord chord;
+  for (int i = 0; i < count; ++i) {
+    const int here = fanChordAt(ranges_m[i], chord_m);
+    if (here != index) chord = fanChord(station, sine, cosine, index = here, chord_m);
+    height_msl_m[i] = chord.heightAt(terrain, ranges_m[i]);
   }
-
- private:
-  const Station& station_;
-  const scenario::TerrainView& terrain_;
-  double chord_m_;
-};
+}
 
 }  // namespace
 
 std::vector<FanCoordinates> fanCoordinates(const Station& station, const GridColumns& columns) {
   std::vector<FanCoordinates> result(columns.columns.size());
-  const double middle_m = 0.5 * (columns.t_m.front() + columns.t_m.back());
+  const double middle_m = columns.middle_m();
   parallelFor(static_cast<int>(result.size()), 4096, [&](int begin, int end) {
-    for (int c = begin; c < end; ++c) {
-      const GridColumn& column = columns.columns[c];
-      result[c] = fanCoordinates(station, column.foot_ecef_m + column.foot_drift * middle_m);
-    }
+    for (int c = begin; c < end; ++c) result[c] = fanCoordinates(station, columns.columns[c], middle_m);
   });
   return result;
-}
-
-double FanShape::azimuthIndex(double azimuth_rad) const {
-  if (azimuth_step_rad == 0) return 0;
-  double offset = std::remainder(azimuth_rad - first_azimuth_rad, 2 * kPi);
-  if (offset < 0) offset = full_circle ? offset + 2 * kPi : 0;
-  const double index = offset / azimuth_step_rad;
-  if (index < interval_count) return index;
-  return full_circle ? 0 : std::nextafter(static_cast<double>(interval_count), 0.0);
-}
-
-int FanShape::lastBefore(double range_m) const {
-  const auto first_not_before = std::lower_bound(ranges_m.begin(), ranges_m.end(), range_m);
-  return std::max(0, static_cast<int>(first_not_before - ranges_m.begin()) - 1);
 }
 
 std::vector<double> fanRanges(double farthest_m, double even_step_m) {
@@ -135,9 +99,10 @@ FanShape fanShape(const Station& station, const std::vector<FanCoordinates>& coo
   shape.azimuth_step_rad = sector.width_rad / shape.interval_count;
 
   shape.used_ranges.assign(shape.interval_count + 1, lean_m > 0 ? shape.rangeCount() : 0);
+  const FanView view = shape.view();
   for (const FanCoordinates& point : coordinates) {
-    const int interval = static_cast<int>(shape.azimuthIndex(point.azimuth_rad));
-    const int used = shape.lastBefore(point.range_m) + 1;
+    const int interval = static_cast<int>(view.azimuthIndex(point.azimuth_rad));
+    const int used = view.lastBefore(point.range_m) + 1;
     for (int a : {interval, interval + 1}) shape.used_ranges[a] = std::max(shape.used_ranges[a], used);
   }
   return shape;
@@ -156,11 +121,10 @@ TerrainFan readTerrainFan(const Station& station, const FanShape& shape, const s
   }
   fan.height_msl_m.assign(samples, std::numeric_limits<float>::quiet_NaN());
   const scenario::TerrainView view = terrain->view();
-  const ProfileReader reader(station, view);
   parallelFor(interval_count + 1, 8, [&](int begin, int end) {
     for (int a = begin; a < end; ++a) {
-      reader.read(shape.first_azimuth_rad + (first_interval + a) * shape.azimuth_step_rad, shape.ranges_m,
-                  shape.used_ranges[first_interval + a],
+      readProfile(station, view, shape.first_azimuth_rad + (first_interval + a) * shape.azimuth_step_rad,
+                  shape.ranges_m, shape.used_ranges[first_interval + a],
                   fan.height_msl_m.data() + static_cast<std::size_t>(a) * fan.range_count);
     }
   });

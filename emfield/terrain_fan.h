@@ -1,8 +1,11 @@
 /// Stage 1: terrain heights along azimuths from an emitter, read once from the elevation model.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
+#include "base/host_device.h"
+#include "base/units.h"
 #include "emfield/fan_coordinates.h"
 #include "scenario/terrain.h"
 
@@ -19,6 +22,39 @@ struct FanResolution {
 /// sixteenth) of a voxel.
 FanResolution fanResolution(const volume::Grid& grid, const scenario::Terrain* terrain);
 
+/// The shape of a fan as plain data, for loops on host and device; see FanShape.
+struct FanView {
+  double first_azimuth_rad = 0;
+  double azimuth_step_rad = 0;
+  int interval_count = 1;
+  bool full_circle = false;
+  const double* ranges_m = nullptr;
+  int range_count = 0;
+
+  /// Fractional azimuth index, 0 <= index < interval_count; outside a sector its nearest border.
+  EMSCAPE_HD double azimuthIndex(double azimuth_rad) const {
+    if (azimuth_step_rad == 0) return 0;
+    double offset = std::remainder(azimuth_rad - first_azimuth_rad, 2 * kPi);
+    if (offset < 0) offset = full_circle ? offset + 2 * kPi : 0;
+    const double index = offset / azimuth_step_rad;
+    if (index < interval_count) return index;
+    return full_circle ? 0 : std::nextafter(static_cast<double>(interval_count), 0.0);
+  }
+  /// Index of the last sample nearer than a range; 0 if there is none.
+  EMSCAPE_HD int lastBefore(double range_m) const {
+    int begin = 0, end = range_count;  // the first that is not nearer
+    while (begin < end) {
+      const int middle = (begin + end) / 2;
+      if (ranges_m[middle] < range_m) {
+        begin = middle + 1;
+      } else {
+        end = middle;
+      }
+    }
+    return begin > 0 ? begin - 1 : 0;
+  }
+};
+
 /// Where a fan's samples lie: azimuths first_azimuth_rad + a * azimuth_step_rad for a = 0..interval_count,
 /// the same ranges along each. Immutable once made.
 struct FanShape {
@@ -32,10 +68,10 @@ struct FanShape {
   std::vector<int> used_ranges;
 
   int rangeCount() const { return static_cast<int>(ranges_m.size()); }
-  /// Fractional azimuth index, 0 <= index < interval_count; outside a sector its nearest border.
-  double azimuthIndex(double azimuth_rad) const;
-  /// Index of the last sample nearer than a range; 0 if there is none.
-  int lastBefore(double range_m) const;
+  /// Valid as long as this object lives.
+  FanView view() const {
+    return {first_azimuth_rad, azimuth_step_rad, interval_count, full_circle, ranges_m.data(), rangeCount()};
+  }
 };
 
 /// Ranges of a fan's samples, from 0 to the first one not below farthest_m: every few metres at first, then
