@@ -37,7 +37,7 @@ struct GeometryRequest {
 /// What they found.
 struct GeometryFindings {
   long long unknown_columns = 0;  ///< whose path crosses missing terrain
-  std::size_t first_unknown = 0;  ///< one of them, if there are any
+  std::vector<bool> unknown;      ///< which they are; empty: none
   long long near_voxels = 0;      ///< nearer than the emitter's far field
 };
 
@@ -58,8 +58,8 @@ struct CombinePass {
 /// Stage 4 for one channel.
 struct VolumeRequest {
   int channel = 0;
-  volume::VolumeInfo info;    ///< but for the value range
-  std::vector<int> emitters;  ///< that are active in the channel: columns unknown to one of them are masked
+  volume::VolumeInfo info;                                    ///< but for the value range
+  const std::vector<std::uint16_t>* first_valid_k = nullptr;  ///< as in DenseVolume
 };
 
 class FieldEngine {

@@ -59,6 +59,7 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
     setup.far_field_m.push_back(2 * dimension_m * dimension_m / wavelength);
   }
   emitters.resize(setup.scenario->emitters.size());
+  masks.resize(setup.channels.size());
   engine = makeCpuEngine(setup, static_cast<int>(emitters.size()) + 1);
   std::size_t cached_bytes = 0;
   for (std::size_t e = 0; e < emitters.size(); ++e) {

@@ -25,6 +25,7 @@ struct FieldSolver::Impl {
   FieldSetup setup;
   std::unique_ptr<FieldEngine> engine;  ///< a slot an emitter, and one for those that are not cached
   std::vector<EmitterCache> emitters;
+  std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
   std::map<std::string, long long> warning_counts;
 
   /// Emitters whose sum lies in the engine's resting accumulators; they have not changed since.
@@ -43,11 +44,12 @@ struct FieldSolver::Impl {
 
   FieldChanged findChanges(const scenario::Snapshot& snapshot);
   void computeGeometry(const std::vector<int>& chosen, bool into_scratch);
-  void takeFindings(int e, const GeometryFindings& findings);
+  void takeFindings(int e, GeometryFindings found);
   void chooseResting(const std::vector<bool>& changed);
   void combine(const std::vector<int>& chosen, const std::vector<bool>& channel_chosen, bool into_resting);
   CombineEmitter combineEmitter(int e) const;
-  VolumeRequest volumeRequest(int channel, const scenario::Snapshot& snapshot) const;
+  VolumeRequest volumeRequest(int channel, const scenario::Snapshot& snapshot);
+  const std::vector<std::uint16_t>& maskOf(const Channel& channel, std::vector<std::uint16_t>& own) const;
 };
 
 }  // namespace emscape::emfield

@@ -22,22 +22,26 @@ void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool int
   for (int e : chosen) {
     requests.push_back({e, into_scratch ? static_cast<int>(emitters.size()) : e, emitters[e].state});
   }
-  const std::vector<GeometryFindings> findings = engine->computeGeometry(requests);
-  for (std::size_t i = 0; i < chosen.size(); ++i) takeFindings(chosen[i], findings[i]);
+  std::vector<GeometryFindings> findings = engine->computeGeometry(requests);
+  for (std::size_t i = 0; i < chosen.size(); ++i) takeFindings(chosen[i], std::move(findings[i]));
 }
 
-void FieldSolver::Impl::takeFindings(int e, const GeometryFindings& findings) {
+void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
   const Emitter& emitter = setup.scenario->emitters[e];
   EmitterCache& cache = emitters[e];
   cache.computed_at = cache.state.position;
   cache.has_geometry = true;
-  cache.findings = findings;
+  cache.findings = std::move(found);
+  const GeometryFindings& findings = cache.findings;
   if (findings.unknown_columns > 0) {
     if (!options.allow_missing_terrain) {
-      throw Error(ErrorCode::bad_input, {setup.scenario->file},
-                  fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain "
-                              "(--allow-missing-terrain draws holes)",
-                              emitter.name, placeOf(findings.first_unknown), findings.unknown_columns - 1));
+      const auto first = std::find(findings.unknown.begin(), findings.unknown.end(), true);
+      throw Error(
+          ErrorCode::bad_input, {setup.scenario->file},
+          fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain "
+                      "(--allow-missing-terrain draws holes)",
+                      emitter.name, placeOf(static_cast<std::size_t>(first - findings.unknown.begin())),
+                      findings.unknown_columns - 1));
     }
     warn(fmt::format("emitter '{}': columns seen across missing terrain hold no field", emitter.name));
   }
@@ -129,11 +133,31 @@ void FieldSolver::Impl::combine(const std::vector<int>& chosen, const std::vecto
   }
 }
 
-VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& snapshot) const {
+/// First valid layers of a channel's columns: those above ground, but for columns that are unknown to one of
+/// its emitters.
+/// @param own  holds the result where it is not that of all channels
+const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& channel,
+                                                            std::vector<std::uint16_t>& own) const {
+  const std::vector<std::uint16_t>& above_ground = setup.columns.first_valid_k;
+  own.clear();
+  for (int e : channel.emitters) {
+    const std::vector<bool>& unknown = emitters[e].findings.unknown;
+    if (!emitters[e].state.active || unknown.empty()) continue;
+    if (own.empty()) own = above_ground;
+    own.resize(unknown.size(), 0);
+    for (std::size_t c = 0; c < unknown.size(); ++c) {
+      if (unknown[c]) own[c] = static_cast<std::uint16_t>(setup.grid.dims.z);
+    }
+  }
+  return own.empty() ? above_ground : own;
+}
+
+VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& snapshot) {
   const Channel& channel = setup.channels[c];
   const QuantityInfo& quantity = info(channel.quantity);
   VolumeRequest request;
   request.channel = c;
+  request.first_valid_k = &maskOf(channel, masks[c]);
   volume::VolumeInfo& out = request.info;
   out.quantity = channel.name;
   out.unit = quantity.unit;
@@ -146,7 +170,6 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   std::string names, near_field;
   for (int e : channel.emitters) {
     if (!emitters[e].state.active) continue;
-    request.emitters.push_back(e);
     const long long near_voxels = emitters[e].findings.near_voxels;
     if (near_voxels > 0) {
       near_field += fmt::format("{}{}: {} voxels within {:.0f} m", near_field.empty() ? "" : "; ",

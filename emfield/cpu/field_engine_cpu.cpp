@@ -21,7 +21,6 @@ class CpuEngine : public FieldEngine {
       : setup_(setup),
         voxels_(static_cast<std::size_t>(setup.grid.dims.count())),
         slots_(slots),
-        unknown_(setup.scenario->emitters.size()),
         buffers_(setup.channels.size()),
         volumes_(setup.channels.size()) {
     for (std::size_t c = 0; c < buffers_.size(); ++c) {
@@ -36,8 +35,9 @@ class CpuEngine : public FieldEngine {
     }
   }
 
-  std::size_t slotBytes(int) const override {
-    return setup_.columns.columns.size() * EmitterGeometry::kBytesPerColumn;
+  std::size_t slotBytes(int emitter) const override {
+    return EmitterGeometry::bytesOf(*setup_.scenario, setup_.scenario->emitters[emitter],
+                                    setup_.columns.columns.size(), setup_.grid.dims.z);
   }
   std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) override;
   void setResting(const std::vector<bool>& channels) override;
@@ -53,13 +53,11 @@ class CpuEngine : public FieldEngine {
     return setup_.recipes[channel].reduction == Reduction::dominant;
   }
   std::shared_ptr<volume::DenseVolume> freeVolume(ChannelBuffers& buffers) const;
-  void maskUnknown(const std::vector<int>& emitters, std::vector<std::uint16_t>& first_valid_k) const;
 
   const FieldSetup& setup_;
   std::size_t voxels_;
   std::vector<int> first_row_k_;
   std::vector<EmitterGeometry> slots_;
-  std::vector<std::vector<bool>> unknown_;  ///< columns unknown to each emitter; empty: none
   std::vector<ChannelBuffers> buffers_;
   std::vector<std::shared_ptr<const volume::DenseVolume>> volumes_;
   StageTimes times_;
@@ -70,20 +68,16 @@ std::vector<GeometryFindings> CpuEngine::computeGeometry(const std::vector<Geome
   for (const GeometryRequest& request : requests) {
     EmitterGeometry& geometry = slots_[request.slot];
     EmitterGeometry::Times spent;
-    geometry.compute(request.state, setup_.scenario->emitters[request.emitter].propagation,
-                     setup_.scenario->atmosphere.k_factor, setup_.columns, setup_.terrain.get(),
-                     setup_.resolution, spent);
+    geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
+                     setup_.columns, setup_.terrain.get(), setup_.resolution, spent);
     times_.fan_ms += spent.fan_ms;
     times_.plane_ms += spent.plane_ms;
 
     GeometryFindings found;
     found.unknown_columns = geometry.unknownColumns();
-    std::vector<bool>& unknown = unknown_[request.emitter];
-    unknown.clear();
     if (found.unknown_columns > 0) {
-      unknown.resize(setup_.columns.columns.size());
-      for (std::size_t c = 0; c < unknown.size(); ++c) unknown[c] = geometry.isUnknown(c);
-      found.first_unknown = std::find(unknown.begin(), unknown.end(), true) - unknown.begin();
+      found.unknown.resize(setup_.columns.columns.size());
+      for (std::size_t c = 0; c < found.unknown.size(); ++c) found.unknown[c] = geometry.isUnknown(c);
     }
     const ColumnGeometryView view = geometry.view();
     const std::vector<float>& t_m = setup_.columns.t_m;
@@ -92,7 +86,7 @@ std::vector<GeometryFindings> CpuEngine::computeGeometry(const std::vector<Geome
       found.near_voxels +=
           nearVoxels(view, c, t_m.data(), static_cast<int>(t_m.size()), static_cast<float>(far_m * far_m));
     }
-    all.push_back(found);
+    all.push_back(std::move(found));
   }
   return all;
 }
@@ -146,26 +140,13 @@ std::shared_ptr<volume::DenseVolume> CpuEngine::freeVolume(ChannelBuffers& buffe
   return buffers.pool.back();
 }
 
-void CpuEngine::maskUnknown(const std::vector<int>& emitters,
-                            std::vector<std::uint16_t>& first_valid_k) const {
-  first_valid_k = setup_.columns.first_valid_k;
-  for (int e : emitters) {
-    const std::vector<bool>& unknown = unknown_[e];
-    if (unknown.empty()) continue;
-    first_valid_k.resize(unknown.size(), 0);
-    for (std::size_t c = 0; c < unknown.size(); ++c) {
-      if (unknown[c]) first_valid_k[c] = static_cast<std::uint16_t>(setup_.grid.dims.z);
-    }
-  }
-}
-
 void CpuEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
   Stopwatch watch;
   for (const VolumeRequest& request : requests) {
     ChannelBuffers& buffers = buffers_[request.channel];
     volumes_[request.channel].reset();
     const std::shared_ptr<volume::DenseVolume> volume = freeVolume(buffers);
-    maskUnknown(request.emitters, volume->first_valid_k);
+    volume->first_valid_k = *request.first_valid_k;
     ProductTask task;
     task.dims = setup_.grid.dims;
     task.product = setup_.recipes[request.channel].product;
