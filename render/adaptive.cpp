@@ -217,16 +217,9 @@ void queueLattice(ImageSize size, const Silhouette& inside, int first_y, std::ve
 
 }  // namespace
 
-double nextTolerance_levels(double tolerance_levels, double cost, double budget) {
-  // Times fall about with the square root of the tolerance; less than the square is damped.
-  constexpr double kResponse = 1.5;
-  const double factor = std::clamp(std::pow(cost / budget, kResponse), 0.5, 2.0);
-  return std::clamp(tolerance_levels * factor, kLeastTolerance_levels, kLargestTolerance_levels);
-}
-
 bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double tolerance_levels, double most_rays,
                          const Caster& cast) {
-  const double held_levels = std::max(tolerance_levels, held_tolerance_levels_);
+  const double held_levels = hold_.levels(tolerance_levels);
   double rays = 0;
   size_ = image.size;
   classes_.resize(image.pixels.size());
@@ -250,20 +243,8 @@ bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double toleranc
     });
     if (!castQueued()) return false;
   }
-  holdTo(held_levels, rays, most_rays);
+  hold_.drawn(held_levels, rays, most_rays);
   return true;
-}
-
-void AdaptiveFrame::holdTo(double tolerance_levels, double rays, double most_rays) {
-  // Rays fall with some power of the tolerance, which the last two frames tell.
-  constexpr double kAim = 0.98;
-  const double fall = std::log(last_rays_ / std::max(rays, 1.0));
-  const double rise = std::log(std::max(tolerance_levels, kLeastTolerance_levels) / last_tolerance_levels_);
-  if (std::abs(rise) > 0.01) power_ = 0.5 * (power_ + std::clamp(fall / rise, 0.2, 1.5));
-  last_rays_ = std::max(rays, 1.0);
-  last_tolerance_levels_ = std::max(tolerance_levels, kLeastTolerance_levels);
-  const double factor = std::clamp(std::pow(last_rays_ / (kAim * most_rays), 1 / power_), 1.0 / 16, 16.0);
-  held_tolerance_levels_ = std::min(last_tolerance_levels_ * factor, kLargestTolerance_levels);
 }
 
 const std::vector<Pixel>& AdaptiveFrame::missing() {

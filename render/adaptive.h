@@ -11,27 +11,12 @@
 #include <functional>
 #include <vector>
 
+#include "render/adaptive_tolerance.h"
 #include "render/image.h"
 #include "render/reconstruction.h"
 #include "render/silhouette.h"
 
 namespace emscape::render {
-
-/// Estimated error (levels of 255) above which a pixel is cast. The first passes, whose errors spread, are
-/// held to a part of it.
-constexpr double kDefaultTolerance_levels = 0.6;
-constexpr double kLeastTolerance_levels = 1.0 / 16;
-constexpr double kLargestTolerance_levels = 64;
-
-/// Part of the pixels whose rays meet the volume's box that a frame aims to cast at most: that of `quarter`.
-constexpr double kDefaultRayShare = 0.25;
-
-/// The tolerance of the next frame: that of the last one, moved such that what a frame costs (time, or rays)
-/// approaches a budget smoothly, at most by a factor of two a frame.
-/// @param cost    of the last frame, >= 0
-/// @param budget  in the unit of `cost`, > 0
-/// @return        kLeastTolerance_levels..kLargestTolerance_levels
-double nextTolerance_levels(double tolerance_levels, double cost, double budget);
 
 /// Draws frames of this pattern; keeps its buffers between them. Results do not depend on the number of
 /// threads. One thread calls it.
@@ -67,12 +52,8 @@ class AdaptiveFrame {
   void queueRows(int block_height, const RowQueuer& row);
   void joinQueues();
 
-  void holdTo(double tolerance_levels, double rays, double most_rays);
-
   ImageSize size_;
-  double held_tolerance_levels_ = 0;  ///< keeps to most_rays; counts where it is the larger one
-  double last_tolerance_levels_ = 1, last_rays_ = 1;  ///< of the last frame
-  double power_ = 0.5;                      ///< rays are taken as proportional to 1 / tolerance to this power
+  ToleranceHold hold_;
   std::vector<std::uint8_t> classes_;       ///< of the estimated error, a byte a pixel; 0: is as it was cast
   std::vector<std::vector<Pixel>> queues_;  ///< rays to be cast, by rows of blocks
   std::vector<Pixel> queue_;                ///< the same, joined

@@ -50,34 +50,18 @@ TransferView TransferTable::view() const {
           static_cast<float>(lowest_), static_cast<float>(1.0 / (highest_ - lowest_))};
 }
 
-bool TransferTable::anyVisible(const volume::ValueRange& range) const {
-  const TransferView table = view();
-  // One entry more on each side: interpolation may round a little beyond its operands.
-  const int first = std::max(table.index(table.normalized(range.min)) - 1, 0);
-  const int last = std::min(table.index(table.normalized(range.max)) + 1, table.last);
-  return visible_before_[static_cast<std::size_t>(last) + 1] !=
-         visible_before_[static_cast<std::size_t>(first)];
+SkipRule TransferTable::skipRule(CompositingMode mode, float iso_value) const {
+  return {view(), visible_before_.data(), mode, iso_value};
 }
 
-SkipLevels TransferTable::skipLevels(const volume::BricksView& bricks, CompositingMode mode,
-                                     float iso_value) const {
+SkipLevels skipLevels(const SkipRule& rule, const volume::BricksView& bricks) {
   if (bricks.edge != 1 << SkipView::kEdgeBits) throw Error(ErrorCode::other, "bricks of another size");
-  const TransferView table = view();
   const std::size_t count = static_cast<std::size_t>(bricks.dims.count());
-  SkipLevels skip{std::vector<float>(count, -1.0F), std::vector<float>(count, -1.0F)};
+  SkipLevels skip{std::vector<float>(count), std::vector<float>(count)};
   for (std::size_t i = 0; i < count; ++i) {
-    const volume::ValueRange range = bricks.ranges[i];
-    if (range.empty()) continue;  // nothing in it shows, not even 0
-    // Interpolation may round a little beyond its operands.
-    const float rounding = range.max > range.min ? (range.max - range.min) * 1e-6F : 0.0F;
-    skip.highest[i] = table.normalized(range.max + rounding);
-    bool needed = false;
-    if (mode == CompositingMode::iso) {
-      needed = range.min - rounding < iso_value && range.max + rounding >= iso_value;
-    } else if (mode != CompositingMode::mip) {
-      needed = anyVisible(range);
-    }
-    skip.levels[i] = needed ? SkipView::kNever : skip.highest[i];
+    const BrickLevel brick = rule.of(bricks.ranges[i]);
+    skip.highest[i] = brick.highest;
+    skip.levels[i] = brick.level;
   }
   return skip;
 }

@@ -5,16 +5,11 @@
 #include <vector>
 
 #include "render/compositing.h"
+#include "render/skip_rule.h"
 #include "render/transfer_function.h"
 #include "volume/bricks.h"
 
 namespace emscape::render {
-
-/// What SkipView refers to.
-struct SkipLevels {
-  std::vector<float> highest;
-  std::vector<float> levels;
-};
 
 /// Samples a transfer function at equidistant values; a categorical one has one entry a category and one for
 /// none.
@@ -25,17 +20,22 @@ class TransferTable {
 
   TransferView view() const;
   /// @param iso_value  of the isosurface, in that mode
-  SkipLevels skipLevels(const volume::BricksView& bricks, CompositingMode mode, float iso_value) const;
+  SkipRule skipRule(CompositingMode mode, float iso_value) const;
+  int entries() const { return static_cast<int>(samples_.size()); }
 
  private:
-  /// Whether any value of a range has an opacity.
-  bool anyVisible(const volume::ValueRange& range) const;
-
   std::vector<Rgba> samples_;
   std::vector<Rgba> projected_;
   std::vector<int> visible_before_;  ///< how many entries before each have an opacity
   double lowest_ = 0;
   double highest_ = 1;
 };
+
+/// What SkipView refers to.
+struct SkipLevels {
+  std::vector<float> highest;
+  std::vector<float> levels;
+};
+SkipLevels skipLevels(const SkipRule& rule, const volume::BricksView& bricks);
 
 }  // namespace emscape::render

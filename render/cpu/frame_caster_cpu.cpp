@@ -1,0 +1,191 @@
+/// Frames cast by the CPU.
+#include <utility>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "base/stopwatch.h"
+#include "render/adaptive.h"
+#include "render/cpu/raycast_cpu.h"
+#include "render/frame_caster.h"
+#include "render/ground_layer.h"
+#include "render/ready_volume.h"
+
+namespace emscape::render {
+namespace {
+
+class CpuFrameCaster : public FrameCaster {
+ public:
+  void setVolume(std::shared_ptr<const volume::DenseVolume> volume) override;
+  void setVolume(std::shared_ptr<const volume::DeviceVolume> volume) override;
+  FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size, const StopFlag* stop) override;
+  FrameReport restore(const Scene& scene, const StopFlag* stop) override;
+
+  void lend(Image& image) override { std::swap(picture_, image); }
+  void giveBack(Image& image, const FrameReport& /*report*/) override { std::swap(picture_, image); }
+  void fetch(Image& image) override { image = picture_; }
+  void fetch(Image8& image) override { image = quantize(picture_); }
+
+ private:
+  RaycastTask prepare(const Scene& scene, ImageSize size);
+  CpuCast castOf(const Scene& scene, const RaycastTask& prepared, bool shows_ground);
+  bool cast(const Scene& scene, const std::vector<Lattice>& lattices, bool shows_ground, Image& image,
+            FrameReport& report, const StopFlag* stop);
+  bool drawAdaptive(const Scene& scene, const FramePlan& plan, bool shows_ground, Image& image,
+                    FrameReport& report, const StopFlag* stop);
+  bool castMissing(const Scene& scene, FrameReport& report, const StopFlag* stop);
+  void composeGround();
+
+  ReadyVolume volume_;
+  SkipLevels skip_;
+  bool skip_current_ = false;
+  Scene::Versions seen_;  ///< what the members here were derived from
+
+  GroundLayer ground_layer_;  ///< of the camera; its size is 0 x 0 when it must be computed anew
+  Image volume_layer_;        ///< the volume alone, cut off by the ground
+  Image picture_;
+  Pattern drawn_ = Pattern::full;  ///< of the last frame
+  AdaptiveFrame adaptive_;
+  Silhouette silhouette_;
+};
+
+void CpuFrameCaster::setVolume(std::shared_ptr<const volume::DenseVolume> volume) {
+  volume_.set(std::move(volume));
+  skip_current_ = false;
+}
+
+void CpuFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volume) {
+  setVolume(std::make_shared<const volume::DenseVolume>(volume->download()));
+}
+
+RaycastTask CpuFrameCaster::prepare(const Scene& scene, ImageSize size) {
+  if (scene.versions().levels != seen_.levels) skip_current_ = false;
+  if (!skip_current_) skip_ = skipLevels(scene.skipRule(), volume_.bricks());
+  skip_current_ = true;
+  if (scene.versions().view != seen_.view) ground_layer_.size = {};
+  seen_ = scene.versions();
+  if (scene.ground() && ground_layer_.size != size) ground_layer_.reset(size);
+
+  RaycastTask task = scene.task(size);
+  task.volume = volume_.view();
+  task.skip = {skip_.highest.data(), scene.settings().skip_empty ? skip_.levels.data() : nullptr,
+               volume_.bricks().dims};
+  task.volume_highest_f = task.transfer.normalized(volume_.highest());
+  return task;
+}
+
+/// @param shows_ground  false: the volume alone, cut off by the ground
+CpuCast CpuFrameCaster::castOf(const Scene& scene, const RaycastTask& prepared, bool shows_ground) {
+  CpuCast cast{prepared, scene.settings().mode, scene.categorical(), scene.settings().plain};
+  cast.ground = scene.ground() ? &ground_layer_ : nullptr;
+  cast.shows_ground = shows_ground;
+  return cast;
+}
+
+/// @return false if it was stopped
+bool CpuFrameCaster::cast(const Scene& scene, const std::vector<Lattice>& lattices, bool shows_ground,
+                          Image& image, FrameReport& report, const StopFlag* stop) {
+  Stopwatch watch;
+  const RaycastTask prepared = prepare(scene, image.size);
+  const CpuCast cast = castOf(scene, prepared, shows_ground);
+  for (const Lattice& lattice : lattices) {
+    report.complete = castCpu(cast, lattice, image, stop, report.samples);
+    if (!report.complete) break;
+    report.rays += lattice.count();
+  }
+  report.cast_ms += watch.lap_ms();
+  return report.complete;
+}
+
+/// @return false if it was stopped
+bool CpuFrameCaster::drawAdaptive(const Scene& scene, const FramePlan& plan, bool shows_ground, Image& image,
+                                  FrameReport& report, const StopFlag* stop) {
+  Stopwatch all;
+  const RaycastTask prepared = prepare(scene, image.size);
+  const CpuCast cast = castOf(scene, prepared, shows_ground);
+  long long hits = image.size.count();
+  if (scene.ground() && shows_ground) {
+    wholePicture(image.size, silhouette_);
+  } else {
+    findSilhouette(prepared.camera, prepared.volume.lower(), prepared.volume.upper(), silhouette_);
+    hits = silhouette_.count();
+    if (scene.transparentShowsNothing() && prepared.skip.levels != nullptr) {
+      narrowSilhouette(prepared.camera, visibleBoxes(prepared.skip, prepared.volume.dims), silhouette_);
+    }
+  }
+  const double most_rays = std::max(plan.ray_share * static_cast<double>(hits), 1.0);
+  report.complete = adaptive_.draw(image, silhouette_, plan.tolerance_levels, most_rays,
+                                   [&](const std::vector<Pixel>& pixels) {
+                                     Stopwatch watch;
+                                     const bool complete = castCpu(cast, pixels, image, stop, report.samples);
+                                     report.rays += static_cast<long long>(pixels.size());
+                                     report.cast_ms += watch.lap_ms();
+                                     return complete;
+                                   });
+  report.interpolate_ms = all.lap_ms() - report.cast_ms;
+  return report.complete;
+}
+
+FrameReport CpuFrameCaster::draw(const Scene& scene, const FramePlan& plan, ImageSize size,
+                                 const StopFlag* stop) {
+  if (picture_.size != size) picture_ = Image(size);
+  if (scene.versions().view != seen_.view) ground_layer_.size = {};
+  drawn_ = plan.pattern;
+  FrameReport report;
+  report.pattern = plan.pattern;
+  // Where the ground is known everywhere, only the volume is interpolated: the ground stays sharp.
+  const bool in_layers =
+      scene.ground() && ground_layer_.size == size && ground_layer_.complete && plan.pattern != Pattern::full;
+  if (in_layers && volume_layer_.size != size) volume_layer_ = Image(size);
+  Image& target = in_layers ? volume_layer_ : picture_;
+  const bool complete =
+      plan.pattern == Pattern::adaptive
+          ? drawAdaptive(scene, plan, !in_layers, target, report, stop)
+          : cast(scene, sourceLattices(plan.pattern, size), !in_layers, target, report, stop);
+  if (!complete) return report;
+  ground_layer_.complete |= plan.pattern == Pattern::full;
+  Stopwatch watch;
+  interpolate(plan.pattern, plan.interpolation, target);
+  if (in_layers) composeGround();
+  report.interpolate_ms += watch.lap_ms();
+  return report;
+}
+
+FrameReport CpuFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
+  FrameReport report;
+  report.pattern = drawn_;
+  if (castMissing(scene, report, stop)) ground_layer_.complete = true;
+  return report;
+}
+
+/// Casts what the last frame left out. @return false if it was stopped
+bool CpuFrameCaster::castMissing(const Scene& scene, FrameReport& report, const StopFlag* stop) {
+  if (drawn_ != Pattern::adaptive) {
+    return cast(scene, missingLattices(drawn_, picture_.size), true, picture_, report, stop);
+  }
+  Stopwatch watch;
+  const RaycastTask prepared = prepare(scene, picture_.size);
+  const std::vector<Pixel>& missing = adaptive_.missing();
+  report.complete = castCpu(castOf(scene, prepared, true), missing, picture_, stop, report.samples);
+  if (report.complete) report.rays = static_cast<long long>(missing.size());
+  report.cast_ms = watch.lap_ms();
+  return report.complete;
+}
+
+/// The ground behind every pixel of the volume's layer.
+void CpuFrameCaster::composeGround() {
+  constexpr int kRowGrain = 16;
+  parallelFor(picture_.size.height, kRowGrain, [&](int begin, int end) {
+    const std::size_t last = ground_layer_.index(0, end);
+    for (std::size_t pixel = ground_layer_.index(0, begin); pixel < last; ++pixel) {
+      picture_.pixels[pixel] = ground_layer_.behind(volume_layer_.pixels[pixel], pixel);
+    }
+  });
+}
+
+}  // namespace
+
+std::unique_ptr<FrameCaster> makeCpuCaster() {
+  return std::make_unique<CpuFrameCaster>();
+}
+
+}  // namespace emscape::render

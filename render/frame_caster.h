@@ -1,0 +1,43 @@
+/// What a renderer needs of the processor that casts its pictures. One implementation for each.
+#pragma once
+
+#include <memory>
+
+#include "base/progress.h"
+#include "render/frame.h"
+#include "render/image.h"
+#include "render/scene.h"
+#include "volume/dense_volume.h"
+#include "volume/device_volume.h"
+
+namespace emscape::render {
+
+/// Casts frames and keeps the picture of the last one where it was cast. One thread calls it.
+class FrameCaster {
+ public:
+  virtual ~FrameCaster() = default;
+
+  virtual void setVolume(std::shared_ptr<const volume::DenseVolume> volume) = 0;
+  virtual void setVolume(std::shared_ptr<const volume::DeviceVolume> volume) = 0;
+
+  /// See Renderer. @param scene  prepared, of the volume that was set last
+  virtual FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size,
+                           const StopFlag* stop) = 0;
+  virtual FrameReport restore(const Scene& scene, const StopFlag* stop) = 0;
+
+  /// Before and after a picture is cast that is to end in an image of the caller's: so that it can be cast
+  /// into it where that is possible.
+  virtual void lend(Image& image) = 0;
+  virtual void giveBack(Image& image, const FrameReport& report) = 0;
+  /// The picture of the last frame.
+  virtual void fetch(Image& image) = 0;
+  virtual void fetch(Image8& image) = 0;
+};
+
+/// With all threads of the CPU.
+std::unique_ptr<FrameCaster> makeCpuCaster();
+/// With the GPU. @param precision  of volumes that come from the host's memory
+/// @throws Error (device) if there is none, or none was built in
+std::unique_ptr<FrameCaster> makeCudaCaster(volume::VoxelPrecision precision);
+
+}  // namespace emscape::render

@@ -1,0 +1,11 @@
+/// Frames cast by a GPU, in a build without CUDA: there are none.
+#include "base/error.h"
+#include "render/frame_caster.h"
+
+namespace emscape::render {
+
+std::unique_ptr<FrameCaster> makeCudaCaster(volume::VoxelPrecision /*precision*/) {
+  throw Error(ErrorCode::device, "pictures cast by the GPU: this build has no CUDA");
+}
+
+}  // namespace emscape::render
