@@ -1,10 +1,10 @@
 /// Which processor does the work: what was asked for, and what that comes to on this machine.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "base/device.h"
+#include "base/error.h"
 
 namespace emscape {
 
@@ -26,12 +26,30 @@ struct BackendChoice {
   std::string note;                ///< where the wish left it open: in a line, what was taken and why
 };
 
-/// @param device        what findDevice() found
-/// @param needed_bytes  of its memory that must be free
-/// @throws Error (device) if cuda is asked for and the device cannot do it
-BackendChoice resolveBackend(Backend wish, const Device& device, std::size_t needed_bytes = 0);
+/// @param device  what findDevice() found
+/// @throws Error (device) if cuda is asked for and the device cannot be used
+BackendChoice resolveBackend(Backend wish, const Device& device);
 
 /// Asks findDevice(), unless the CPU is asked for.
-BackendChoice resolveBackend(Backend wish, std::size_t needed_bytes = 0);
+BackendChoice resolveBackend(Backend wish);
+
+/// Opens what is to compute where a wish says. Where that is left open and the GPU fails, for want of memory
+/// or otherwise, the same is opened on the CPU.
+/// @param open  (BackendChoice) -> what is to be returned
+/// @param tell  (std::string): is given a line for the user; not called where the choice was the user's
+/// @throws as resolveBackend() and `open`
+template <class Open, class Tell>
+auto openOnBackend(Backend wish, const Open& open, const Tell& tell) {
+  const BackendChoice choice = resolveBackend(wish);
+  if (!choice.note.empty()) tell(choice.note);
+  if (wish != Backend::automatic || choice.backend == Backend::cpu) return open(choice);
+  try {
+    return open(choice);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::device) throw;
+    tell(std::string("running on the CPU: ") + error.what());
+  }
+  return open(BackendChoice{});
+}
 
 }  // namespace emscape

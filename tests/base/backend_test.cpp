@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "base/error.h"
 
 namespace emscape {
@@ -23,16 +26,6 @@ Device noGpu() {
   Device device;
   device.why_not = "no GPU answers";
   return device;
-}
-
-std::string messageOf(Backend wish, const Device& device, std::size_t needed_bytes) {
-  try {
-    resolveBackend(wish, device, needed_bytes);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::device);
-    return error.what();
-  }
-  return "";
 }
 
 TEST(Backend, NamesAreReadAsTheyAreWritten) {
@@ -65,30 +58,50 @@ TEST(Backend, AutoFallsToTheCpuWithoutAGpuAndSaysWhy) {
   EXPECT_EQ(choice.note, "running on the CPU: no GPU answers");
 }
 
-TEST(Backend, AutoFallsToTheCpuWithTooLittleMemoryAndTellsBothFigures) {
-  const BackendChoice choice = resolveBackend(Backend::automatic, someGpu(), std::size_t{3} << 30);
-  EXPECT_EQ(choice.backend, Backend::cpu);
-  EXPECT_EQ(
-      choice.note,
-      "running on the CPU: this needs 3072 MiB of memory on the GPU, GPU of the test has 1024 MiB free");
-}
-
 TEST(Backend, WhatIsAskedForIsTakenWithoutAWord) {
   EXPECT_EQ(resolveBackend(Backend::cpu, someGpu()).backend, Backend::cpu);
   EXPECT_EQ(resolveBackend(Backend::cpu, someGpu()).note, "");
-  EXPECT_EQ(resolveBackend(Backend::cuda, someGpu(), 1 << 20).backend, Backend::cuda);
-  EXPECT_EQ(resolveBackend(Backend::cuda, someGpu(), 1 << 20).note, "");
+  EXPECT_EQ(resolveBackend(Backend::cuda, someGpu()).backend, Backend::cuda);
+  EXPECT_EQ(resolveBackend(Backend::cuda, someGpu()).note, "");
 }
 
 TEST(Backend, DemandedCudaThatCannotBeHadIsADeviceError) {
-  EXPECT_EQ(messageOf(Backend::cuda, noGpu(), 0), "backend cuda: no GPU answers");
-  EXPECT_THAT(messageOf(Backend::cuda, someGpu(), std::size_t{3} << 30), HasSubstr("needs 3072 MiB"));
+  try {
+    resolveBackend(Backend::cuda, noGpu());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::device);
+    EXPECT_STREQ(error.what(), "backend cuda: no GPU answers");
+  }
 }
 
 TEST(Backend, TheMachinesOwnAnswerIsOneOfTheTwo) {
   const BackendChoice choice = resolveBackend(Backend::automatic);
   EXPECT_NE(choice.backend, Backend::automatic);
   EXPECT_THAT(choice.note, HasSubstr("running on the "));
+}
+
+TEST(Backend, WhatIsOpenedKnowsWhereItRunsAndTheUserIsToldOnce) {
+  std::vector<std::string> told;
+  const auto tell = [&told](const std::string& line) { told.push_back(line); };
+  const auto backendOf = [](const BackendChoice& choice) { return choice.backend; };
+  EXPECT_EQ(openOnBackend(Backend::cpu, backendOf, tell), Backend::cpu);
+  EXPECT_TRUE(told.empty());
+  EXPECT_EQ(openOnBackend(Backend::automatic, backendOf, tell), resolveBackend(Backend::automatic).backend);
+  EXPECT_EQ(told.size(), 1U);
+}
+
+TEST(Backend, CudaWhereAutoFindsTooLittleMemoryTheCpuIsTakenAndTheFiguresAreTold) {
+  if (!findDevice().usable) GTEST_SKIP() << findDevice().why_not;
+  const auto open = [](const BackendChoice& choice) {
+    if (choice.backend == Backend::cuda) throw Error(ErrorCode::device, "GPU: 2 MiB needed, 1 MiB free");
+    return choice.device;
+  };
+  std::vector<std::string> told;
+  const auto tell = [&told](const std::string& line) { told.push_back(line); };
+  EXPECT_EQ(openOnBackend(Backend::automatic, open, tell), "cpu");
+  EXPECT_EQ(told.back(), "running on the CPU: GPU: 2 MiB needed, 1 MiB free");
+  EXPECT_THROW(openOnBackend(Backend::cuda, open, tell), Error);
 }
 
 }  // namespace
