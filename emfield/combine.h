@@ -54,7 +54,8 @@ EMSCAPE_HD inline VoxelRay voxelRay(const EmitterBeam& emitter, std::size_t colu
           lit_w / (distance2 > kSmallest2 ? distance2 : kSmallest2)};
 }
 
-/// Power density (W/m2) of one emitter at the voxel at z = t_m of a column; 0 in shadow and where the path is
+/// Power density (W/m2) of one emitter at the voxel at z = t_m of a column, but for the excess loss of its
+/// path (excessFactor of ColumnGeometryView::excess, where there is one); 0 in shadow and where the path is
 /// unknown. Nearer than the far field (2 D^2 / lambda) it is the extrapolated far field.
 /// @accuracy 1e-4 dB of double precision on axis and on smooth patterns, to 500 km
 template <scenario::PatternKind kind>

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "emfield/column_geometry.h"
+#include "emfield/excess/excess_model.h"
+#include "emfield/excess/fill_excess.h"
 #include "emfield/shadow.h"
 
 namespace emscape::emfield {
@@ -24,35 +27,74 @@ double leanOf(const GridColumns& columns) {
   return drift * half_height_m;
 }
 
+ExcessGrid excessGrid(const GridColumns& columns, double lean_m, const FanResolution& resolution) {
+  ExcessGrid grid;
+  grid.columns = columns.columns.data();
+  grid.column_count = columns.columns.size();
+  grid.t_m = columns.t_m.data();
+  grid.layers = static_cast<int>(columns.t_m.size());
+  if (columns.tilted) {
+    // A piece leans no further than the fan's azimuths lie apart.
+    grid.pieces = std::clamp(static_cast<int>(std::ceil(2 * lean_m / resolution.arc_m)), 1, grid.layers);
+  } else if (!columns.ground_msl_m.empty()) {
+    grid.ground_msl_m = columns.ground_msl_m.data();
+  }
+  return grid;
+}
+
 }  // namespace
 
-void EmitterGeometry::compute(const scenario::EmitterState& state, scenario::PropagationModel model,
-                              double k_factor, const GridColumns& columns, const scenario::Terrain* terrain,
-                              const FanResolution& resolution, Times& times) {
+void EmitterGeometry::compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
+                              const scenario::Emitter& emitter, const GridColumns& columns,
+                              const scenario::Terrain* terrain, const FanResolution& resolution,
+                              Times& times) {
   Stopwatch watch;
-  const Station station = makeStation(state.position, state.height_msl_m, k_factor);
+  const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere.k_factor);
   const std::vector<FanCoordinates> coordinates = fanCoordinates(station, columns);
   locateColumns(station, columns, coordinates);
   shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
+  excess_.clear();
   unknown_columns_ = 0;
-  if (model == scenario::PropagationModel::free_space) {
-    times.fan_ms += watch.lap_ms();
-    return;
+  const bool has_shadow = emitter.propagation == scenario::PropagationModel::horizon;
+  std::optional<ExcessModel> model;
+  if (hasExcess(scenario, emitter)) {
+    model = makeExcessModel(scenario, emitter, station);
+    excess_.resize(column_count_ * columns.t_m.size());
   }
-  // Some intervals at a time, so that a fine fan over a wide region does not fill the memory.
-  const FanShape shape = fanShape(station, coordinates, terrain, resolution, leanOf(columns));
-  const int at_once = columns.tilted ? shape.interval_count : std::max(1, kFanSamples / shape.rangeCount());
   times.fan_ms += watch.lap_ms();
-  for (int first = 0; first < shape.interval_count; first += at_once) {
-    const int count = std::min(at_once, shape.interval_count - first);
-    const TerrainFan fan = readTerrainFan(station, shape, terrain, first, count);
-    times.fan_ms += watch.lap_ms();
-    findShadowEdges(station, columns, coordinates, shape, fan, shadow_edge_m_);
+  const double lean_m = leanOf(columns);
+  const ExcessGrid grid = excessGrid(columns, lean_m, resolution);
+  const ExcessOutput out{excess_.data(), shadow_edge_m_.data()};
+  if (model && !needsTerrain(*model)) {
+    fillExcessCpu(*model, station, grid, {}, out);
     times.plane_ms += watch.lap_ms();
+  }
+  if (has_shadow || (model && needsTerrain(*model))) {
+    // Some intervals at a time, so that a fine fan over a wide region does not fill the memory.
+    const FanShape shape = fanShape(station, coordinates, terrain, resolution, lean_m);
+    const int at_once = columns.tilted ? shape.interval_count : std::max(1, kFanSamples / shape.rangeCount());
+    times.fan_ms += watch.lap_ms();
+    for (int first = 0; first < shape.interval_count; first += at_once) {
+      const int count = std::min(at_once, shape.interval_count - first);
+      const TerrainFan fan = readTerrainFan(station, shape, terrain, first, count);
+      times.fan_ms += watch.lap_ms();
+      if (has_shadow) findShadowEdges(station, columns, coordinates, shape, fan, shadow_edge_m_);
+      if (model && needsTerrain(*model)) {
+        fillExcessCpu(*model, station, grid, {shape.view(), fan.height_msl_m.data(), first, count}, out);
+      }
+      times.plane_ms += watch.lap_ms();
+    }
   }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
   times.plane_ms += watch.lap_ms();
+}
+
+std::size_t EmitterGeometry::bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                                     std::size_t columns, int layers) {
+  const std::size_t of_voxels =
+      hasExcess(scenario, emitter) ? static_cast<std::size_t>(layers) * sizeof(ExcessCode) : 0;
+  return columns * (kBytesPerColumn + of_voxels);
 }
 
 void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns,
@@ -71,8 +113,17 @@ void EmitterGeometry::locateColumns(const Station& station, const GridColumns& c
 ColumnGeometryView EmitterGeometry::view() const {
   const float* first = arrays_.data();
   const std::size_t n = column_count_;
-  return {first,         first + n,     first + 2 * n, first + 3 * n, first + 4 * n,
-          first + 5 * n, first + 6 * n, first + 7 * n, first + 8 * n, shadow_edge_m_.data()};
+  return {first,
+          first + n,
+          first + 2 * n,
+          first + 3 * n,
+          first + 4 * n,
+          first + 5 * n,
+          first + 6 * n,
+          first + 7 * n,
+          first + 8 * n,
+          shadow_edge_m_.data(),
+          excess_.empty() ? nullptr : excess_.data()};
 }
 
 bool EmitterGeometry::isUnknown(std::size_t column) const {

@@ -1,9 +1,11 @@
-/// What the combine stage keeps of an emitter's place: per column of the grid, until the emitter moves.
+/// What the combine stage keeps of an emitter's place: per column of the grid, and per voxel for models with
+/// an excess loss, until the emitter moves.
 #pragma once
 
 #include <vector>
 
 #include "base/host_device.h"
+#include "emfield/excess/excess_code.h"
 #include "emfield/terrain_fan.h"
 #include "scenario/emitter.h"
 #include "scenario/snapshot.h"
@@ -29,6 +31,8 @@ struct ColumnGeometryView {
   const float* lift_m = nullptr;
   /// Voxels below this z (m) are in shadow; -infinity: none is. NaN: unknown.
   const float* shadow_edge_m = nullptr;
+  /// Excess loss of each voxel, dense order; null: none.
+  const ExcessCode* excess = nullptr;
 };
 
 /// Stages 1 and 2 of one emitter.
@@ -39,10 +43,11 @@ class EmitterGeometry {
     double fan_ms = 0, plane_ms = 0;
   };
 
+  /// @param emitter  of the scenario
   /// @param terrain  null: smooth earth
-  void compute(const scenario::EmitterState& state, scenario::PropagationModel model, double k_factor,
-               const GridColumns& columns, const scenario::Terrain* terrain, const FanResolution& resolution,
-               Times& times);
+  void compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
+               const scenario::Emitter& emitter, const GridColumns& columns, const scenario::Terrain* terrain,
+               const FanResolution& resolution, Times& times);
 
   ColumnGeometryView view() const;
   /// Columns whose path crosses missing terrain.
@@ -50,7 +55,12 @@ class EmitterGeometry {
   bool isUnknown(std::size_t column) const;
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
-  std::size_t bytes() const { return (arrays_.size() + shadow_edge_m_.size()) * sizeof(float); }
+  /// Bytes that an emitter takes, of a grid with so many columns and layers.
+  static std::size_t bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                             std::size_t columns, int layers);
+  std::size_t bytes() const {
+    return (arrays_.size() + shadow_edge_m_.size()) * sizeof(float) + excess_.size() * sizeof(ExcessCode);
+  }
 
  private:
   void locateColumns(const Station& station, const GridColumns& columns,
@@ -59,6 +69,7 @@ class EmitterGeometry {
   std::size_t column_count_ = 0;
   std::vector<float> arrays_;  ///< kColumnNumbers x column_count_
   std::vector<float> shadow_edge_m_;
+  std::vector<ExcessCode> excess_;  ///< columns x layers, or empty
   long long unknown_columns_ = 0;
 };
 

@@ -72,12 +72,12 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
 void FieldSolver::Impl::checkModels() const {
   for (const Emitter& emitter : setup.scenario->emitters) {
     if (emitter.propagation != PropagationModel::free_space &&
-        emitter.propagation != PropagationModel::horizon) {
-      throw Error(
-          ErrorCode::bad_input, {setup.scenario->file},
-          fmt::format(
-              "emitter '{}': propagation '{}' cannot be computed by this version; one of free_space, horizon",
-              emitter.name, scenario::toString(emitter.propagation)));
+        emitter.propagation != PropagationModel::horizon &&
+        emitter.propagation != PropagationModel::diffraction) {
+      throw Error(ErrorCode::bad_input, {setup.scenario->file},
+                  fmt::format("emitter '{}': propagation '{}' cannot be computed by this version; one of "
+                              "free_space, horizon, diffraction",
+                              emitter.name, scenario::toString(emitter.propagation)));
     }
   }
 }

@@ -84,6 +84,11 @@ void powerDensityRow(const EmitterBeam& emitter, const Row& row, float* out) {
   }
 }
 
+EMSCAPE_SIMD_CLONES void applyExcess(const ExcessCode* excess, int count, float* power_density_wm2) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) power_density_wm2[i] *= excessFactor(excess[i]);
+}
+
 EMSCAPE_SIMD_CLONES void reduceRow(Reduction reduction, float weight, int emitter_index,
                                    const float* power_density_wm2, int count, float* value, float* largest) {
   switch (reduction) {
@@ -135,6 +140,8 @@ void combineRow(const CombineTask& task, int j, int k, float* power_density_wm2)
   }
   for (const CombineEmitter& emitter : task.emitters) {
     powerDensityRow(emitter.beam, row, power_density_wm2);
+    if (emitter.beam.geometry.excess != nullptr)
+      applyExcess(emitter.beam.geometry.excess + first, count, power_density_wm2);
     for (const ChannelShare& share : emitter.shares) {
       const Accumulator& out = task.accumulators[share.channel];
       if (out.value == nullptr) continue;

@@ -68,7 +68,7 @@ TEST(Combine, RowsGiveWhatThePlainFunctionGives) {
       const scenario::EmitterState state = scenario::snapshotAt(scenario, nullptr, 0).emitters[0];
       EmitterGeometry geometry;
       EmitterGeometry::Times times;
-      geometry.compute(state, emitter.propagation, 4.0 / 3, columns, nullptr, resolution, times);
+      geometry.compute(state, *scenario, emitter, columns, nullptr, resolution, times);
 
       CombineEmitter combined;
       combined.beam.geometry = geometry.view();

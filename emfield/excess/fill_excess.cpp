@@ -1,0 +1,61 @@
+#include "emfield/excess/fill_excess.h"
+
+#include <algorithm>
+#include <atomic>
+#include <vector>
+
+#include "base/parallel.h"
+
+namespace emscape::emfield {
+namespace {
+
+/// Neighbouring columns, so that results are written in runs.
+constexpr int kBlock = 16;
+
+template <class Model>
+unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
+  const ExcessGrid& grid = task.grid;
+  const int columns = static_cast<int>(grid.column_count);
+  std::atomic<unsigned> all_remarks{0};
+  parallelFor((columns + kBlock - 1) / kBlock, 4, [&](int begin, int end) {
+    std::vector<double> memory(ExcessScratch::bytes(task.posts(), grid.layers) / sizeof(double) + 1);
+    const ExcessScratch scratch = ExcessScratch::in(memory.data(), task.posts(), grid.layers);
+    std::vector<ExcessCode> codes(static_cast<std::size_t>(grid.layers) * kBlock);
+    unsigned remarks = 0;
+    for (int block = begin; block < end; ++block) {
+      const int first = block * kBlock, count = std::min(kBlock, columns - first);
+      bool is_filled[kBlock];
+      for (int i = 0; i < count; ++i) {
+        unsigned of_column = 0;
+        is_filled[i] = task.fillColumn(static_cast<std::size_t>(first + i), scratch, of_column);
+        if (!is_filled[i]) continue;
+        if (of_column & kMissingTerrain) out.markUnknown(static_cast<std::size_t>(first + i));
+        remarks |= of_column;
+        for (int k = 0; k < grid.layers; ++k) {
+          codes[static_cast<std::size_t>(k) * kBlock + i] = excessCode(scratch.excess_db[k]);
+        }
+      }
+      for (int k = 0; k < grid.layers; ++k) {
+        ExcessCode* const row = out.codes + static_cast<std::size_t>(k) * grid.column_count + first;
+        for (int i = 0; i < count; ++i) {
+          if (is_filled[i]) row[i] = codes[static_cast<std::size_t>(k) * kBlock + i];
+        }
+      }
+    }
+    all_remarks |= remarks;
+  });
+  return all_remarks;
+}
+
+}  // namespace
+
+unsigned fillExcessCpu(const ExcessModel& model, const Station& station, const ExcessGrid& grid,
+                       const FanHeights& fan, const ExcessOutput& out) {
+  return std::visit(
+      [&](const auto& m) {
+        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, station, grid, fan}, out);
+      },
+      model);
+}
+
+}  // namespace emscape::emfield
