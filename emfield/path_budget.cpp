@@ -53,7 +53,10 @@ PathPointing pointingOf(const Emitter& emitter, const scenario::BeamPose& beam, 
 /// it, without its floor.
 double quantityOf(Quantity quantity, const scenario::Scenario& scenario, int emitter,
                   double power_density_dbwm2) {
-  const ChannelRecipe recipe = recipeOf({quantity, info(quantity).name, {emitter}}, scenario);
+  Channel channel;
+  channel.quantity = quantity;
+  channel.emitters = {emitter};
+  const ChannelRecipe recipe = recipeOf(channel, scenario);
   const double accumulator_db = power_density_dbwm2 + ratioToDb(static_cast<double>(recipe.weights.front()));
   return static_cast<double>(recipe.product.scale) * accumulator_db +
          static_cast<double>(recipe.product.offset_db);
@@ -86,8 +89,7 @@ void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, dou
       receiver.polarization
           ? ratioToDb(scenario::polarizationFactor(emitter.polarization, *receiver.polarization))
           : 0;
-  const double received_dbm =
-      quantityOf(Quantity::received_power_dbm, scenario, emitter_index, power_density_dbwm2);
+  const double of_one_watt_dbm = quantityOf(Quantity::received_power_dbm, scenario, emitter_index, 0);
   const double antenna_db = receiver.gain_dbi - receiver.losses_db;
   terms.push_back(
       {"isotropic_area_dbm2", "area of an isotropic antenna", area_db, "dBm2", "lambda^2 / (4 pi)"});
@@ -98,9 +100,9 @@ void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, dou
        fmt::format("{} to {}", scenario::toString(emitter.polarization),
                    receiver.polarization ? scenario::toString(*receiver.polarization) : "matched")});
   terms.push_back({"in_band_db", "part of the signal within the receiver's band",
-                   received_dbm - 30 - power_density_dbwm2 - area_db - antenna_db - polarization_db, "dB",
-                   ""});
-  terms.push_back({"received_power_dbm", "received power", received_dbm, "dBm", "", Kind::sum});
+                   of_one_watt_dbm - 30 - area_db - antenna_db - polarization_db, "dB", ""});
+  terms.push_back(
+      {"received_power_dbm", "received power", of_one_watt_dbm + power_density_dbwm2, "dBm", "", Kind::sum});
 }
 
 void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, double power_density_dbwm2,

@@ -23,6 +23,7 @@ std::string thingAt(const PathObstacle& obstacle) {
 /// What the path costs, after "and".
 std::string costText(double loss_db) {
   if (std::isinf(loss_db)) return "the model knows no field behind it";
+  if (std::abs(loss_db) < 0.05) return "the path is as good as free space";
   if (loss_db < 0) return fmt::format("the path gains {:.1f} dB over free space", -loss_db);
   return fmt::format("the path costs {:.1f} dB over free space", loss_db);
 }
@@ -57,7 +58,7 @@ std::string pathText(const PathBudget& budget) {
 std::string pointingText(const PathPointing& pointing) {
   constexpr double kWorthSaying_db = -6;
   if (pointing.pattern_db > kWorthSaying_db) return "";
-  return fmt::format("; the antenna points {:.1f} deg away, which costs {:.1f} dB",
+  return fmt::format(", but the antenna points {:.1f} deg away, which costs {:.1f} dB",
                      radToDeg(pointing.off_axis_rad), -pointing.pattern_db);
 }
 

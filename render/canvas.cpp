@@ -1,5 +1,6 @@
 #include "render/canvas.h"
 
+#include <cairo-svg.h>
 #include <cairo.h>
 
 #include <cmath>
@@ -13,6 +14,11 @@ namespace {
 
 constexpr const char* kFont = "DejaVu Sans";
 
+cairo_status_t append(void* text, const unsigned char* data, unsigned int length) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
+  return CAIRO_STATUS_SUCCESS;
+}
+
 }  // namespace
 
 double length(const Point2& a) {
@@ -24,9 +30,18 @@ bool overlap(const Rect& a, const Rect& b) {
 }
 
 Canvas::Canvas(ImageSize size)
+    : Canvas(size, cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size.width, size.height)) {}
+
+Canvas Canvas::forSvg(ImageSize size) {
+  auto text = std::make_shared<std::string>();
+  Canvas canvas(size, cairo_svg_surface_create_for_stream(append, text.get(), size.width, size.height));
+  canvas.svg_ = std::move(text);
+  return canvas;
+}
+
+Canvas::Canvas(ImageSize size, cairo_surface_t* surface)
     : size_(size),
-      surface_(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size.width, size.height),
-               cairo_surface_destroy),
+      surface_(surface, cairo_surface_destroy),
       cairo_(cairo_create(surface_.get()), cairo_destroy) {
   if (cairo_status(cairo_.get()) != CAIRO_STATUS_SUCCESS) {
     throw Error(ErrorCode::other, "cannot draw a picture of " + std::to_string(size.width) + "x" +
@@ -42,6 +57,11 @@ Canvas::Canvas(ImageSize size)
   cairo_set_font_options(cairo_.get(), font.get());
   cairo_set_line_cap(cairo_.get(), CAIRO_LINE_CAP_ROUND);
   cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_ROUND);
+}
+
+std::string Canvas::svg() {
+  cairo_surface_finish(surface_.get());
+  return *svg_;
 }
 
 Image8 Canvas::pixels() const {

@@ -42,16 +42,23 @@ enum class Weight { normal, bold };
 /// Where a text's box lies relative to the point that it is put at.
 enum class Align { left, center, right };
 
-/// An RGBA picture to draw on; pixels start transparent.
+/// An RGBA picture to draw on; pixels start transparent. Or a drawing that is kept as lines and written as
+/// SVG.
 class Canvas {
  public:
   explicit Canvas(ImageSize size);
+  static Canvas forSvg(ImageSize size);
 
   ImageSize size() const { return size_; }
   /// Pixels as drawn so far, premultiplied.
+  /// @pre not forSvg
   Image8 pixels() const;
   /// Replaces all pixels.
+  /// @pre not forSvg
   void setPixels(const Image8& image);
+  /// The drawing as an SVG document. Nothing may be drawn after it.
+  /// @pre forSvg
+  std::string svg();
 
   void line(const Point2& from, const Point2& to, const Ink& ink, double width, bool dashed = false);
   void polygon(const std::vector<Point2>& points, const Ink& ink);
@@ -74,6 +81,7 @@ class Canvas {
                    Align align = Align::left, Weight weight = Weight::normal, double angle_rad = 0);
 
  private:
+  Canvas(ImageSize size, _cairo_surface* surface);
   void setInk(const Ink& ink) const;
   void setFont(double size_px, Weight weight) const;
   void path(const std::vector<Point2>& points, bool closed) const;
@@ -82,6 +90,7 @@ class Canvas {
   void moveTo(const std::string& text, const Point2& at, Align align, double angle_rad) const;
 
   ImageSize size_;
+  std::shared_ptr<std::string> svg_;  ///< what the surface has written so far; null with pixels
   std::shared_ptr<_cairo_surface> surface_;
   std::shared_ptr<_cairo> cairo_;
 };

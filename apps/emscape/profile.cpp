@@ -1,0 +1,173 @@
+/// emscape profile: why there is, or is not, coverage at a point.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <sstream>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/profile_plot.h"
+#include "apps/emscape/profile_report.h"
+#include "base/error.h"
+#include "base/log.h"
+#include "emfield/field_solver.h"
+#include "emfield/path_budget.h"
+#include "scenario/scenario_yaml.h"
+#include "scenario/snapshot.h"
+
+namespace emscape::app {
+namespace {
+
+using scenario::PropagationModel;
+using scenario::Scenario;
+
+constexpr PropagationModel kModels[] = {PropagationModel::free_space,  PropagationModel::horizon,
+                                        PropagationModel::diffraction, PropagationModel::two_ray,
+                                        PropagationModel::itm,         PropagationModel::p528};
+
+struct ProfileOptions {
+  std::string scenario;
+  std::string emitter;
+  std::string to;
+  double time_s = 0;
+  bool above_ground = false;
+  std::vector<std::string> models;
+  std::string plot;
+  std::string size = "1400x800";
+};
+
+/// @throws Error (usage) unless there are three numbers within their ranges
+scenario::SitePosition parsePoint(const std::string& text, bool above_ground) {
+  std::vector<double> numbers;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    char* rest = nullptr;
+    const double value = std::strtod(part.c_str(), &rest);
+    if (part.empty() || *rest != '\0' || !std::isfinite(value)) break;
+    numbers.push_back(value);
+  }
+  const bool is_point = numbers.size() == 3 && std::count(text.begin(), text.end(), ',') == 2;
+  if (!is_point || std::abs(numbers[0]) > 90 || std::abs(numbers[1]) > 180 || std::abs(numbers[2]) > 100000) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("--to '{}' is not LAT,LON,HEIGHT: latitude -90..90 deg, longitude -180..180 deg, height "
+                    "-100000..100000 m, such as 36.30,-84.25,1500",
+                    text));
+  }
+  scenario::SitePosition point;
+  point.latitude_deg = numbers[0];
+  point.longitude_deg = numbers[1];
+  (above_ground ? point.height_agl_m : point.height_msl_m) = numbers[2];
+  return point;
+}
+
+int emitterNamed(const Scenario& scenario, const std::string& name) {
+  std::string known;
+  for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
+    if (scenario.emitters[e].name == name) return static_cast<int>(e);
+    known += (known.empty() ? "'" : ", '") + scenario.emitters[e].name + "'";
+  }
+  throw Error(ErrorCode::usage,
+              fmt::format("--emitter: no emitter '{}' in {}; it has {}", name, scenario.file, known));
+}
+
+PropagationModel modelNamed(const std::string& name) {
+  return *std::find_if(std::begin(kModels), std::end(kModels),
+                       [&](PropagationModel model) { return name == scenario::toString(model); });
+}
+
+/// The scenario with a platform at the point, the last one: ground is read below it and its height is checked
+/// as any platform's.
+std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenario::SitePosition& point) {
+  auto result = std::make_shared<Scenario>(scenario);
+  scenario::Platform platform;
+  platform.name = "--to";
+  platform.track.emplace_back();
+  platform.track.back().position = point;
+  result->platforms.push_back(platform);
+  return result;
+}
+
+ProfileReport makeReport(const ProfileOptions& options) {
+  const scenario::SitePosition to = parsePoint(options.to, options.above_ground);
+  const auto scenario = withPoint(*scenario::loadScenario(options.scenario), to);
+  const int emitter = emitterNamed(*scenario, options.emitter);
+  const scenario::TerrainPtr terrain =
+      scenario->terrain ? scenario::Terrain::load(*scenario->terrain, scenario::terrainBox(*scenario))
+                        : nullptr;
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), options.time_s);
+  const emfield::PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};
+  const emfield::FanResolution resolution =
+      emfield::fanResolution(emfield::gridOf(scenario->region), terrain.get());
+  const auto budgetBy = [&](PropagationModel model) {
+    return emfield::pathBudget(snapshot, emitter, point, model, terrain.get(), resolution);
+  };
+  ProfileReport report{
+      options.scenario, snapshot.time_utc, budgetBy(scenario->emitters[emitter].propagation), {}};
+  for (const std::string& name : options.models) {
+    Comparison comparison;
+    comparison.model = modelNamed(name);
+    try {
+      comparison.budget = budgetBy(comparison.model);
+    } catch (const Error& error) {
+      comparison.refusal = error.message();
+    }
+    report.compared.push_back(std::move(comparison));
+  }
+  return report;
+}
+
+int profile(const ProfileOptions& options, const GlobalOptions& global) {
+  const ProfileReport report = makeReport(options);
+  if (!options.plot.empty()) {
+    plotProfile(report.budget, render::parseImageSize(options.size), options.plot);
+    logInfo("wrote " + options.plot);
+  }
+  if (global.json) {
+    printJson(toJson(report));
+  } else {
+    printAsTable(report);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void addProfile(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "profile", "Why is there no coverage here? The path from an emitter to a point, term by term");
+  command->fallthrough();
+  command->footer(R"(
+Prints how the path lies, what of the terrain stands in its way, every term of the budget from the transmitter's power to
+what arrives, and a sentence that says what decides. HEIGHT is in metres above mean sea level (EGM96), with --agl above the ground.
+
+Examples:
+  emscape profile scenarios/jacksboro.yaml --emitter "search radar" --to 36.35,-84.25,900 --plot path.png
+  emscape profile scenarios/jacksboro.yaml --emitter jammer --time 80 --to 36.249,-84.147,10 --agl --model diffraction,free_space
+  emscape profile scenarios/jacksboro.yaml --emitter "search radar" --to 36.35,-84.25,900 --json
+
+Exit status: 0, whether there is coverage or not; 2 for an emitter or a point that is not one; 3 for a point below the ground
+or a path over missing terrain.)");
+  auto options = std::make_shared<ProfileOptions>();
+  std::vector<std::string> names;
+  for (const PropagationModel model : kModels) names.emplace_back(scenario::toString(model));
+  command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
+  command->add_option("--emitter", options->emitter, "Name of the emitter")->required();
+  command->add_option("--to", options->to, "The point: LAT,LON,HEIGHT (deg, deg, m)")->required();
+  command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
+  command->add_flag("--agl", options->above_ground, "HEIGHT is above the ground");
+  command->add_option("--model", options->models, "Models to compare the emitter's own with")
+      ->delimiter(',')
+      ->check(CLI::IsMember(names));
+  command->add_option("--plot", options->plot, "Draw the path into a file, .png or .svg")
+      ->check([](const std::string& file) {
+        return isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+      });
+  command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return profile(*options, global); }; });
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,19 @@
+/// The picture of a path: terrain on the effective earth, the ray over it, its first Fresnel zone, obstacles.
+#pragma once
+
+#include <string>
+
+#include "emfield/path_budget.h"
+#include "render/image.h"
+
+namespace emscape::app {
+
+/// True for names that plotProfile can write: .png and .svg.
+bool isPlotFile(const std::string& file);
+
+/// Heights are drawn over the effective earth, so that the ray is straight and sea level curves. The file
+/// appears whole or not at all.
+/// @throws Error (other) naming the file
+void plotProfile(const emfield::PathBudget& budget, render::ImageSize size, const std::string& file);
+
+}  // namespace emscape::app

@@ -1,0 +1,198 @@
+#include "apps/emscape/profile_report.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/units.h"
+
+namespace emscape::app {
+namespace {
+
+using emfield::BudgetTerm;
+using emfield::PathBudget;
+using emfield::PathEnd;
+using emfield::PathObstacle;
+
+/// A finite number, or null.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json toJson(const PathEnd& end, double ground_msl_m) {
+  return {{"latitude_deg", end.position.latitude_deg},
+          {"longitude_deg", end.position.longitude_deg},
+          {"height_msl_m", end.height_msl_m},
+          {"height_agl_m", end.height_msl_m - ground_msl_m},
+          {"height_ellipsoid_m", end.position.height_ellipsoid_m},
+          {"ground_msl_m", ground_msl_m}};
+}
+
+Json geometryJson(const PathBudget& budget) {
+  const emfield::PathGeometry& geometry = budget.geometry;
+  return {{"range_m", budget.profile.range_m},
+          {"slant_range_m", geometry.slant_range_m},
+          {"azimuth_deg", radToDeg(budget.profile.azimuth_rad)},
+          {"straight_elevation_deg", radToDeg(geometry.straight_elevation_rad)},
+          {"launch_elevation_deg", radToDeg(geometry.launch_elevation_rad)},
+          {"k_factor", budget.k_factor},
+          {"effective_earth_radius_m", budget.profile.station.effective_earth_radius_m},
+          {"smooth_horizon_m", geometry.horizon_range_m},
+          {"far_field_m", geometry.far_field_m},
+          {"off_axis_deg", radToDeg(budget.pointing.off_axis_rad)},
+          {"antenna_azimuth_deg", radToDeg(budget.pointing.azimuth_rad)},
+          {"antenna_elevation_deg", radToDeg(budget.pointing.elevation_rad)}};
+}
+
+Json toJson(const PathObstacle& obstacle) {
+  return {{"range_m", obstacle.range_m},
+          {"ground_msl_m", obstacle.ground_msl_m},
+          {"clearance_m", obstacle.clearance_m},
+          {"fresnel_radius_m", obstacle.fresnel_radius_m},
+          {"clearance_fresnel_radii", obstacle.clearanceInFresnelRadii()},
+          {"nu", obstacle.nu},
+          {"knife_edge_db", obstacle.knife_edge_db},
+          {"kind", obstacle.is_earth_bulge ? "earth" : "terrain"},
+          {"decides", obstacle.decides}};
+}
+
+Json toJson(const Comparison& comparison) {
+  Json json{{"model", scenario::toString(comparison.model)}};
+  if (!comparison.refusal.empty()) {
+    json["refused"] = comparison.refusal;
+    return json;
+  }
+  json["excess_db"] = number(comparison.budget.excess.loss_db);
+  json["power_density_dbwm2"] = number(comparison.budget.find("power_density_dbwm2")->value);
+  json["warnings"] = comparison.budget.warnings;
+  return json;
+}
+
+std::string ofEnd(const PathEnd& end, double ground_msl_m, bool has_terrain) {
+  return fmt::format("{:.5f}, {:.5f} deg; {:.1f} m above mean sea level (EGM96), {:.1f} m above {}",
+                     end.position.latitude_deg, end.position.longitude_deg, end.height_msl_m,
+                     end.height_msl_m - ground_msl_m,
+                     has_terrain ? "ground" : "the smooth earth (no terrain)");
+}
+
+void printRow(const char* name, const std::string& value) {
+  fmt::print("  {:<22} {}\n", name, value);
+}
+
+void printGeometry(const PathBudget& budget) {
+  const emfield::PathGeometry& geometry = budget.geometry;
+  fmt::print("Geometry\n");
+  printRow("emitter", ofEnd(budget.profile.begin, geometry.begin_ground_msl_m, budget.profile.has_terrain));
+  printRow("point", ofEnd(budget.profile.end, geometry.end_ground_msl_m, budget.profile.has_terrain));
+  printRow("range", fmt::format("{:.3f} km over the ground, {:.3f} km slant", budget.profile.range_m / 1000,
+                                geometry.slant_range_m / 1000));
+  printRow("azimuth", fmt::format("{:.3f} deg from true north", radToDeg(budget.profile.azimuth_rad)));
+  printRow("elevation of the ray",
+           fmt::format("{:.3f} deg at the emitter ({:.3f} deg of the straight line)",
+                       radToDeg(geometry.launch_elevation_rad), radToDeg(geometry.straight_elevation_rad)));
+  printRow(
+      "effective earth",
+      fmt::format("k = {:.4g}, radius {:.0f} km; a smooth one cuts off beyond {:.1f} km", budget.k_factor,
+                  budget.profile.station.effective_earth_radius_m / 1000, geometry.horizon_range_m / 1000));
+}
+
+void printObstacles(const PathBudget& budget) {
+  fmt::print(
+      "\nObstacles: the ground within 0.6 first Fresnel radii of the ray or above it, else the nearest\n");
+  if (budget.obstacles.empty()) {
+    fmt::print("  none: the path is shorter than the spacing of the terrain\n");
+    return;
+  }
+  fmt::print("  {:>11} {:>11} {:>11} {:>14} {:>15} {:>9}\n", "distance km", "height m", "clearance m",
+             "Fresnel rad. m", "in Fresnel rad.", "alone dB");
+  for (const PathObstacle& obstacle : budget.obstacles) {
+    fmt::print("  {:11.3f} {:11.1f} {:+11.1f} {:14.1f} {:+15.2f} {:9.1f}{}{}\n", obstacle.range_m / 1000,
+               obstacle.ground_msl_m, obstacle.clearance_m, obstacle.fresnel_radius_m,
+               obstacle.clearanceInFresnelRadii(), obstacle.knife_edge_db,
+               obstacle.is_earth_bulge ? "  earth's bulge" : "", obstacle.decides ? "  decides" : "");
+  }
+}
+
+/// "-inf" is said in words.
+std::string valueText(double value) {
+  return std::isinf(value) ? (value < 0 ? "none" : "all") : fmt::format("{:.2f}", value);
+}
+
+void printBudget(const PathBudget& budget) {
+  fmt::print("\nBudget by '{}': {}\n", scenario::toString(budget.model), budget.excess.why);
+  for (const BudgetTerm& term : budget.terms) {
+    const bool is_sum = term.kind == BudgetTerm::Kind::sum;
+    fmt::print("{} {:<48} {:>9} {:<8} {}\n", is_sum ? " =" : "  ", term.label, valueText(term.value),
+               term.unit, term.note);
+  }
+}
+
+void printCompared(const std::vector<Comparison>& compared, const PathBudget& own) {
+  if (compared.empty()) return;
+  fmt::print("\nCompared\n  {:<12} {:>10} {:>22}\n", "model", "excess dB", "power density dBW/m2");
+  const auto row = [](const PathBudget& budget, const char* remark) {
+    fmt::print("  {:<12} {:>10} {:>22} {}\n", scenario::toString(budget.model),
+               valueText(budget.excess.loss_db), valueText(budget.find("power_density_dbwm2")->value),
+               remark);
+  };
+  row(own, "the scenario's");
+  for (const Comparison& comparison : compared) {
+    if (comparison.refusal.empty()) {
+      row(comparison.budget, "");
+    } else {
+      fmt::print("  {:<12} {}\n", scenario::toString(comparison.model), comparison.refusal);
+    }
+  }
+}
+
+}  // namespace
+
+Json toJson(const ProfileReport& report) {
+  const PathBudget& budget = report.budget;
+  Json obstacles = Json::array();
+  for (const PathObstacle& obstacle : budget.obstacles) obstacles.push_back(toJson(obstacle));
+  Json terms = Json::object();
+  for (const BudgetTerm& term : budget.terms) terms[term.key] = number(term.value);
+  Json excess_parts = Json::object();
+  for (const emfield::ExcessPart& part : budget.excess.parts) excess_parts[part.key] = number(part.loss_db);
+  Json compared = Json::array();
+  for (const Comparison& comparison : report.compared) compared.push_back(toJson(comparison));
+  return {{"scenario", report.scenario},
+          {"emitter", budget.emitter},
+          {"time_s", budget.time_s},
+          {"time_utc", report.time_utc},
+          {"active", budget.active},
+          {"frequency_hz", budget.frequency_hz},
+          {"from", toJson(budget.profile.begin, budget.geometry.begin_ground_msl_m)},
+          {"to", toJson(budget.profile.end, budget.geometry.end_ground_msl_m)},
+          {"geometry", geometryJson(budget)},
+          {"obstacles", obstacles},
+          {"model", scenario::toString(budget.model)},
+          {"model_why", budget.excess.why},
+          {"excess_db", number(budget.excess.loss_db)},
+          {"excess_parts_db", excess_parts},
+          {"budget", terms},
+          {"compared", compared},
+          {"warnings", budget.warnings},
+          {"verdict", budget.verdict},
+          {"profile",
+           {{"range_m", budget.profile.ranges_m},
+            {"ground_msl_m", budget.profile.ground_msl_m},
+            {"ray_msl_m", budget.profile.ray_msl_m}}}};
+}
+
+void printAsTable(const ProfileReport& report) {
+  const PathBudget& budget = report.budget;
+  fmt::print("Path from '{}' at t = {:g} s ({}), {:g} MHz\n\n", budget.emitter, budget.time_s,
+             report.time_utc, budget.frequency_hz / 1e6);
+  printGeometry(budget);
+  printObstacles(budget);
+  printBudget(budget);
+  printCompared(report.compared, budget);
+  if (!budget.warnings.empty()) fmt::print("\n");
+  for (const std::string& warning : budget.warnings) fmt::print("Warning: {}\n", warning);
+  fmt::print("\n{}\n", budget.verdict);
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,30 @@
+/// What `emscape profile` prints: a table for people, JSON for programs.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/emscape/console.h"
+#include "emfield/path_budget.h"
+
+namespace emscape::app {
+
+/// The path by another model, or why that model has no answer.
+struct Comparison {
+  scenario::PropagationModel model = scenario::PropagationModel::free_space;
+  std::string refusal;  ///< empty: the budget holds
+  emfield::PathBudget budget;
+};
+
+struct ProfileReport {
+  std::string scenario;
+  std::string time_utc;
+  emfield::PathBudget budget;
+  std::vector<Comparison> compared;
+};
+
+/// The keys are documented in docs/command-line.md. null: no field at all (the shadow of `horizon`).
+Json toJson(const ProfileReport& report);
+void printAsTable(const ProfileReport& report);
+
+}  // namespace emscape::app
