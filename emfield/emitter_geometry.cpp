@@ -18,15 +18,6 @@ namespace {
 /// Samples of a fan held at once.
 constexpr int kFanSamples = 1 << 23;
 
-/// How far (m) a point of a column may lie from its middle over the ground.
-double leanOf(const GridColumns& columns) {
-  if (!columns.tilted) return 0;
-  const double half_height_m = 0.5 * (columns.t_m.back() - columns.t_m.front());
-  double drift = 0;
-  for (const GridColumn& column : columns.columns) drift = std::max(drift, length(column.foot_drift));
-  return drift * half_height_m;
-}
-
 ExcessGrid excessGrid(const GridColumns& columns, double lean_m, const FanResolution& resolution) {
   ExcessGrid grid;
   grid.columns = columns.columns.data();

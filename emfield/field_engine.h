@@ -66,9 +66,6 @@ class FieldEngine {
  public:
   virtual ~FieldEngine() = default;
 
-  /// What a slot keeps of an emitter between updates (bytes).
-  virtual std::size_t slotBytes(int emitter) const = 0;
-
   /// @return one a request, in their order
   virtual std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) = 0;
   /// Which channels have sums of resting emitters from now on; a pass into them fills them.
@@ -81,6 +78,9 @@ class FieldEngine {
   virtual const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() = 0;
 
   /// Sets the stages' times to 0.
+  /// The same in the memory of a GPU; empty for an engine that has none there.
+  virtual const std::vector<std::shared_ptr<const volume::DeviceVolume>>& deviceVolumes() const = 0;
+
   virtual void resetTimes() = 0;
   virtual StageTimes times() = 0;
   /// Adds what the engine holds to total_bytes and to the bytes of voxels and channels.
@@ -92,6 +92,22 @@ class FieldEngine {
 std::unique_ptr<FieldEngine> makeCpuEngine(const FieldSetup& setup, int slots);
 
 /// Value range of a volume in which nothing is above the floor: the floor.
+/// The same on the GPU. @throws Error (device)
+std::unique_ptr<FieldEngine> makeCudaEngine(const FieldSetup& setup, int slots,
+                                            volume::VoxelPrecision precision);
+
+/// What the CUDA engine may take of the GPU's memory for fans while geometry is computed, and as much again
+/// for models' own arrays (bytes).
+constexpr std::size_t kDeviceScratchBytes = std::size_t{1} << 29;
+
+/// Bytes of a terrain's posts.
+std::size_t postBytes(const scenario::TerrainView& terrain);
+
+/// Memory of the GPU that an engine takes there, at most.
+/// @param slot_bytes  what the emitters keep
+std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
+                            volume::VoxelPrecision precision);
+
 inline void setRange(volume::VolumeInfo& info, const ValueRange& range) {
   const bool is_empty = !(range.lowest <= range.highest);
   info.range_min = is_empty ? info.floor : range.lowest;

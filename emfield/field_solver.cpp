@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/units.h"
 #include "emfield/field_solver_impl.h"
 
@@ -60,13 +61,52 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
   }
   emitters.resize(setup.scenario->emitters.size());
   masks.resize(setup.channels.size());
-  engine = makeCpuEngine(setup, static_cast<int>(emitters.size()) + 1);
-  std::size_t cached_bytes = 0;
+  const std::size_t slot_bytes = chooseCached();
+  engine = openOnBackend(
+      options.backend,
+      [&](const BackendChoice& choice) {
+        backend = choice.backend;
+        return makeEngine(slot_bytes);
+      },
+      logInfo);
+}
+
+/// Chooses the emitters that are cached.
+/// @return what the slots take (bytes)
+std::size_t FieldSolver::Impl::chooseCached() {
+  std::size_t cached_bytes = 0, largest_uncached = 0;
   for (std::size_t e = 0; e < emitters.size(); ++e) {
-    const std::size_t bytes = engine->slotBytes(static_cast<int>(e));
+    const std::size_t bytes =
+        EmitterGeometry::bytesOf(*setup.scenario, setup.scenario->emitters[e], setup.columns.columns.size(),
+                                 static_cast<int>(setup.columns.t_m.size()));
     emitters[e].is_cached = options.cache_bytes == 0 || cached_bytes + bytes <= options.cache_bytes;
-    if (emitters[e].is_cached) cached_bytes += bytes;
+    if (emitters[e].is_cached) {
+      cached_bytes += bytes;
+    } else {
+      largest_uncached = std::max(largest_uncached, bytes);
+    }
   }
+  return cached_bytes + largest_uncached;
+}
+
+std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine(std::size_t slot_bytes) const {
+  const int slots = static_cast<int>(emitters.size()) + 1;
+  if (backend == Backend::cpu) return makeCpuEngine(setup, slots);
+  const std::size_t needed = cudaEngineBytes(setup, slot_bytes, options.device_precision);
+  const std::size_t free = findDevice().free_bytes;
+  if (needed > free) {
+    const bool half = options.device_precision == volume::VoxelPrecision::float16;
+    constexpr double kMebibyte = 1 << 20;
+    throw Error(
+        ErrorCode::device, {setup.scenario->file},
+        fmt::format(
+            "the field of {} x {} x {} voxels, {} emitters and {} channels needs up to {:.0f} MiB of the "
+            "GPU's memory, of which {:.0f} MiB are free; a bound on what emitters keep{} would take less",
+            setup.grid.dims.x, setup.grid.dims.y, setup.grid.dims.z, emitters.size(), setup.channels.size(),
+            static_cast<double>(needed) / kMebibyte, static_cast<double>(free) / kMebibyte,
+            half ? "" : ", or volumes of 16 bit,"));
+  }
+  return makeCudaEngine(setup, slots, options.device_precision);
 }
 
 void FieldSolver::Impl::checkModels() const {
@@ -134,6 +174,12 @@ const std::vector<Channel>& FieldSolver::channels() const {
 }
 const std::vector<float>& FieldSolver::groundHeights_m() const {
   return impl_->setup.columns.ground_msl_m;
+}
+const std::vector<std::shared_ptr<const volume::DeviceVolume>>& FieldSolver::deviceVolumes() const {
+  return impl_->engine->deviceVolumes();
+}
+Backend FieldSolver::backend() const {
+  return impl_->backend;
 }
 StageTimes FieldSolver::stageTimes() const {
   return impl_->engine->times();

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "base/backend.h"
 #include "base/progress.h"
 #include "emfield/quantities.h"
 #include "scenario/snapshot.h"
 #include "volume/dense_volume.h"
+#include "volume/device_volume.h"
 
 namespace emscape::emfield {
 
@@ -32,9 +34,12 @@ struct FieldOptions {
   bool allow_missing_terrain =
       false;  ///< true: columns over holes, and those that are seen only across one, are masked
   /// An emitter that moved less than this keeps its fan and planes (m).
+  Backend backend = Backend::cpu;  ///< automatic: the GPU if it has the memory, else the CPU
+  /// cuda: how volumes are kept. float16 takes less memory.
+  volume::VoxelPrecision device_precision = volume::VoxelPrecision::float32;
   double move_tolerance_m = 0.5;
-  /// Bound on the per-emitter caches (bytes), 0: none. Emitters that do not fit are computed anew at each
-  /// update.
+  /// Bound on the per-emitter caches (bytes, of the GPU's memory with cuda), 0: none. Emitters that do not
+  /// fit are computed anew at each update.
   std::size_t cache_bytes = 0;
 };
 
@@ -46,7 +51,7 @@ struct FieldChanged {
   std::vector<int> turned;  ///< emitters of which only the beam, the power or the activity changed
 };
 
-/// Milliseconds that the stages of the last update took.
+/// Milliseconds that the stages of the last update took; with cuda on the GPU.
 struct StageTimes {
   double fan_ms = 0, plane_ms = 0, combine_ms = 0, product_ms = 0;
 };
@@ -83,10 +88,16 @@ class FieldSolver {
 
   /// The channels' volumes after the last update, in the order of channels(). They are not changed by later
   /// updates: a caller may keep one while the next is computed. info.range_* are this volume's own; a series
-  /// sets them for all.
+  /// sets them for all. With cuda they are copied from the GPU when this is called.
   const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() const;
 
   StageTimes stageTimes() const;
+  /// The same volumes where a GPU computed them, without a copy through the host; empty with the CPU. They
+  /// are not changed by later updates either.
+  const std::vector<std::shared_ptr<const volume::DeviceVolume>>& deviceVolumes() const;
+  /// cpu or cuda.
+  Backend backend() const;
+
   MemoryUse memoryUse() const;
   /// Warnings so far, each once with its count: model limits exceeded, near field, holes crossed.
   std::vector<std::string> warnings() const;

@@ -26,6 +26,7 @@ struct FieldSolver::Impl {
   std::unique_ptr<FieldEngine> engine;  ///< a slot an emitter, and one for those that are not cached
   std::vector<EmitterCache> emitters;
   std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
+  Backend backend = Backend::cpu;  ///< cpu or cuda
   std::map<std::string, long long> warning_counts;
 
   /// Emitters whose sum lies in the engine's resting accumulators; they have not changed since.
@@ -40,6 +41,8 @@ struct FieldSolver::Impl {
   void checkModels() const;
   void checkHoles() const;
   std::string placeOf(std::size_t column) const;
+  std::size_t chooseCached();
+  std::unique_ptr<FieldEngine> makeEngine(std::size_t slot_bytes) const;
   void warn(const std::string& warning) { ++warning_counts[warning]; }
 
   FieldChanged findChanges(const scenario::Snapshot& snapshot);

@@ -1,5 +1,6 @@
 #include "emfield/grid_columns.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/parallel.h"
@@ -51,6 +52,14 @@ double groundBelow(const scenario::Terrain& terrain, const GridColumn& column, d
 }
 
 }  // namespace
+
+double leanOf(const GridColumns& columns) {
+  if (!columns.tilted) return 0;
+  const double half_height_m = 0.5 * (columns.t_m.back() - columns.t_m.front());
+  double drift = 0;
+  for (const GridColumn& column : columns.columns) drift = std::max(drift, length(column.foot_drift));
+  return drift * half_height_m;
+}
 
 GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* terrain) {
   const GeoFrame frame(grid.frame);

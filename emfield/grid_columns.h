@@ -43,6 +43,9 @@ struct GridColumns {
   double middle_m() const { return 0.5 * (t_m.front() + t_m.back()); }
 };
 
+/// How far (m) a point of a column may lie from its middle over the ground.
+double leanOf(const GridColumns& columns);
+
 /// @param terrain  null: nothing is below ground
 /// @accuracy enu: heights along a column within 1 mm, its foot within 1 m, for regions to 500 km
 GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* terrain);

@@ -35,15 +35,14 @@ class CpuEngine : public FieldEngine {
     }
   }
 
-  std::size_t slotBytes(int emitter) const override {
-    return EmitterGeometry::bytesOf(*setup_.scenario, setup_.scenario->emitters[emitter],
-                                    setup_.columns.columns.size(), setup_.grid.dims.z);
-  }
   std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) override;
   void setResting(const std::vector<bool>& channels) override;
   void combine(const CombinePass& pass) override;
   void makeVolumes(const std::vector<VolumeRequest>& requests) override;
   const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() override { return volumes_; }
+  const std::vector<std::shared_ptr<const volume::DeviceVolume>>& deviceVolumes() const override {
+    return device_volumes_;
+  }
   void resetTimes() override { times_ = {}; }
   StageTimes times() override { return times_; }
   void addMemory(MemoryUse& use) const override;
@@ -60,6 +59,7 @@ class CpuEngine : public FieldEngine {
   std::vector<EmitterGeometry> slots_;
   std::vector<ChannelBuffers> buffers_;
   std::vector<std::shared_ptr<const volume::DenseVolume>> volumes_;
+  std::vector<std::shared_ptr<const volume::DeviceVolume>> device_volumes_;  ///< none
   StageTimes times_;
 };
 

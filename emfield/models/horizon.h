@@ -50,6 +50,11 @@ struct HorizonGeometry {
   }
 };
 
+/// The larger of two slopes; NaN if one is.
+EMSCAPE_HD inline float steeper(float highest, float here) {
+  return !(here <= highest) && !std::isnan(highest) ? here : highest;
+}
+
 /// Slopes of the grazing rays along one azimuth: slope[i] is the largest slope to the terrain at
 /// samples 1..i, so that a point between samples i and i + 1 is lit if the slope to it is not below slope[i].
 /// slope[0] is -infinity: nothing stands before.
@@ -61,8 +66,7 @@ EMSCAPE_HD void grazingSlopes(const HorizonGeometry<Real>& geometry, const float
   float highest = -HUGE_VALF;
   slope[0] = highest;
   for (int i = 1; i < count; ++i) {
-    const float here = float(geometry.slopeTo(Real(profile_msl_m[i]), ranges[i]));
-    if (!(here <= highest) && !std::isnan(highest)) highest = here;
+    highest = steeper(highest, float(geometry.slopeTo(Real(profile_msl_m[i]), ranges[i])));
     slope[i] = highest;
   }
 }

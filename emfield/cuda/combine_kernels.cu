@@ -1,0 +1,254 @@
+#include <algorithm>
+
+#include "base/cuda/cuda_memory.h"
+#include "emfield/cuda/combine_kernels.h"
+
+namespace emscape::emfield::cuda {
+namespace {
+
+using emscape::cuda::checkLaunch;
+using scenario::PatternKind;
+
+constexpr int kThreads = 128;
+
+/// What a kernel may be given as its parameters.
+constexpr int kParameterBytes = CUDART_VERSION >= 12010 ? 32000 : 4000;
+/// Channels that one launch serves: an emitter's power density is computed once for all of them.
+constexpr int kMostChannels = 4;
+
+/// An emitter's part in the channels of a launch.
+template <int kChannels>
+struct Member {
+  EmitterBeam beam;
+  int emitter_index;
+  float weights[kChannels];
+  bool takes_part[kChannels];
+};
+
+template <int kChannels>
+struct Launch {
+  static constexpr int kHeadBytes = 256;
+  static constexpr int kMembers =
+      std::min<int>(64, (kParameterBytes - kHeadBytes) / static_cast<int>(sizeof(Member<kChannels>)));
+
+  Dims dims;
+  const float* t_m;
+  const std::uint16_t* first_valid_k;
+  bool keep;
+  int member_count;
+  Reduction reductions[kChannels];
+  Accumulator accumulators[kChannels];
+  ConstAccumulator initial[kChannels];
+  Member<kChannels> members[kMembers];
+};
+
+/// Power densities of one emitter in some layers of a column.
+template <PatternKind kind, int kLayers>
+__device__ void fillLayers(const EmitterBeam& beam, std::size_t column, const float (&t_m)[kLayers],
+                           float (&power_density_wm2)[kLayers]) {
+  const bool has_lobe = kind != PatternKind::isotropic && beam.pattern.lobe_tangent != 0;
+#pragma unroll
+  for (int l = 0; l < kLayers; ++l) {
+    float depth = 0;
+    if (has_lobe) power_density_wm2[l] = sideLobePowerDensity_wm2(beam, column, t_m[l], depth);
+    if (depth >= 0) power_density_wm2[l] = powerDensity_wm2<kind>(beam, column, t_m[l]);
+  }
+}
+
+/// A thread does kLayers layers of a column: its numbers are read once for all of them.
+template <int kChannels, int kLayers, bool kDominant>
+__global__ void __launch_bounds__(kThreads) combineKernel(const __grid_constant__ Launch<kChannels> launch) {
+  const int columns = launch.dims.x * launch.dims.y;
+  const int column = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (column >= columns) return;
+  const int begin = static_cast<int>(blockIdx.y) * kLayers;
+  if (launch.first_valid_k != nullptr && launch.first_valid_k[column] >= begin + kLayers) return;
+
+  float t_m[kLayers], power_density_wm2[kLayers], value[kChannels][kLayers];
+  float largest[kDominant ? kLayers : 1];
+#pragma unroll
+  for (int l = 0; l < kLayers; ++l) {
+    const int k = begin + l < launch.dims.z ? begin + l : launch.dims.z - 1;
+    const long long voxel = static_cast<long long>(k) * columns + column;
+    t_m[l] = launch.t_m[k];
+#pragma unroll
+    for (int c = 0; c < kChannels; ++c) {
+      const float* from = launch.keep ? launch.accumulators[c].value : launch.initial[c].value;
+      value[c][l] = from != nullptr ? from[voxel] : kDominant ? -1.0F : 0.0F;
+    }
+    if (kDominant) {
+      const float* from = launch.keep ? launch.accumulators[0].largest : launch.initial[0].largest;
+      largest[l] = from != nullptr ? from[voxel] : 0.0F;
+    }
+  }
+
+  for (int m = 0; m < launch.member_count; ++m) {
+    const Member<kChannels>& member = launch.members[m];
+    switch (member.beam.pattern.kind) {
+      case PatternKind::isotropic:
+        fillLayers<PatternKind::isotropic>(member.beam, column, t_m, power_density_wm2);
+        break;
+      case PatternKind::gaussian:
+        fillLayers<PatternKind::gaussian>(member.beam, column, t_m, power_density_wm2);
+        break;
+      case PatternKind::separable:
+        fillLayers<PatternKind::separable>(member.beam, column, t_m, power_density_wm2);
+        break;
+      case PatternKind::phased_array:
+        fillLayers<PatternKind::phased_array>(member.beam, column, t_m, power_density_wm2);
+        break;
+      case PatternKind::grid:
+        fillLayers<PatternKind::grid>(member.beam, column, t_m, power_density_wm2);
+        break;
+    }
+#pragma unroll
+    for (int c = 0; c < kChannels; ++c) {
+      if (!member.takes_part[c]) continue;
+#pragma unroll
+      for (int l = 0; l < kLayers; ++l) {
+        reduce(kDominant ? Reduction::dominant : launch.reductions[c], member.weights[c],
+               member.emitter_index, power_density_wm2[l], value[c][l], kDominant ? largest + l : nullptr);
+      }
+    }
+  }
+
+#pragma unroll
+  for (int l = 0; l < kLayers; ++l) {
+    if (begin + l >= launch.dims.z) break;
+    const long long voxel = static_cast<long long>(begin + l) * columns + column;
+#pragma unroll
+    for (int c = 0; c < kChannels; ++c) launch.accumulators[c].value[voxel] = value[c][l];
+    if (kDominant) launch.accumulators[0].largest[voxel] = largest[l];
+  }
+}
+
+/// Runs a pass for some channels of one kind, with as many launches as their members take.
+template <int kChannels, int kLayers, bool kDominant>
+void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k, const int* channels,
+                     cudaStream_t stream) {
+  Launch<kChannels> launch;
+  static_assert(sizeof launch <= kParameterBytes);
+  launch.dims = task.dims;
+  launch.t_m = task.t_m;
+  launch.first_valid_k = first_valid_k;
+  launch.keep = task.keep;
+  launch.member_count = 0;
+  for (int c = 0; c < kChannels; ++c) {
+    launch.reductions[c] = task.reductions[channels[c]];
+    launch.accumulators[c] = task.accumulators[channels[c]];
+    launch.initial[c] = task.initial[channels[c]];
+  }
+  const dim3 blocks(static_cast<unsigned>((task.dims.x * task.dims.y + kThreads - 1) / kThreads),
+                    static_cast<unsigned>((task.dims.z + kLayers - 1) / kLayers));
+  const auto run = [&] {
+    combineKernel<kChannels, kLayers, kDominant><<<blocks, kThreads, 0, stream>>>(launch);
+    checkLaunch("combine");
+    launch.keep = true;
+    launch.member_count = 0;
+  };
+  for (const CombineEmitter& emitter : task.emitters) {
+    Member<kChannels> member{emitter.beam, emitter.emitter_index, {}, {}};
+    bool takes_part = false;
+    for (const ChannelShare& share : emitter.shares) {
+      for (int c = 0; c < kChannels; ++c) {
+        if (channels[c] != share.channel) continue;
+        member.weights[c] = share.weight;
+        takes_part = member.takes_part[c] = true;
+      }
+    }
+    if (!takes_part) continue;
+    launch.members[launch.member_count++] = member;
+    if (launch.member_count == Launch<kChannels>::kMembers) run();
+  }
+  if (launch.member_count > 0 || !launch.keep) run();
+}
+
+/// The same float order as unsigned integers.
+__device__ unsigned orderOf(float value) {
+  const unsigned bits = __float_as_uint(value);
+  return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
+}
+
+constexpr int kProductLayers = 4;
+
+__global__ void __launch_bounds__(kThreads) productKernel(DeviceProductTask task) {
+  const Dims dims = task.voxels.dims;
+  const int columns = dims.x * dims.y;
+  const int column = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  unsigned lowest = ~0u, highest = 0;
+  if (column < columns) {
+    const int i = column % dims.x, j = column / dims.x;
+    const int first_valid = task.first_valid_k == nullptr ? 0 : task.first_valid_k[column];
+    const int begin = static_cast<int>(blockIdx.y) * kProductLayers;
+#pragma unroll
+    for (int l = 0; l < kProductLayers; ++l) {
+      const int k = begin + l;
+      if (k >= dims.z) break;
+      const int from = k < first_valid ? first_valid : k;
+      float value = task.product.floor;
+      if (from < dims.z) {
+        const float accumulator = task.accumulator[static_cast<long long>(from) * columns + column];
+        value = task.product.decibels ? decibelsOf(task.product, accumulator) : accumulator;
+      }
+      task.voxels.write(i, j, k, value);
+      if (k < first_valid || !(value > task.product.floor)) continue;
+      const unsigned order = orderOf(value);
+      lowest = min(lowest, order);
+      highest = max(highest, order);
+    }
+  }
+  lowest = __reduce_min_sync(~0u, lowest);
+  highest = __reduce_max_sync(~0u, highest);
+  if (threadIdx.x % warpSize == 0 && lowest <= highest) {
+    atomicMin(&task.range->lowest, lowest);
+    atomicMax(&task.range->highest, highest);
+  }
+}
+
+}  // namespace
+
+void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaStream_t stream) {
+  std::vector<int> channels;
+  for (int c = 0; c < static_cast<int>(task.accumulators.size()); ++c) {
+    if (task.accumulators[c].value == nullptr) continue;
+    if (task.reductions[c] == Reduction::dominant) {
+      combineChannels<1, 8, true>(task, first_valid_k, &c, stream);
+    } else {
+      channels.push_back(c);
+    }
+  }
+  for (std::size_t begin = 0; begin < channels.size(); begin += kMostChannels) {
+    const int* first = channels.data() + begin;
+    switch (std::min<std::size_t>(kMostChannels, channels.size() - begin)) {
+      case 1:
+        combineChannels<1, 8, false>(task, first_valid_k, first, stream);
+        break;
+      case 2:
+        combineChannels<2, 8, false>(task, first_valid_k, first, stream);
+        break;
+      case 3:
+        combineChannels<3, 4, false>(task, first_valid_k, first, stream);
+        break;
+      default:
+        combineChannels<4, 4, false>(task, first_valid_k, first, stream);
+    }
+  }
+}
+
+ValueRange DeviceRange::range(float floor) const {
+  const auto valueOf = [](unsigned order) {
+    return fast_math_detail::floatOf((order & 0x80000000u) != 0 ? order & 0x7fffffffu : ~order);
+  };
+  if (lowest > highest) return {floor + 1, floor};
+  return {valueOf(lowest), valueOf(highest)};
+}
+
+void makeProduct(const DeviceProductTask& task, cudaStream_t stream) {
+  const Dims& dims = task.voxels.dims;
+  const dim3 blocks(static_cast<unsigned>((dims.x * dims.y + kThreads - 1) / kThreads),
+                    static_cast<unsigned>((dims.z + kProductLayers - 1) / kProductLayers));
+  productKernel<<<blocks, kThreads, 0, stream>>>(task);
+  checkLaunch("product");
+}
+
+}  // namespace emscape::emfield::cuda

@@ -1,0 +1,37 @@
+/// Stages 3 and 4 on the device.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <vector>
+
+#include "emfield/combine.h"
+#include "emfield/products.h"
+#include "volume/cuda/device_storage.h"
+
+namespace emscape::emfield::cuda {
+
+/// One pass over the grid, as combineCpu(): all pointers are to device memory.
+/// @param first_valid_k  lowest layer above ground of each column, null: 0. Below it little is computed, and
+/// what it holds means nothing.
+void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaStream_t stream);
+
+/// A value range while kernels widen it: floats as integers of the same order.
+struct DeviceRange {
+  unsigned lowest = ~0u, highest = 0;
+
+  /// @return lowest > highest where nothing is above the floor
+  ValueRange range(float floor) const;
+};
+
+/// One channel's values into a volume.
+struct DeviceProductTask {
+  ProductScale product;
+  const float* accumulator = nullptr;
+  const std::int32_t* first_valid_k = nullptr;  ///< null: all voxels are valid
+  volume::VoxelWriter voxels;
+  DeviceRange* range = nullptr;  ///< in device memory, reset
+};
+void makeProduct(const DeviceProductTask& task, cudaStream_t stream);
+
+}  // namespace emscape::emfield::cuda

@@ -1,0 +1,231 @@
+#include "emfield/cuda/device_geometry.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "emfield/column_geometry.h"
+#include "emfield/excess/excess_model.h"
+
+namespace emscape::emfield::cuda {
+namespace {
+
+using emscape::cuda::Buffer;
+using emscape::cuda::check;
+
+/// Samples of fans held at once: what is more is computed piece by piece.
+constexpr long long kMostSamples = kDeviceScratchBytes / sizeof(float);
+
+/// Makes an array at least so long; what it held is lost. It never shrinks: sizes vary little from one update
+/// to the next, and to give memory back would make every stream wait.
+template <class T>
+T* atLeast(Buffer<T>& buffer, std::size_t count) {
+  if (buffer.size() < count) buffer.resize(count + count / 4);
+  return buffer.data();
+}
+
+/// Copies into an array that is at least so long.
+template <class T>
+const T* sent(Buffer<T>& buffer, const std::vector<T>& from, cudaStream_t stream) {
+  T* const to = atLeast(buffer, from.size());
+  check(cudaMemcpyAsync(to, from.data(), from.size() * sizeof(T), cudaMemcpyHostToDevice, stream),
+        "cudaMemcpyAsync to the GPU");
+  return to;
+}
+
+/// Columns of a grid's outer rows.
+std::vector<int> borderOf(const Dims& dims) {
+  std::vector<int> border;
+  for (int j = 0; j < dims.y; ++j) {
+    const bool is_outer = j == 0 || j == dims.y - 1;
+    for (int i = 0; i < dims.x; i += is_outer || i == dims.x - 1 ? 1 : dims.x - 1) {
+      border.push_back(j * dims.x + i);
+    }
+  }
+  return border;
+}
+
+}  // namespace
+
+DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots)
+    : setup_(setup), lean_m_(leanOf(setup.columns)), border_(borderOf(setup.grid.dims)), slots_(slots) {
+  for (const scenario::Emitter& emitter : setup.scenario->emitters) {
+    if (!hasExcess(*setup.scenario, emitter)) continue;
+    throw Error(ErrorCode::device, {setup.scenario->file},
+                "emitter '" + emitter.name + "': its propagation model is not built for the GPU");
+  }
+  if (setup.terrain != nullptr) terrain_ = DeviceTerrain(setup.terrain->view());
+  grid_columns_.upload(setup.columns.columns);
+  t_m_.upload(setup.columns.t_m);
+  first_valid_k_.upload(setup.columns.first_valid_k);
+  columns_.columns = grid_columns_.data();
+  columns_.count = static_cast<int>(setup.columns.columns.size());
+  columns_.t_m = t_m_.data();
+  columns_.layers = static_cast<int>(setup.columns.t_m.size());
+  columns_.middle_m = setup.columns.middle_m();
+  columns_.tilted = setup.columns.tilted;
+}
+
+ColumnGeometryView DeviceGeometry::view(int slot) const {
+  const float* first = slots_[slot].data();
+  const std::size_t n = static_cast<std::size_t>(columns_.count);
+  return {first,         first + n,     first + 2 * n, first + 3 * n, first + 4 * n,
+          first + 5 * n, first + 6 * n, first + 7 * n, first + 8 * n, first + kColumnNumbers * n};
+}
+
+/// The fan reaches every column as soon as it reaches those at the grid's border.
+DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) const {
+  Work work;
+  const scenario::Scenario& scenario = *setup_.scenario;
+  work.station =
+      makeStation(request.state.position, request.state.height_msl_m, scenario.atmosphere.k_factor);
+  work.needs_fan = scenario.emitters[request.emitter].propagation != scenario::PropagationModel::free_space;
+  if (work.needs_fan) {
+    std::vector<FanCoordinates> coordinates;
+    for (int c : border_) {
+      coordinates.push_back(fanCoordinates(work.station, setup_.columns.columns[c], columns_.middle_m));
+    }
+    work.shape = fanShape(work.station, coordinates, setup_.terrain.get(), setup_.resolution, lean_m_);
+  }
+  const double far_m = setup_.far_field_m[request.emitter];
+  work.task.station = work.station;
+  work.task.near2_m2 = static_cast<float>(far_m * far_m);
+  return work;
+}
+
+/// Gives the tasks their memory.
+void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
+  std::vector<double> ranges_m;
+  std::size_t azimuths = 0;
+  for (const Work& work : works) {
+    ranges_m.insert(ranges_m.end(), work.shape.ranges_m.begin(), work.shape.ranges_m.end());
+    azimuths += work.needs_fan ? static_cast<std::size_t>(work.shape.interval_count) + 1 : 0;
+  }
+  const auto columns = static_cast<std::size_t>(columns_.count);
+  const double* range_m = sent(ranges_m_, ranges_m, stream);
+  int* used = atLeast(used_ranges_, azimuths);
+  FanPlace* places = atLeast(places_, works.size() * columns);
+  GeometryCounts* counts = atLeast(counts_, works.size());
+  atLeast(terms_, ranges_m.size());
+  check(cudaMemsetAsync(used, 0, azimuths * sizeof(int), stream), "cudaMemsetAsync");
+  check(cudaMemsetAsync(counts, 0, works.size() * sizeof(GeometryCounts), stream), "cudaMemsetAsync");
+  std::vector<LocateTask> tasks;
+  for (Work& work : works) {
+    LocateTask& task = work.task;
+    task.places = places;
+    task.counts = counts++;
+    places += columns;
+    if (work.needs_fan) {
+      task.fan = work.shape.view();
+      task.fan.ranges_m = range_m;
+      task.used_ranges = used;
+      range_m += work.shape.rangeCount();
+      used += work.shape.interval_count + 1;
+    }
+    tasks.push_back(task);
+  }
+  sent(tasks_, tasks, stream);
+}
+
+std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<GeometryRequest>& requests,
+                                                      cudaStream_t stream, StageClock& clock) {
+  std::vector<Work> works(requests.size());
+  parallelFor(static_cast<int>(requests.size()), 1, [&](int begin, int end) {
+    for (int r = begin; r < end; ++r) works[r] = prepare(requests[r]);
+  });
+  const auto columns = static_cast<std::size_t>(columns_.count);
+  for (std::size_t r = 0; r < requests.size(); ++r) {
+    float* const slot = atLeast(slots_[requests[r].slot], (kColumnNumbers + 1) * columns);
+    works[r].task.numbers = slot;
+    works[r].task.shadow_edge_m = slot + kColumnNumbers * columns;
+  }
+  clock.begin(stream);
+  place(works, stream);
+  locateColumns(tasks_.data(), static_cast<int>(works.size()), columns_, stream);
+  clock.end(&StageTimes::fan_ms, stream);
+  runFans(works, stream, clock);
+
+  std::vector<GeometryCounts> counts(works.size());
+  check(cudaMemcpyAsync(counts.data(), counts_.data(), counts.size() * sizeof(GeometryCounts),
+                        cudaMemcpyDeviceToHost, stream),
+        "cudaMemcpyAsync from the GPU");
+  check(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
+  std::vector<GeometryFindings> all;
+  for (std::size_t r = 0; r < works.size(); ++r) {
+    GeometryFindings found;
+    found.unknown_columns = counts[r].unknown_columns;
+    found.near_voxels = static_cast<long long>(counts[r].near_voxels);
+    if (found.unknown_columns > 0) {
+      std::vector<float> edges_m(columns);
+      check(cudaMemcpy(edges_m.data(), works[r].task.shadow_edge_m, columns * sizeof(float),
+                       cudaMemcpyDeviceToHost),
+            "cudaMemcpy from the GPU");
+      for (float edge_m : edges_m) found.unknown.push_back(std::isnan(edge_m));
+    }
+    all.push_back(std::move(found));
+  }
+  return all;
+}
+
+/// Reads the fans and finds the shadows' edges, as many intervals at a time as the memory for samples takes.
+void DeviceGeometry::runFans(const std::vector<Work>& works, cudaStream_t stream, StageClock& clock) {
+  std::vector<std::vector<FanPiece>> batches;
+  long long samples = 0, most_samples = 0;
+  RangeTerms<float>* terms = terms_.data();
+  for (const Work& work : works) {
+    if (!work.needs_fan) continue;
+    const long long ranges = work.shape.rangeCount();
+    const int intervals = work.shape.interval_count;
+    // A leaning column may cross intervals: it needs them all at once.
+    const long long at_once = columns_.tilted ? intervals : std::max(1LL, kMostSamples / ranges - 1);
+    for (int first = 0; first < intervals; first += static_cast<int>(at_once)) {
+      FanPiece piece;
+      piece.emitter = work.task;
+      piece.first_interval = first;
+      piece.interval_count = static_cast<int>(std::min<long long>(at_once, intervals - first));
+      piece.terrain = terrain_.view();
+      piece.has_terrain = setup_.terrain != nullptr;
+      piece.terms = terms;
+      const long long here = ranges * (piece.interval_count + 1);
+      if (batches.empty() || samples + here > kMostSamples) {
+        batches.emplace_back();
+        samples = 0;
+      }
+      batches.back().push_back(piece);
+      samples += here;
+      most_samples = std::max(most_samples, samples);
+    }
+    terms += ranges;
+  }
+  if (batches.empty()) return;
+  float* const slopes = atLeast(slopes_, static_cast<std::size_t>(most_samples));
+  for (std::vector<FanPiece>& batch : batches) {
+    float* next = slopes;
+    PieceExtent extent;
+    extent.pieces = static_cast<int>(batch.size());
+    for (FanPiece& piece : batch) {
+      piece.slopes = next;
+      next += static_cast<long long>(piece.emitter.fan.range_count) * (piece.interval_count + 1);
+      extent.azimuths = std::max(extent.azimuths, piece.interval_count + 1);
+      extent.ranges = std::max(extent.ranges, piece.emitter.fan.range_count);
+    }
+    clock.begin(stream);
+    const FanPiece* const pieces = sent(pieces_, batch, stream);
+    readFans(pieces, extent, stream);
+    clock.end(&StageTimes::fan_ms, stream);
+    clock.begin(stream);
+    findShadowEdges(pieces, extent, columns_, stream);
+    clock.end(&StageTimes::plane_ms, stream);
+  }
+}
+
+std::size_t DeviceGeometry::bytes() const {
+  const auto bytesOf = [](const auto& buffer) { return buffer.size() * sizeof(*buffer.data()); };
+  std::size_t bytes = bytesOf(grid_columns_) + bytesOf(t_m_) + bytesOf(first_valid_k_) + bytesOf(tasks_) +
+                      bytesOf(pieces_) + bytesOf(ranges_m_) + bytesOf(used_ranges_) + bytesOf(places_) +
+                      bytesOf(terms_) + bytesOf(slopes_);
+  for (const auto& slot : slots_) bytes += bytesOf(slot);
+  return bytes + (setup_.terrain == nullptr ? 0 : postBytes(setup_.terrain->view()));
+}
+
+}  // namespace emscape::emfield::cuda

@@ -1,0 +1,65 @@
+/// Stages 1 and 2 of the emitters on the device: what each slot keeps, and the memory to compute it.
+#pragma once
+
+#include <vector>
+
+#include "base/cuda/cuda_memory.h"
+#include "emfield/cuda/device_terrain.h"
+#include "emfield/cuda/geometry_kernels.h"
+#include "emfield/cuda/stage_clock.h"
+#include "emfield/field_engine.h"
+
+namespace emscape::emfield::cuda {
+
+class DeviceGeometry {
+ public:
+  /// @param setup  must outlive this object
+  /// @throws Error (device)
+  DeviceGeometry(const FieldSetup& setup, int slots);
+
+  /// All requests in one batch of launches; waits for what they found.
+  std::vector<GeometryFindings> compute(const std::vector<GeometryRequest>& requests, cudaStream_t stream,
+                                        StageClock& clock);
+  ColumnGeometryView view(int slot) const;
+  const DeviceColumns& columns() const { return columns_; }
+  /// Null without terrain.
+  const std::uint16_t* firstValidK() const {
+    return first_valid_k_.size() > 0 ? first_valid_k_.data() : nullptr;
+  }
+  std::size_t bytes() const;
+
+ private:
+  /// A request on its way.
+  struct Work {
+    Station station;
+    FanShape shape;
+    bool needs_fan = false;
+    LocateTask task;
+  };
+
+  Work prepare(const GeometryRequest& request) const;
+  void place(std::vector<Work>& works, cudaStream_t stream);
+  void runFans(const std::vector<Work>& works, cudaStream_t stream, StageClock& clock);
+
+  const FieldSetup& setup_;
+  double lean_m_;
+  std::vector<int> border_;  ///< columns between which all others lie
+  DeviceTerrain terrain_;
+  emscape::cuda::Buffer<GridColumn> grid_columns_;
+  emscape::cuda::Buffer<float> t_m_;
+  emscape::cuda::Buffer<std::uint16_t> first_valid_k_;
+  DeviceColumns columns_;
+  std::vector<emscape::cuda::Buffer<float>> slots_;  ///< numbers, then the shadow's edges
+
+  // for the emitters being computed; kept, as they come again
+  emscape::cuda::Buffer<LocateTask> tasks_;
+  emscape::cuda::Buffer<FanPiece> pieces_;
+  emscape::cuda::Buffer<double> ranges_m_;
+  emscape::cuda::Buffer<int> used_ranges_;
+  emscape::cuda::Buffer<FanPlace> places_;
+  emscape::cuda::Buffer<RangeTerms<float>> terms_;
+  emscape::cuda::Buffer<float> slopes_;
+  emscape::cuda::Buffer<GeometryCounts> counts_;
+};
+
+}  // namespace emscape::emfield::cuda

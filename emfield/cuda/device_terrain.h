@@ -1,0 +1,26 @@
+/// The ground in the memory of the GPU.
+#pragma once
+
+#include <vector>
+
+#include "base/cuda/cuda_memory.h"
+#include "scenario/terrain.h"
+
+namespace emscape::emfield::cuda {
+
+/// A copy of a terrain's rasters; heights come from the same function as on the host.
+class DeviceTerrain {
+ public:
+  DeviceTerrain() = default;
+  /// @throws Error (device)
+  explicit DeviceTerrain(const scenario::TerrainView& terrain);
+
+  /// For kernels, while this object lives.
+  scenario::TerrainView view() const { return {rasters_.data(), static_cast<int>(rasters_.size())}; }
+
+ private:
+  std::vector<emscape::cuda::Buffer<float>> heights_;
+  emscape::cuda::Buffer<scenario::TerrainRaster> rasters_;
+};
+
+}  // namespace emscape::emfield::cuda

@@ -1,0 +1,203 @@
+// The field's stages on a GPU.
+
+#include <map>
+
+#include "base/device.h"
+#include "base/error.h"
+#include "emfield/cuda/combine_kernels.h"
+#include "emfield/cuda/device_geometry.h"
+#include "emfield/field_engine.h"
+
+namespace emscape::emfield {
+namespace {
+
+using emscape::cuda::Buffer;
+using emscape::cuda::check;
+using volume::DeviceVolume;
+
+/// The tables of an antenna's pattern on the device. Antennas that emitters share are there once.
+class DevicePattern {
+ public:
+  explicit DevicePattern(const scenario::PatternView& pattern) : view_(pattern) {
+    using scenario::PatternKind;
+    const auto azimuths = static_cast<std::size_t>(pattern.azimuth_count);
+    const auto elevations = static_cast<std::size_t>(pattern.elevation_count);
+    view_.azimuth_table = copied(pattern.azimuth_table, azimuths);
+    view_.elevation_table = copied(pattern.elevation_table, elevations);
+    view_.grid_table = copied(pattern.grid_table, azimuths * elevations);
+  }
+  const scenario::PatternView& view() const { return view_; }
+
+ private:
+  const float* copied(const float* table, std::size_t count) {
+    if (table == nullptr) return nullptr;
+    tables_.emplace_back();
+    tables_.back().upload(table, count);
+    return tables_.back().data();
+  }
+
+  scenario::PatternView view_;
+  std::vector<Buffer<float>> tables_;
+};
+
+/// Buffers of one channel.
+struct ChannelBuffers {
+  Buffer<float> value, largest;                  ///< accumulator over all emitters
+  Buffer<float> resting_value, resting_largest;  ///< accumulator over the resting emitters alone
+  volume::DeviceVolumeRing ring;
+};
+
+class CudaEngine : public FieldEngine {
+ public:
+  CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecision precision);
+
+  std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) override {
+    return geometry_.compute(requests, stream_, clock_);
+  }
+  void setResting(const std::vector<bool>& channels) override;
+  void combine(const CombinePass& pass) override;
+  void makeVolumes(const std::vector<VolumeRequest>& requests) override;
+  const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() override;
+  const std::vector<std::shared_ptr<const DeviceVolume>>& deviceVolumes() const override {
+    return device_volumes_;
+  }
+  void resetTimes() override { clock_.reset(); }
+  StageTimes times() override { return clock_.times(); }
+  void addMemory(MemoryUse& use) const override;
+
+ private:
+  bool hasLargest(std::size_t channel) const {
+    return setup_.recipes[channel].reduction == Reduction::dominant;
+  }
+
+  const FieldSetup& setup_;
+  std::size_t voxels_;
+  volume::VoxelPrecision precision_;
+  emscape::cuda::Stream stream_;
+  cuda::StageClock clock_;
+  cuda::DeviceGeometry geometry_;
+  std::map<const scenario::Antenna*, DevicePattern> patterns_;
+  std::vector<ChannelBuffers> buffers_;
+  Buffer<cuda::DeviceRange> ranges_;
+  std::vector<std::shared_ptr<const DeviceVolume>> device_volumes_;
+  std::vector<std::shared_ptr<const volume::DenseVolume>> volumes_;  ///< of those, as far as asked for
+  std::vector<std::shared_ptr<const DeviceVolume>> downloaded_;      ///< what they are copies of
+};
+
+CudaEngine::CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecision precision)
+    : setup_(setup),
+      voxels_(static_cast<std::size_t>(setup.grid.dims.count())),
+      precision_(precision),
+      geometry_(setup, slots),
+      buffers_(setup.channels.size()),
+      ranges_(setup.channels.size()),
+      device_volumes_(setup.channels.size()),
+      volumes_(setup.channels.size()),
+      downloaded_(setup.channels.size()) {
+  for (const scenario::Emitter& emitter : setup.scenario->emitters) {
+    if (patterns_.count(emitter.antenna.get()) == 0) {
+      patterns_.emplace(emitter.antenna.get(), DevicePattern(emitter.antenna->view()));
+    }
+  }
+  for (std::size_t c = 0; c < buffers_.size(); ++c) {
+    buffers_[c].value.resize(voxels_);
+    if (hasLargest(c)) buffers_[c].largest.resize(voxels_);
+  }
+}
+
+void CudaEngine::setResting(const std::vector<bool>& channels) {
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    buffers_[c].resting_value.resize(channels[c] ? voxels_ : 0);
+    buffers_[c].resting_largest.resize(channels[c] && hasLargest(c) ? voxels_ : 0);
+  }
+}
+
+void CudaEngine::combine(const CombinePass& pass) {
+  CombineTask task;
+  task.dims = setup_.grid.dims;
+  task.t_m = geometry_.columns().t_m;
+  task.keep = pass.keep;
+  for (std::size_t c = 0; c < buffers_.size(); ++c) {
+    ChannelBuffers& buffers = buffers_[c];
+    auto& value = pass.into_resting ? buffers.resting_value : buffers.value;
+    auto& largest = pass.into_resting ? buffers.resting_largest : buffers.largest;
+    task.reductions.push_back(setup_.recipes[c].reduction);
+    task.accumulators.push_back(pass.channels[c] ? Accumulator{value.data(), largest.data()} : Accumulator{});
+    task.initial.push_back(
+        pass.into_resting ? ConstAccumulator{}
+                          : ConstAccumulator{buffers.resting_value.data(), buffers.resting_largest.data()});
+  }
+  for (const CombinePass::Member& member : pass.members) {
+    task.emitters.push_back(member.emitter);
+    EmitterBeam& beam = task.emitters.back().beam;
+    beam.geometry = geometry_.view(member.slot);
+    beam.pattern = patterns_.at(setup_.scenario->emitters[member.emitter.emitter_index].antenna.get()).view();
+  }
+  clock_.begin(stream_);
+  cuda::combine(task, geometry_.firstValidK(), stream_);
+  clock_.end(&StageTimes::combine_ms, stream_);
+}
+
+void CudaEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
+  std::vector<std::shared_ptr<DeviceVolume>> made;
+  clock_.begin(stream_);
+  const std::vector<cuda::DeviceRange> empty(requests.size());
+  ranges_.upload(empty, stream_);
+  for (std::size_t r = 0; r < requests.size(); ++r) {
+    const VolumeRequest& request = requests[r];
+    ChannelBuffers& buffers = buffers_[request.channel];
+    device_volumes_[request.channel].reset();
+    downloaded_[request.channel].reset();
+    const std::shared_ptr<DeviceVolume> volume = buffers.ring.next(setup_.grid, precision_);
+    volume->info = request.info;
+    volume->setMask(*request.first_valid_k);
+    cuda::DeviceProductTask task;
+    task.product = setup_.recipes[request.channel].product;
+    task.accumulator = buffers.value.data();
+    task.first_valid_k = volume->storage().firstValidK();
+    task.range = ranges_.data() + r;
+    task.voxels = volume->storage().beginWriting(stream_);
+    cuda::makeProduct(task, stream_);
+    volume->storage().endWriting(stream_);
+    made.push_back(volume);
+  }
+  clock_.end(&StageTimes::product_ms, stream_);
+  std::vector<cuda::DeviceRange> ranges(requests.size());
+  ranges_.download(ranges.data(), stream_);
+  for (std::size_t r = 0; r < requests.size(); ++r) {
+    setRange(made[r]->info, ranges[r].range(requests[r].info.floor));
+    device_volumes_[requests[r].channel] = made[r];
+  }
+}
+
+const std::vector<std::shared_ptr<const volume::DenseVolume>>& CudaEngine::volumes() {
+  for (std::size_t c = 0; c < device_volumes_.size(); ++c) {
+    if (device_volumes_[c] == nullptr || device_volumes_[c] == downloaded_[c]) continue;
+    volumes_[c] = std::make_shared<volume::DenseVolume>(device_volumes_[c]->download());
+    downloaded_[c] = device_volumes_[c];
+  }
+  return volumes_;
+}
+
+void CudaEngine::addMemory(MemoryUse& use) const {
+  std::size_t channel_bytes = 0;
+  for (const ChannelBuffers& buffers : buffers_) {
+    for (const auto* buffer :
+         {&buffers.value, &buffers.largest, &buffers.resting_value, &buffers.resting_largest}) {
+      channel_bytes += buffer->size() * sizeof(float);
+    }
+    channel_bytes += volume::deviceBytes(setup_.grid.dims, precision_);
+  }
+  use.bytes_per_voxel_and_channel = static_cast<double>(channel_bytes) / static_cast<double>(voxels_) /
+                                    static_cast<double>(std::max<std::size_t>(1, buffers_.size()));
+  use.total_bytes += channel_bytes + geometry_.bytes();
+}
+
+}  // namespace
+
+std::unique_ptr<FieldEngine> makeCudaEngine(const FieldSetup& setup, int slots,
+                                            volume::VoxelPrecision precision) {
+  return std::make_unique<CudaEngine>(setup, slots, precision);
+}
+
+}  // namespace emscape::emfield
