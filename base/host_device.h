@@ -3,6 +3,9 @@
 
 #if defined(__CUDACC__)
 #define EMSCAPE_HD __host__ __device__
+/// Put before a loop of few turns: on the device it is unrolled, so that what it indexes stays in registers.
+#define EMSCAPE_UNROLL _Pragma("unroll")
 #else
 #define EMSCAPE_HD
+#define EMSCAPE_UNROLL
 #endif

@@ -6,12 +6,11 @@
 
 #include "base/parallel.h"
 #include "base/simd.h"
-#include "render/adaptive_predict.h"
+#include "render/adaptive_pass.h"
 
 namespace emscape::render {
 namespace {
 
-constexpr int kLatticeStep = 4;
 /// Pixels that a pass looks at, along a tile's side: 16 of them make one packet of rays.
 constexpr int kTile = 4;
 /// The same of a block: the rays of a pass may be few, and are to be neighbours none the less.
@@ -20,19 +19,6 @@ constexpr int kBlock = 4 * kTile;
 Pixel pixelAt(int x, int y) {
   return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
 }
-
-/// The midpoints of one pass: the centres of cells, or the middles of their sides.
-struct Pass {
-  int reach;  ///< distance of the nearest known pixels, along either axis; a power of two
-  bool diagonal;
-  double tolerance;  ///< part of the frame's
-
-  int firstY() const { return diagonal ? reach : 0; }
-  int stepY() const { return diagonal ? 2 * reach : reach; }
-  int stepX() const { return 2 * reach; }
-  int firstX(int y) const { return diagonal || (y & reach) == 0 ? reach : 0; }
-};
-constexpr Pass kPasses[] = {{2, true, 0.2}, {2, false, 0.5}, {1, true, 0.5}, {1, false, 1.0}};
 
 // --- A pixel as a vector ---
 
@@ -71,23 +57,15 @@ inline PixelLanes uniform<PixelLanes>(float value) {
 
 namespace {
 
-/// 1 for an error of less than 1/64 level, one more for every doubling.
-std::uint8_t classOf(float error_levels) {
-  constexpr int kSmallestExponent = 127 - 6;
-  std::int32_t bits = 0;
-  static_assert(sizeof bits == sizeof error_levels, "float has 32 bits");
-  std::memcpy(&bits, &error_levels, sizeof bits);
-  return static_cast<std::uint8_t>(
-      std::clamp((bits >> 23) - kSmallestExponent + 2, 1, AdaptiveFrame::kErrorClasses - 1));
-}
-
 /// The picture as midpoints see it.
 struct KnownPixels {
+  using Color = PixelLanes;
+
   Rgba* pixels = nullptr;
   ImageSize size;
 
-  bool contains(int x, int y) const { return x >= 0 && y >= 0 && x < size.width && y < size.height; }
   Rgba* address(int x, int y) const { return pixels + static_cast<std::ptrdiff_t>(y) * size.width + x; }
+  PixelLanes at(int x, int y) const { return load(address(x, y)); }
   static PixelLanes load(const Rgba* pixel) {
     PixelLanes color;
     std::memcpy(&color, pixel, sizeof color);
@@ -103,35 +81,6 @@ struct KnownPixels {
                         load(middle + 3 * step));
   }
 };
-
-/// Along the direction (dx, dy) from a midpoint near the picture's edge. What lies beyond the edge follows
-/// from the curvature on the other side.
-Along<PixelLanes> alongAtEdge(const KnownPixels& known, int x, int y, int dx, int dy) {
-  const auto at = [&](int steps) { return KnownPixels::load(known.address(x + steps * dx, y + steps * dy)); };
-  const bool has_low = known.contains(x - 3 * dx, y - 3 * dy);
-  const bool has_high = known.contains(x + 3 * dx, y + 3 * dy);
-  const PixelLanes a = at(-1);
-  const PixelLanes b = at(1);
-  if (!has_low && !has_high) return predictAlong(a, b);
-  const PixelLanes low = has_low ? at(-3) : at(3) + (a - b) * 3;
-  const PixelLanes high = has_high ? at(3) : low + (b - a) * 3;
-  return predictAlong(a, b, low, high);
-}
-
-/// @return false: no direction has a pixel at either end
-bool predictAtEdge(const KnownPixels& known, const Pass& pass, int x, int y,
-                   Prediction<PixelLanes>& prediction) {
-  Along<PixelLanes> found[2];
-  int count = 0;
-  const int r = pass.reach;
-  for (const auto& [dx, dy] : {std::pair<int, int>{r, pass.diagonal ? r : 0}, {pass.diagonal ? -r : 0, r}}) {
-    if (known.contains(x - dx, y - dy) && known.contains(x + dx, y + dy)) {
-      found[count++] = alongAtEdge(known, x, y, dx, dy);
-    }
-  }
-  if (count > 0) prediction = count == 2 ? predict(found[0], found[1]) : predict(found[0]);
-  return count > 0;
-}
 
 /// What one pass works on.
 struct PassTask {
@@ -163,11 +112,11 @@ inline void predictRow(const PassTask& task, int first_x, int end_x, int y, std:
     if (x >= first_known && x < end_known) {
       prediction = predict(KnownPixels::along(pixels + x, step_p), KnownPixels::along(pixels + x, step_q));
     } else {
-      predicted = predictAtEdge(known, task.pass, x, y, prediction);
+      predicted = predictMidpoint(known, task.pass, x, y, prediction);
     }
     if (predicted && prediction.error_levels <= tolerance_levels) {
       KnownPixels::store(prediction.color, pixels + x);
-      classes[x] = classOf(prediction.error_levels);
+      classes[x] = errorClassOf(prediction.error_levels);
     } else {
       classes[x] = 0;
       queue.push_back(pixelAt(x, y));

@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "render/adaptive_pass.h"
 #include "render/adaptive_tolerance.h"
 #include "render/image.h"
 #include "render/reconstruction.h"
@@ -22,8 +23,6 @@ namespace emscape::render {
 /// threads. One thread calls it.
 class AdaptiveFrame {
  public:
-  static constexpr int kErrorClasses = 16;
-
   /// Casts pixels into the image that is being drawn; neighbours in the list mostly are neighbours in the
   /// picture. @return false: stopped
   using Caster = std::function<bool(const std::vector<Pixel>& pixels)>;

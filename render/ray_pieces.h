@@ -27,9 +27,9 @@ struct RayPieces {
   /// Length of the last piece, if it is shorter than a step.
   EMSCAPE_HD float last() const { return length - static_cast<float>(whole) * step; }
   /// Distance of the middle of piece n, 0 <= n < count.
-  EMSCAPE_HD float middle(int n) const {
-    return n < whole ? (static_cast<float>(n) + 0.5F) * step : length - 0.5F * last();
-  }
+  EMSCAPE_HD float middle(int n) const { return n < whole ? wholeMiddle(n) : length - 0.5F * last(); }
+  /// The same of a whole piece.
+  EMSCAPE_HD float wholeMiddle(int n) const { return (static_cast<float>(n) + 0.5F) * step; }
   /// Distance of the joint before piece n; n = count: of the end.
   EMSCAPE_HD float joint(int n) const { return n <= whole ? static_cast<float>(n) * step : length; }
   EMSCAPE_HD Vec3f at(float distance) const { return start + direction * distance; }

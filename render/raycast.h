@@ -72,6 +72,12 @@ EMSCAPE_HD inline RayInterval clip(const Ray& ray, const Vec3d& lower, const Vec
   return interval;
 }
 
+/// Colours of samples by their index in a transfer function's table, for RaycastTask::castVolume().
+struct TableColors {
+  const Rgba* samples = nullptr;
+  EMSCAPE_HD const Rgba& at(int index) const { return samples[index]; }
+};
+
 /// A scene ready to be cast. Sampler: TrilinearSampler or NearestSampler; Compositor: see compositing.h.
 struct RaycastTask {
   CameraView camera;
@@ -99,10 +105,22 @@ struct RaycastTask {
   /// @param limit  no sample is taken beyond this distance from the ray's origin, where the ground is hit
   template <class Compositor, class Sampler>
   EMSCAPE_HD Rgba castVolume(int x, int y, double limit) const {
+    return castVolume<Compositor, Sampler, true, 1>(x, y, limit, TableColors{transfer.samples},
+                                                    volume_highest_f);
+  }
+
+  /// The same with the transfer function's colours from anywhere.
+  /// @param kMayShade  false: without the code for shading; shades_fog must not be set
+  /// @param kBatch  so many samples are fetched before the first is composited, to wait for them once; what
+  ///                comes out does not depend on it
+  template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
+  EMSCAPE_HD Rgba castVolume(int x, int y, double limit, const Colors& colors, float highest_f) const {
     const Ray ray = camera.ray(x, y);
     const RayInterval inside = insideOf(ray, limit);
-    Compositor compositor(exact, mida_gamma, volume_highest_f);
-    if (inside.end > inside.begin) march<Compositor, Sampler>(piecesOf(ray, inside), compositor);
+    Compositor compositor(exact, mida_gamma, highest_f);
+    if (inside.end > inside.begin) {
+      march<Compositor, Sampler, kMayShade, kBatch>(piecesOf(ray, inside), colors, compositor);
+    }
     return compositor.result(transfer);
   }
 
@@ -123,39 +141,56 @@ struct RaycastTask {
     return shading.lit(color, shading.normal(gradient), to_viewer);
   }
 
-  template <class Compositor, class Sampler>
-  EMSCAPE_HD void march(const RayPieces& pieces, Compositor& compositor) const {
+ private:
+  template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
+  EMSCAPE_HD void march(const RayPieces& pieces, const Colors& colors, Compositor& compositor) const {
     LookAhead ahead(skip, volume, pieces);
-    const Vec3f to_viewer = shading.toViewer(pieces.direction);
-    int next_brick = 0;  // the first sample that may lie in another brick than the last one looked at
-    for (int n = 0; n < pieces.count; ++n) {
-      const Vec3f position = pieces.at(pieces.middle(n));
-      if (n >= next_brick && skip.levels != nullptr) {
-        const BrickStep brick = skip.at(volume, position, pieces.direction);
-        next_brick = n + 1 + pieces.stepsIn(brick.leave);
-        if (compositor.canSkip(skip.levels[brick.index])) {
-          n = next_brick - 1;
-          continue;
-        }
-      }
-      float value = 0;
-      if (!Sampler::sample(volume, position, value)) continue;
+    const Vec3f to_viewer = kMayShade ? shading.toViewer(pieces.direction) : Vec3f{};
+    // Takes the sample of piece n, of `part` of a step. @return whether nothing behind it matters
+    const auto take = [&](int n, float part, const Vec3f& position, float value) {
+      if (!(value == value)) return false;
       const float f = transfer.normalized(value);
-      Rgba sample = transfer.samples[transfer.index(f)];
-      if (compositor.ignores(f, sample)) continue;
-      if (Compositor::kNeedsColor && sample.a > 0.0F) {
-        if (shading.shades_fog) {
+      Rgba sample;
+      if constexpr (Compositor::kNeedsColor) sample = colors.at(transfer.index(f));
+      if (compositor.ignores(f, sample)) return false;
+      if constexpr (Compositor::kNeedsColor) {
+        if (kMayShade && shading.shades_fog && sample.a > 0.0F) {
           const Vec3f gradient = gradientAt<Sampler>(volume, position, value);
           sample = shading.litFog(sample, gradient * transfer.scale, to_viewer);
         }
-        if (n == pieces.whole) sample = shortened(sample, pieces.last() / step_voxels);
+        if (part < 1.0F) sample = shortened(sample, part);
       }
       compositor.add(f, sample);
-      if (compositor.done(ahead, n + 1)) return;
+      return compositor.done(ahead, n + 1);
+    };
+    int next_brick = 0;  // the first sample that may lie in another brick than the last one looked at
+    for (int n = 0; n < pieces.whole;) {
+      if (skip.levels != nullptr && n >= next_brick) {
+        const BrickStep brick = skip.at(volume, pieces.at(pieces.wholeMiddle(n)), pieces.direction);
+        next_brick = n + 1 + pieces.stepsIn(brick.leave);
+        if (compositor.canSkip(skip.levels[brick.index])) {
+          n = next_brick;
+          continue;
+        }
+      }
+      float values[kBatch];
+      EMSCAPE_UNROLL
+      for (int i = 0; i < kBatch; ++i) {
+        values[i] = sampleOrNaN<Sampler>(volume, pieces.at(pieces.wholeMiddle(n + i)));
+      }
+      EMSCAPE_UNROLL
+      for (int i = 0; i < kBatch; ++i) {
+        const bool taken = i == 0 || n + i < pieces.whole;
+        if (taken && take(n + i, 1.0F, pieces.at(pieces.wholeMiddle(n + i)), values[i])) return;
+      }
+      n += kBatch;
+    }
+    if (pieces.whole < pieces.count) {
+      const Vec3f position = pieces.at(pieces.middle(pieces.whole));
+      take(pieces.whole, pieces.last() / step_voxels, position, sampleOrNaN<Sampler>(volume, position));
     }
   }
 
- private:
   EMSCAPE_HD RayInterval insideOf(const Ray& ray, double limit) const {
     RayInterval inside = clip(ray, volume.lower(), volume.upper());
     if (limit < inside.end) inside.end = limit;

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/simd.h"
+#include "render/interpolation.h"
 #include "render/names.h"
 
 namespace emscape::render {
@@ -33,25 +34,6 @@ std::vector<Lattice> withoutEmpty(const std::vector<Lattice>& lattices) {
   }
   return kept;
 }
-
-float mean8(float a, float b) {
-  return static_cast<float>((quantized(a) + quantized(b) + 1) / 2) / 255.0F;
-}
-float copy8(float a) {
-  return static_cast<float>(quantized(a)) / 255.0F;
-}
-
-/// The two ways to fill a pixel, by kind of arithmetic.
-struct FloatArithmetic {
-  static Rgba mean(const Rgba& p, const Rgba& q) { return (p + q) * 0.5F; }
-  static Rgba copy(const Rgba& p) { return p; }
-};
-struct Bits8Arithmetic {
-  static Rgba mean(const Rgba& p, const Rgba& q) {
-    return {mean8(p.r, q.r), mean8(p.g, q.g), mean8(p.b, q.b), mean8(p.a, q.a)};
-  }
-  static Rgba copy(const Rgba& p) { return {copy8(p.r), copy8(p.g), copy8(p.b), copy8(p.a)}; }
-};
 
 /// Fills every second pixel of a row from its left and right neighbours, starting at first_x (0 or 1).
 template <class Arithmetic>

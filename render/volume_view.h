@@ -1,6 +1,7 @@
 /// A volume as the ray caster reads it: plain data, sampling, and the bricks that need no sampling.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include "base/host_device.h"
@@ -17,6 +18,7 @@ struct VolumeView {
   const std::int32_t* first_valid_k = nullptr;  ///< one a column; null: no voxel is masked
   int masked_below = 0;                         ///< no voxel of a layer from here up is masked
   bool all_finite = true;                       ///< no value is NaN or infinite
+  std::uint64_t texture = 0;                    ///< on a GPU: of the values, which are null then
 
   EMSCAPE_HD Vec3d lower() const { return {-0.5, -0.5, -0.5}; }
   EMSCAPE_HD Vec3d upper() const { return {dims.x - 0.5, dims.y - 0.5, dims.z - 0.5}; }
@@ -48,42 +50,51 @@ EMSCAPE_HD inline float lerp(float a, float b, float fraction) {
   return a + fraction * (b - a);
 }
 
+/// Voxels of an array.
+struct ArrayVoxels {
+  EMSCAPE_HD static float at(const VolumeView& volume, int i, int j, int k) { return volume.at(i, j, k); }
+};
+
 /// Trilinear between voxel centres. Nothing is drawn where the nearest voxel is masked; elsewhere what lies
 /// below ground does not bleed into the air, as masked voxels hold the value above them. NaN draws nothing.
-struct TrilinearSampler {
+template <class Voxels>
+struct TrilinearSamplerOf {
   EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
     const CellPosition x(position.x, volume.dims.x);
     const CellPosition y(position.y, volume.dims.y);
     const CellPosition z(position.z, volume.dims.z);
     if (z.low < volume.masked_below && volume.isMasked(x.nearest(), y.nearest(), z.nearest())) return false;
-    const long long row = volume.dims.x;
-    const long long layer = row * volume.dims.y;
-    const float* lower = volume.values + z.low * layer;
-    const float* upper = volume.values + z.high * layer;
-    const long long c00 = y.low * row + x.low;
-    const long long c10 = y.low * row + x.high;
-    const long long c01 = y.high * row + x.low;
-    const long long c11 = y.high * row + x.high;
-    const float below =
-        lerp(lerp(lower[c00], lower[c10], x.fraction), lerp(lower[c01], lower[c11], x.fraction), y.fraction);
-    const float above =
-        lerp(lerp(upper[c00], upper[c10], x.fraction), lerp(upper[c01], upper[c11], x.fraction), y.fraction);
+    const auto row = [&](int j, int k) {
+      return lerp(Voxels::at(volume, x.low, j, k), Voxels::at(volume, x.high, j, k), x.fraction);
+    };
+    const float below = lerp(row(y.low, z.low), row(y.high, z.low), y.fraction);
+    const float above = lerp(row(y.low, z.high), row(y.high, z.high), y.fraction);
     value = lerp(below, above, z.fraction);
     return value == value;
   }
 };
+using TrilinearSampler = TrilinearSamplerOf<ArrayVoxels>;
 
 /// The value of the nearest voxel, for indices. Masked voxels and NaN draw nothing.
-struct NearestSampler {
+template <class Voxels>
+struct NearestSamplerOf {
   EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
     const int i = CellPosition(position.x, volume.dims.x).nearest();
     const int j = CellPosition(position.y, volume.dims.y).nearest();
     const int k = CellPosition(position.z, volume.dims.z).nearest();
     if (volume.isMasked(i, j, k)) return false;
-    value = volume.at(i, j, k);
+    value = Voxels::at(volume, i, j, k);
     return value == value;
   }
 };
+using NearestSampler = NearestSamplerOf<ArrayVoxels>;
+
+/// A sample, or NaN where nothing is drawn.
+template <class Sampler>
+EMSCAPE_HD float sampleOrNaN(const VolumeView& volume, const Vec3f& position) {
+  float value = 0;
+  return Sampler::sample(volume, position, value) ? value : NAN;
+}
 
 /// What a ray finds of the brick around a position.
 struct BrickStep {

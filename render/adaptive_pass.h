@@ -1,0 +1,83 @@
+/// The passes of the pattern `adaptive` and what they predict: single source for host and device.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "base/host_device.h"
+#include "render/adaptive_predict.h"
+#include "render/image.h"
+
+namespace emscape::render {
+
+/// Distance of the pixels that are cast first.
+constexpr int kLatticeStep = 4;
+
+/// The midpoints of one pass: the centres of cells, or the middles of their sides.
+struct Pass {
+  int reach;  ///< distance of the nearest known pixels, along either axis; a power of two
+  bool diagonal;
+  double tolerance;  ///< part of the frame's
+
+  EMSCAPE_HD int firstY() const { return diagonal ? reach : 0; }
+  EMSCAPE_HD int stepY() const { return diagonal ? 2 * reach : reach; }
+  EMSCAPE_HD int stepX() const { return 2 * reach; }
+  EMSCAPE_HD int firstX(int y) const { return diagonal || (y & reach) == 0 ? reach : 0; }
+};
+constexpr Pass kPasses[] = {{2, true, 0.2}, {2, false, 0.5}, {1, true, 0.5}, {1, false, 1.0}};
+
+constexpr int kErrorClasses = 16;
+
+/// Class of an estimated error: 1 for less than 1/64 level, one more for every doubling.
+EMSCAPE_HD inline std::uint8_t errorClassOf(float error_levels) {
+  constexpr int kSmallestExponent = 127 - 6;
+  std::int32_t bits = 0;
+  static_assert(sizeof bits == sizeof error_levels, "float has 32 bits");
+  std::memcpy(&bits, &error_levels, sizeof bits);
+  const int error_class = (bits >> 23) - kSmallestExponent + 2;
+  const int held = error_class > 1 ? error_class : 1;
+  return static_cast<std::uint8_t>(held < kErrorClasses ? held : kErrorClasses - 1);
+}
+
+/// The picture as midpoints see it: Known has Color, at(x, y) and `size`.
+template <class Known>
+EMSCAPE_HD bool contains(const Known& known, int x, int y) {
+  return x >= 0 && y >= 0 && x < known.size.width && y < known.size.height;
+}
+
+/// Along the direction (dx, dy) from a midpoint whose two nearest pixels lie in the picture. What lies beyond
+/// its edge follows from the curvature on the other side.
+template <class Known>
+EMSCAPE_HD Along<typename Known::Color> alongFrom(const Known& known, int x, int y, int dx, int dy) {
+  using Color = typename Known::Color;
+  const bool has_low = contains(known, x - 3 * dx, y - 3 * dy);
+  const bool has_high = contains(known, x + 3 * dx, y + 3 * dy);
+  const Color a = known.at(x - dx, y - dy);
+  const Color b = known.at(x + dx, y + dy);
+  if (!has_low && !has_high) return predictAlong(a, b);
+  const auto beyond = [&](int steps) { return known.at(x + steps * dx, y + steps * dy); };
+  const Color low = has_low ? beyond(-3) : beyond(3) + (a - b) * 3;
+  const Color high = has_high ? beyond(3) : low + (b - a) * 3;
+  return predictAlong(a, b, low, high);
+}
+
+/// Predicts any midpoint of a pass. @return false: no direction has a pixel at either end
+template <class Known>
+EMSCAPE_HD bool predictMidpoint(const Known& known, const Pass& pass, int x, int y,
+                                Prediction<typename Known::Color>& prediction) {
+  const int r = pass.reach;
+  const int dy_p = pass.diagonal ? r : 0;
+  const int dx_q = pass.diagonal ? -r : 0;
+  const bool has_p = contains(known, x - r, y - dy_p) && contains(known, x + r, y + dy_p);
+  const bool has_q = contains(known, x - dx_q, y - r) && contains(known, x + dx_q, y + r);
+  if (has_p && has_q) {
+    prediction = predict(alongFrom(known, x, y, r, dy_p), alongFrom(known, x, y, dx_q, r));
+  } else if (has_p) {
+    prediction = predict(alongFrom(known, x, y, r, dy_p));
+  } else if (has_q) {
+    prediction = predict(alongFrom(known, x, y, dx_q, r));
+  }
+  return has_p || has_q;
+}
+
+}  // namespace emscape::render
