@@ -23,7 +23,7 @@ std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
     const Quantity quantity = quantityFromName(name);
     std::vector<int> emitters;
     for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
-      const bool enters = quantity != Quantity::snr_db || scenario.emitters[e].kind == EmitterKind::radar;
+      const bool enters = !isOfRadars(quantity) || scenario.emitters[e].kind == EmitterKind::radar;
       if (enters) emitters.push_back(static_cast<int>(e));
     }
     if (scenario.output.combine == CombineMode::per_emitter && !countsEmitters(quantity)) {
@@ -43,6 +43,11 @@ std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
       }
     } else {
       channels.push_back({quantity, name, emitters});
+    }
+  }
+  for (Channel& channel : channels) {
+    for (std::size_t e = 0; isOfJamming(channel.quantity) && e < scenario.emitters.size(); ++e) {
+      if (scenario.emitters[e].kind == EmitterKind::jammer) channel.jammers.push_back(static_cast<int>(e));
     }
   }
   return channels;

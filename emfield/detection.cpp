@@ -211,8 +211,39 @@ double shnidmanSnrDb(const Detector& detector, double probability) {
   return ratioToDb(steady / n) + fluctuation_db;
 }
 
-DetectionCurve::DetectionCurve(const Detector& detector) {
+double albersheimProbability(const Detector& detector, double snr_db) {
+  check(detector);
+  const double a = std::log(0.62 / detector.false_alarm_probability);
+  const double n = detector.pulses;
+  const double z = (snr_db + 5 * std::log10(n)) / (6.2 + 4.54 / std::sqrt(n + 0.44));
+  const double b = (std::pow(10.0, z) - a) / (1.7 + 0.12 * a);
+  return 1 / (1 + std::exp(-b));
+}
+
+double shnidmanProbability(const Detector& detector, double snr_db) {
+  // In logits, which spread both ends.
+  const auto probabilityOf = [](double logit) { return 1 / (1 + std::exp(-logit)); };
+  const double pfa = detector.false_alarm_probability;
+  double low = std::log(pfa / (1 - pfa)) + 1e-9, high = 30;
+  while (high - low > 1e-9) {
+    const double middle = (low + high) / 2;
+    (shnidmanSnrDb(detector, probabilityOf(middle)) <= snr_db ? low : high) = middle;
+  }
+  return probabilityOf(low);
+}
+
+DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method) {
   const double threshold = detectionThreshold(detector);
+  const auto probabilityAt = [&](double snr_db) {
+    switch (method) {
+      case scenario::DetectionMethod::albersheim:
+        return albersheimProbability(detector, snr_db);
+      case scenario::DetectionMethod::shnidman:
+        return shnidmanProbability(detector, snr_db);
+      default:
+        return detectionProbability(detector, threshold, dbToRatio(snr_db));
+    }
+  };
   // Beyond the ends the curve is flat; what that costs is a fifth of the accuracy stated.
   constexpr double kTail = 2e-5;
   const double first = requiredSnrDb(detector, detector.false_alarm_probability + kTail);
@@ -224,7 +255,8 @@ DetectionCurve::DetectionCurve(const Detector& detector) {
   steps_per_db_ = float(1 / step_db);
   std::vector<double> values;
   for (int i = 0; i < count; ++i) {
-    values.push_back(detectionProbability(detector, threshold, dbToRatio(first + i * step_db)));
+    const double value = probabilityAt(first + i * step_db);
+    values.push_back(i > 0 ? std::max(value, values.back()) : value);
   }
   for (int i = 0; i < count; ++i) {
     const double before = i > 0 ? values[i] - values[i - 1] : 0;

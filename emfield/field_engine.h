@@ -48,6 +48,7 @@ struct CombinePass {
     /// Without the views of geometry and pattern, which are the engine's. Its shares are in the channels of
     /// the setup.
     CombineEmitter emitter;
+    std::vector<RadarShare> radars;  ///< its parts in channels that take echoes
   };
   std::vector<Member> members;
   std::vector<bool> channels;  ///< those that take part
@@ -77,10 +78,10 @@ class FieldEngine {
   /// The latest volume of each channel, in host memory.
   virtual const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() = 0;
 
-  /// Sets the stages' times to 0.
   /// The same in the memory of a GPU; empty for an engine that has none there.
   virtual const std::vector<std::shared_ptr<const volume::DeviceVolume>>& deviceVolumes() const = 0;
 
+  /// Sets the stages' times to 0.
   virtual void resetTimes() = 0;
   virtual StageTimes times() = 0;
   /// Adds what the engine holds to total_bytes and to the bytes of voxels and channels.
@@ -91,7 +92,6 @@ class FieldEngine {
 /// @param slots  number of slots
 std::unique_ptr<FieldEngine> makeCpuEngine(const FieldSetup& setup, int slots);
 
-/// Value range of a volume in which nothing is above the floor: the floor.
 /// The same on the GPU. @throws Error (device)
 std::unique_ptr<FieldEngine> makeCudaEngine(const FieldSetup& setup, int slots,
                                             volume::VoxelPrecision precision);
@@ -108,6 +108,7 @@ std::size_t postBytes(const scenario::TerrainView& terrain);
 std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
                             volume::VoxelPrecision precision);
 
+/// Value range of a volume in which nothing is above the floor: the floor.
 inline void setRange(volume::VolumeInfo& info, const ValueRange& range) {
   const bool is_empty = !(range.lowest <= range.highest);
   info.range_min = is_empty ? info.floor : range.lowest;

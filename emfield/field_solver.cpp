@@ -16,12 +16,16 @@ using scenario::Emitter;
 using scenario::EmitterState;
 using scenario::PropagationModel;
 
+bool samePose(const scenario::BeamPose& a, const scenario::BeamPose& b) {
+  return a.forward == b.forward && a.right == b.right && a.up == b.up && a.steer_u == b.steer_u &&
+         a.steer_v == b.steer_v;
+}
+
 /// What decides whether an emitter's beam is the same as at the last update.
 bool sameBeam(const EmitterState& a, const EmitterState& b) {
   if (a.active != b.active) return false;
   if (!a.active) return true;
-  return a.beam.forward == b.beam.forward && a.beam.right == b.beam.right && a.beam.up == b.beam.up &&
-         a.beam.steer_u == b.beam.steer_u && a.beam.steer_v == b.beam.steer_v;
+  return samePose(a.beam, b.beam) && samePose(a.mount, b.mount);
 }
 
 double distance_m(const GeodeticPosition& a, const GeodeticPosition& b) {
@@ -154,6 +158,8 @@ FieldChanged FieldSolver::Impl::findChanges(const scenario::Snapshot& snapshot) 
     } else if (is_first || !sameBeam(now, cache.state)) {
       changed.turned.push_back(static_cast<int>(e));
     }
+    cache.mount_changed =
+        is_first || has_moved || now.active != cache.state.active || !samePose(now.mount, cache.state.mount);
     cache.state = now;
   }
   changed.any = is_first || !changed.moved.empty() || !changed.turned.empty();
@@ -198,6 +204,7 @@ FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
   for (const std::vector<int>* list : {&changed.moved, &changed.turned}) {
     for (int e : *list) emitter_changed[e] = true;
   }
+  impl.findJamming(snapshot, emitter_changed);
   std::vector<int> recomputed, chosen;
   for (int e : changed.moved) {
     if (impl.emitters[e].is_cached) recomputed.push_back(e);
@@ -207,7 +214,8 @@ FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
   const std::vector<Channel>& channels = impl.setup.channels;
   std::vector<bool> channel_changed(channels.size(), impl.is_first);
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    for (int e : channels[c].emitters) channel_changed[c] = channel_changed[c] || emitter_changed[e];
+    channel_changed[c] =
+        channel_changed[c] || impl.isAffected(channels[c], impl.setup.recipes[c], emitter_changed);
   }
   impl.chooseResting(emitter_changed);
   for (std::size_t e = 0; e < impl.emitters.size(); ++e) {

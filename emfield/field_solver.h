@@ -19,7 +19,8 @@ namespace emscape::emfield {
 struct Channel {
   Quantity quantity = Quantity::power_density_dbwm2;
   std::string name;  ///< quantity, with ":" and the emitter's or band's name where it is not the sum of all
-  std::vector<int> emitters;  ///< indices that enter it
+  std::vector<int> emitters;      ///< indices that enter it
+  std::vector<int> jammers = {};  ///< indices of those that jam them, where jamming counts
 };
 
 /// The channels of a scenario's output: one a quantity, or one a quantity and emitter (combine per_emitter)
@@ -33,10 +34,10 @@ struct FieldOptions {
   std::vector<std::string> quantities;  ///< empty: the scenario's
   bool allow_missing_terrain =
       false;  ///< true: columns over holes, and those that are seen only across one, are masked
-  /// An emitter that moved less than this keeps its fan and planes (m).
   Backend backend = Backend::cpu;  ///< automatic: the GPU if it has the memory, else the CPU
   /// cuda: how volumes are kept. float16 takes less memory.
   volume::VoxelPrecision device_precision = volume::VoxelPrecision::float32;
+  /// An emitter that moved less than this keeps its fan and planes (m).
   double move_tolerance_m = 0.5;
   /// Bound on the per-emitter caches (bytes, of the GPU's memory with cuda), 0: none. Emitters that do not
   /// fit are computed anew at each update.
@@ -91,13 +92,13 @@ class FieldSolver {
   /// sets them for all. With cuda they are copied from the GPU when this is called.
   const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() const;
 
-  StageTimes stageTimes() const;
   /// The same volumes where a GPU computed them, without a copy through the host; empty with the CPU. They
   /// are not changed by later updates either.
   const std::vector<std::shared_ptr<const volume::DeviceVolume>>& deviceVolumes() const;
   /// cpu or cuda.
   Backend backend() const;
 
+  StageTimes stageTimes() const;
   MemoryUse memoryUse() const;
   /// Warnings so far, each once with its count: model limits exceeded, near field, holes crossed.
   std::vector<std::string> warnings() const;

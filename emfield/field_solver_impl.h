@@ -8,6 +8,7 @@
 
 #include "emfield/field_engine.h"
 #include "emfield/field_solver.h"
+#include "emfield/jamming.h"
 
 namespace emscape::emfield {
 
@@ -18,15 +19,17 @@ struct EmitterCache {
   bool has_geometry = false;     ///< computed_at and the findings hold; the slot too if the emitter is cached
   bool is_cached = true;         ///< false: its geometry is given up after each use
   GeometryFindings findings;
+  bool mount_changed = true;           ///< since the update before: moved, switched or turned as a whole
+  std::vector<JammerInSight> jammers;  ///< radars, where jamming counts
 };
 
 struct FieldSolver::Impl {
   FieldOptions options;
   FieldSetup setup;
+  Backend backend = Backend::cpu;       ///< cpu or cuda
   std::unique_ptr<FieldEngine> engine;  ///< a slot an emitter, and one for those that are not cached
   std::vector<EmitterCache> emitters;
   std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
-  Backend backend = Backend::cpu;  ///< cpu or cuda
   std::map<std::string, long long> warning_counts;
 
   /// Emitters whose sum lies in the engine's resting accumulators; they have not changed since.
@@ -38,11 +41,11 @@ struct FieldSolver::Impl {
   Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
        FieldOptions options_in);
 
+  std::size_t chooseCached();
+  std::unique_ptr<FieldEngine> makeEngine(std::size_t slot_bytes) const;
   void checkModels() const;
   void checkHoles() const;
   std::string placeOf(std::size_t column) const;
-  std::size_t chooseCached();
-  std::unique_ptr<FieldEngine> makeEngine(std::size_t slot_bytes) const;
   void warn(const std::string& warning) { ++warning_counts[warning]; }
 
   FieldChanged findChanges(const scenario::Snapshot& snapshot);
@@ -51,6 +54,10 @@ struct FieldSolver::Impl {
   void chooseResting(const std::vector<bool>& changed);
   void combine(const std::vector<int>& chosen, const std::vector<bool>& channel_chosen, bool into_resting);
   CombineEmitter combineEmitter(int e) const;
+  void findJamming(const scenario::Snapshot& snapshot, std::vector<bool>& emitter_changed);
+  bool isAffected(const Channel& channel, const ChannelRecipe& recipe,
+                  const std::vector<bool>& emitter_changed) const;
+  std::vector<RadarShare> radarShares(int e) const;
   VolumeRequest volumeRequest(int channel, const scenario::Snapshot& snapshot);
   const std::vector<std::uint16_t>& maskOf(const Channel& channel, std::vector<std::uint16_t>& own) const;
 };

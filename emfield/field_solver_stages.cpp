@@ -102,7 +102,7 @@ CombineEmitter FieldSolver::Impl::combineEmitter(int e) const {
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     const auto& members = setup.channels[c].emitters;
     const auto place = std::find(members.begin(), members.end(), e);
-    if (place == members.end()) continue;
+    if (place == members.end() || !setup.recipes[c].radars.empty()) continue;
     result.shares.push_back({static_cast<int>(c), setup.recipes[c].weights[place - members.begin()]});
   }
   return result;
@@ -119,7 +119,7 @@ void FieldSolver::Impl::combine(const std::vector<int>& chosen, const std::vecto
   for (int e : chosen) {
     if (!emitters[e].state.active) continue;
     if (emitters[e].is_cached) {
-      pass.members.push_back({e, combineEmitter(e)});
+      pass.members.push_back({e, combineEmitter(e), radarShares(e)});
     } else {
       uncached.push_back(e);
     }
@@ -128,7 +128,7 @@ void FieldSolver::Impl::combine(const std::vector<int>& chosen, const std::vecto
   pass.keep = true;
   for (int e : uncached) {
     computeGeometry({e}, true);
-    pass.members = {{static_cast<int>(emitters.size()), combineEmitter(e)}};
+    pass.members = {{static_cast<int>(emitters.size()), combineEmitter(e), radarShares(e)}};
     engine->combine(pass);
   }
 }

@@ -1,57 +1,50 @@
 #include "emfield/products.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "base/error.h"
 #include "base/units.h"
+#include "emfield/radar_receiver.h"
 
 namespace emscape::emfield {
 namespace {
 
 using scenario::Emitter;
-using scenario::ReceiverProfile;
 
-/// Part of an emitter's power (0..1) that lies within a receiver's band.
-double bandOverlap(const Emitter& emitter, const ReceiverProfile& receiver) {
-  const double center_hz =
-      receiver.center_frequency_hz > 0 ? receiver.center_frequency_hz : emitter.frequency_hz;
-  const double receiver_hz =
-      receiver.bandwidth_hz > 0 ? receiver.bandwidth_hz : std::max(emitter.bandwidth_hz, 1.0);
-  const double begin_hz =
-      std::max(center_hz - receiver_hz / 2, emitter.frequency_hz - emitter.bandwidth_hz / 2);
-  const double end_hz =
-      std::min(center_hz + receiver_hz / 2, emitter.frequency_hz + emitter.bandwidth_hz / 2);
-  if (end_hz < begin_hz) return 0;
-  return emitter.bandwidth_hz > 0 ? (end_hz - begin_hz) / emitter.bandwidth_hz : 1;
-}
-
-/// Received power (W) of a power density of 1 W/m2.
-double receivingArea_m2(const Emitter& emitter, const ReceiverProfile& receiver) {
-  const double wavelength = wavelength_m(emitter.frequency_hz);
-  const double polarization =
-      receiver.polarization ? scenario::polarizationFactor(emitter.polarization, *receiver.polarization) : 1;
-  return wavelength * wavelength / (4 * kPi) * dbToRatio(receiver.gain_dbi - receiver.losses_db) *
-         polarization * bandOverlap(emitter, receiver);
-}
-
-/// Root of the factor c of SNR = c S^2, with S the one-way power density at the target: the radar range
-/// equation
-///   SNR = P G^2 lambda^2 sigma F^4 / ((4 pi)^3 R^4 k T0 Fn B Lt Lr)
-/// with P G F^2 / (4 pi R^2 Lt) = S. Factors of the path count twice with S; the pattern's too, as the radar
-/// receives through it.
-double snrRoot(const Emitter& radar) {
-  const double wavelength = wavelength_m(radar.frequency_hz);
-  const double noise_w = kBoltzmann * kReferenceTemperature_K * dbToRatio(radar.receiver.noise_figure_db) *
-                         radar.receiver.bandwidth_hz;
-  const double losses = dbToRatio(radar.losses_db - radar.receiver.losses_db);
-  return wavelength * std::sqrt(radar.receiver.target_rcs_m2 * losses / (4 * kPi * radar.power_w * noise_w));
+/// What a channel of a radar quantity does with each radar's echo, before the look is known.
+RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::OutputSpec& output) {
+  RadarTask task;
+  task.echo_root = static_cast<float>(echoRoot_m2_w(radar));
+  const bool looks_at_scan = quantity == Quantity::snr_db || quantity == Quantity::detection_probability;
+  task.look = lookOf(radar, looks_at_scan ? output.radar_look : scenario::RadarLook::target);
+  const double processing = dbToRatio(radar.receiver.processing_gain_db);
+  switch (quantity) {
+    case Quantity::detection_probability:
+      task.measure = RadarMeasure::detection;
+      task.reduction = output.combine == scenario::CombineMode::max ? Reduction::maximum : Reduction::sum;
+      break;
+    case Quantity::jammer_to_signal_db:
+      task.measure = RadarMeasure::signal_to_jamming;
+      task.factor = static_cast<float>(1 / processing);
+      break;
+    case Quantity::burn_through_margin_db:
+      task.measure = RadarMeasure::signal_to_jamming;
+      task.factor = static_cast<float>(dbToRatio(-requiredSignalToJammerDb(radar.receiver)));
+      task.ceiling = kLargestMargin;
+      break;
+    default:
+      break;
+  }
+  return task;
 }
 
 }  // namespace
 
 ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario) {
   ChannelRecipe recipe;
+  if (isOfRadars(channel.quantity) && channel.emitters.empty()) {
+    throw Error(
+        ErrorCode::bad_input, {scenario.file},
+        std::string("quantity '") + info(channel.quantity).name + "' needs an emitter of kind 'radar'");
+  }
   recipe.product.floor = static_cast<float>(scenario.output.floor);
   if (scenario.output.combine == scenario::CombineMode::max) recipe.reduction = Reduction::maximum;
   recipe.weights.assign(channel.emitters.size(), 1.0f);
@@ -75,13 +68,18 @@ ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenari
       weigh([&](const Emitter& emitter) { return receivingArea_m2(emitter, scenario.receivers.front()); });
       break;
     case Quantity::snr_db:
-      if (channel.emitters.empty()) {
-        throw Error(ErrorCode::bad_input, {scenario.file},
-                    "quantity 'snr_db' needs an emitter of kind 'radar'");
-      }
       recipe.reduction = Reduction::maximum;
       recipe.product.scale = 2;
-      weigh(snrRoot);
+      weigh(echoRoot_m2_w);
+      break;
+    case Quantity::detection_probability:
+      recipe.product.decibels = false;
+      recipe.product.floor = 0;
+      break;
+    case Quantity::jammer_to_signal_db:
+      recipe.product.scale = -1;
+      break;
+    case Quantity::burn_through_margin_db:
       break;
     case Quantity::emitter_count:
       recipe.reduction = Reduction::count;
@@ -94,6 +92,18 @@ ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenari
       recipe.product.decibels = false;
       recipe.product.floor = -1;
       break;
+  }
+  // The beam's own power density is what the combine stage has: a look of its own and jamming are not.
+  const bool is_plain =
+      channel.quantity == Quantity::snr_db && scenario.output.radar_look == scenario::RadarLook::scan;
+  if (!isOfRadars(channel.quantity) || is_plain) return recipe;
+  for (int e : channel.emitters) {
+    const Emitter& radar = scenario.emitters[e];
+    recipe.radars.push_back(radarTask(channel.quantity, radar, scenario.output));
+    if (channel.quantity != Quantity::detection_probability) continue;
+    recipe.curves.push_back(
+        std::make_shared<const DetectionCurve>(detectorOf(radar.receiver), radar.receiver.detection));
+    recipe.radars.back().curve = recipe.curves.back()->view();
   }
   return recipe;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "base/vec.h"
 #include "emfield/combine.h"
 #include "emfield/field_solver.h"
+#include "emfield/radar_product.h"
 
 namespace emscape::emfield {
 
@@ -27,11 +29,18 @@ EMSCAPE_HD inline float decibelsOf(const ProductScale& product, float accumulato
   return (accumulator > 0) & (value > product.floor) ? value : product.floor;
 }
 
+/// Largest burn-through margin (60 dB): also that of a radar that nothing jams.
+constexpr float kLargestMargin = 1e6f;
+
 /// How a channel is made: its reduction, each emitter's weight in it, and its scale.
 struct ChannelRecipe {
   Reduction reduction = Reduction::sum;
   ProductScale product;
   std::vector<float> weights;  ///< in the order of Channel::emitters
+  /// In the same order: radars that enter by their echoes instead of by their weights; empty: none does.
+  std::vector<RadarTask> radars;
+  /// What the tasks' curves point to (detection_probability), in the same order.
+  std::vector<std::shared_ptr<const DetectionCurve>> curves;
 };
 
 /// @throws Error (bad_input) if the scenario lacks what the quantity needs (a receiver, a radar)

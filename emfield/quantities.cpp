@@ -13,6 +13,12 @@ const std::vector<QuantityInfo>& quantityTable() {
        false},
       {Quantity::snr_db, "snr_db", "dB", "single-pulse signal-to-noise of the best radar for its target",
        false},
+      {Quantity::detection_probability, "detection_probability", "",
+       "probability that the radars detect their target, jamming included", false},
+      {Quantity::jammer_to_signal_db, "jammer_to_signal_db", "dB",
+       "jamming over the target's echo at the receiver of the radar that bears it best", false},
+      {Quantity::burn_through_margin_db, "burn_through_margin_db", "dB",
+       "how far the echo exceeds what burning through the jamming takes; 60 dB at most", false},
       {Quantity::emitter_count, "emitter_count", "", "emitters above the count threshold", false},
       {Quantity::dominant_emitter, "dominant_emitter", "",
        "index of the emitter with the largest power density", true},
@@ -22,6 +28,15 @@ const std::vector<QuantityInfo>& quantityTable() {
 
 const QuantityInfo& info(Quantity quantity) {
   return quantityTable()[static_cast<std::size_t>(quantity)];
+}
+
+bool isOfRadars(Quantity quantity) {
+  return quantity == Quantity::snr_db || isOfJamming(quantity);
+}
+
+bool isOfJamming(Quantity quantity) {
+  return quantity == Quantity::detection_probability || quantity == Quantity::jammer_to_signal_db ||
+         quantity == Quantity::burn_through_margin_db;
 }
 
 Quantity quantityFromName(const std::string& name) {

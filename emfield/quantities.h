@@ -11,6 +11,9 @@ enum class Quantity {
   field_strength_dbuvm,
   received_power_dbm,
   snr_db,
+  detection_probability,
+  jammer_to_signal_db,
+  burn_through_margin_db,
   emitter_count,
   dominant_emitter,
 };
@@ -22,6 +25,11 @@ struct QuantityInfo {
   const char* description;  ///< one line
   bool categorical;         ///< indices: nearest sampling, integer grids
 };
+
+/// Quantities of radars and their targets; the other emitters do not enter.
+bool isOfRadars(Quantity quantity);
+/// Those of them in which jamming counts.
+bool isOfJamming(Quantity quantity);
 
 /// All quantities, in the order of the enum.
 const std::vector<QuantityInfo>& quantityTable();

@@ -25,11 +25,22 @@ struct RadarLink {
 /// A jammer of noise that fills its band evenly.
 struct JammerLink {
   double eirp_w = 0;                   ///< toward the radar, > 0
-  double bandwidth_hz = 0;             ///< > 0
+  double frequency_hz = 0;             ///< middle of its band; 0: the radar's
+  double bandwidth_hz = 0;             ///< >= 0
   double radar_gain_dbi = 0;           ///< of the radar's antenna toward the jammer
   double polarization_loss_db = 0;     ///< between jammer and radar
   double radar_receive_losses_db = 0;  ///< the radar's, on receiving
 };
+
+/// Part (0..1) of a signal's power within a receiver's band. The signal fills its band evenly; one of no
+/// width lies within or without.
+EMSCAPE_HD inline double bandOverlap(double signal_hz, double signal_width_hz, double receiver_hz,
+                                     double receiver_width_hz) {
+  const double begin_hz = std::fmax(receiver_hz - receiver_width_hz / 2, signal_hz - signal_width_hz / 2);
+  const double end_hz = std::fmin(receiver_hz + receiver_width_hz / 2, signal_hz + signal_width_hz / 2);
+  if (end_hz < begin_hz) return 0;
+  return signal_width_hz > 0 ? (end_hz - begin_hz) / signal_width_hz : 1;
+}
 
 /// Echo power (W) at the radar's receiver:
 ///   S = P G^2 lambda^2 sigma / ((4 pi)^3 R^4 L A^2)
@@ -48,12 +59,14 @@ EMSCAPE_HD inline double echoPower_w(const RadarLink& radar, double rcs_m2, doub
 }
 
 /// Jamming power (W) in the radar's band, at its receiver:
-///   J = EIRP Gr lambda^2 / ((4 pi R)^2 L A) min(1, Br / Bj)
+///   J = EIRP Gr lambda^2 / ((4 pi R)^2 L A) b
+/// with b the part of the jammer's band within the radar's: Br / Bj for a wider one in tune.
+/// @see Skolnik, Radar Handbook, 3rd ed., section 24.3; D. L. Adamy, EW 101, 2001, chapter 9
 EMSCAPE_HD inline double jammingPower_w(const RadarLink& radar, const JammerLink& jammer, double range_m,
                                         double excess_db = 0) {
   const double spread = wavelength_m(radar.frequency_hz) / (4 * kPi * range_m);
-  const double in_band =
-      jammer.bandwidth_hz > radar.bandwidth_hz ? radar.bandwidth_hz / jammer.bandwidth_hz : 1;
+  const double in_band = bandOverlap(jammer.frequency_hz > 0 ? jammer.frequency_hz : radar.frequency_hz,
+                                     jammer.bandwidth_hz, radar.frequency_hz, radar.bandwidth_hz);
   return jammer.eirp_w * spread * spread * in_band *
          std::pow(10.0, (jammer.radar_gain_dbi - jammer.polarization_loss_db -
                          jammer.radar_receive_losses_db - excess_db) /
@@ -118,23 +131,6 @@ EMSCAPE_HD inline double standOffBurnThrough_m(const RadarLink& radar, double rc
                                                const JammerLink& jammer, double jammer_range_m,
                                                double bearable_db) {
   return std::pow(10.0, (bearable_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, jammer_range_m)) / 40);
-}
-
-/// A polarisation ellipse.
-struct PolarizationEllipse {
-  double tilt_rad = 0;     ///< of the major axis from the horizontal
-  double axial_ratio = 0;  ///< minor axis over major, -1..1: 0 linear, 1 right and -1 left circular
-};
-
-/// Loss (dB) from the mismatch of two polarisations, both seen along the same direction; infinite for
-/// orthogonal ones.
-/// @see Blake 1980; C. A. Balanis, Antenna Theory, section 2.12 (in axial ratios)
-inline double polarizationMismatchLossDb(const PolarizationEllipse& a, const PolarizationEllipse& b) {
-  const double a2 = a.axial_ratio * a.axial_ratio, b2 = b.axial_ratio * b.axial_ratio;
-  const double factor = 0.5 + (4 * a.axial_ratio * b.axial_ratio +
-                               (1 - a2) * (1 - b2) * std::cos(2 * (a.tilt_rad - b.tilt_rad))) /
-                                  (2 * (1 + a2) * (1 + b2));
-  return -10 * std::log10(factor > 1 ? 1 : factor);
 }
 
 }  // namespace emscape::emfield

@@ -1,6 +1,9 @@
 #include "scenario/emitter.h"
 
+#include <algorithm>
 #include <complex>
+
+#include "base/units.h"
 
 namespace emscape::scenario {
 
@@ -20,7 +23,12 @@ const char* toString(PropagationModel model) {
   return kNames[static_cast<int>(model)];
 }
 
-double polarizationFactor(Polarization transmit, Polarization receive) {
+const char* toString(DetectionMethod method) {
+  static constexpr const char* kNames[] = {"exact", "albersheim", "shnidman"};
+  return kNames[static_cast<int>(method)];
+}
+
+double polarizationFactor(Polarization transmit, Polarization receive, double isolation_db) {
   // Jones vectors (horizontal, vertical) without the factor sqrt(1/2) of the mixed ones, which norm()
   // restores.
   struct Jones {
@@ -30,8 +38,10 @@ double polarizationFactor(Polarization transmit, Polarization receive) {
   const Jones& t = kJones[static_cast<int>(transmit)];
   const Jones& r = kJones[static_cast<int>(receive)];
   const auto norm = [](const Jones& j) { return std::norm(j.horizontal) + std::norm(j.vertical); };
-  return std::norm(t.horizontal * std::conj(r.horizontal) + t.vertical * std::conj(r.vertical)) /
-         (norm(t) * norm(r));
+  const double ideal =
+      std::norm(t.horizontal * std::conj(r.horizontal) + t.vertical * std::conj(r.vertical)) /
+      (norm(t) * norm(r));
+  return std::max(ideal, dbToRatio(-isolation_db));
 }
 
 }  // namespace emscape::scenario

@@ -98,14 +98,27 @@ std::vector<TimeInterval> parseActive(const Section& section, ParseContext& cont
   return intervals;
 }
 
-RadarReceiver parseReceiver(const Section& section, double losses_db) {
+RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
   RadarReceiver receiver;
   receiver.noise_figure_db = section.number("noise_figure_db");
+  receiver.antenna_temperature_k = section.number("antenna_temperature_k");
   receiver.bandwidth_hz = section.number("bandwidth_hz");
-  receiver.losses_db = section.optionalNumber("losses_db").value_or(losses_db);
+  receiver.losses_db = section.number("losses_db");
+  receiver.processing_gain_db = section.number("processing_gain_db");
+  if (section.has("polarization")) receiver.polarization = section.choice<Polarization>("polarization");
+  receiver.cross_polar_isolation_db = section.number("cross_polar_isolation_db");
   receiver.pulses = section.integer("pulses");
   receiver.pfa = section.number("pfa");
   receiver.swerling = section.integer("swerling");
+  receiver.detection = section.choice<DetectionMethod>("detection");
+  if (receiver.detection == DetectionMethod::albersheim && receiver.swerling != 0) {
+    context.problems.addError(
+        section.placeOf("detection"),
+        fmt::format(
+            "'detection' is albersheim, which knows steady targets alone (swerling 0), not swerling {}",
+            receiver.swerling));
+  }
+  receiver.required_signal_to_jammer_db = section.optionalNumber("required_signal_to_jammer_db");
   receiver.target_rcs_m2 = section.number("target_rcs_m2");
   return receiver;
 }
@@ -196,8 +209,7 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   if (section.has("antenna")) emitter.antenna = parseAntenna(section.section("antenna"), context);
   const bool steers = emitter.antenna && emitter.antenna->view().kind == PatternKind::phased_array;
   emitter.scan = parseScan(section.section("scan"), steers, context);
-  if (section.has("receiver"))
-    emitter.receiver = parseReceiver(section.section("receiver"), emitter.losses_db);
+  if (section.has("receiver")) emitter.receiver = parseReceiver(section.section("receiver"), context);
   emitter.active_s = parseActive(section, context);
   return emitter;
 }

@@ -109,6 +109,11 @@ const char* toString(CombineMode mode) {
   return kNames[static_cast<int>(mode)];
 }
 
+const char* toString(RadarLook look) {
+  static constexpr const char* kNames[] = {"scan", "target"};
+  return kNames[static_cast<int>(look)];
+}
+
 GeoBox terrainBox(const Scenario& scenario) {
   BoxBuilder builder(scenario.region.origin.longitude_deg);
   addRegion(builder, scenario.region);

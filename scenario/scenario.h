@@ -41,9 +41,17 @@ struct Band {
 enum class CombineMode { sum, max, per_emitter, per_band };
 const char* toString(CombineMode mode);
 
+/// Where a radar's beam is for the probability of detection and the signal-to-noise ratio.
+enum class RadarLook {
+  scan,   ///< where its scan has it at the time
+  target  ///< on each voxel in turn, as nearly as its scan lets it
+};
+const char* toString(RadarLook look);
+
 struct OutputSpec {
   std::vector<std::string> quantities{"power_density_dbwm2"};  ///< names of the quantity table
   CombineMode combine = CombineMode::sum;
+  RadarLook radar_look = RadarLook::scan;
   double floor = -120;                 ///< lowest value kept, in each quantity's unit
   double count_threshold_dbwm2 = -90;  ///< emitter_count: emitters above this power density
 };

@@ -79,6 +79,7 @@ ReceiverProfile parseReceiverProfile(const Section& section) {
   receiver.gain_dbi = section.number("gain_dbi");
   receiver.losses_db = section.number("losses_db");
   if (section.has("polarization")) receiver.polarization = section.choice<Polarization>("polarization");
+  receiver.cross_polar_isolation_db = section.number("cross_polar_isolation_db");
   receiver.center_frequency_hz = section.optionalNumber("center_frequency_hz").value_or(0);
   receiver.bandwidth_hz = section.optionalNumber("bandwidth_hz").value_or(0);
   return receiver;
@@ -97,7 +98,8 @@ Band parseBand(const Section& section, ParseContext& context) {
 /// What the output asks for must be there.
 OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseContext& context) {
   const OutputSpec output{section.texts("quantities"), section.choice<CombineMode>("combine"),
-                          section.number("floor"), section.number("count_threshold_dbwm2")};
+                          section.choice<RadarLook>("radar_look"), section.number("floor"),
+                          section.number("count_threshold_dbwm2")};
   const auto hasKind = [&](EmitterKind kind) {
     return std::any_of(scenario.emitters.begin(), scenario.emitters.end(),
                        [kind](const Emitter& emitter) { return emitter.kind == kind; });
@@ -111,10 +113,11 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
     const std::string& quantity = output.quantities[i];
     const FilePlace place = section.placeOf("quantities", i);
     if (quantity == "received_power_dbm") need(!scenario.receivers.empty(), place, quantity, "a receiver");
-    if (quantity == "snr_db" || quantity == "detection_probability" || quantity == "jammer_to_signal_db") {
+    const bool is_of_jamming = quantity == "jammer_to_signal_db" || quantity == "burn_through_margin_db";
+    if (quantity == "snr_db" || quantity == "detection_probability" || is_of_jamming) {
       need(hasKind(EmitterKind::radar), place, quantity, "an emitter of kind radar");
     }
-    if (quantity == "jammer_to_signal_db") {
+    if (is_of_jamming) {
       need(hasKind(EmitterKind::jammer), place, quantity, "an emitter of kind jammer");
     }
   }

@@ -283,18 +283,38 @@ const ObjectSpec& scanSpec() {
   return spec;
 }
 
+KeySpec crossPolarKey() {
+  return byDefault("cross_polar_isolation_db", number("dB").from(0).to(100), kCrossPolarIsolation_db,
+                   "how far the antenna keeps the orthogonal polarisation down");
+}
+
 const ObjectSpec& radarReceiverSpec() {
   static const ObjectSpec spec{
       "radar receiver",
       "",
       {
           required("noise_figure_db", number("dB").from(0).to(60), "referred to 290 K"),
+          byDefault("antenna_temperature_k", number("K").from(0).to(10000),
+                    RadarReceiver{}.antenna_temperature_k, "what the antenna sees of sky and ground"),
           required("bandwidth_hz", kBandwidth, "of the noise"),
-          optional("losses_db", kLoss, "receive path; by default the emitter's losses_db"),
+          byDefault("losses_db", kLoss, RadarReceiver{}.losses_db,
+                    "between antenna and receiver; the emitter's losses_db, of its transmit path, do not "
+                    "count again"),
+          byDefault(
+              "processing_gain_db", number("dB").from(-100).to(100), RadarReceiver{}.processing_gain_db,
+              "of an echo over noise and jamming: pulse compression, coherent integration, less losses"),
+          optional("polarization", choiceUpTo(Polarization::circular_left),
+                   "for jamming; by default the emitter's. target_rcs_m2 is that between the two"),
+          crossPolarKey(),
           byDefault("pulses", kInteger.from(1).to(1e6), RadarReceiver{}.pulses, "integrated on a target"),
           byDefault("pfa", number().above(0).to(0.5), RadarReceiver{}.pfa, "probability of false alarm"),
           byDefault("swerling", kInteger.from(0).to(4), RadarReceiver{}.swerling,
                     "case of target fluctuation"),
+          byDefault("detection", choiceUpTo(DetectionMethod::shnidman), toString(RadarReceiver{}.detection),
+                    "how detection_probability is found: exact statistics or a formula; albersheim with "
+                    "swerling 0 alone"),
+          optional("required_signal_to_jammer_db", number("dB").from(-100).to(100),
+                   "where the radar burns through; by default what a detection probability of 0.5 takes"),
           byDefault("target_rcs_m2", number("m2").above(0).to(1e9), RadarReceiver{}.target_rcs_m2,
                     "radar cross section"),
       }};
@@ -338,6 +358,7 @@ const ObjectSpec& receiverSpec() {
           byDefault("losses_db", kLoss, ReceiverProfile{}.losses_db, "between antenna and receiver"),
           optional("polarization", choiceUpTo(Polarization::circular_left),
                    "by default that of each emitter"),
+          crossPolarKey(),
           optional("center_frequency_hz", kFrequency, "by default that of each emitter"),
           optional("bandwidth_hz", kBandwidth, "by default as wide as each emitter's signal"),
       }};
@@ -363,12 +384,15 @@ const ObjectSpec& outputSpec() {
           byDefault("quantities",
                     listOf(choice({"power_density_dbwm2", "field_strength_dbuvm", "received_power_dbm",
                                    "snr_db", "emitter_count", "dominant_emitter", "detection_probability",
-                                   "jammer_to_signal_db"}),
+                                   "jammer_to_signal_db", "burn_through_margin_db"}),
                            1, kMostItems)
                         .distinct(),
                     OutputSpec{}.quantities, "what the volumes hold"),
           byDefault("combine", choiceUpTo(CombineMode::per_band), toString(OutputSpec{}.combine),
                     "how emitters are put together"),
+          byDefault("radar_look", choiceUpTo(RadarLook::target), toString(OutputSpec{}.radar_look),
+                    "for snr_db and detection_probability: beams where their scans have them at the time, or "
+                    "on each voxel in turn (coverage)"),
           byDefault("floor", number().from(-1000).to(1000), OutputSpec{}.floor,
                     "lowest value kept, in each quantity's unit"),
           byDefault("count_threshold_dbwm2", number("dBW/m2").from(-1000).to(1000),

@@ -72,27 +72,44 @@ void aim(BeamPose& pose, double azimuth_deg, double elevation_deg) {
   turn(pose.forward, pose.up, elevation_deg);
 }
 
-BeamPose poseAt(const Attitude& attitude, const Emitter& emitter, double t_s) {
-  // North, east, up, turned by yaw, then pitch, then roll.
+/// The platform's axes: north, east, up, turned by yaw, then pitch, then roll.
+BeamPose axesOf(const Attitude& attitude) {
   BeamPose pose;
   pose.forward = {0, 1, 0};
   pose.right = {1, 0, 0};
   pose.up = {0, 0, 1};
   aim(pose, attitude.heading_deg, attitude.pitch_deg);
   turn(pose.up, pose.right, attitude.roll_deg);
+  return pose;
+}
 
+bool isArray(const Emitter& emitter) {
+  return emitter.antenna && emitter.antenna->view().kind == PatternKind::phased_array;
+}
+
+BeamPose beamPose(BeamPose pose, const Emitter& emitter, double t_s) {
   const BeamDirection beam = beamAt(emitter.scan, t_s);
   if (!beam.electronic) {
     aim(pose, beam.azimuth_deg, beam.elevation_deg);
     return pose;
   }
   aim(pose, emitter.scan.azimuth_deg, emitter.scan.elevation_deg);
-  if (emitter.antenna && emitter.antenna->view().kind == PatternKind::phased_array) {
+  if (isArray(emitter)) {
     const double azimuth_rad = degToRad(beam.azimuth_deg), elevation_rad = degToRad(beam.elevation_deg);
     pose.steer_u = std::sin(azimuth_rad) * std::cos(elevation_rad);
     pose.steer_v = std::sin(elevation_rad);
   } else {
     aim(pose, beam.azimuth_deg, beam.elevation_deg);
+  }
+  return pose;
+}
+
+BeamPose mountPose(BeamPose pose, const Emitter& emitter) {
+  const ScanSpec& scan = emitter.scan;
+  if (isSteered(emitter)) {
+    aim(pose, scan.azimuth_deg, scan.elevation_deg);
+  } else if (scan.kind == ScanKind::sector || scan.kind == ScanKind::raster) {
+    aim(pose, scan.azimuth_deg, 0);
   }
   return pose;
 }
@@ -105,6 +122,11 @@ bool isActive(const Emitter& emitter, double t_s) {
 }
 
 }  // namespace
+
+bool isSteered(const Emitter& emitter) {
+  return isArray(emitter) &&
+         (emitter.scan.kind == ScanKind::dwell_list || emitter.scan.kind == ScanKind::fixed);
+}
 
 Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s) {
   Snapshot snapshot;
@@ -120,7 +142,9 @@ Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terra
     state.active = isActive(emitter, t_s);
     state.position = carrier.position;
     state.height_msl_m = carrier.height_msl_m;
-    state.beam = poseAt(carrier.attitude, emitter, t_s);
+    const BeamPose axes = axesOf(carrier.attitude);
+    state.beam = beamPose(axes, emitter, t_s);
+    state.mount = mountPose(axes, emitter);
     snapshot.emitters.push_back(state);
   }
   return snapshot;

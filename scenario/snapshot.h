@@ -29,6 +29,9 @@ struct EmitterState {
   GeodeticPosition position;
   double height_msl_m = 0;
   BeamPose beam;
+  /// The frame in which the beam can be turned onto a target: the platform's axes, turned to the centre of a
+  /// sector or raster scan in azimuth; of an array that is steered its boresight.
+  BeamPose mount;
 };
 
 /// States are in the order of Scenario::platforms and Scenario::emitters.
@@ -39,6 +42,9 @@ struct Snapshot {
   std::vector<PlatformState> platforms;
   std::vector<EmitterState> emitters;
 };
+
+/// Whether an emitter looks about without turning: a phased array that dwells or stands.
+bool isSteered(const Emitter& emitter);
 
 /// The scenario at t_s seconds since its epoch. Pure. Thread-safe.
 /// @param terrain  for heights above ground; may be null if no platform uses them

@@ -127,6 +127,13 @@ void CpuEngine::combine(const CombinePass& pass) {
   }
   Stopwatch watch;
   combineCpu(task);
+  for (std::size_t m = 0; m < pass.members.size(); ++m) {
+    for (const RadarShare& share : pass.members[m].radars) {
+      float* const accumulator = task.accumulators[share.channel].value;
+      if (accumulator == nullptr) continue;
+      radarCpu(radarPass(share, task.emitters[m].beam, task, accumulator));
+    }
+  }
   times_.combine_ms += watch.lap_ms();
 }
 

@@ -191,15 +191,17 @@ TEST(FieldSolver, ReceivedPowerKnowsPolarisationAndBandwidth) {
   emitter.bandwidth_hz = 4e6;
   addEmitter(*scenario, {0, 0, 500}, emitter);
   scenario->output.quantities = {"received_power_dbm"};
-  scenario->receivers = {{"receiver", 0, 0, std::nullopt, 0, 0}};
+  scenario->receivers = {scenario::ReceiverProfile{}};
   const float matched = valueAt(*solve(scenario), 3, 3, 1);
   scenario->receivers[0].bandwidth_hz = 1e6;
   EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, -10 * std::log10(4.0), 1e-4);
-  scenario->receivers[0] = {"receiver", 3, 1, scenario::Polarization::slant_45, 0, 0};
+  scenario->receivers[0] = {"receiver", 3, 1, scenario::Polarization::slant_45};
   EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, 2 - 10 * std::log10(2.0), 1e-4);
-  scenario->receivers[0] = {"receiver", 0, 0, scenario::Polarization::horizontal, 0, 0};
-  EXPECT_EQ(valueAt(*solve(scenario), 3, 3, 1), scenario->output.floor);
-  scenario->receivers[0] = {"receiver", 0, 0, std::nullopt, 2e9, 1e6};
+  scenario->receivers[0] = {"receiver", 0, 0, scenario::Polarization::horizontal};
+  EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, -scenario::kCrossPolarIsolation_db, 1e-4);
+  scenario->receivers[0].polarization.reset();
+  scenario->receivers[0].center_frequency_hz = 2e9;
+  scenario->receivers[0].bandwidth_hz = 1e6;
   EXPECT_EQ(valueAt(*solve(scenario), 3, 3, 1), scenario->output.floor) << "another frequency";
 }
 

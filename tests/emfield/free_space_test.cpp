@@ -20,26 +20,6 @@ using test::referenceFile;
 
 constexpr double kSpacing_m = 1000;
 
-/// Voxels along x at whole kilometres of an emitter in the middle; straight rays (k = 1).
-std::shared_ptr<scenario::Scenario> lineOfVoxels(double farthest_m, double spacing_m) {
-  const int count = 2 * static_cast<int>(std::lround(farthest_m / spacing_m)) + 1;
-  auto scenario =
-      emptyScenario(FrameKind::enu, 44.3, -71.4, {count * spacing_m, 3 * spacing_m, 2000}, {count, 3, 2});
-  scenario->atmosphere.k_factor = 1;
-  return scenario;
-}
-
-/// The geodetic position of the voxel in the middle of the lowest layer.
-GeodeticPosition middleOf(const scenario::Scenario& scenario) {
-  const volume::Grid grid = gridOf(scenario.region);
-  return GeoFrame(grid.frame).toGeodetic(grid.center_m(grid.dims.x / 2, grid.dims.y / 2, 0));
-}
-
-float valueEast(const volume::DenseVolume& volume, double distance_m) {
-  const int steps = static_cast<int>(std::lround(distance_m / volume.grid.spacing_m.x));
-  return valueAt(volume, volume.grid.dims.x / 2 + steps, volume.grid.dims.y / 2, 0);
-}
-
 struct FreeSpaceRow {
   double frequency_hz, distance_m, eirp_dbw, loss_db, power_density_dbwm2, field_dbuvm, received_dbw;
 };

@@ -1,6 +1,7 @@
 /// Scenarios for the tests, made in code.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <string>
 
@@ -65,6 +66,26 @@ inline std::shared_ptr<const volume::DenseVolume> solve(const std::shared_ptr<sc
 
 inline float valueAt(const volume::DenseVolume& volume, int i, int j, int k) {
   return volume.values[static_cast<std::size_t>(volume.grid.index(i, j, k))];
+}
+
+/// Voxels along x at whole kilometres of an emitter in the middle; straight rays (k = 1).
+inline std::shared_ptr<scenario::Scenario> lineOfVoxels(double farthest_m, double spacing_m) {
+  const int count = 2 * static_cast<int>(std::lround(farthest_m / spacing_m)) + 1;
+  auto scenario =
+      emptyScenario(FrameKind::enu, 44.3, -71.4, {count * spacing_m, 3 * spacing_m, 2000}, {count, 3, 2});
+  scenario->atmosphere.k_factor = 1;
+  return scenario;
+}
+
+/// The geodetic position of the voxel in the middle of the lowest layer.
+inline GeodeticPosition middleOf(const scenario::Scenario& scenario) {
+  const volume::Grid grid = gridOf(scenario.region);
+  return GeoFrame(grid.frame).toGeodetic(grid.center_m(grid.dims.x / 2, grid.dims.y / 2, 0));
+}
+
+inline float valueEast(const volume::DenseVolume& volume, double distance_m) {
+  const int steps = static_cast<int>(std::lround(distance_m / volume.grid.spacing_m.x));
+  return valueAt(volume, volume.grid.dims.x / 2 + steps, volume.grid.dims.y / 2, 0);
 }
 
 }  // namespace emscape::emfield::testing

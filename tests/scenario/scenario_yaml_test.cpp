@@ -61,7 +61,8 @@ TEST_F(ScenarioYaml, ReadsEverySection) {
   EXPECT_EQ(radar.antenna->gain_dbi, 34);
   EXPECT_EQ(radar.scan.kind, ScanKind::rotate);
   EXPECT_EQ(radar.scan.rate_rpm, 12);
-  EXPECT_EQ(radar.receiver.losses_db, 3) << "by default the emitter's";
+  EXPECT_EQ(radar.losses_db, 3);
+  EXPECT_EQ(radar.receiver.losses_db, 0) << "those of transmission do not count again";
   EXPECT_EQ(radar.receiver.target_rcs_m2, 5);
   ASSERT_EQ(radar.active_s.size(), 2u);
   EXPECT_EQ(radar.active_s[1].begin_s, 90);
@@ -117,6 +118,14 @@ TEST_F(ScenarioYaml, DefaultsOfTheTableAreThoseOfTheTypes) {
   EXPECT_EQ(emitter.receiver.pfa, RadarReceiver{}.pfa);
   EXPECT_EQ(emitter.receiver.swerling, RadarReceiver{}.swerling);
   EXPECT_EQ(emitter.receiver.target_rcs_m2, RadarReceiver{}.target_rcs_m2);
+  EXPECT_EQ(emitter.receiver.antenna_temperature_k, RadarReceiver{}.antenna_temperature_k);
+  EXPECT_EQ(emitter.receiver.losses_db, RadarReceiver{}.losses_db);
+  EXPECT_EQ(emitter.receiver.processing_gain_db, RadarReceiver{}.processing_gain_db);
+  EXPECT_EQ(emitter.receiver.polarization, RadarReceiver{}.polarization);
+  EXPECT_EQ(emitter.receiver.cross_polar_isolation_db, RadarReceiver{}.cross_polar_isolation_db);
+  EXPECT_EQ(emitter.receiver.detection, RadarReceiver{}.detection);
+  EXPECT_EQ(emitter.receiver.required_signal_to_jammer_db, RadarReceiver{}.required_signal_to_jammer_db);
+  EXPECT_EQ(scenario->output.radar_look, OutputSpec{}.radar_look);
   EXPECT_EQ(scenario->output.quantities, OutputSpec{}.quantities);
   EXPECT_EQ(scenario->output.combine, OutputSpec{}.combine);
   EXPECT_EQ(scenario->output.floor, OutputSpec{}.floor);
