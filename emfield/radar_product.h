@@ -96,8 +96,7 @@ struct RadarPass {
 
 /// One voxel of a pass: what the loops of both backends do.
 template <scenario::PatternKind kind>
-EMSCAPE_HD inline void addRadar(const RadarPass& pass, int i, int j, int k) {
-  const std::size_t column = static_cast<std::size_t>(j) * pass.dims.x + i;
+EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k) {
   const std::size_t voxel = static_cast<std::size_t>(k) * pass.dims.x * pass.dims.y + column;
   const float root = echoToNoiseRoot<kind>(pass.task, pass.beam, column, voxel, pass.t_m[k]);
   float jamming = 0;

@@ -12,7 +12,8 @@ template <PatternKind kind>
 void addRows(const RadarPass& pass, int begin, int end) {
   for (int j = begin; j < end; ++j) {
     for (int k = pass.first_row_k == nullptr ? 0 : pass.first_row_k[j]; k < pass.dims.z; ++k) {
-      for (int i = 0; i < pass.dims.x; ++i) addRadar<kind>(pass, i, j, k);
+      const std::size_t first = static_cast<std::size_t>(j) * pass.dims.x;
+      for (int i = 0; i < pass.dims.x; ++i) addEcho<kind>(pass, first + i, k);
     }
   }
 }

@@ -16,6 +16,10 @@ namespace emscape::emfield::cuda {
 /// what it holds means nothing.
 void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
+/// One radar's pass, as radarCpu(): all pointers are to device memory.
+/// @param first_valid_k  as for combine
+void addRadar(const RadarPass& pass, const std::uint16_t* first_valid_k, cudaStream_t stream);
+
 /// A value range while kernels widen it: floats as integers of the same order.
 struct DeviceRange {
   unsigned lowest = ~0u, highest = 0;

@@ -47,6 +47,12 @@ struct ChannelBuffers {
   volume::DeviceVolumeRing ring;
 };
 
+/// What a radar's part in a channel points to.
+struct RadarTables {
+  Buffer<DetectionCurveView::Knot> knots;
+  Buffer<JammerAtRadar> jammers;
+};
+
 class CudaEngine : public FieldEngine {
  public:
   CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecision precision);
@@ -77,6 +83,7 @@ class CudaEngine : public FieldEngine {
   cuda::StageClock clock_;
   cuda::DeviceGeometry geometry_;
   std::map<const scenario::Antenna*, DevicePattern> patterns_;
+  std::map<std::pair<int, int>, RadarTables> radar_tables_;  ///< of a channel and an emitter
   std::vector<ChannelBuffers> buffers_;
   Buffer<cuda::DeviceRange> ranges_;
   std::vector<std::shared_ptr<const DeviceVolume>> device_volumes_;
@@ -135,6 +142,22 @@ void CudaEngine::combine(const CombinePass& pass) {
   }
   clock_.begin(stream_);
   cuda::combine(task, geometry_.firstValidK(), stream_);
+  for (std::size_t m = 0; m < pass.members.size(); ++m) {
+    for (const RadarShare& share : pass.members[m].radars) {
+      float* const accumulator = task.accumulators[share.channel].value;
+      if (accumulator == nullptr) continue;
+      RadarPass radar = radarPass(share, task.emitters[m].beam, task, accumulator);
+      RadarTables& tables = radar_tables_[{share.channel, pass.members[m].emitter.emitter_index}];
+      if (tables.knots.size() == 0) {
+        tables.knots.upload(share.task.curve.knots, static_cast<std::size_t>(share.task.curve.count),
+                            stream_);
+      }
+      tables.jammers.upload(share.jammers, stream_);
+      radar.task.curve.knots = tables.knots.data();
+      radar.task.jammers = tables.jammers.data();
+      cuda::addRadar(radar, geometry_.firstValidK(), stream_);
+    }
+  }
   clock_.end(&StageTimes::combine_ms, stream_);
 }
 
