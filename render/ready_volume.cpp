@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/simd.h"
 
 namespace emscape::render {
 namespace {
@@ -21,9 +22,23 @@ void checkSize(const volume::DenseVolume& volume) {
   }
 }
 
-bool allFinite(const float* values, int count) {
+/// Codes of a run of values; what lies beyond the codes' range, which no sample shows, takes the nearest.
+/// @return whether all values are finite
+EMSCAPE_SIMD_CLONES bool encodeRun(const float* values, int count, const CodedValues& coded,
+                                   std::int16_t* codes) {
+  const float middle = coded.middle;
+  const float codes_per_unit = coded.step_per_weight > 0.0F ? 1.0F / coded.step() : 0.0F;
+  constexpr float kLargest = CodedValues::kLargest;
   int others = 0;
-  for (int i = 0; i < count; ++i) others += values[i] - values[i] != 0.0F ? 1 : 0;
+  for (int i = 0; i < count; ++i) {
+    const float from_middle = values[i] - middle;
+    others += from_middle - from_middle != 0.0F ? 1 : 0;
+    float code = from_middle * codes_per_unit;
+    code = code > -kLargest ? code : -kLargest;  // NaN too
+    code = code < kLargest ? code : kLargest;
+    // What is converted is positive, so that it is rounded.
+    codes[i] = static_cast<std::int16_t>(static_cast<int>(code + kLargest + 0.5F) - CodedValues::kLargest);
+  }
   return others == 0;
 }
 
@@ -41,18 +56,48 @@ void ReadyVolume::set(std::shared_ptr<const volume::DenseVolume> volume) {
   } else {
     bricks_.emplace(shown);
   }
-  const volume::BricksView bricks = bricks_->view();
-  highest_ = -std::numeric_limits<float>::infinity();
-  for (long long i = 0; i < bricks.dims.count(); ++i) highest_ = std::max(highest_, bricks.ranges[i].max);
+  encode(shown);
+}
 
+void ReadyVolume::encode(const volume::DenseVolume& shown) {
+  const volume::BricksView bricks = bricks_->view();
+  ranges_.assign(bricks.ranges, bricks.ranges + bricks.dims.count());
+  float lowest = std::numeric_limits<float>::infinity();
+  highest_ = -lowest;
+  for (const volume::ValueRange& range : ranges_) {
+    lowest = std::min(lowest, range.min);
+    highest_ = std::max(highest_, range.max);
+  }
+  // Of halves, as the difference of two floats can be infinite.
+  coded_.middle = 0.5F * lowest + 0.5F * highest_;
+  const float step = (highest_ - coded_.middle) / CodedValues::kLargest;
+  coded_.step_per_weight = step / CodedValues::kWeights;
+  const bool too_small = highest_ > lowest && !(coded_.step_per_weight >= std::numeric_limits<float>::min());
+
+  codes_.resize(shown.values.size());
   std::atomic<bool> all_finite{true};
   const int layer = shown.grid.dims.x * shown.grid.dims.y;
   parallelFor(shown.grid.dims.z, 1, [&](int begin, int end) {
     for (int k = begin; k < end; ++k) {
-      if (!allFinite(&shown.values[static_cast<std::size_t>(k) * layer], layer)) all_finite = false;
+      const std::size_t first = static_cast<std::size_t>(k) * layer;
+      if (!encodeRun(&shown.values[first], layer, coded_, &codes_[first])) all_finite = false;
     }
   });
   all_finite_ = all_finite;
+  coded_.codes = all_finite_ && !too_small ? codes_.data() : nullptr;
+  if (coded_.codes == nullptr) return;
+
+  // A value's code rounds; where codes are sampled, a brick's values so may lie beyond its range.
+  const auto coded = [&](float value) {
+    std::int16_t code = 0;
+    encodeRun(&value, 1, coded_, &code);
+    return coded_.value(static_cast<float>(code * CodedValues::kWeights));
+  };
+  for (volume::ValueRange& range : ranges_) {
+    if (range.empty()) continue;
+    range = {std::min(range.min, coded(range.min)), std::max(range.max, coded(range.max))};
+    highest_ = std::max(highest_, range.max);
+  }
 }
 
 void ReadyVolume::fillBelowMask() {
@@ -79,9 +124,21 @@ void ReadyVolume::fillBelowMask() {
   });
 }
 
+volume::BricksView ReadyVolume::bricks() const {
+  volume::BricksView bricks = bricks_->view();
+  bricks.ranges = ranges_.data();
+  return bricks;
+}
+
 VolumeView ReadyVolume::view() const {
-  if (masked_below_ == 0) return {volume_->values.data(), volume_->grid.dims, nullptr, 0, all_finite_};
-  return {filled_.values.data(), volume_->grid.dims, first_valid_k_.data(), masked_below_, all_finite_};
+  VolumeView view;
+  view.values = masked_below_ > 0 ? filled_.values.data() : volume_->values.data();
+  view.dims = volume_->grid.dims;
+  view.first_valid_k = masked_below_ > 0 ? first_valid_k_.data() : nullptr;
+  view.masked_below = masked_below_;
+  view.all_finite = all_finite_;
+  view.coded = coded_;
+  return view;
 }
 
 }  // namespace emscape::render

@@ -10,6 +10,22 @@
 
 namespace emscape::render {
 
+/// The values of a volume once more, in 16 bits: what the processor's vectors of rays gather, as half as much
+/// memory streams by. A value is middle + step * code.
+struct CodedValues {
+  /// Widest sum of two neighbours' codes with weights that add up to it, in 32 bits.
+  static constexpr std::int32_t kWeights = 32767;
+  static constexpr std::int32_t kLargest = 32767;  ///< codes are -kLargest..kLargest
+
+  const std::int16_t* codes = nullptr;  ///< as VolumeView::values; null: there are none
+  float middle = 0;
+  float step_per_weight = 0;  ///< step / kWeights
+
+  /// A value from a code times kWeights, or from neighbours' codes times weights that add up to it.
+  EMSCAPE_HD float value(float weighted_code) const { return fmaf(weighted_code, step_per_weight, middle); }
+  EMSCAPE_HD float step() const { return step_per_weight * static_cast<float>(kWeights); }
+};
+
 /// Values as a ReadyVolume holds them. Positions are in index space: voxel (i, j, k) has its centre at
 /// (i, j, k).
 struct VolumeView {
@@ -19,6 +35,7 @@ struct VolumeView {
   int masked_below = 0;                         ///< no voxel of a layer from here up is masked
   bool all_finite = true;                       ///< no value is NaN or infinite
   std::uint64_t texture = 0;                    ///< on a GPU: of the values, which are null then
+  CodedValues coded;
 
   EMSCAPE_HD Vec3d lower() const { return {-0.5, -0.5, -0.5}; }
   EMSCAPE_HD Vec3d upper() const { return {dims.x - 0.5, dims.y - 0.5, dims.z - 0.5}; }

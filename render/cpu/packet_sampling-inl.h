@@ -135,6 +135,37 @@ class PairReader {
 };
 #endif
 
+/// Reads pairs of neighbouring codes, and weighs them: code times CodedValues::kWeights where both are one.
+class CodePairs {
+ public:
+  /// @param index     in codes
+  /// @param fraction  0..1, from the first code of a pair to the second
+  HWY_INLINE CodePairs(I index, F fraction)
+      : offset_(hn::ShiftLeft<1>(index)),
+        second_(hn::NearestInt(fraction * hn::Set(kF, static_cast<float>(CodedValues::kWeights)))) {}
+
+#if HWY_TARGET == HWY_SCALAR
+  HWY_INLINE F read(const std::int16_t* codes) const {
+    const std::int16_t* pair = codes + hn::GetLane(offset_) / 2;
+    const std::int32_t second = hn::GetLane(second_);
+    return hn::Set(kF, static_cast<float>(pair[0] * (CodedValues::kWeights - second) + pair[1] * second));
+  }
+#else
+  HWY_INLINE F read(const std::int16_t* codes) const {
+    const hn::Repartition<std::int16_t, TagI> pairs;
+    const I zero = hn::Zero(kI);
+    const I weights = hn::Or(hn::ShiftLeft<16>(second_), hn::Set(kI, CodedValues::kWeights) - second_);
+    const I pair = hn::GatherOffset(kI, reinterpret_cast<const std::int32_t*>(codes), offset_);
+    I unused = zero;
+    return hn::ConvertTo(kF, hn::ReorderWidenMulAccumulate(kI, hn::BitCast(pairs, pair),
+                                                           hn::BitCast(pairs, weights), zero, unused));
+  }
+#endif
+
+ private:
+  I offset_, second_;
+};
+
 /// One axis of a cell: its low corner and how far a position lies from it, 0..1.
 struct CellAxis {
   I low;
@@ -155,7 +186,34 @@ HWY_INLINE F mix(F a, F b, F fraction) {
   return hn::MulAdd(fraction, b - a, a);
 }
 
+/// Reads the volume's own values.
+struct ValueReader {
+  static HWY_INLINE F cell(const VolumeView& volume, long long row, long long layer, I low, F x, F y, F z) {
+    const PairReader pairs(low);
+    F v000, v100, v010, v110, v001, v101, v011, v111;
+    pairs.read(volume.values, v000, v100);
+    pairs.read(volume.values + row, v010, v110);
+    pairs.read(volume.values + layer, v001, v101);
+    pairs.read(volume.values + layer + row, v011, v111);
+    const F below = mix(mix(v000, v100, x), mix(v010, v110, x), y);
+    const F above = mix(mix(v001, v101, x), mix(v011, v111, x), y);
+    return mix(below, above, z);
+  }
+};
+
+/// Reads its codes, which must be there.
+struct CodedReader {
+  static HWY_INLINE F cell(const VolumeView& volume, long long row, long long layer, I low, F x, F y, F z) {
+    const CodePairs pairs(low, x);
+    const CodedValues& coded = volume.coded;
+    const F below = mix(pairs.read(coded.codes), pairs.read(coded.codes + row), y);
+    const F above = mix(pairs.read(coded.codes + layer), pairs.read(coded.codes + layer + row), y);
+    return hn::MulAdd(mix(below, above, z), hn::Set(kF, coded.step_per_weight), hn::Set(kF, coded.middle));
+  }
+};
+
 /// See TrilinearSampler. @param shown  lanes whose nearest voxel is masked are taken out
+template <class Reader>
 HWY_INLINE F sampleVolume(const VolumeView& volume, const Vec3F& position, M& shown) {
   const Dims dims = volume.dims;
   const CellAxis x(position.x, dims.x);
@@ -171,15 +229,8 @@ HWY_INLINE F sampleVolume(const VolumeView& volume, const Vec3F& position, M& sh
   }
   const long long row = dims.y > 1 ? dims.x : 0;
   const long long layer = dims.z > 1 ? static_cast<long long>(dims.x) * dims.y : 0;
-  const PairReader cell((z.low * hn::Set(kI, dims.y) + y.low) * hn::Set(kI, dims.x) + x.low);
-  F v000, v100, v010, v110, v001, v101, v011, v111;
-  cell.read(volume.values, v000, v100);
-  cell.read(volume.values + row, v010, v110);
-  cell.read(volume.values + layer, v001, v101);
-  cell.read(volume.values + layer + row, v011, v111);
-  const F below = mix(mix(v000, v100, x.fraction), mix(v010, v110, x.fraction), y.fraction);
-  const F above = mix(mix(v001, v101, x.fraction), mix(v011, v111, x.fraction), y.fraction);
-  return mix(below, above, z.fraction);
+  const I low = (z.low * hn::Set(kI, dims.y) + y.low) * hn::Set(kI, dims.x) + x.low;
+  return Reader::cell(volume, row, layer, low, x.fraction, y.fraction, z.fraction);
 }
 
 /// See TransferView.

@@ -27,9 +27,9 @@ HWY_INLINE F differenceAlong(const VolumeView& volume, Vec3F center, F Vec3F::*c
   M has_low = lanes;
   M has_high = lanes;
   center.*component = held - before;
-  const F low = sampleVolume(volume, center, has_low);
+  const F low = sampleVolume<ValueReader>(volume, center, has_low);
   center.*component = held + after;
-  const F high = sampleVolume(volume, center, has_high);
+  const F high = sampleVolume<ValueReader>(volume, center, has_high);
   before = hn::IfThenElseZero(has_low, before);
   after = hn::IfThenElseZero(has_high, after);
   const F apart = before + after;

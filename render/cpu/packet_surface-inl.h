@@ -70,7 +70,8 @@ class SurfaceSearch {
  private:
   HWY_INLINE Points pointsAt(F distance, M lanes) const {
     M known = lanes;
-    const F value = sampleVolume(task_.volume, rays_.start.along(rays_.direction, distance), known);
+    const F value =
+        sampleVolume<ValueReader>(task_.volume, rays_.start.along(rays_.direction, distance), known);
     return {distance, value, known};
   }
 

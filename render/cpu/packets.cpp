@@ -218,7 +218,7 @@ struct MidaLanes {
 };
 
 /// Marches a packet of rays; see RaycastTask::march().
-template <class Lanes, bool kShades>
+template <class Lanes, class Reader, bool kShades>
 HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long& samples) {
   const F one = hn::Set(kF, 1.0F);
   const F half = hn::Set(kF, 0.5F);
@@ -229,7 +229,7 @@ HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long
   Lanes lanes;
   // The sample of some lanes; returns those that it changed.
   const auto take = [&](const Vec3F& position, M shown, bool last) HWY_ATTR {
-    const F value = sampleVolume(task.volume, position, shown);
+    const F value = sampleVolume<Reader>(task.volume, position, shown);
     const F f = normalized(task.transfer, value);
     Color color = Color::zero();
     if (Lanes::kNeedsColor) {
@@ -303,22 +303,37 @@ HWY_NOINLINE long long castAll(const RaycastTask& task, const Pixel* pixels, con
   return samples;
 }
 
+/// The modes whose samples are taken as they are.
+template <class Lanes>
+HWY_INLINE long long castPlain(const RaycastTask& task, const Pixel* pixels, const float* limits, int count,
+                               Rgba* fronts) {
+  return task.volume.coded.codes != nullptr
+             ? castAll<castPacket<Lanes, CodedReader, false>>(task, pixels, limits, count, fronts)
+             : castAll<castPacket<Lanes, ValueReader, false>>(task, pixels, limits, count, fronts);
+}
+
+/// With light on them: it follows from small differences, which codes would round.
+template <class Lanes>
+HWY_INLINE long long castFog(const RaycastTask& task, const Pixel* pixels, const float* limits, int count,
+                             Rgba* fronts) {
+  return task.shading.shades_fog
+             ? castAll<castPacket<Lanes, ValueReader, true>>(task, pixels, limits, count, fronts)
+             : castPlain<Lanes>(task, pixels, limits, count, fronts);
+}
+
 long long cast(const RaycastTask& task, CompositingMode mode, const Pixel* pixels, const float* limits,
                int count, Rgba* fronts) {
-  const bool shades = task.shading.shades_fog;
   switch (mode) {
     case CompositingMode::mida:
-      return shades ? castAll<castPacket<MidaLanes, true>>(task, pixels, limits, count, fronts)
-                    : castAll<castPacket<MidaLanes, false>>(task, pixels, limits, count, fronts);
+      return castFog<MidaLanes>(task, pixels, limits, count, fronts);
     case CompositingMode::mip:
-      return castAll<castPacket<MipLanes, false>>(task, pixels, limits, count, fronts);
+      return castPlain<MipLanes>(task, pixels, limits, count, fronts);
     case CompositingMode::iso:
       return castAll<castSurface>(task, pixels, limits, count, fronts);
     case CompositingMode::dvr:
       break;
   }
-  return shades ? castAll<castPacket<DvrLanes, true>>(task, pixels, limits, count, fronts)
-                : castAll<castPacket<DvrLanes, false>>(task, pixels, limits, count, fronts);
+  return castFog<DvrLanes>(task, pixels, limits, count, fronts);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -335,8 +350,19 @@ bool packetsCanCast(const VolumeView& volume) {
   return volume.all_finite && volume.dims.x >= 2 && volume.dims.count() < kMostVoxels;
 }
 
-long long castPackets(const RaycastTask& task, CompositingMode mode, const Pixel* pixels, const float* limits,
-                      int count, Rgba* fronts) {
+namespace {
+/// Whether a volume's codes are as good as its values: what they round is hidden by the transfer table.
+bool codesServe(const CodedValues& coded, const Dims& dims, const TransferView& transfer) {
+  constexpr long long kMostCodes = 1LL << 30;  // their places in bytes are 32-bit numbers
+  constexpr float kCoarsest = 1.0F / 4096;     // of the transfer function's interval
+  return coded.codes != nullptr && dims.count() < kMostCodes && coded.step() * transfer.scale <= kCoarsest;
+}
+}  // namespace
+
+long long castPackets(const RaycastTask& given, CompositingMode mode, const Pixel* pixels,
+                      const float* limits, int count, Rgba* fronts) {
+  RaycastTask task = given;
+  if (!codesServe(task.volume.coded, task.volume.dims, task.transfer)) task.volume.coded.codes = nullptr;
   return HWY_DYNAMIC_DISPATCH(cast)(task, mode, pixels, limits, count, fronts);
 }
 

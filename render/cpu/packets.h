@@ -18,6 +18,7 @@ bool packetsCanCast(const VolumeView& volume);
 /// @param limits  distance along each ray beyond which no sample is taken; null: none
 /// @param fronts  receives `count` colours
 /// @return samples taken
+/// Without light, values are read as 16-bit codes where these resolve a 4096th of the transfer function.
 /// @accuracy each channel within one level of 255 of the plain form
 long long castPackets(const RaycastTask& task, CompositingMode mode, const Pixel* pixels, const float* limits,
                       int count, Rgba* fronts);
