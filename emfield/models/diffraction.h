@@ -156,9 +156,12 @@ struct TerrainSums {
   /// Takes in the interval that ends at post i >= 1. Heights are from the first post's.
   /// @see P.526-15 eq. (58), (59)
   EMSCAPE_HD void add(const TerrainProfile& profile, int i) {
-    const double d = profile.range_m[i], before = profile.range_m[i - 1];
     const double base = profile.height_msl_m[0];
-    const double h = profile.height_msl_m[i] - base, h_before = profile.height_msl_m[i - 1] - base;
+    add(profile.range_m[i - 1], profile.height_msl_m[i - 1] - base, profile.range_m[i],
+        profile.height_msl_m[i] - base);
+  }
+  /// The same for an interval from one range and height (m) to the next.
+  EMSCAPE_HD void add(double before, double h_before, double d, double h) {
     v1 += (d - before) * (h + h_before);
     v2 += (d - before) * (h * (2 * d + before) + h_before * (d + 2 * before));
   }
@@ -259,8 +262,7 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
 
   result.terrain_db =
       bullingtonLossDb(bullingtonNu(model, profile.range_m, profile.count, tx, rx, heightOf), d);
-  result.spherical_db =
-      sphericalEarthLoss(model.earth, d, result.effective.tx_m, result.effective.rx_m).loss_db;
+  result.spherical_db = sphericalEarthLossDb(model.earth, d, result.effective.tx_m, result.effective.rx_m);
   result.loss_db = result.terrain_db;
   if (result.spherical_db > 0) {
     const auto seaLevel = [](int) { return Real(0); };

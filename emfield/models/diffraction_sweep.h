@@ -19,6 +19,7 @@
 
 #include "base/host_device.h"
 #include "emfield/models/diffraction.h"
+#include "emfield/models/diffraction_smooth_earth.h"
 
 namespace emscape::emfield {
 
@@ -132,7 +133,6 @@ class DiffractionSweep {
   EMSCAPE_HD int firstClearOfEarth(const Column& column, const Real* rx_msl_m, int count);
   EMSCAPE_HD Real lackingDb(Column& column, Real rx_m, Real slope);
   EMSCAPE_HD int makeEnvelope(Real distance_m, Real lowest_m);
-  EMSCAPE_HD Real smoothNu(Real distance_m, const EffectiveHeights<Real>& heights);
 
   DiffractionModel<Real> model_;
   TerrainProfile profile_;
@@ -146,7 +146,7 @@ class DiffractionSweep {
   Real steepest_plain_ = -Real(HUGE_VAL);  ///< the same to the plain heights
   // what was found last time: it moves little from post to post
   int first_clear_ = 0;
-  int smooth_tx_ = 1, smooth_rx_ = 1, smooth_clear_ = 1;
+  SmoothEarthPosts smooth_;
 };
 
 template <class Real>
@@ -198,51 +198,6 @@ EMSCAPE_HD int DiffractionSweep<Real>::makeEnvelope(Real distance_m, Real lowest
   return count;
 }
 
-/// bullingtonNu over a smooth earth with the posts' ranges.
-template <class Real>
-EMSCAPE_HD Real DiffractionSweep<Real>::smoothNu(Real distance_m, const EffectiveHeights<Real>& heights) {
-  const int last = post_ - 1;
-  if (last < 1) return -Real(HUGE_VAL);
-  const Real k = model_.half_curvature;
-  // Steepest ray to a point that an antenna sees at its horizon, or to the posts on either side of it.
-  const auto walkTo = [&](int& at, Real range_m) {
-    at = at < last ? at : last;
-    while (at > 1 && rangeOf(at) > range_m) --at;
-    while (at < last && rangeOf(at + 1) <= range_m) ++at;
-    return at < last ? at + 1 : at;
-  };
-  const auto txSlope = [&](int i) { return k * (distance_m - rangeOf(i)) - heights.tx_m / rangeOf(i); };
-  const auto rxSlope = [&](int i) { return k * rangeOf(i) - heights.rx_m / (distance_m - rangeOf(i)); };
-  const int tx_next = walkTo(smooth_tx_, std::sqrt(heights.tx_m / k));
-  const Real tx_before = txSlope(smooth_tx_), tx_after = txSlope(tx_next);
-  const Real tx_slope = tx_before > tx_after ? tx_before : tx_after;
-  const Real slope_to_rx = (heights.rx_m - heights.tx_m) / distance_m;
-  if (tx_slope >= slope_to_rx) {
-    const int rx_next = walkTo(smooth_rx_, distance_m - std::sqrt(heights.rx_m / k));
-    const Real rx_before = rxSlope(smooth_rx_), rx_after = rxSlope(rx_next);
-    const Real rx_slope = rx_before > rx_after ? rx_before : rx_after;
-    return bullingtonEdgeNu(model_, distance_m, slope_to_rx, tx_slope, rx_slope);
-  }
-  // The square of the clearance over d1 d2 has one least value between antennas that are not below ground.
-  const auto closeness = [&](int i) {
-    const Real d1 = rangeOf(i), d2 = distance_m - d1;
-    const Real clearance = heights.tx_m + slope_to_rx * d1 - k * d1 * d2;
-    return clearance * clearance / (d1 * d2);
-  };
-  int& at = smooth_clear_;
-  at = at < last ? at : last;
-  Real least = closeness(at);
-  for (const int step : {-1, 1}) {
-    while (at + step >= 1 && at + step <= last) {
-      const Real next = closeness(at + step);
-      if (next > least) break;
-      least = next;
-      at += step;
-    }
-  }
-  return -std::sqrt(2 * distance_m / model_.earth.wavelength_m * least);
-}
-
 /// nu of the terrain's edge; -infinity without a post between.
 template <class Real>
 EMSCAPE_HD Real DiffractionSweep<Real>::terrainNu(Column& column, Real rx_m, Real slope) {
@@ -273,11 +228,12 @@ template <class Real>
 EMSCAPE_HD int DiffractionSweep<Real>::firstClearOfEarth(const Column& column, const Real* rx_msl_m,
                                                          int count) {
   // Obstacles over the line of sight would put the smooth surface lower, and both antennas higher above it:
-  // without them this is the least clearance, and it rises with the receiver.
+  // what is clear without them is clear.
   const auto isClear = [&](int j) {
     const Real rx_m = model_.raised_m(rx_msl_m[j] - base_, column.trend.rx_ground_msl_m);
     const EffectiveHeights<Real> least = effectiveHeights(column.trend, tx_, rx_m);
-    return sphericalEarthLoss(model_.earth, column.distance_m, least.tx_m, least.rx_m).clear_above;
+    return isClearThroughout(model_.earth, column.distance_m,
+                             sightLine(model_.earth, column.distance_m, least.tx_m, least.rx_m));
   };
   // From the last column's answer in doubling steps, then by halves.
   int begin = 0, end = count;
@@ -313,9 +269,11 @@ EMSCAPE_HD Real DiffractionSweep<Real>::lackingDb(Column& column, Real rx_m, Rea
     }
   }
   const EffectiveHeights<Real> heights = effectiveHeights(trend, tx_, rx_m);
-  const Real spherical_db = sphericalEarthLoss(model_.earth, d, heights.tx_m, heights.rx_m).loss_db;
+  const Real spherical_db = sphericalEarthLossDb(model_.earth, d, heights.tx_m, heights.rx_m);
   if (spherical_db <= 0) return 0;
-  const Real lacking_db = spherical_db - bullingtonLossDb(smoothNu(d, heights), d);
+  const Real smooth_nu = smoothEarthNu(
+      model_, [&](int i) { return rangeOf(i); }, post_ - 1, d, heights, smooth_);
+  const Real lacking_db = spherical_db - bullingtonLossDb(smooth_nu, d);
   return lacking_db > 0 ? lacking_db : Real(0);
 }
 

@@ -325,16 +325,27 @@ TEST(SphericalEarth, ReflectionPointSolvesItsCubic) {
   }
 }
 
-TEST(SphericalEarth, LossFallsAsAnAntennaRises) {
+TEST(SphericalEarth, IsFreeOfLossFromTheClearHeightUpwards) {
   for (const double frequency_hz : {3e7, 1e9, 2e10}) {
-    const auto model = diffractionModel<double>(parametersAt(frequency_hz));
-    for (const double distance_m : {5e3, 40e3, 200e3}) {
-      bool was_clear = false;
-      for (double height_m = 1; height_m < 6000; height_m += 7) {
-        const auto loss = sphericalEarthLoss(model.earth, distance_m, 15.0, height_m);
-        EXPECT_FALSE(was_clear && loss.loss_db > 0) << frequency_hz << ", " << distance_m << ", " << height_m;
-        EXPECT_FALSE(was_clear && !loss.clear_above);
-        was_clear = loss.clear_above;
+    const auto earth = diffractionModel<double>(parametersAt(frequency_hz)).earth;
+    for (const double distance_m : {1e3, 5e3, 40e3, 200e3}) {
+      for (const double other_m : {2.0, 15.0, 800.0}) {
+        bool was_clear = false;
+        for (double height_m = 1; height_m < 12000; height_m += 7) {
+          const bool is_clear =
+              isClearThroughout(earth, distance_m, sightLine(earth, distance_m, other_m, height_m));
+          EXPECT_TRUE(is_clear || !was_clear);
+          was_clear = is_clear;
+          const double horizon_m = std::sqrt(2 * kEarth_m) * (std::sqrt(other_m) + std::sqrt(height_m));
+          if (distance_m >= horizon_m) {
+            EXPECT_FALSE(is_clear);
+            continue;
+          }
+          // by P.526 itself: where the ray would be reflected
+          const auto least = leastClearance(earth, distance_m, other_m, height_m);
+          const bool is_clear_there = least.clearance_m > least.required_m;
+          EXPECT_TRUE(is_clear_there || !is_clear) << frequency_hz << ", " << distance_m << ", " << height_m;
+        }
       }
     }
   }

@@ -133,7 +133,7 @@ TEST(TwoRay, GoesOverToDiffractionWithoutJumps) {
       const double before = twoRayExcessDb(model, horizon_m - 1, 30.0, 200.0);
       const double after = twoRayExcessDb(model, horizon_m + 1, 30.0, 200.0);
       EXPECT_NEAR(before, after, 0.05) << frequency_hz;
-      EXPECT_NEAR(after, sphericalEarthLoss(model.earth, horizon_m + 1, 30.0, 200.0).loss_db, 1e-9);
+      EXPECT_NEAR(after, sphericalEarthLossDb(model.earth, horizon_m + 1, 30.0, 200.0), 1e-9);
       // where the clearance becomes what is required
       double last = twoRayExcessDb(model, 0.5 * horizon_m, 30.0, 200.0);
       for (double d = 0.5 * horizon_m; d < 1.2 * horizon_m; d += 5) {
