@@ -23,6 +23,9 @@ struct Pass {
   EMSCAPE_HD int stepY() const { return diagonal ? 2 * reach : reach; }
   EMSCAPE_HD int stepX() const { return 2 * reach; }
   EMSCAPE_HD int firstX(int y) const { return diagonal || (y & reach) == 0 ? reach : 0; }
+  /// Midpoints along a row and a column of a picture, or one more.
+  EMSCAPE_HD int columns(ImageSize size) const { return (size.width + stepX() - 1) / stepX(); }
+  EMSCAPE_HD int rows(ImageSize size) const { return (size.height + stepY() - 1) / stepY(); }
 };
 constexpr Pass kPasses[] = {{2, true, 0.2}, {2, false, 0.5}, {1, true, 0.5}, {1, false, 1.0}};
 

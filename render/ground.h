@@ -60,6 +60,8 @@ class GroundSurface {
   GroundSurface(const HeightField& field, const volume::Grid& grid, const SceneBox& box);
 
   GroundView view() const;
+  /// What GroundView::highest refers to.
+  const std::vector<float>& level(int level) const { return highest_[static_cast<std::size_t>(level)]; }
 
  private:
   void crop(const HeightField& field, const volume::Grid& grid);

@@ -129,6 +129,7 @@ bool Scene::isHidden(const Vec3d& frame_m) {
 }
 
 void Scene::prepare() {
+  grid();
   prepareGround();
   if (!table_) {
     table_.emplace(function_, settings_.step_voxels);

@@ -105,6 +105,26 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
+/// A point of a stream that can be waited for.
+class Event {
+ public:
+  Event() { check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "cudaEventCreate"); }
+  ~Event() { cudaEventDestroy(event_); }
+  Event(const Event&) = delete;
+  Event& operator=(const Event&) = delete;
+
+  void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "cudaEventRecord"); }
+  /// Returns at once if nothing was recorded.
+  void wait() const { check(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
+  /// What is put on a stream after this waits for the event.
+  void holdBack(cudaStream_t stream) const {
+    check(cudaStreamWaitEvent(stream, event_, 0), "cudaStreamWaitEvent");
+  }
+
+ private:
+  cudaEvent_t event_ = nullptr;
+};
+
 /// Time between two points of a stream.
 class Timer {
  public:

@@ -151,8 +151,6 @@ void DeviceStorage::allocate(const cudaChannelFormatDesc& format) {
   point_ = makeTexture(cudaFilterModePoint);
   brick_dims_ = brickDims(dims_, kBrickEdge);
   bricks_.resize(static_cast<std::size_t>(brick_dims_.count()));
-  check(cudaEventCreateWithFlags(&written_, cudaEventDisableTiming), "cudaEventCreate");
-  check(cudaEventCreateWithFlags(&read_, cudaEventDisableTiming), "cudaEventCreate");
 }
 
 cudaTextureObject_t DeviceStorage::makeTexture(cudaTextureFilterMode filter) const {
@@ -169,11 +167,8 @@ cudaTextureObject_t DeviceStorage::makeTexture(cudaTextureFilterMode filter) con
 }
 
 void DeviceStorage::release() {
-  // What fails here failed before, or the device is lost: there is nothing left to be told.
-  if (read_ != nullptr) cudaEventSynchronize(read_);
-  if (written_ != nullptr) cudaEventSynchronize(written_);
-  if (read_ != nullptr) cudaEventDestroy(read_);
-  if (written_ != nullptr) cudaEventDestroy(written_);
+  // What fails here failed before, or the device is lost: there is nothing left to be told. Freeing waits for
+  // those who still read.
   if (point_ != 0) cudaDestroyTextureObject(point_);
   if (linear_ != 0) cudaDestroyTextureObject(linear_);
   if (surface_ != 0) cudaDestroySurfaceObject(surface_);
@@ -182,8 +177,8 @@ void DeviceStorage::release() {
 
 VoxelWriter DeviceStorage::beginWriting(cudaStream_t stream) {
   const std::lock_guard<std::mutex> lock(order_);
-  check(cudaStreamWaitEvent(stream, read_, 0), "cudaStreamWaitEvent");
-  check(cudaStreamWaitEvent(stream, written_, 0), "cudaStreamWaitEvent");
+  read_.holdBack(stream);
+  written_.holdBack(stream);
   return voxels();
 }
 
@@ -192,19 +187,19 @@ void DeviceStorage::endWriting(cudaStream_t stream) {
                                                                               firstValidK(), bricks_.data());
   checkLaunch("findBricks");
   const std::lock_guard<std::mutex> lock(order_);
-  check(cudaEventRecord(written_, stream), "cudaEventRecord");
+  written_.record(stream);
 }
 
 void DeviceStorage::beginReading(cudaStream_t stream) const {
   const std::lock_guard<std::mutex> lock(order_);
-  check(cudaStreamWaitEvent(stream, written_, 0), "cudaStreamWaitEvent");
+  written_.holdBack(stream);
 }
 
 void DeviceStorage::endReading(cudaStream_t stream) const {
   const std::lock_guard<std::mutex> lock(order_);
   // The event stands for the readers before this one too.
-  check(cudaStreamWaitEvent(stream, read_, 0), "cudaStreamWaitEvent");
-  check(cudaEventRecord(read_, stream), "cudaEventRecord");
+  read_.holdBack(stream);
+  read_.record(stream);
 }
 
 BricksView DeviceStorage::bricks() const {
@@ -212,8 +207,8 @@ BricksView DeviceStorage::bricks() const {
 }
 
 void DeviceStorage::setMask(const std::vector<std::uint16_t>& first_valid_k) {
-  check(cudaEventSynchronize(read_), "cudaEventSynchronize");
-  check(cudaEventSynchronize(written_), "cudaEventSynchronize");
+  read_.wait();
+  written_.wait();
   const auto highest = std::max_element(first_valid_k.begin(), first_valid_k.end());
   masked_below_ = highest == first_valid_k.end() ? 0 : *highest;
   if (masked_below_ == 0) return;

@@ -93,8 +93,8 @@ class DeviceStorage {
   Dims brick_dims_;
   emscape::cuda::Buffer<ValueRange> bricks_;
   mutable std::mutex order_;  ///< of the events below
-  cudaEvent_t written_ = nullptr;
-  cudaEvent_t read_ = nullptr;
+  emscape::cuda::Event written_;
+  mutable emscape::cuda::Event read_;
 };
 
 }  // namespace emscape::volume

@@ -1,0 +1,325 @@
+/// Frames cast by the GPU.
+#include <algorithm>
+#include <utility>
+
+#include "base/cuda/cuda_memory.h"
+#include "base/device.h"
+#include "render/cuda/device_scene.h"
+#include "render/cuda/kernels.h"
+#include "render/cuda/launch_train.h"
+#include "render/frame_caster.h"
+#include "render/silhouette.h"
+#include "volume/cuda/device_storage.h"
+
+namespace emscape::render {
+namespace {
+
+using cuda::CastLaunch;
+using cuda::LaunchTrain;
+using cuda::Sampling;
+using emscape::cuda::Buffer;
+using emscape::cuda::check;
+
+/// Samples of one launch, about: what a stop waits for at most. A restoration, which nobody waits for, is
+/// cast in smaller steps.
+constexpr double kFrameSamples = 1 << 30;
+constexpr double kRestorationSamples = 1 << 27;
+
+class CudaFrameCaster : public FrameCaster {
+ public:
+  explicit CudaFrameCaster(volume::VoxelPrecision precision) : precision_(precision) {}
+
+  void setVolume(std::shared_ptr<const volume::DenseVolume> volume) override;
+  void setVolume(std::shared_ptr<const volume::DeviceVolume> volume) override;
+  FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size, const StopFlag* stop) override;
+  FrameReport restore(const Scene& scene, const StopFlag* stop) override;
+
+  void lend(Image& /*image*/) override {}
+  void giveBack(Image& image, const FrameReport& report) override {
+    if (report.complete) fetch(image);
+  }
+  void fetch(Image& image) override;
+  void fetch(Image8& image) override;
+
+ private:
+  CastLaunch prepare(const Scene& scene, ImageSize size);
+  void findGround(const Scene& scene, const CastLaunch& launch);
+  void findInside(const Scene& scene, const CastLaunch& launch);
+  void finish(FrameReport& report);
+  bool castLattices(CastLaunch launch, const std::vector<Lattice>& lattices, LaunchTrain& train,
+                    FrameReport& report);
+  bool castAdaptive(CastLaunch launch, const FramePlan& plan, LaunchTrain& train);
+  void countAdaptive(const FramePlan& plan, FrameReport& report);
+  bool castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report);
+  void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, stream_); }
+
+  const volume::VoxelPrecision precision_;
+  emscape::cuda::Stream stream_;
+  emscape::cuda::Timer cast_time_, picture_time_;
+
+  volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
+  std::shared_ptr<const volume::DeviceVolume> volume_;
+  cuda::DeviceScene scene_;
+  CompositingMode mode_ = CompositingMode::dvr;
+  Sampling sampling_ = Sampling::filtered;
+
+  cuda::Layers layers_;  ///< of the picture that was drawn last
+  Buffer<float4> layer_;
+  Buffer<float4> picture_;
+  Buffer<uchar4> picture8_;
+
+  /// What belongs to a view: the ground, and the pixels whose rays meet the box.
+  struct View {
+    unsigned version = 0;
+    ImageSize size;
+    bool holds(unsigned scene_version, ImageSize scene_size) const {
+      return version == scene_version && size == scene_size;
+    }
+  };
+  View ground_view_, inside_view_;
+  Buffer<float> ground_distances_;
+  Buffer<float4> ground_colors_;
+  Silhouette silhouette_;
+  Buffer<Span> inside_;
+
+  FramePlan drawn_;
+  ToleranceHold hold_;
+  double tolerance_levels_ = 0;  ///< of the last adaptive frame
+  Buffer<std::uint8_t> classes_;
+  Buffer<Pixel> queue_;      ///< rays to be cast; of a restoration all that are missing
+  Buffer<unsigned> queued_;  ///< by pass
+  Buffer<cuda::ClassCounts> counts_;
+};
+
+void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DenseVolume> volume) {
+  auto copy = copies_.next(volume->grid, precision_);
+  copy->upload(*volume);
+  setVolume(std::shared_ptr<const volume::DeviceVolume>(std::move(copy)));
+}
+
+void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volume) {
+  volume_ = std::move(volume);
+  scene_.volumeChanged();
+}
+
+CastLaunch CudaFrameCaster::prepare(const Scene& scene, ImageSize size) {
+  scene_.update(scene, volume_->storage(), stream_);
+  mode_ = scene.settings().mode;
+  sampling_ = scene.categorical()                                       ? Sampling::nearest
+              : scene.settings().plain || mode_ == CompositingMode::iso ? Sampling::accurate
+                                                                        : Sampling::filtered;
+  layer_.resize(static_cast<std::size_t>(size.count()));
+  picture8_.resize(layer_.size());
+  CastLaunch launch = scene_.launch(scene, volume_->storage(), sampling_, size);
+  launch.layer = layer_.data();
+  layers_ = {};
+  layers_.size = size;
+  layers_.volume = layer_.data();
+  if (scene.ground()) {
+    findGround(scene, launch);
+    launch.limits = ground_distances_.data();
+    layers_.ground_distances = ground_distances_.data();
+    layers_.ground_colors = ground_colors_.data();
+  }
+  return launch;
+}
+
+void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
+  const ImageSize size = launch.task.camera.size;
+  const unsigned version = scene.versions().view;
+  if (ground_view_.holds(version, size)) return;
+  ground_distances_.resize(static_cast<std::size_t>(size.count()));
+  ground_colors_.resize(static_cast<std::size_t>(size.count()));
+  cuda::castGround(launch.task, ground_distances_.data(), ground_colors_.data(), stream_);
+  ground_view_ = {version, size};
+}
+
+void CudaFrameCaster::findInside(const Scene& scene, const CastLaunch& launch) {
+  const CameraView& camera = launch.task.camera;
+  const unsigned version = scene.versions().view;
+  if (inside_view_.holds(version, camera.size)) return;
+  findSilhouette(camera, launch.task.volume.lower(), launch.task.volume.upper(), silhouette_);
+  inside_.upload(silhouette_.rows, stream_);
+  inside_view_ = {version, camera.size};
+}
+
+/// Rays of a launch that a ray's longest way through the volume makes at most so many samples of.
+long long raysFor(const CastLaunch& launch, double samples) {
+  const Dims& dims = launch.task.volume.dims;
+  const double longest =
+      length(Vec3d{static_cast<double>(dims.x), static_cast<double>(dims.y), static_cast<double>(dims.z)});
+  return std::max<long long>(static_cast<long long>(samples * launch.task.step_voxels / longest), 1);
+}
+
+FrameReport CudaFrameCaster::draw(const Scene& scene, const FramePlan& plan, ImageSize size,
+                                  const StopFlag* stop) {
+  FrameReport report;
+  report.pattern = plan.pattern;
+  drawn_ = plan;
+  if (size.count() == 0) return report;
+  volume_->storage().beginReading(stream_);
+  cast_time_.begin(stream_);
+  const CastLaunch launch = prepare(scene, size);
+  LaunchTrain train(stream_, stop, raysFor(launch, kFrameSamples));
+  layers_.pattern = plan.pattern;
+  layers_.interpolation = plan.interpolation;
+  if (plan.pattern == Pattern::adaptive) {
+    findInside(scene, launch);
+    report.complete = castAdaptive(launch, plan, train);
+  } else {
+    report.complete = castLattices(launch, sourceLattices(plan.pattern, size), train, report);
+  }
+  finish(report);
+  if (plan.pattern == Pattern::adaptive && report.complete) countAdaptive(plan, report);
+  return report;
+}
+
+FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
+  FrameReport report;
+  report.pattern = drawn_.pattern;
+  const ImageSize size = layers_.size;
+  if (size.count() == 0) return report;
+  volume_->storage().beginReading(stream_);
+  cast_time_.begin(stream_);
+  const CastLaunch launch = prepare(scene, size);
+  LaunchTrain train(stream_, stop, raysFor(launch, kRestorationSamples));
+  report.complete = drawn_.pattern == Pattern::adaptive
+                        ? castPredicted(launch, train, report)
+                        : castLattices(launch, missingLattices(drawn_.pattern, size), train, report);
+  finish(report);
+  return report;
+}
+
+/// Everything is launched: shows the picture and waits for it.
+void CudaFrameCaster::finish(FrameReport& report) {
+  cast_time_.end(stream_);
+  volume_->storage().endReading(stream_);
+  picture_time_.begin(stream_);
+  if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
+  picture_time_.end(stream_);
+  stream_.wait();
+  report.cast_ms = cast_time_.elapsed_ms();
+  report.interpolate_ms = picture_time_.elapsed_ms();
+}
+
+/// @return false if it was stopped
+bool CudaFrameCaster::castLattices(CastLaunch launch, const std::vector<Lattice>& lattices,
+                                   LaunchTrain& train, FrameReport& report) {
+  for (const Lattice& lattice : lattices) {
+    const int rows = static_cast<int>(
+        std::min<long long>(std::max<long long>(train.mostRays() / lattice.columns, 1), lattice.rows));
+    for (int row = 0; row < lattice.rows; row += rows) {
+      if (!train.goOn()) return false;
+      Lattice& band = launch.pixels.lattice;
+      band = lattice;
+      band.first_y += row * lattice.step_y;
+      band.rows = std::min(rows, lattice.rows - row);
+      cast(launch);
+      train.launched();
+    }
+    report.rays += lattice.count();
+  }
+  return true;
+}
+
+/// @return false if it was stopped
+bool CudaFrameCaster::castAdaptive(CastLaunch launch, const FramePlan& plan, LaunchTrain& train) {
+  constexpr std::size_t kPassCount = std::size(kPasses);
+  const ImageSize size = layers_.size;
+  classes_.resize(layer_.size());
+  queue_.resize(layer_.size());
+  queued_.resize(kPassCount);
+  tolerance_levels_ = hold_.levels(plan.tolerance_levels);
+  check(cudaMemsetAsync(queued_.data(), 0, kPassCount * sizeof(unsigned), stream_), "cudaMemset");
+  check(cudaMemsetAsync(classes_.data(), 0, classes_.size(), stream_), "cudaMemset");
+
+  if (!train.goOn()) return false;
+  const auto along = [](int pixels) { return (pixels + kLatticeStep - 1) / kLatticeStep; };
+  launch.pixels.lattice = {0, 0, kLatticeStep, kLatticeStep, along(size.width), along(size.height)};
+  cast(launch);
+  train.launched();
+  for (std::size_t pass = 0; pass < kPassCount; ++pass) {
+    if (!train.goOn()) return false;
+    cuda::PredictLaunch predict;
+    predict.pass = kPasses[pass];
+    predict.size = size;
+    predict.inside = inside_.data();
+    predict.tolerance_levels = static_cast<float>(tolerance_levels_ * kPasses[pass].tolerance);
+    predict.layer = layer_.data();
+    predict.classes = classes_.data();
+    predict.queue = queue_.data();
+    predict.queued = queued_.data() + pass;
+    cuda::predictMidpoints(predict, stream_);
+    launch.pixels.list = queue_.data();
+    launch.pixels.end =
+        static_cast<unsigned>(predict.pass.columns(size)) * static_cast<unsigned>(predict.pass.rows(size));
+    launch.pixels.length = predict.queued;
+    cast(launch);
+    train.launched();
+  }
+  return true;
+}
+
+/// How many rays the frame came to, for the report and for the tolerance of the next one.
+void CudaFrameCaster::countAdaptive(const FramePlan& plan, FrameReport& report) {
+  std::vector<unsigned> queued(queued_.size());
+  queued_.download(queued.data(), stream_);
+  for (int y = 0; y < layers_.size.height; y += kLatticeStep) {
+    const Span& row = silhouette_.rows[static_cast<std::size_t>(y)];
+    const auto before = [](int x) { return (x + kLatticeStep - 1) / kLatticeStep; };
+    if (row.end > row.begin) report.rays += before(row.end) - before(row.begin);
+  }
+  for (const unsigned rays : queued) report.rays += rays;
+  const double most_rays = std::max(plan.ray_share * static_cast<double>(silhouette_.count()), 1.0);
+  hold_.drawn(tolerance_levels_, static_cast<double>(report.rays), most_rays);
+}
+
+/// Casts what the last adaptive frame predicted, the worst first. @return false if it was stopped
+bool CudaFrameCaster::castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report) {
+  counts_.resize(1);
+  check(cudaMemsetAsync(counts_.data(), 0, sizeof(cuda::ClassCounts), stream_), "cudaMemset");
+  cuda::listPredicted(classes_.data(), layers_.size, counts_.data(), queue_.data(), stream_);
+  cuda::ClassCounts counts{};
+  counts_.download(&counts, stream_);
+  unsigned missing = 0;
+  for (const unsigned found : counts.found) missing += found;
+  const auto most = static_cast<unsigned>(std::min<long long>(train.mostRays(), layers_.size.count()));
+  launch.pixels.list = queue_.data();
+  for (unsigned first = 0; first < missing; first += most) {
+    if (!train.goOn()) return false;
+    launch.pixels.first = first;
+    launch.pixels.end = std::min(first + most, missing);
+    cast(launch);
+    train.launched();
+  }
+  report.rays = missing;
+  return true;
+}
+
+void CudaFrameCaster::fetch(Image& image) {
+  if (image.size != layers_.size) image = Image(layers_.size);
+  if (image.pixels.empty()) return;
+  picture_.resize(layer_.size());
+  showPicture(layers_, picture_.data(), stream_);
+  static_assert(sizeof(Rgba) == sizeof(float4), "a pixel is four floats");
+  picture_.download(reinterpret_cast<float4*>(image.pixels.data()), stream_);
+}
+
+void CudaFrameCaster::fetch(Image8& image) {
+  image.size = layers_.size;
+  image.rgba.resize(4 * static_cast<std::size_t>(image.size.count()));
+  static_assert(sizeof(uchar4) == 4, "a pixel is four bytes");
+  if (!image.rgba.empty()) picture8_.download(reinterpret_cast<uchar4*>(image.rgba.data()), stream_);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameCaster> makeCudaCaster(volume::VoxelPrecision precision) {
+  const Device device = findDevice();
+  if (!device.usable) {
+    throw Error(ErrorCode::device, "pictures cast by the GPU: " + device.why_not);
+  }
+  return std::make_unique<CudaFrameCaster>(precision);
+}
+
+}  // namespace emscape::render

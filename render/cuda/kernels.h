@@ -1,0 +1,101 @@
+/// The ray caster's kernels as the host launches them, on a stream. All pointers are to device memory.
+/// @throws Error (device) that names the kernel
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include <cstdint>
+
+#include "render/adaptive_pass.h"
+#include "render/compositing.h"
+#include "render/raycast.h"
+#include "render/reconstruction.h"
+#include "render/silhouette.h"
+#include "render/skip_rule.h"
+#include "volume/bricks.h"
+
+namespace emscape::render::cuda {
+
+// --- Casting ---
+
+/// Which pixels a launch casts: those of a lattice, or a part of a list.
+struct PixelSet {
+  Lattice lattice;
+  const Pixel* list = nullptr;       ///< null: the lattice
+  unsigned first = 0;                ///< of the list
+  unsigned end = 0;                  ///< of the list, one beyond the last
+  const unsigned* length = nullptr;  ///< of the list, where the host does not know it; null: `end` says it
+};
+
+enum class Sampling {
+  filtered,  ///< by the texture unit, with fractions of 8 bits
+  accurate,  ///< as on the CPU, by eight texels
+  nearest
+};
+
+/// A transfer function's colours as the kernels that filter hold them in shared memory: r g, b a as halves.
+struct HalfColor {
+  std::uint32_t rg = 0, ba = 0;
+};
+/// Entries that fit.
+constexpr int kMostHalfColors = 4096;
+
+struct CastLaunch {
+  RaycastTask task;  ///< volume_highest_f does not count
+  PixelSet pixels;
+  const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for Sampling::filtered
+  const float* volume_highest_f = nullptr;  ///< one
+  const float* limits = nullptr;            ///< one a pixel: where the ground is; null: no ground
+  float4* layer = nullptr;                  ///< the volume alone, a pixel of the picture each
+};
+void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
+
+/// Where every pixel's ray meets the ground (infinity: nowhere), and its colour there.
+void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream);
+
+// --- The picture ---
+
+/// The volume's layer and the ground behind it.
+struct Layers {
+  ImageSize size;
+  Pattern pattern = Pattern::full;  ///< of the layer: which of its pixels count; adaptive: all
+  Interpolation interpolation = Interpolation::float32;
+  const float4* volume = nullptr;
+  const float* ground_distances = nullptr;  ///< null: no ground
+  const float4* ground_colors = nullptr;
+};
+void showPicture(const Layers& layers, float4* picture, cudaStream_t stream);
+void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream);
+
+// --- Adaptive ---
+
+struct PredictLaunch {
+  Pass pass;
+  ImageSize size;
+  const Span* inside = nullptr;  ///< one a row
+  float tolerance_levels = 0;
+  float4* layer = nullptr;
+  std::uint8_t* classes = nullptr;  ///< of the estimated error, one a pixel; see errorClassOf()
+  Pixel* queue = nullptr;           ///< receives the midpoints that must be cast
+  unsigned* queued = nullptr;       ///< is increased by their number
+};
+/// Every midpoint of a pass: predicts it, queues it or, outside, leaves it transparent.
+void predictMidpoints(const PredictLaunch& launch, cudaStream_t stream);
+
+/// Counters for listPredicted(): how many pixels there are of each class, and how many are placed.
+struct ClassCounts {
+  unsigned found[kErrorClasses];
+  unsigned placed[kErrorClasses];
+};
+/// Lists the pixels that were predicted, those of the highest class first. @param counts  all 0
+void listPredicted(const std::uint8_t* classes, ImageSize size, ClassCounts* counts, Pixel* list,
+                   cudaStream_t stream);
+
+// --- Bricks ---
+
+/// SkipView's entries of all bricks, and the largest f of all. @param rule  pointers to device memory
+/// @param volume_highest_f  0
+void findLevels(const SkipRule& rule, const volume::BricksView& bricks, float* highest, float* levels,
+                float* volume_highest_f, cudaStream_t stream);
+
+}  // namespace emscape::render::cuda

@@ -1,0 +1,235 @@
+/// Pictures of the GPU against those of the CPU.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "base/error.h"
+#include "render/interpolation.h"
+#include "tests/render/cuda_scenes.h"
+
+namespace emscape::render {
+namespace {
+
+using testing::Agreement;
+using testing::makeEmeVolume;
+using testing::onGpu;
+using testing::setRandomScene;
+using testing::setSameRandomScene;
+
+constexpr double kShareApart = 1e-3;
+
+/// A scene like those of the program: half as many voxels along each side as eme_200.
+void setEmeScene(Renderer& renderer, CompositingMode mode, bool shading, ImageSize size) {
+  const auto volume = makeEmeVolume({100, 100, 50}, 3);
+  RenderSettings settings;
+  settings.mode = mode;
+  settings.shading = shading;
+  settings.step_voxels = 0.5;
+  settings.iso_value = -20;
+  renderer.setSettings(settings);
+  renderer.setVolume(std::shared_ptr<const volume::DenseVolume>(volume));
+  renderer.setTransferFunction(defaultTransferFunction(*volume));
+  renderer.setCamera(makeCamera({}, renderer.sceneBox(), size));
+}
+
+TEST(CudaCast, ShowsWhatTheCpuShowsOfAnEmeVolume) {
+  EMSCAPE_NEEDS_GPU();
+  const ImageSize size{400, 300};
+  Renderer cpu, gpu(onGpu());
+  for (const CompositingMode mode :
+       {CompositingMode::dvr, CompositingMode::mida, CompositingMode::mip, CompositingMode::iso}) {
+    for (const bool shading : {false, true}) {
+      setEmeScene(cpu, mode, shading, size);
+      setEmeScene(gpu, mode, shading, size);
+      Agreement agreement;
+      agreement.add(gpu.render(size), cpu.render(size));
+      std::printf("%s%s: %.4f %% of the pixels more than a level apart, at most %d\n", toString(mode),
+                  shading ? ", shaded" : "", 100 * agreement.shareApart(), agreement.largest_levels);
+      EXPECT_LE(agreement.shareApart(), kShareApart) << toString(mode) << " " << shading;
+    }
+  }
+}
+
+TEST(CudaCast, ShowsWhatTheCpuShowsOfRandomScenes) {
+  EMSCAPE_NEEDS_GPU();
+  std::mt19937 random(21);
+  Renderer cpu, gpu(onGpu());  // kept: nothing of an earlier scene may remain
+  Agreement all;
+  for (int scene = 0; scene < 80; ++scene) {
+    const ImageSize size{1 + static_cast<int>(random() % 60), 1 + static_cast<int>(random() % 60)};
+    setSameRandomScene(cpu, gpu, random, size);
+    Agreement agreement;
+    agreement.add(gpu.render(size), cpu.render(size));
+    all.add(gpu.render(size), cpu.render(size));
+    if (agreement.apart > 0) {
+      const RenderSettings& settings = cpu.settings();
+      std::printf("scene %d, %s%s, step %g: %lld of %lld pixels apart, at most %d levels\n", scene,
+                  toString(settings.mode), settings.shading ? ", shaded" : "", settings.step_voxels,
+                  agreement.apart, agreement.pixels, agreement.largest_levels);
+    }
+  }
+  std::printf("all: %.4f %% apart\n", 100 * all.shareApart());
+  EXPECT_LE(all.shareApart(), kShareApart);
+}
+
+TEST(CudaCast, PlainFormShowsWhatTheCpusPlainFormShows) {
+  EMSCAPE_NEEDS_GPU();
+  std::mt19937 random(22);
+  Renderer cpu, gpu(onGpu());
+  Agreement all;
+  for (int scene = 0; scene < 40; ++scene) {
+    const ImageSize size{1 + static_cast<int>(random() % 60), 1 + static_cast<int>(random() % 60)};
+    setSameRandomScene(cpu, gpu, random, size);
+    RenderSettings settings = cpu.settings();
+    settings.plain = true;
+    cpu.setSettings(settings);
+    gpu.setSettings(settings);
+    all.add(gpu.render(size), cpu.render(size));
+  }
+  EXPECT_LE(all.shareApart(), kShareApart);
+}
+
+TEST(CudaCast, IndicesAreThoseOfTheCpu) {
+  EMSCAPE_NEEDS_GPU();
+  const ImageSize size{80, 60};
+  auto volume = testing::makeVolume({12, 9, 7}, {100, 100, 100}, [](int i, int j, int k) {
+    return static_cast<float>((i + 2 * j + 3 * k) % 5 - 1);
+  });
+  volume->info.categorical = true;
+  volume->info.range_min = -1;
+  volume->info.range_max = 3;
+  Renderer cpu, gpu(onGpu());
+  for (Renderer* renderer : {&cpu, &gpu}) {
+    renderer->setVolume(std::shared_ptr<const volume::DenseVolume>(volume));
+    renderer->setTransferFunction(defaultTransferFunction(volume->info));
+    renderer->setCamera(makeCamera({}, renderer->sceneBox(), size));
+  }
+  Agreement agreement;
+  agreement.add(gpu.render(size), cpu.render(size));
+  EXPECT_LE(agreement.shareApart(), kShareApart);
+}
+
+TEST(CudaCast, SkippingChangesNothing) {
+  EMSCAPE_NEEDS_GPU();
+  std::mt19937 random(23);
+  Renderer gpu(onGpu());
+  for (int scene = 0; scene < 40; ++scene) {
+    const ImageSize size{1 + static_cast<int>(random() % 60), 1 + static_cast<int>(random() % 60)};
+    setRandomScene(gpu, random, size);
+    RenderSettings settings = gpu.settings();
+    settings.skip_empty = true;
+    gpu.setSettings(settings);
+    const Image skipped = gpu.render(size);
+    settings.skip_empty = false;
+    gpu.setSettings(settings);
+    EXPECT_TRUE(gpu.render(size).pixels == skipped.pixels) << scene << " " << toString(settings.mode);
+  }
+}
+
+TEST(CudaCast, HalfPrecisionIsNearFloat) {
+  EMSCAPE_NEEDS_GPU();
+  const ImageSize size{200, 150};
+  RendererOptions half = onGpu();
+  half.precision = volume::VoxelPrecision::float16;
+  Renderer in_float(onGpu()), in_half(half);
+  setEmeScene(in_float, CompositingMode::dvr, false, size);
+  setEmeScene(in_half, CompositingMode::dvr, false, size);
+  Agreement agreement;
+  agreement.add(in_half.render(size), in_float.render(size));
+  EXPECT_LE(agreement.shareApart(), 10 * kShareApart);
+}
+
+/// Pixels as they are interpolated from those that were cast, on the host.
+Image interpolated(const Image& cast, Pattern pattern, Interpolation interpolation) {
+  Image image(cast.size);
+  const auto source = [&](int x, int y) { return cast.at(x, y); };
+  for (int y = 0; y < cast.size.height; ++y) {
+    for (int x = 0; x < cast.size.width; ++x) {
+      image.at(x, y) = interpolation == Interpolation::float32
+                           ? pixelOf<FloatArithmetic>(pattern, source, cast.size, x, y)
+                           : pixelOf<Bits8Arithmetic>(pattern, source, cast.size, x, y);
+    }
+  }
+  return image;
+}
+
+TEST(CudaCast, InterpolatesAsTheHostDoes) {
+  EMSCAPE_NEEDS_GPU();
+  std::mt19937 random(24);
+  Renderer gpu(onGpu());
+  for (int scene = 0; scene < 30; ++scene) {
+    const ImageSize size{1 + static_cast<int>(random() % 20), 1 + static_cast<int>(random() % 20)};
+    setRandomScene(gpu, random, size);
+    gpu.setHeightField(nullptr);
+    const Image full = gpu.render(size);
+    for (const Pattern pattern : {Pattern::columns, Pattern::checkerboard, Pattern::quarter}) {
+      for (const Interpolation interpolation : {Interpolation::float32, Interpolation::bits8}) {
+        const Image picture = gpu.render(size, {pattern, interpolation});
+        const Image expected = interpolated(full, pattern, interpolation);
+        const float tolerance = interpolation == Interpolation::float32 ? 1e-6F : 1.0F / 255 + 1e-6F;
+        for (std::size_t n = 0; n < picture.pixels.size(); ++n) {
+          EXPECT_NEAR(picture.pixels[n].r, expected.pixels[n].r, tolerance) << toString(pattern);
+          EXPECT_NEAR(picture.pixels[n].a, expected.pixels[n].a, tolerance) << toString(pattern);
+        }
+      }
+    }
+  }
+}
+
+TEST(CudaCast, QuantisedPictureIsThatOfThePicture) {
+  EMSCAPE_NEEDS_GPU();
+  std::mt19937 random(25);
+  Renderer gpu(onGpu());
+  const ImageSize size{61, 47};
+  for (int scene = 0; scene < 8; ++scene) {
+    setRandomScene(gpu, random, size);
+    gpu.draw({Pattern::quarter}, size);
+    Image image;
+    Image8 image8;
+    gpu.fetch(image);
+    gpu.fetch(image8);
+    const Image8 expected = quantize(image);
+    ASSERT_EQ(image8.rgba.size(), expected.rgba.size());
+    for (std::size_t n = 0; n < expected.rgba.size(); ++n) {
+      EXPECT_NEAR(image8.rgba[n], expected.rgba[n], 1);  // on the edge between two levels
+    }
+  }
+}
+
+TEST(CudaCast, ReportsRaysAndTimes) {
+  EMSCAPE_NEEDS_GPU();
+  const ImageSize size{200, 150};
+  Renderer gpu(onGpu());
+  EXPECT_EQ(gpu.backend(), Backend::cuda);
+  setEmeScene(gpu, CompositingMode::dvr, false, size);
+  const FrameReport report = gpu.draw({Pattern::quarter}, size);
+  EXPECT_TRUE(report.complete);
+  EXPECT_EQ(report.rays, 100 * 75);
+  EXPECT_GT(report.cast_ms, 0);
+  EXPECT_GT(report.interpolate_ms, 0);
+  EXPECT_EQ(gpu.restore().rays, 200 * 150 - 100 * 75);
+}
+
+TEST(CudaCast, RefusesWhatItCannotDraw) {
+  EMSCAPE_NEEDS_GPU();
+  Renderer gpu(onGpu());
+  EXPECT_THROW(gpu.draw({}, {8, 8}), Error);
+  auto volume = makeEmeVolume({4, 4, 4});
+  volume->values.pop_back();
+  EXPECT_THROW(gpu.setVolume(std::shared_ptr<const volume::DenseVolume>(volume)), Error);
+}
+
+TEST(CudaCast, IsRefusedWhereThereIsNoGpu) {
+  if (findDevice().usable) GTEST_SKIP() << "there is a GPU";
+  try {
+    Renderer gpu(onGpu());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::device);
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("pictures cast by the GPU: "));
+  }
+}
+
+}  // namespace
+}  // namespace emscape::render
