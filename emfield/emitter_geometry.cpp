@@ -18,21 +18,6 @@ namespace {
 /// Samples of a fan held at once.
 constexpr int kFanSamples = 1 << 23;
 
-ExcessGrid excessGrid(const GridColumns& columns, double lean_m, const FanResolution& resolution) {
-  ExcessGrid grid;
-  grid.columns = columns.columns.data();
-  grid.column_count = columns.columns.size();
-  grid.t_m = columns.t_m.data();
-  grid.layers = static_cast<int>(columns.t_m.size());
-  if (columns.tilted) {
-    // A piece leans no further than the fan's azimuths lie apart.
-    grid.pieces = std::clamp(static_cast<int>(std::ceil(2 * lean_m / resolution.arc_m)), 1, grid.layers);
-  } else if (!columns.ground_msl_m.empty()) {
-    grid.ground_msl_m = columns.ground_msl_m.data();
-  }
-  return grid;
-}
-
 }  // namespace
 
 void EmitterGeometry::compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
@@ -54,7 +39,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   }
   times.fan_ms += watch.lap_ms();
   const double lean_m = leanOf(columns);
-  const ExcessGrid grid = excessGrid(columns, lean_m, resolution);
+  const ExcessGrid grid = excessGrid(columns, resolution);
   const ExcessOutput out{excess_.data(), shadow_edge_m_.data()};
   if (model && !needsTerrain(*model)) {
     fillExcessCpu(*model, station, grid, {}, out);

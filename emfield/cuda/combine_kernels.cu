@@ -101,6 +101,16 @@ __global__ void __launch_bounds__(kThreads) combineKernel(const __grid_constant_
         fillLayers<PatternKind::grid>(member.beam, column, t_m, power_density_wm2);
         break;
     }
+    if (member.beam.geometry.excess != nullptr) {
+      const ExcessCode* const excess =
+          member.beam.geometry.excess + static_cast<long long>(begin) * columns + column;
+#pragma unroll
+      for (int l = 0; l < kLayers; ++l) {
+        if (begin + l < launch.dims.z) {
+          power_density_wm2[l] *= excessFactor(excess[static_cast<long long>(l) * columns]);
+        }
+      }
+    }
 #pragma unroll
     for (int c = 0; c < kChannels; ++c) {
       if (!member.takes_part[c]) continue;

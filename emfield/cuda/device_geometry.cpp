@@ -5,7 +5,6 @@
 
 #include "base/parallel.h"
 #include "emfield/column_geometry.h"
-#include "emfield/excess/excess_model.h"
 
 namespace emscape::emfield::cuda {
 namespace {
@@ -20,7 +19,7 @@ constexpr long long kMostSamples = kDeviceScratchBytes / sizeof(float);
 /// to the next, and to give memory back would make every stream wait.
 template <class T>
 T* atLeast(Buffer<T>& buffer, std::size_t count) {
-  if (buffer.size() < count) buffer.resize(count + count / 4);
+  if (buffer.size() < count) buffer.resize(buffer.size() == 0 ? count : count + count / 4);
   return buffer.data();
 }
 
@@ -49,11 +48,6 @@ std::vector<int> borderOf(const Dims& dims) {
 
 DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots)
     : setup_(setup), lean_m_(leanOf(setup.columns)), border_(borderOf(setup.grid.dims)), slots_(slots) {
-  for (const scenario::Emitter& emitter : setup.scenario->emitters) {
-    if (!hasExcess(*setup.scenario, emitter)) continue;
-    throw Error(ErrorCode::device, {setup.scenario->file},
-                "emitter '" + emitter.name + "': its propagation model is not built for the GPU");
-  }
   if (setup.terrain != nullptr) terrain_ = DeviceTerrain(setup.terrain->view());
   grid_columns_.upload(setup.columns.columns);
   t_m_.upload(setup.columns.t_m);
@@ -64,13 +58,29 @@ DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots)
   columns_.layers = static_cast<int>(setup.columns.t_m.size());
   columns_.middle_m = setup.columns.middle_m();
   columns_.tilted = setup.columns.tilted;
+  excess_grid_ = excessGrid(setup.columns, setup.resolution);
+  excess_grid_.columns = grid_columns_.data();
+  excess_grid_.t_m = t_m_.data();
+  if (excess_grid_.ground_msl_m != nullptr) {
+    ground_msl_m_.upload(setup.columns.ground_msl_m);
+    excess_grid_.ground_msl_m = ground_msl_m_.data();
+  }
 }
 
 ColumnGeometryView DeviceGeometry::view(int slot) const {
-  const float* first = slots_[slot].data();
+  const float* first = slots_[slot].numbers.data();
   const std::size_t n = static_cast<std::size_t>(columns_.count);
-  return {first,         first + n,     first + 2 * n, first + 3 * n, first + 4 * n,
-          first + 5 * n, first + 6 * n, first + 7 * n, first + 8 * n, first + kColumnNumbers * n};
+  return {first,
+          first + n,
+          first + 2 * n,
+          first + 3 * n,
+          first + 4 * n,
+          first + 5 * n,
+          first + 6 * n,
+          first + 7 * n,
+          first + 8 * n,
+          first + kColumnNumbers * n,
+          slots_[slot].has_excess ? slots_[slot].excess.data() : nullptr};
 }
 
 /// The fan reaches every column as soon as it reaches those at the grid's border.
@@ -79,8 +89,10 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   const scenario::Scenario& scenario = *setup_.scenario;
   work.station =
       makeStation(request.state.position, request.state.height_msl_m, scenario.atmosphere.k_factor);
-  work.needs_fan = scenario.emitters[request.emitter].propagation != scenario::PropagationModel::free_space;
-  if (work.needs_fan) {
+  const scenario::Emitter& emitter = scenario.emitters[request.emitter];
+  work.has_shadow = emitter.propagation == scenario::PropagationModel::horizon;
+  if (hasExcess(scenario, emitter)) work.model = makeExcessModel(scenario, emitter, work.station);
+  if (work.needsFan()) {
     std::vector<FanCoordinates> coordinates;
     for (int c : border_) {
       coordinates.push_back(fanCoordinates(work.station, setup_.columns.columns[c], columns_.middle_m));
@@ -99,7 +111,7 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   std::size_t azimuths = 0;
   for (const Work& work : works) {
     ranges_m.insert(ranges_m.end(), work.shape.ranges_m.begin(), work.shape.ranges_m.end());
-    azimuths += work.needs_fan ? static_cast<std::size_t>(work.shape.interval_count) + 1 : 0;
+    azimuths += work.needsFan() ? static_cast<std::size_t>(work.shape.interval_count) + 1 : 0;
   }
   const auto columns = static_cast<std::size_t>(columns_.count);
   const double* range_m = sent(ranges_m_, ranges_m, stream);
@@ -113,9 +125,9 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   for (Work& work : works) {
     LocateTask& task = work.task;
     task.places = places;
-    task.counts = counts++;
+    task.counts = work.excess.counts = counts++;
     places += columns;
-    if (work.needs_fan) {
+    if (work.needsFan()) {
       task.fan = work.shape.view();
       task.fan.ranges_m = range_m;
       task.used_ranges = used;
@@ -135,15 +147,26 @@ std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<Geometry
   });
   const auto columns = static_cast<std::size_t>(columns_.count);
   for (std::size_t r = 0; r < requests.size(); ++r) {
-    float* const slot = atLeast(slots_[requests[r].slot], (kColumnNumbers + 1) * columns);
-    works[r].task.numbers = slot;
-    works[r].task.shadow_edge_m = slot + kColumnNumbers * columns;
+    Slot& slot = slots_[requests[r].slot];
+    LocateTask& task = works[r].task;
+    task.numbers = atLeast(slot.numbers, (kColumnNumbers + 1) * columns);
+    task.shadow_edge_m = task.numbers + kColumnNumbers * columns;
+    slot.has_excess = works[r].model.has_value();
+    if (!slot.has_excess) continue;
+    works[r].excess.out = {atLeast(slot.excess, columns * static_cast<std::size_t>(columns_.layers)),
+                           task.shadow_edge_m};
   }
   clock.begin(stream);
   place(works, stream);
   locateColumns(tasks_.data(), static_cast<int>(works.size()), columns_, stream);
   clock.end(&StageTimes::fan_ms, stream);
-  runFans(works, stream, clock);
+  for (const Work& work : works) {
+    if (!work.model || needsTerrain(*work.model)) continue;
+    clock.begin(stream);
+    fill(work, {}, stream);
+    clock.end(&StageTimes::plane_ms, stream);
+  }
+  for (Batch& batch : batchesOf(works)) runBatch(batch, stream, clock);
 
   std::vector<GeometryCounts> counts(works.size());
   check(cudaMemcpyAsync(counts.data(), counts_.data(), counts.size() * sizeof(GeometryCounts),
@@ -167,13 +190,18 @@ std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<Geometry
   return all;
 }
 
-/// Reads the fans and finds the shadows' edges, as many intervals at a time as the memory for samples takes.
-void DeviceGeometry::runFans(const std::vector<Work>& works, cudaStream_t stream, StageClock& clock) {
-  std::vector<std::vector<FanPiece>> batches;
+/// Columns that lean are read like any other model's: they are cut into pieces.
+bool DeviceGeometry::isUprightDiffraction(const Work& work) const {
+  return work.model && std::holds_alternative<DiffractionExcess>(*work.model) && !columns_.tilted;
+}
+
+/// As many intervals at a time as the memory for samples takes.
+std::vector<DeviceGeometry::Batch> DeviceGeometry::batchesOf(const std::vector<Work>& works) {
+  std::vector<Batch> batches;
   long long samples = 0, most_samples = 0;
   RangeTerms<float>* terms = terms_.data();
   for (const Work& work : works) {
-    if (!work.needs_fan) continue;
+    if (!work.needsFan()) continue;
     const long long ranges = work.shape.rangeCount();
     const int intervals = work.shape.interval_count;
     // A leaning column may cross intervals: it needs them all at once.
@@ -186,45 +214,81 @@ void DeviceGeometry::runFans(const std::vector<Work>& works, cudaStream_t stream
       piece.terrain = terrain_.view();
       piece.has_terrain = setup_.terrain != nullptr;
       piece.terms = terms;
+      piece.holds_slopes = work.has_shadow;
+      // Threads of neighbouring columns read neighbouring azimuths; one of any model a profile of its own.
+      const bool azimuth_fastest = work.has_shadow || isUprightDiffraction(work);
+      piece.azimuth_stride = azimuth_fastest ? 1 : ranges;
+      piece.range_stride = azimuth_fastest ? piece.interval_count + 1 : 1;
       const long long here = ranges * (piece.interval_count + 1);
       if (batches.empty() || samples + here > kMostSamples) {
         batches.emplace_back();
         samples = 0;
       }
-      batches.back().push_back(piece);
+      batches.back().works.push_back(&work);
+      batches.back().pieces.push_back(piece);
       samples += here;
       most_samples = std::max(most_samples, samples);
     }
     terms += ranges;
   }
-  if (batches.empty()) return;
-  float* const slopes = atLeast(slopes_, static_cast<std::size_t>(most_samples));
-  for (std::vector<FanPiece>& batch : batches) {
-    float* next = slopes;
-    PieceExtent extent;
-    extent.pieces = static_cast<int>(batch.size());
-    for (FanPiece& piece : batch) {
-      piece.slopes = next;
+  float* const first = atLeast(samples_, static_cast<std::size_t>(most_samples));
+  for (Batch& batch : batches) {
+    float* next = first;
+    for (FanPiece& piece : batch.pieces) {
+      piece.samples = next;
       next += static_cast<long long>(piece.emitter.fan.range_count) * (piece.interval_count + 1);
-      extent.azimuths = std::max(extent.azimuths, piece.interval_count + 1);
-      extent.ranges = std::max(extent.ranges, piece.emitter.fan.range_count);
     }
-    clock.begin(stream);
-    const FanPiece* const pieces = sent(pieces_, batch, stream);
-    readFans(pieces, extent, stream);
-    clock.end(&StageTimes::fan_ms, stream);
-    clock.begin(stream);
-    findShadowEdges(pieces, extent, columns_, stream);
-    clock.end(&StageTimes::plane_ms, stream);
   }
+  return batches;
+}
+
+void DeviceGeometry::runBatch(Batch& batch, cudaStream_t stream, StageClock& clock) {
+  PieceExtent extent;
+  extent.pieces = static_cast<int>(batch.pieces.size());
+  bool has_slopes = false;
+  std::vector<DiffractionTask> diffraction;
+  for (std::size_t p = 0; p < batch.pieces.size(); ++p) {
+    const FanPiece& piece = batch.pieces[p];
+    const Work& work = *batch.works[p];
+    extent.azimuths = std::max(extent.azimuths, piece.interval_count + 1);
+    extent.ranges = std::max(extent.ranges, piece.emitter.fan.range_count);
+    has_slopes = has_slopes || piece.holds_slopes;
+    if (isUprightDiffraction(work)) {
+      diffraction.push_back({std::get<DiffractionExcess>(*work.model), piece, work.excess});
+    }
+  }
+  clock.begin(stream);
+  const FanPiece* const pieces = sent(pieces_, batch.pieces, stream);
+  readFans(pieces, extent, stream);
+  clock.end(&StageTimes::fan_ms, stream);
+  clock.begin(stream);
+  if (has_slopes) findShadowEdges(pieces, extent, columns_, stream);
+  if (!diffraction.empty()) {
+    fillDiffraction(sent(diffraction_, diffraction, stream), static_cast<int>(diffraction.size()), columns_,
+                    excess_grid_.ground_msl_m, firstValidK(), stream);
+  }
+  for (std::size_t p = 0; p < batch.pieces.size(); ++p) {
+    const FanPiece& piece = batch.pieces[p];
+    const Work& work = *batch.works[p];
+    if (work.has_shadow || isUprightDiffraction(work)) continue;
+    fill(work, {piece.emitter.fan, piece.samples, piece.first_interval, piece.interval_count}, stream);
+  }
+  clock.end(&StageTimes::plane_ms, stream);
+}
+
+/// The excess of any model, with memory for a column in each thread.
+void DeviceGeometry::fill(const Work& work, const FanHeights& fan, cudaStream_t stream) {
+  double* const scratch = atLeast(scratch_, kDeviceScratchBytes / sizeof(double));
+  fillExcess(*work.model, work.station, excess_grid_, fan, work.excess, scratch, kDeviceScratchBytes, stream);
 }
 
 std::size_t DeviceGeometry::bytes() const {
   const auto bytesOf = [](const auto& buffer) { return buffer.size() * sizeof(*buffer.data()); };
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(t_m_) + bytesOf(first_valid_k_) + bytesOf(tasks_) +
                       bytesOf(pieces_) + bytesOf(ranges_m_) + bytesOf(used_ranges_) + bytesOf(places_) +
-                      bytesOf(terms_) + bytesOf(slopes_);
-  for (const auto& slot : slots_) bytes += bytesOf(slot);
+                      bytesOf(terms_) + bytesOf(samples_) + bytesOf(diffraction_) + bytesOf(scratch_) +
+                      bytesOf(ground_msl_m_);
+  for (const Slot& slot : slots_) bytes += bytesOf(slot.numbers) + bytesOf(slot.excess);
   return bytes + (setup_.terrain == nullptr ? 0 : postBytes(setup_.terrain->view()));
 }
 

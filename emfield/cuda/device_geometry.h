@@ -1,10 +1,12 @@
 /// Stages 1 and 2 of the emitters on the device: what each slot keeps, and the memory to compute it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "base/cuda/cuda_memory.h"
 #include "emfield/cuda/device_terrain.h"
+#include "emfield/cuda/excess_kernels.h"
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/cuda/stage_clock.h"
 #include "emfield/field_engine.h"
@@ -20,6 +22,7 @@ class DeviceGeometry {
   /// All requests in one batch of launches; waits for what they found.
   std::vector<GeometryFindings> compute(const std::vector<GeometryRequest>& requests, cudaStream_t stream,
                                         StageClock& clock);
+  /// What a slot was computed for last.
   ColumnGeometryView view(int slot) const;
   const DeviceColumns& columns() const { return columns_; }
   /// Null without terrain.
@@ -33,13 +36,25 @@ class DeviceGeometry {
   struct Work {
     Station station;
     FanShape shape;
-    bool needs_fan = false;
     LocateTask task;
+    std::optional<ExcessModel> model;
+    ExcessOutputs excess;
+    bool has_shadow = false;
+
+    bool needsFan() const { return has_shadow || (model && needsTerrain(*model)); }
+  };
+  /// Pieces of fans that are computed at a time.
+  struct Batch {
+    std::vector<const Work*> works;  ///< whose the pieces are
+    std::vector<FanPiece> pieces;
   };
 
   Work prepare(const GeometryRequest& request) const;
   void place(std::vector<Work>& works, cudaStream_t stream);
-  void runFans(const std::vector<Work>& works, cudaStream_t stream, StageClock& clock);
+  bool isUprightDiffraction(const Work& work) const;
+  std::vector<Batch> batchesOf(const std::vector<Work>& works);
+  void runBatch(Batch& batch, cudaStream_t stream, StageClock& clock);
+  void fill(const Work& work, const FanHeights& fan, cudaStream_t stream);
 
   const FieldSetup& setup_;
   double lean_m_;
@@ -49,7 +64,14 @@ class DeviceGeometry {
   emscape::cuda::Buffer<float> t_m_;
   emscape::cuda::Buffer<std::uint16_t> first_valid_k_;
   DeviceColumns columns_;
-  std::vector<emscape::cuda::Buffer<float>> slots_;  ///< numbers, then the shadow's edges
+  emscape::cuda::Buffer<float> ground_msl_m_;  ///< empty: none, or of columns that lean
+  ExcessGrid excess_grid_;
+  struct Slot {
+    emscape::cuda::Buffer<float> numbers;  ///< of the columns, then the shadow's edges
+    emscape::cuda::Buffer<ExcessCode> excess;
+    bool has_excess = false;
+  };
+  std::vector<Slot> slots_;
 
   // for the emitters being computed; kept, as they come again
   emscape::cuda::Buffer<LocateTask> tasks_;
@@ -58,7 +80,9 @@ class DeviceGeometry {
   emscape::cuda::Buffer<int> used_ranges_;
   emscape::cuda::Buffer<FanPlace> places_;
   emscape::cuda::Buffer<RangeTerms<float>> terms_;
-  emscape::cuda::Buffer<float> slopes_;
+  emscape::cuda::Buffer<float> samples_;
+  emscape::cuda::Buffer<DiffractionTask> diffraction_;
+  emscape::cuda::Buffer<double> scratch_;
   emscape::cuda::Buffer<GeometryCounts> counts_;
 };
 

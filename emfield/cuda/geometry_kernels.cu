@@ -80,31 +80,31 @@ __global__ void __launch_bounds__(kWarp* kRuns) readKernel(const FanPiece* piece
       if (here != index) chord = fanChord(station, sine, cosine, index = here, chord_m);
       height_msl_m = chord.heightAt(piece.terrain, range_m);
     }
-    piece.slopes[static_cast<long long>(i) * azimuths + a] =
-        i == 0 ? -HUGE_VALF : geometry.slopeTo(height_msl_m, piece.terms[i]);
+    float sample = height_msl_m;
+    if (piece.holds_slopes) sample = i == 0 ? -HUGE_VALF : geometry.slopeTo(height_msl_m, piece.terms[i]);
+    piece.samples[i * piece.range_stride + a * piece.azimuth_stride] = sample;
   }
 }
 
 /// A thread walks along one azimuth.
 __global__ void grazeKernel(const FanPiece* pieces) {
   const FanPiece& piece = pieces[blockIdx.y];
-  const long long azimuths = piece.interval_count + 1;
   const int a = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (a >= azimuths) return;
+  if (a > piece.interval_count || !piece.holds_slopes) return;
   const int used = piece.emitter.used_ranges[piece.first_interval + a];
-  float* slopes = piece.slopes + a;
+  float* slopes = piece.samples + a * piece.azimuth_stride;
   float highest = -HUGE_VALF;
   for (int begin = 0; begin < used; begin += kAhead) {
     float here[kAhead];
 #pragma unroll
     for (int n = 0; n < kAhead; ++n) {
-      if (begin + n < used) here[n] = slopes[(begin + n) * azimuths];
+      if (begin + n < used) here[n] = slopes[(begin + n) * piece.range_stride];
     }
 #pragma unroll
     for (int n = 0; n < kAhead; ++n) {
       if (begin + n >= used) break;
       highest = steeper(highest, here[n]);
-      slopes[(begin + n) * azimuths] = highest;
+      slopes[(begin + n) * piece.range_stride] = highest;
     }
   }
 }
@@ -113,14 +113,15 @@ __global__ void edgesKernel(const FanPiece* pieces, DeviceColumns columns) {
   const int c = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (c >= columns.count) return;
   const FanPiece& piece = pieces[blockIdx.y];
+  if (!piece.holds_slopes) return;
   const LocateTask& emitter = piece.emitter;
   SlopePlanes planes;
   planes.geometry = horizonGeometry<float>(emitter.station);
   planes.fan = emitter.fan;
   planes.first_interval = piece.first_interval;
-  planes.slopes = piece.slopes;
-  planes.azimuth_stride = 1;
-  planes.range_stride = piece.interval_count + 1;
+  planes.slopes = piece.samples;
+  planes.azimuth_stride = piece.azimuth_stride;
+  planes.range_stride = piece.range_stride;
   float edge_m;
   if (columns.tilted) {
     edge_m = edgeInLeaningColumn(emitter.station, planes, columns.columns[c], columns.t_m, columns.layers);

@@ -24,6 +24,7 @@ struct DeviceColumns {
 /// What the kernels count for an emitter.
 struct GeometryCounts {
   int unknown_columns = 0;
+  unsigned remarks = 0;  ///< of the excess model, on all columns
   unsigned long long near_voxels = 0;
 };
 
@@ -52,8 +53,11 @@ struct FanPiece {
   scenario::TerrainView terrain;
   bool has_terrain = false;            ///< false: a smooth earth at mean sea level
   RangeTerms<float>* terms = nullptr;  ///< of the fan's ranges
-  /// range_count x (interval_count + 1), azimuth fastest: slopes to the terrain, then the grazing slopes.
-  float* slopes = nullptr;
+  bool holds_slopes = true;            ///< false: heights
+  /// Of (interval_count + 1) azimuths and the fan's ranges: heights above mean sea level, or slopes to the
+  /// terrain and in the end the grazing slopes.
+  float* samples = nullptr;
+  long long azimuth_stride = 0, range_stride = 0;
 };
 
 /// Numbers, places and used ranges of all columns; near voxels.
@@ -65,9 +69,10 @@ struct PieceExtent {
   int azimuths = 0;
   int ranges = 0;
 };
-/// Slopes to the terrain along the azimuths of some pieces.
+/// Terrain along the azimuths of some pieces.
 void readFans(const FanPiece* pieces, const PieceExtent& extent, cudaStream_t stream);
-/// Slopes become grazing slopes, and these the columns' shadow edges; counts what is unknown.
+/// Slopes of the pieces that hold them become grazing slopes, and these the columns' shadow edges; counts
+/// what is unknown.
 void findShadowEdges(const FanPiece* pieces, const PieceExtent& extent, const DeviceColumns& columns,
                      cudaStream_t stream);
 

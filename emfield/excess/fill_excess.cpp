@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <vector>
 
 #include "base/parallel.h"
@@ -48,6 +49,22 @@ unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
 }
 
 }  // namespace
+
+ExcessGrid excessGrid(const GridColumns& columns, const FanResolution& resolution) {
+  ExcessGrid grid;
+  grid.columns = columns.columns.data();
+  grid.column_count = columns.columns.size();
+  grid.t_m = columns.t_m.data();
+  grid.layers = static_cast<int>(columns.t_m.size());
+  if (columns.tilted) {
+    // A piece leans no further than the fan's azimuths lie apart.
+    grid.pieces =
+        std::clamp(static_cast<int>(std::ceil(2 * leanOf(columns) / resolution.arc_m)), 1, grid.layers);
+  } else if (!columns.ground_msl_m.empty()) {
+    grid.ground_msl_m = columns.ground_msl_m.data();
+  }
+  return grid;
+}
 
 unsigned fillExcessCpu(const ExcessModel& model, const Station& station, const ExcessGrid& grid,
                        const FanHeights& fan, const ExcessOutput& out) {

@@ -29,6 +29,9 @@ struct ExcessGrid {
   }
 };
 
+/// The columns of a grid, in host memory.
+ExcessGrid excessGrid(const GridColumns& columns, const FanResolution& resolution);
+
 /// One emitter over some intervals of its fan. A model is a plain struct: see excess_model.h.
 template <class Model>
 struct ExcessTask {

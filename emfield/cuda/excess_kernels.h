@@ -1,0 +1,36 @@
+/// Stage 2 of the models with an excess loss, on the device.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include "emfield/cuda/geometry_kernels.h"
+#include "emfield/excess/fill_excess.h"
+
+namespace emscape::emfield::cuda {
+
+/// An emitter with an excess loss. Pointers are to device memory.
+struct ExcessOutputs {
+  ExcessOutput out;
+  GeometryCounts* counts = nullptr;
+};
+
+/// `diffraction` over some intervals of an emitter's fan, for upright columns: a thread a column, the profile
+/// read from the fan as often as it is needed.
+struct DiffractionTask {
+  DiffractionExcess model;
+  FanPiece piece;  ///< heights, azimuth fastest
+  ExcessOutputs to;
+};
+/// @param ground_msl_m   below each column; null: from the fan
+/// @param first_valid_k  voxels below get no excess; null: none is below
+void fillDiffraction(const DiffractionTask* tasks, int count, const DeviceColumns& columns,
+                     const float* ground_msl_m, const std::uint16_t* first_valid_k, cudaStream_t stream);
+
+/// Any model: a thread a column with memory of its own.
+/// @param grid, fan  of device memory; fan: range fastest, none for models without terrain
+/// @param scratch    device memory; the more there is of it, the more columns are computed at a time
+void fillExcess(const ExcessModel& model, const Station& station, const ExcessGrid& grid,
+                const FanHeights& fan, const ExcessOutputs& to, void* scratch, std::size_t scratch_bytes,
+                cudaStream_t stream);
+
+}  // namespace emscape::emfield::cuda

@@ -1,0 +1,323 @@
+// The field on a GPU against the field on the CPU.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "base/device.h"
+#include "base/error.h"
+#include "emfield/field_solver.h"
+#include "tests/emfield/made_terrain.h"
+#include "tests/emfield/random_profile.h"
+#include "tests/emfield/test_scenario.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using scenario::PropagationModel;
+using ::testing::HasSubstr;
+
+constexpr double kLatitude_deg = 44.5, kLongitude_deg = -71.5;
+
+class CudaField : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const Device device = findDevice();
+    if (!device.usable) GTEST_SKIP() << "no GPU: " << device.why_not;
+  }
+};
+
+scenario::AntennaPtr antennaOf(int kind) {
+  switch (kind % 5) {
+    case 0:
+      return scenario::makeIsotropic(3);
+    case 1:
+      return scenario::makeGaussian(30, 6, 8, -40);
+    case 2:
+      return scenario::makeCosecant2(32, 8, 5, 40, -45);
+    case 3:
+      return scenario::makeSinc(30, 5, 5, -60);
+    default:
+      return scenario::makePhasedArray(28, 16, 16, 0.5, 1);
+  }
+}
+
+/// Emitters at random places of a region 40 km wide, with all antennas and the given models in turn.
+std::shared_ptr<scenario::Scenario> randomScenario(std::mt19937& random, FrameKind frame,
+                                                   const std::vector<PropagationModel>& models,
+                                                   double height_m, int count = 8) {
+  auto scenario = emptyScenario(frame, kLatitude_deg, kLongitude_deg, {40e3, 36e3, 5000}, {61, 50, 29});
+  std::uniform_real_distribution<double> part(-1, 1);
+  for (int e = 0; e < count; ++e) {
+    scenario::Emitter emitter = plainEmitter("emitter " + std::to_string(e), 0);
+    emitter.kind = e % 3 == 0 ? scenario::EmitterKind::radar : scenario::EmitterKind::transmitter;
+    emitter.frequency_hz = std::pow(10.0, 8.5 + part(random));
+    emitter.power_w = std::pow(10.0, 3 + part(random));
+    emitter.antenna = antennaOf(e);
+    emitter.scan.azimuth_deg = 180 * part(random);
+    emitter.scan.elevation_deg = 5 * part(random);
+    emitter.propagation = models[static_cast<std::size_t>(e) % models.size()];
+    const GeodeticPosition place{kLatitude_deg + 0.15 * part(random), kLongitude_deg + 0.2 * part(random),
+                                 height_m + 300 * part(random)};
+    addEmitter(*scenario, place, emitter);
+  }
+  return scenario;
+}
+
+/// How far two volumes are apart, voxel by voxel.
+struct Difference {
+  long long voxels = 0, beyond_hundredth = 0, beyond_tenth_off_edges = 0;
+  double largest_db = 0;
+
+  void look(const volume::DenseVolume& cpu, const volume::DenseVolume& gpu) {
+    const Dims& dims = cpu.grid.dims;
+    ASSERT_EQ(cpu.values.size(), gpu.values.size());
+    ASSERT_EQ(cpu.first_valid_k, gpu.first_valid_k);
+    for (int k = 0; k < dims.z; ++k) {
+      for (int j = 0; j < dims.y; ++j) {
+        for (int i = 0; i < dims.x; ++i) {
+          const double a = valueAt(cpu, i, j, k), b = valueAt(gpu, i, j, k);
+          ASSERT_FALSE(std::isnan(b));
+          if (cpu.isMasked(i, j, k)) {
+            ASSERT_EQ(b, double(gpu.info.floor));
+            continue;
+          }
+          ++voxels;
+          const double apart_db = std::abs(a - b);
+          largest_db = std::max(largest_db, apart_db);
+          beyond_hundredth += apart_db > 0.01 ? 1 : 0;
+          if (apart_db > 0.1 && !isBetweenNeighbours(cpu, i, j, k, b)) ++beyond_tenth_off_edges;
+        }
+      }
+    }
+    EXPECT_NEAR(cpu.info.range_max, gpu.info.range_max, 0.01);
+  }
+
+  /// On a shadow's edge a voxel may be lit or dark: it then is as one of those above and below it.
+  static bool isBetweenNeighbours(const volume::DenseVolume& cpu, int i, int j, int k, double value) {
+    double lowest = valueAt(cpu, i, j, k), highest = lowest;
+    for (int n : {k - 1, k + 1}) {
+      if (n < 0 || n >= cpu.grid.dims.z || cpu.isMasked(i, j, n)) continue;
+      lowest = std::min<double>(lowest, valueAt(cpu, i, j, n));
+      highest = std::max<double>(highest, valueAt(cpu, i, j, n));
+    }
+    return value > lowest - 0.5 && value < highest + 0.5 && highest - lowest > 0.1;
+  }
+
+  void expectSmall() const {
+    EXPECT_LE(static_cast<double>(beyond_hundredth), 1e-3 * static_cast<double>(voxels))
+        << "of " << voxels << " voxels; largest " << largest_db << " dB";
+    EXPECT_EQ(beyond_tenth_off_edges, 0) << "of " << voxels << " voxels; largest " << largest_db << " dB";
+  }
+};
+
+/// Two solvers of one scenario, which go through the same snapshots.
+class Pair {
+ public:
+  Pair(std::shared_ptr<scenario::Scenario> scenario, scenario::TerrainPtr terrain, FieldOptions options = {})
+      : scenario_(std::move(scenario)),
+        terrain_(std::move(terrain)),
+        cpu_(scenario_, terrain_, with(options, Backend::cpu)),
+        gpu_(scenario_, terrain_, with(options, Backend::cuda)) {}
+
+  scenario::Snapshot start() const { return scenario::snapshotAt(scenario_, terrain_.get(), 0); }
+
+  void update(const scenario::Snapshot& snapshot) {
+    const FieldChanged a = cpu_.update(snapshot), b = gpu_.update(snapshot);
+    EXPECT_EQ(a.moved, b.moved);
+    EXPECT_EQ(a.turned, b.turned);
+    for (std::size_t c = 0; c < cpu_.channels().size(); ++c) {
+      SCOPED_TRACE(cpu_.channels()[c].name);
+      difference_.look(*cpu_.volumes()[c], *gpu_.volumes()[c]);
+    }
+    EXPECT_EQ(cpu_.warnings(), gpu_.warnings());
+  }
+
+  const Difference& difference() const { return difference_; }
+  FieldSolver& gpu() { return gpu_; }
+
+ private:
+  static FieldOptions with(FieldOptions options, Backend backend) {
+    options.backend = backend;
+    return options;
+  }
+
+  std::shared_ptr<scenario::Scenario> scenario_;
+  scenario::TerrainPtr terrain_;
+  FieldSolver cpu_, gpu_;
+  Difference difference_;
+};
+
+/// Moves, turns and switches some emitters.
+void disturb(scenario::Snapshot& snapshot, std::mt19937& random) {
+  std::uniform_real_distribution<double> part(-1, 1);
+  for (scenario::EmitterState& emitter : snapshot.emitters) {
+    const double what = part(random);
+    if (what > 0.6) {
+      emitter.position.latitude_deg += 0.02 * part(random);
+      emitter.position.longitude_deg += 0.02 * part(random);
+    } else if (what > 0) {
+      const double angle = kPi * part(random), c = std::cos(angle), s = std::sin(angle);
+      for (Vec3d* axis : {&emitter.beam.forward, &emitter.beam.right, &emitter.beam.up}) {
+        *axis = {c * axis->x + s * axis->y, -s * axis->x + c * axis->y, axis->z};
+      }
+      emitter.beam.steer_u = 0.3 * part(random);
+    } else if (what < -0.8) {
+      emitter.active = !emitter.active;
+    }
+  }
+}
+
+void expectSameField(Pair& pair, std::mt19937& random, int updates) {
+  scenario::Snapshot snapshot = pair.start();
+  for (int n = 0; n < updates; ++n) {
+    pair.update(snapshot);
+    if (::testing::Test::HasFatalFailure()) return;
+    disturb(snapshot, random);
+  }
+  pair.difference().expectSmall();
+}
+
+TEST_F(CudaField, IsTheCpusOverTheSmoothEarth) {
+  std::mt19937 random(1);
+  for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
+    const auto scenario = randomScenario(
+        random, frame,
+        {PropagationModel::free_space, PropagationModel::horizon, PropagationModel::diffraction}, 600);
+    Pair pair(scenario, nullptr);
+    expectSameField(pair, random, 5);
+  }
+}
+
+TEST_F(CudaField, IsTheCpusOverTerrain) {
+  std::mt19937 random(2);
+  for (const PropagationModel model : {PropagationModel::horizon, PropagationModel::diffraction}) {
+    SCOPED_TRACE(scenario::toString(model));
+    for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
+      const auto scenario = randomScenario(random, frame, {model}, 1900);
+      Pair pair(scenario, std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0));
+      expectSameField(pair, random, frame == FrameKind::enu ? 1 : 4);
+    }
+  }
+}
+
+TEST_F(CudaField, IsTheCpusOverRealTerrain) {
+  const scenario::TerrainPtr terrain = whiteMountainsTile();
+  if (terrain == nullptr) GTEST_SKIP() << "no reference elevation data";
+  std::mt19937 random(3);
+  const auto scenario = randomScenario(random, FrameKind::altitude,
+                                       {PropagationModel::horizon, PropagationModel::diffraction}, 1700);
+  Pair pair(scenario, terrain);
+  expectSameField(pair, random, 4);
+}
+
+TEST_F(CudaField, EveryReductionIsTheCpus) {
+  std::mt19937 random(4);
+  for (const auto combine :
+       {scenario::CombineMode::sum, scenario::CombineMode::max, scenario::CombineMode::per_emitter}) {
+    const auto scenario = randomScenario(random, FrameKind::altitude,
+                                         {PropagationModel::free_space, PropagationModel::horizon}, 900);
+    scenario->output.combine = combine;
+    scenario->output.quantities = {"power_density_dbwm2", "snr_db", "field_strength_dbuvm"};
+    Pair pair(scenario, nullptr);
+    expectSameField(pair, random, 4);
+  }
+  // Counts and indices differ by whole numbers where a voxel lies on a border.
+  const auto scenario = randomScenario(random, FrameKind::altitude, {PropagationModel::free_space}, 900);
+  scenario->output.quantities = {"emitter_count", "dominant_emitter"};
+  Pair pair(scenario, nullptr);
+  scenario::Snapshot snapshot = pair.start();
+  for (int n = 0; n < 3; ++n) {
+    pair.update(snapshot);
+    disturb(snapshot, random);
+  }
+  EXPECT_LE(static_cast<double>(pair.difference().beyond_hundredth),
+            1e-3 * static_cast<double>(pair.difference().voxels));
+}
+
+TEST_F(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
+  std::mt19937 random(5);
+  const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, 0.05);
+  FieldOptions options;
+  options.allow_missing_terrain = true;
+  for (const PropagationModel model : {PropagationModel::horizon, PropagationModel::diffraction}) {
+    SCOPED_TRACE(scenario::toString(model));
+    auto scenario = randomScenario(random, FrameKind::altitude, {model}, 1900, 3);
+    scenario->region.size_m = {60e3, 60e3, 5000};
+    Pair pair(scenario, terrain, options);
+    expectSameField(pair, random, 2);
+    const auto& mask = pair.gpu().volumes().front()->first_valid_k;
+    EXPECT_GT(std::count(mask.begin(), mask.end(), 29), 100);
+    options.backend = Backend::cuda;
+    options.allow_missing_terrain = false;
+    EXPECT_THROW(FieldSolver(scenario, terrain, options), Error);
+    options.allow_missing_terrain = true;
+  }
+}
+
+TEST_F(CudaField, EmittersBeyondTheMemoryBoundAreComputedAnew) {
+  std::mt19937 random(6);
+  FieldOptions options;
+  options.cache_bytes = 61 * 50 * 40 * 3 + 1;
+  Pair pair(randomScenario(random, FrameKind::altitude, {PropagationModel::horizon}, 900), nullptr, options);
+  expectSameField(pair, random, 4);
+  EXPECT_EQ(pair.gpu().memoryUse().uncached_emitters, 5);
+}
+
+TEST_F(CudaField, VolumesThatACallerKeepsAreLeftAlone) {
+  std::mt19937 random(7);
+  Pair pair(randomScenario(random, FrameKind::altitude, {PropagationModel::horizon}, 900), nullptr);
+  scenario::Snapshot snapshot = pair.start();
+  pair.update(snapshot);
+  EXPECT_EQ(pair.gpu().backend(), Backend::cuda);
+  const auto kept = pair.gpu().deviceVolumes().front();
+  const auto values = kept->download().values;
+  for (int n = 0; n < 3; ++n) {
+    for (scenario::EmitterState& emitter : snapshot.emitters) emitter.position.latitude_deg += 0.01;
+    pair.update(snapshot);
+    EXPECT_NE(pair.gpu().deviceVolumes().front(), kept);
+  }
+  EXPECT_EQ(kept->download().values, values);
+  EXPECT_NE(pair.gpu().volumes().front()->values, values);
+}
+
+TEST_F(CudaField, InHalfPrecisionLiesWithinItsSteps) {
+  std::mt19937 random(8);
+  const auto scenario = randomScenario(random, FrameKind::altitude, {PropagationModel::free_space}, 900);
+  FieldOptions options;
+  options.backend = Backend::cuda;
+  FieldSolver single(scenario, nullptr, options);
+  options.device_precision = volume::VoxelPrecision::float16;
+  FieldSolver half(scenario, nullptr, options);
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
+  single.update(snapshot);
+  half.update(snapshot);
+  const auto a = single.volumes().front(), b = half.volumes().front();
+  for (std::size_t v = 0; v < a->values.size(); ++v) {
+    ASSERT_NEAR(a->values[v], b->values[v], std::abs(a->values[v]) / 2048);
+  }
+}
+
+TEST_F(CudaField, TooLittleMemoryIsSaidBeforeAnythingIsComputed) {
+  std::mt19937 random(9);
+  const auto scenario = randomScenario(random, FrameKind::altitude, {PropagationModel::free_space}, 900);
+  scenario->region.dims = {4000, 4000, 2000};
+  scenario->output.quantities = {"power_density_dbwm2"};
+  FieldOptions options;
+  options.backend = Backend::cuda;
+  try {
+    FieldSolver solver(scenario, nullptr, options);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::device);
+    EXPECT_THAT(error.what(), HasSubstr("the field of 4000 x 4000 x 2000 voxels, 8 emitters"));
+    EXPECT_THAT(error.what(), HasSubstr("MiB are free"));
+  }
+}
+
+}  // namespace
+}  // namespace emscape::emfield
