@@ -6,6 +6,7 @@
 namespace emscape::app {
 
 void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action);
+void addBenchModels(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchRender(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchReconstruction(CLI::App& bench, const GlobalOptions& global, Action& action);
 

@@ -12,6 +12,7 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/inputs.h"
 #include "apps/emscape/interrupt.h"
+#include "apps/emscape/place.h"
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
@@ -24,6 +25,7 @@ namespace {
 struct BenchFieldOptions {
   std::string scenario;
   int repeats = 5;
+  std::string device_volume = "float";
   std::vector<std::string> emitters;  ///< that move and turn; empty: all
 };
 
@@ -86,8 +88,11 @@ void turn(scenario::EmitterState& emitter, double angle_rad) {
 
 class FieldBench {
  public:
-  FieldBench(const LoadedScenario& input, int repeats)
-      : solver_(input.scenario, input.terrain, options_),
+  /// @throws Error (device) if the field does not fit there
+  FieldBench(const LoadedScenario& input, int repeats, const Place& place)
+      : place_(place),
+        options_(place.fieldOptions()),
+        solver_(input.scenario, input.terrain, options_),
         snapshot_(scenario::snapshotAt(input.scenario, input.terrain.get(), 0)),
         repeats_(repeats) {
     for (scenario::EmitterState& emitter : snapshot_.emitters) emitter.active = true;
@@ -108,9 +113,11 @@ class FieldBench {
   }
 
   double tolerance_m() const { return options_.move_tolerance_m; }
+  const Place& place() const { return place_; }
   const emfield::FieldSolver& solver() const { return solver_; }
 
  private:
+  Place place_;
   emfield::FieldOptions options_;
   emfield::FieldSolver solver_;
   scenario::Snapshot snapshot_;
@@ -118,9 +125,12 @@ class FieldBench {
 };
 
 int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
-  const std::string device = chooseBackend(global);
   const LoadedScenario input = loadScenarioWithTerrain(options.scenario);
-  FieldBench bench(input, options.repeats);
+  const std::unique_ptr<FieldBench> opened = openAtPlace(
+      global, options.device_volume,
+      [&](const Place& place) { return std::make_unique<FieldBench>(input, options.repeats, place); });
+  FieldBench& bench = *opened;
+  const std::string device = bench.place().device();
   const double tolerance_m = bench.tolerance_m();
   const std::vector<std::size_t> chosen = chosenEmitters(*input.scenario, options.emitters);
   constexpr double kTurn_rad = 0.1;
@@ -198,6 +208,7 @@ Example:
   command
       ->add_option("--emitters", options->emitters, "Names of the emitters that move and turn; default: all")
       ->delimiter(',');
+  addDeviceVolumeOption(*command, options->device_volume);
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchField(*options, global); }; });
 }

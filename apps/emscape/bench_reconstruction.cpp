@@ -119,8 +119,8 @@ class ReconstructionBench {
     constexpr int kFrames = 6;
     render::FrameReport report;
     for (const Measured& measured : plans_) {
-      for (int frame = 0; frame < kFrames; ++frame) scene_.draw(measured.plan, image_, report);
-      scene_.restore(image_);
+      for (int frame = 0; frame < kFrames; ++frame) scene_.draw(measured.plan, report);
+      scene_.restore();
     }
   }
 
@@ -136,19 +136,20 @@ class ReconstructionBench {
       stopIfInterrupted();
       scene_.turnTo(angle_deg);
       render::FrameReport report;
-      const Duration busy = scene_.draw(measured.plan, image_, report);
-      measured.busy_ms.push_back(busy.wall_ms);
+      const Duration busy = scene_.draw(measured.plan, report);
+      const Image drawn = scene_.image();
+      measured.busy_ms.push_back(busy.ms);
       measured.busy_cpu_ms.push_back(busy.cpu_ms);
       if (measured.isFull()) {
-        full = image_;
+        full = drawn;
         full8 = render::quantize(full);
       }
       measured.ratios.push_back(measured.busy_ms.back() / plans_.front().busy_ms.back());
-      measured.error.add(render::compare(render::quantize(image_), full8));
+      measured.error.add(render::compare(render::quantize(drawn), full8));
       measured.rays += static_cast<double>(report.rays);
       measured.rays_in_box += static_cast<double>(raysInBox(measured.plan.pattern, report));
-      measured.restore_ms.push_back(scene_.restore(image_).wall_ms);
-      measured.restored_equals_full &= image_.pixels == full.pixels;
+      measured.restore_ms.push_back(scene_.restore().ms);
+      measured.restored_equals_full &= scene_.image().pixels == full.pixels;
     }
   }
 
@@ -160,7 +161,6 @@ class ReconstructionBench {
 
   BenchScene& scene_;
   std::vector<Measured> plans_;  ///< the full picture first
-  Image image_;
   double pixels_ = 0, pixels_in_box_ = 0;
 };
 
@@ -208,7 +208,8 @@ void printTable(const ReconstructionBench& bench) {
 
 int benchReconstruction(const BenchReconstructionOptions& options, const GlobalOptions& global) {
   std::vector<Measured> plans = plansFor(options);
-  BenchScene scene(options.scene, global);
+  const std::unique_ptr<BenchScene> opened = openBenchScene(options.scene, global);
+  BenchScene& scene = *opened;
   ReconstructionBench bench(scene, std::move(plans));
   {
     ProgressBar progress(global, "drawing", options.frames);

@@ -47,13 +47,15 @@ render::CameraSpec turned(render::CameraSpec spec, double angle_deg) {
   return spec;
 }
 
+/// @param work  -> render::FrameReport
 template <class Work>
-Duration durationOf(const Work& work) {
+Duration durationOf(const Place& place, const Work& work) {
   const std::clock_t cpu_begin = std::clock();
   Stopwatch watch;
-  work();
+  const render::FrameReport report = work();
   const double wall_ms = watch.lap_ms();
-  return {wall_ms, 1000.0 * static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC};
+  return {place.onGpu() ? report.total_ms() : wall_ms, wall_ms,
+          1000.0 * static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC};
 }
 
 Json triple(const Vec3d& v) {
@@ -82,21 +84,22 @@ Json transferJson(const render::TransferFunction& function) {
 
 }  // namespace
 
-BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& global)
-    : device_(chooseBackend(global)),
+BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& global, const Place& place)
+    : place_(place),
       mode_(options.mode),
       camera_text_(options.camera),
       size_(render::parseImageSize(options.size)),
-      camera_(render::parseCamera(options.camera)) {
+      camera_(render::parseCamera(options.camera)),
+      renderer_(place.rendererOptions()) {
   renderer_.setSettings(settingsOf(options));
   FrameSelection selection = options.selection;
   selection.first_only = selection.times.empty();
-  const std::unique_ptr<FrameSource> source = openFrameSource(selection, global);
+  const std::unique_ptr<FrameSource> source = openFrameSource(selection, place, global);
   name_ = source->name();
   volume_ = source->frame(0).volume;
   for (const std::string& warning : source->warnings()) logWarning(warning);
-  renderer_.setVolume(volume_);
-  renderer_.setTransferFunction(functionFor(volume_->info, options.transfer));
+  volume_.give([this](const auto& volume) { renderer_.setVolume(volume); });
+  renderer_.setTransferFunction(functionFor(volume_.info(), options.transfer));
   turnTo(0);
 }
 
@@ -104,27 +107,27 @@ void BenchScene::turnTo(double angle_deg) {
   renderer_.setCamera(render::makeCamera(turned(camera_, angle_deg), renderer_.sceneBox(), size_));
 }
 
-Duration BenchScene::draw(const render::FramePlan& plan, render::Image& image, render::FrameReport& report) {
-  return durationOf([&] { report = renderer_.draw(plan, size_, image); });
+Duration BenchScene::draw(const render::FramePlan& plan, render::FrameReport& report) {
+  return durationOf(place_, [&] { return report = renderer_.draw(plan, size_); });
 }
 
-Duration BenchScene::restore(render::Image& image) {
-  return durationOf([&] { renderer_.restore(image); });
+Duration BenchScene::restore() {
+  return durationOf(place_, [&] { return renderer_.restore(); });
 }
 
 render::RayLoad BenchScene::loadOf(const std::vector<render::Lattice>& pixels) const {
-  return render::rayLoadOf(pixels, size_, renderer_.camera(), volume_->grid, renderer_.sceneBox(),
+  return render::rayLoadOf(pixels, size_, renderer_.camera(), volume_.grid(), renderer_.sceneBox(),
                            renderer_.settings().step_voxels);
 }
 
 Json BenchScene::json() const {
-  const Dims& dims = volume_->grid.dims;
+  const Dims& dims = volume_.grid().dims;
   const render::SceneBox box = renderer_.sceneBox();
-  return {{"device", device_},
+  return {{"device", place_.device()},
           {"threads", threadCount()},
           {"volume",
            {{"name", name_},
-            {"quantity", volume_->info.quantity},
+            {"quantity", volume_.info().quantity},
             {"dims", {dims.x, dims.y, dims.z}},
             {"drawn_lower_m", triple(box.lower_m)},
             {"drawn_upper_m", triple(box.drawnUpper_m())},
@@ -140,10 +143,16 @@ Json BenchScene::json() const {
 }
 
 std::string BenchScene::summary() const {
-  const Dims& dims = volume_->grid.dims;
+  const Dims& dims = volume_.grid().dims;
   return fmt::format("{}: {} x {} x {} voxels, {} x {} pixels, {}, step {:g} voxel; device {} ({} threads)",
                      name_, dims.x, dims.y, dims.z, size_.width, size_.height, mode_,
-                     renderer_.settings().step_voxels, device_, threadCount());
+                     renderer_.settings().step_voxels, place_.device(), threadCount());
+}
+
+std::unique_ptr<BenchScene> openBenchScene(const BenchSceneOptions& options, const GlobalOptions& global) {
+  return openAtPlace(global, options.device_volume, [&](const Place& place) {
+    return std::make_unique<BenchScene>(options, global, place);
+  });
 }
 
 void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
@@ -166,6 +175,7 @@ void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
       ->check(CLI::Range(0.0, 100.0));
   command.add_option("--quantity", options.selection.quantity, "Quantity or channel; default: the first");
   command.add_option("--time", options.selection.times, "Instant, in seconds; default: the first");
+  addDeviceVolumeOption(command, options.device_volume);
   command.add_flag("--allow-missing-terrain", options.selection.allow_missing_terrain,
                    "Compute although elevation data is missing");
 }

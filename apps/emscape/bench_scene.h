@@ -18,6 +18,7 @@ struct BenchSceneOptions {
   std::string mode = "dvr";
   std::string camera = "orbit";
   std::string transfer;
+  std::string device_volume = "float";
   double step_voxels = 1;
   double mida_gamma = 0;
   double exaggeration = 0;
@@ -30,6 +31,7 @@ void addToleranceOption(CLI::App& command, double& tolerance_levels);
 
 /// How long something took.
 struct Duration {
+  double ms = 0;  ///< by the clock of the processor that cast: events of a GPU, on the CPU the wall's
   double wall_ms = 0;
   double cpu_ms = 0;  ///< of all threads together; on busy cores the steadier of the two
 };
@@ -37,8 +39,8 @@ struct Duration {
 /// A scene that is ready to be drawn. No ground, no labels.
 class BenchScene {
  public:
-  /// @throws Error (usage, bad_input)
-  BenchScene(const BenchSceneOptions& options, const GlobalOptions& global);
+  /// @throws Error (usage, bad_input, device)
+  BenchScene(const BenchSceneOptions& options, const GlobalOptions& global, const Place& place);
 
   render::ImageSize size() const { return size_; }
   const render::Renderer& renderer() const { return renderer_; }
@@ -46,8 +48,15 @@ class BenchScene {
   /// Turns the camera about the vertical through its target, away from where the option put it. What was
   /// computed for the view before is not used again, even if it is the same.
   void turnTo(double angle_deg);
-  Duration draw(const render::FramePlan& plan, render::Image& image, render::FrameReport& report);
-  Duration restore(render::Image& image);
+  /// The picture stays where it was cast.
+  Duration draw(const render::FramePlan& plan, render::FrameReport& report);
+  Duration restore();
+  /// What was drawn or restored last.
+  render::Image image() {
+    render::Image image;
+    renderer_.fetch(image);
+    return image;
+  }
 
   /// Work of a set of pixels in this view.
   render::RayLoad loadOf(const std::vector<render::Lattice>& pixels) const;
@@ -58,14 +67,17 @@ class BenchScene {
   std::string summary() const;
 
  private:
-  const std::string device_;
+  const Place place_;
   const std::string mode_;
   const std::string camera_text_;
   const render::ImageSize size_;
   const render::CameraSpec camera_;
   std::string name_;
-  std::shared_ptr<const volume::DenseVolume> volume_;
+  FieldVolume volume_;
   render::Renderer renderer_;
 };
+
+/// Opened where --backend says. @throws Error (usage, bad_input, device)
+std::unique_ptr<BenchScene> openBenchScene(const BenchSceneOptions& options, const GlobalOptions& global);
 
 }  // namespace emscape::app

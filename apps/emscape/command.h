@@ -27,9 +27,4 @@ void addProfile(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCheck(CLI::App& app, const GlobalOptions& global, Action& action);
 void addBench(CLI::App& app, const GlobalOptions& global, Action& action);
 
-/// Decides where the work runs, and says so once.
-/// @return the name for reports: "cpu"
-/// @throws Error (usage) for an unknown name, Error (device) if `cuda` is asked for and cannot be had
-std::string chooseBackend(const GlobalOptions& global);
-
 }  // namespace emscape::app

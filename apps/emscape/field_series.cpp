@@ -42,12 +42,26 @@ scenario::Snapshot FieldSeries::update(int step) {
   return now;
 }
 
+std::vector<FieldVolume> FieldSeries::latest() const {
+  std::vector<FieldVolume> volumes;
+  const auto take = [&volumes](const auto& latest) {
+    for (const auto& volume : latest) volumes.emplace_back(volume, volume->info);
+  };
+  if (solver_.deviceVolumes().empty()) {
+    take(solver_.volumes());
+  } else {
+    take(solver_.deviceVolumes());
+  }
+  return volumes;
+}
+
 std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<void(int)>& done) {
   std::vector<ValueRange> ranges(channels().size());
   for (int step = 0; step < count(); step += stride) {
     update(step);
+    const std::vector<FieldVolume> volumes = latest();
     for (std::size_t c = 0; c < ranges.size(); ++c) {
-      const volume::VolumeInfo& info = solver_.volumes()[c]->info;
+      const volume::VolumeInfo& info = volumes[c].info();
       ranges[c].add({info.range_min, info.range_max});
     }
     done(step + 1);
@@ -55,19 +69,18 @@ std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<
   return ranges;
 }
 
-std::vector<std::shared_ptr<const volume::DenseVolume>> FieldSeries::compute(
-    int step, const std::vector<ValueRange>& ranges) {
+std::vector<FieldVolume> FieldSeries::compute(int step, const std::vector<ValueRange>& ranges) {
   const scenario::Snapshot now = update(step);
-  std::vector<std::shared_ptr<const volume::DenseVolume>> volumes;
-  for (std::size_t c = 0; c < channels().size(); ++c) {
-    auto copy = std::make_shared<volume::DenseVolume>(*solver_.volumes()[c]);
-    const ValueRange range = ranges[c].empty() ? ValueRange{copy->info.floor, copy->info.floor} : ranges[c];
+  std::vector<FieldVolume> volumes = latest();
+  for (std::size_t c = 0; c < volumes.size(); ++c) {
     // The solver leaves a volume that did not change as it was, its time too.
-    copy->info.time_s = now.time_s;
-    copy->info.time_utc = now.time_utc;
-    copy->info.range_min = range.min;
-    copy->info.range_max = range.max;
-    volumes.push_back(std::move(copy));
+    volume::VolumeInfo info = volumes[c].info();
+    const ValueRange range = ranges[c].empty() ? ValueRange{info.floor, info.floor} : ranges[c];
+    info.time_s = now.time_s;
+    info.time_utc = now.time_utc;
+    info.range_min = range.min;
+    info.range_max = range.max;
+    volumes[c].setInfo(std::move(info));
   }
   return volumes;
 }

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "apps/emscape/field_volume.h"
 #include "apps/emscape/inputs.h"
 #include "emfield/field_solver.h"
 #include "scenario/snapshot.h"
-#include "volume/dense_volume.h"
 
 namespace emscape::app {
 
@@ -35,6 +35,9 @@ class FieldSeries {
   const LoadedScenario& input() const { return input_; }
   scenario::Snapshot snapshot(int step) const;
 
+  /// Computes the first step: what that lacks is told now. @throws Error, Interrupted
+  void rehearse() { update(0); }
+
   /// Computes steps to learn the range of each channel over them.
   /// @param stride  every so many steps; 1: the range of the whole series
   /// @param done    called after each step with the number of the next
@@ -43,8 +46,7 @@ class FieldSeries {
 
   /// The channels' volumes at a step; info.range_* as given, one range a channel.
   /// @throws Interrupted
-  std::vector<std::shared_ptr<const volume::DenseVolume>> compute(int step,
-                                                                  const std::vector<ValueRange>& ranges);
+  std::vector<FieldVolume> compute(int step, const std::vector<ValueRange>& ranges);
 
   /// Whether the last step that was computed differs from the one computed before it.
   bool changed() const { return changed_; }
@@ -54,6 +56,8 @@ class FieldSeries {
 
  private:
   scenario::Snapshot update(int step);
+  /// The channels' volumes as the solver left them.
+  std::vector<FieldVolume> latest() const;
 
   LoadedScenario input_;
   std::vector<double> times_s_;

@@ -21,8 +21,9 @@ std::vector<double> timesOf(const FrameSelection& selection, const scenario::Clo
 }
 
 /// The one quantity that is needed: "snr_db" of the channel "snr_db:search radar".
-emfield::FieldOptions fieldOptionsOf(const FrameSelection& selection, const scenario::Scenario& scenario) {
-  emfield::FieldOptions options;
+emfield::FieldOptions fieldOptionsOf(const FrameSelection& selection, const Place& place,
+                                     const scenario::Scenario& scenario) {
+  emfield::FieldOptions options = place.fieldOptions();
   options.quantities = {selection.quantity.empty()
                             ? scenario.output.quantities.front()
                             : selection.quantity.substr(0, selection.quantity.find(':'))};
@@ -33,8 +34,10 @@ emfield::FieldOptions fieldOptionsOf(const FrameSelection& selection, const scen
 /// A scenario's frames, computed as they are asked for.
 class ComputedFrames : public FrameSource {
  public:
-  ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const GlobalOptions& global)
-      : series_(input, timesOf(selection, input.scenario->clock), fieldOptionsOf(selection, *input.scenario)),
+  ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const Place& place,
+                 const GlobalOptions& global)
+      : series_(input, timesOf(selection, input.scenario->clock),
+                fieldOptionsOf(selection, place, *input.scenario)),
         channel_(channelOf(selection.quantity)) {
     if (selection.range) {
       ranges_.assign(series_.channels().size(), *selection.range);
@@ -50,8 +53,8 @@ class ComputedFrames : public FrameSource {
   int count() const override { return series_.count(); }
   double time_s(int index) const override { return series_.time_s(index); }
   Frame frame(int index) override {
-    const std::shared_ptr<const volume::DenseVolume> volume = series_.compute(index, ranges_)[channel_];
-    return {volume, markersOf(series_.snapshot(index), series_.input().terrain.get(), volume->grid),
+    const FieldVolume volume = series_.compute(index, ranges_)[channel_];
+    return {volume, markersOf(series_.snapshot(index), series_.input().terrain.get(), volume.grid()),
             series_.changed()};
   }
   std::string name() const override { return series_.input().scenario->name; }
@@ -98,13 +101,14 @@ class StoredFrames : public FrameSource {
   double time_s(int index) const override { return files_[static_cast<std::size_t>(index)].time_s; }
   Frame frame(int index) override {
     stopIfInterrupted();
-    auto volume = std::make_shared<volume::DenseVolume>(
+    auto volume = std::make_shared<const volume::DenseVolume>(
         volume::readVolume(files_[static_cast<std::size_t>(index)].file, quantity_));
+    volume::VolumeInfo info = volume->info;
     if (range_) {
-      volume->info.range_min = range_->min;
-      volume->info.range_max = range_->max;
+      info.range_min = range_->min;
+      info.range_max = range_->max;
     }
-    Frame frame{volume, {}, true};
+    Frame frame{{volume, info}, {}, true};
     if (scene_ && volume->grid.georeferenced) {
       const scenario::Snapshot snapshot =
           scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), volume->info.time_s);
@@ -147,10 +151,12 @@ class StoredFrames : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const GlobalOptions& global) {
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const Place& place,
+                                             const GlobalOptions& global) {
   switch (inputKindOf(selection.input)) {
     case InputKind::scenario:
-      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input), selection, global);
+      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input), selection, place,
+                                              global);
     case InputKind::volume:
       return std::make_unique<StoredFrames>(selection);
     default:

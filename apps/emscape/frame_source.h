@@ -8,16 +8,17 @@
 
 #include "apps/emscape/console.h"
 #include "apps/emscape/field_series.h"
+#include "apps/emscape/field_volume.h"
+#include "apps/emscape/place.h"
 #include "render/height_field.h"
 #include "render/legend.h"
 #include "render/overlay.h"
-#include "volume/dense_volume.h"
 
 namespace emscape::app {
 
 /// One instant.
 struct Frame {
-  std::shared_ptr<const volume::DenseVolume> volume;
+  FieldVolume volume;
   std::vector<render::Marker> markers;
   bool changed = true;  ///< false: the volume's values are those of the frame asked for before
 };
@@ -50,7 +51,9 @@ class FrameSource {
   virtual std::vector<std::string> warnings() const = 0;
 };
 
-/// @throws Error (usage, bad_input)
-std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const GlobalOptions& global);
+/// @param place  where a scenario's field is computed
+/// @throws Error (usage, bad_input, device)
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const Place& place,
+                                             const GlobalOptions& global);
 
 }  // namespace emscape::app

@@ -9,8 +9,8 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/version.h"
+#include "base/device.h"
 #include "base/error.h"
-#include "base/log.h"
 #include "base/parallel.h"
 
 namespace emscape::app {
@@ -51,6 +51,18 @@ int parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
+/// What this program is and what it can compute with.
+std::string versionText() {
+  std::string text = std::string("emscape ") + kVersion;
+  const std::string cuda = cudaOfBuild();
+  if (cuda.empty()) return text + "\nGPU: this build has no CUDA";
+  const Device device = findDevice();
+  text += "\nGPU: " + (device.usable ? device.name : "none, " + device.why_not);
+  if (device.usable)
+    text += fmt::format(", {} MiB, {} free", device.total_bytes >> 20, device.free_bytes >> 20);
+  return text + fmt::format(" ({})", cuda);
+}
+
 int fail(ErrorCode code, const std::string& message) {
   fmt::print(stderr, "emscape: error: {}\n", message);
   return static_cast<int>(code);
@@ -75,22 +87,13 @@ int run(const Action& action) {
 
 }  // namespace
 
-std::string chooseBackend(const GlobalOptions& global) {
-  if (global.backend == "cuda") {
-    throw Error(ErrorCode::device,
-                "--backend cuda: this build of emscape has no CUDA; use --backend cpu or auto");
-  }
-  if (global.backend == "auto") logInfo("running on the CPU: this build has no CUDA");
-  return "cpu";
-}
-
 int emscapeMain(int argc, char** argv) {
   CLI::App app(
       "Computes the electromagnetic environment of a scenario as a volume that changes with time, and shows "
       "it.",
       "emscape");
   app.footer(kFooter);
-  app.set_version_flag("--version", std::string("emscape ") + kVersion);
+  app.set_version_flag("--version", std::function<std::string()>(versionText));
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
 

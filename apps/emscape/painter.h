@@ -28,7 +28,8 @@ struct Look {
 /// time uses it.
 class Painter {
  public:
-  Painter(const Look& look, const FrameSource& source);
+  /// @throws Error (bad_input, device)
+  Painter(const Look& look, const FrameSource& source, const Place& place);
 
   /// What the next pictures show.
   void setFrame(const Frame& frame);
@@ -39,15 +40,15 @@ class Painter {
   /// Casts what the last draw() left out.
   render::FrameReport restore(const StopFlag* stop = nullptr);
   /// What was drawn last, bare.
-  const render::Image& image() const { return image_; }
+  const render::Image& image();
   /// A full cast of what draw() and restore() show, beside it.
   render::Image fullCast();
   /// What was drawn last, with its labels. @param note  small, at the bottom
   render::Image8 picture(const std::string& note);
 
  private:
-  void fitTo(const volume::DenseVolume& volume);
-  render::TransferFunction functionFor(const volume::DenseVolume& volume) const;
+  void fitTo(const FieldVolume& volume);
+  render::TransferFunction functionFor(const FieldVolume& volume) const;
   void placeCamera(const render::CameraSpec& spec);
 
   const Look& look_;
@@ -55,6 +56,7 @@ class Painter {
   render::Renderer renderer_;
   render::Annotations annotations_;
   render::Image image_;
+  bool fetched_ = false;  ///< image_ is what was drawn last
   bool fitted_ = false;
 };
 

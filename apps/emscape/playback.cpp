@@ -25,13 +25,14 @@ bool sameBits(const render::Image& a, const render::Image& b) {
 
 }  // namespace
 
-Playback::Playback(const PlaybackOptions& options, const Look& look, FrameSource& source, Display display)
+Playback::Playback(const PlaybackOptions& options, const Look& look, FrameSource& source, Painter& painter,
+                   Display display)
     : options_(options),
       look_(look),
       source_(source),
       display_(std::move(display)),
       controller_(options.controller),
-      painter_(look, source),
+      painter_(painter),
       period_ms_(1000 / options.frames_per_s) {
   if (options.orbit_rate_deg_s != 0 && look.camera.kind != render::CameraSpec::Kind::orbit) {
     throw Error(ErrorCode::usage, "--orbit-rate: the camera must be an orbit");
@@ -262,7 +263,8 @@ void Playback::settle() {
   event.restored = true;
   if (options_.verify) {
     const Clock::time_point begin = Clock::now();
-    event.equals_full = sameBits(painter_.image(), painter_.fullCast());
+    const render::Image& settled = painter_.image();
+    event.equals_full = sameBits(settled, painter_.fullCast());
     stood_still_ += Clock::now() - begin;
   }
   report(event);

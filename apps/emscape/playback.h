@@ -32,9 +32,11 @@ using Display = std::function<void(const render::Image8& picture, int slots)>;
 /// another, so that an event can stop them.
 class Playback {
  public:
+  /// @param painter  draws the source in this look; outlives this, as look and source
   /// @param display  empty: pictures get no labels and go nowhere
   /// @throws Error (usage) for an orbit rate with a camera that does not orbit
-  Playback(const PlaybackOptions& options, const Look& look, FrameSource& source, Display display);
+  Playback(const PlaybackOptions& options, const Look& look, FrameSource& source, Painter& painter,
+           Display display);
   /// Stops what still runs.
   ~Playback();
   Playback(const Playback&) = delete;
@@ -89,7 +91,7 @@ class Playback {
   const Display display_;
   std::function<void(const PlaybackEvent&)> done_;
   render::FrameController controller_;
-  Painter painter_;
+  Painter& painter_;
   PlaybackReport report_;
 
   Clock::time_point start_;

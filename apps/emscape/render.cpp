@@ -52,6 +52,7 @@ struct RenderOptions {
   std::optional<double> budget_ms;
   double orbit_rate_deg_s = 0;
   bool verify = false;
+  std::string device_volume = "float";
 };
 
 /// The options that say how pictures look, read: wrong ones are told before anything is computed.
@@ -92,6 +93,22 @@ Sinks openSinks(const RenderOptions& options, const Look& look, const FrameSourc
   return sinks;
 }
 
+/// What is drawn, and who draws it; the first frame is set.
+struct Stage {
+  Place place;
+  std::unique_ptr<FrameSource> source;
+  std::unique_ptr<Painter> painter;
+};
+
+Stage openStage(const RenderOptions& options, const Look& look, const GlobalOptions& global) {
+  return openAtPlace(global, options.device_volume, [&](const Place& place) {
+    Stage stage{place, openFrameSource(options.selection, place, global), nullptr};
+    stage.painter = std::make_unique<Painter>(look, *stage.source, place);
+    stage.painter->setFrame(stage.source->frame(0));
+    return stage;
+  });
+}
+
 int renderPictures(RenderOptions options, const GlobalOptions& global) {
   if (options.outputs.empty()) throw Error(ErrorCode::usage, "--output is required (but for --realtime)");
   const Look look = lookOf(options);
@@ -99,11 +116,11 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
   const render::FramePlan plan{
       options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays),
       render::parseInterpolation(options.interpolate)};
-  const std::string device = chooseBackend(global);
   if (!options.range.empty()) options.selection.range = parseRange(options.range);
   options.selection.first_only = options.selection.times.empty() && isOnePicture(options.outputs);
-  const std::unique_ptr<FrameSource> source = openFrameSource(options.selection, global);
-  Painter painter(look, *source);
+  const Stage stage = openStage(options, look, global);
+  const std::unique_ptr<FrameSource>& source = stage.source;
+  Painter& painter = *stage.painter;
   const std::string note = fmt::format("{}, {} rays, step {:g} voxel", options.mode,
                                        render::toString(plan.pattern), options.step_voxels);
   const Sinks sinks = openSinks(options, look, *source, source->count(), options.frames_per_s.value_or(10));
@@ -114,7 +131,7 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
     ProgressBar progress(global, "drawing", source->count());
     BackgroundWriter writer(2);  // PNG and video are packed while the next picture is cast
     for (int index = 0; index < source->count(); ++index) {
-      painter.setFrame(source->frame(index));
+      if (index > 0) painter.setFrame(source->frame(index));
       cast_ms += painter.draw(plan).total_ms();
       writer.push([&sinks, index, picture = painter.picture(note)] {
         for (const auto& sink : sinks) sink->add(index + 1, picture, 1);
@@ -128,7 +145,7 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
 
   const double seconds = watch.lap_ms() / 1000;
   if (global.json) {
-    printJson({{"device", device},
+    printJson({{"device", stage.place.device()},
                {"size", {look.size.width, look.size.height}},
                {"mode", options.mode},
                {"frames", source->count()},
@@ -160,9 +177,9 @@ PlaybackOptions playbackOptionsOf(const RenderOptions& options) {
 int playInRealTime(RenderOptions options, const GlobalOptions& global) {
   const Look look = lookOf(options);
   const PlaybackOptions playback_options = playbackOptionsOf(options);
-  const std::string device = chooseBackend(global);
   if (!options.range.empty()) options.selection.range = parseRange(options.range);
-  const std::unique_ptr<FrameSource> source = openFrameSource(options.selection, global);
+  const Stage stage = openStage(options, look, global);
+  const std::unique_ptr<FrameSource>& source = stage.source;
   constexpr int kSeveral = 2;
   const Sinks sinks = openSinks(options, look, *source, kSeveral, playback_options.frames_per_s);
 
@@ -178,7 +195,7 @@ int playInRealTime(RenderOptions options, const GlobalOptions& global) {
       });
     };
   }
-  Playback playback(playback_options, look, *source, display);
+  Playback playback(playback_options, look, *source, *stage.painter, display);
   const PlaybackReport report = playback.play([](const PlaybackEvent& event) { logInfo(lineOf(event)); });
   writer.finish();
   for (const auto& sink : sinks) sink->finish();
@@ -186,9 +203,9 @@ int playInRealTime(RenderOptions options, const GlobalOptions& global) {
 
   logInfo(summaryOf(report));
   if (global.json) {
-    Json json{{"device", device},           {"size", {look.size.width, look.size.height}},
-              {"mode", options.mode},       {"rays", options.rays},
-              {"outputs", options.outputs}, {"budget_ms", playback_options.controller.budget_ms}};
+    Json json{{"device", stage.place.device()}, {"size", {look.size.width, look.size.height}},
+              {"mode", options.mode},           {"rays", options.rays},
+              {"outputs", options.outputs},     {"budget_ms", playback_options.controller.budget_ms}};
     json.update(toJson(report));
     printJson(json);
   }
@@ -288,6 +305,7 @@ Examples:
   command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off");
   command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,
                     "Compute although elevation data is missing; the holes are drawn as such");
+  addDeviceVolumeOption(*command, options->device_volume);
   addPlaybackOptions(*command, *options);
   command->callback([options, &global, &action] {
     action = [options, &global] {

@@ -30,10 +30,11 @@ SeriesFiles::SeriesFiles(fs::path folder, const std::string& name, const std::ve
       formats_(formats.begin(), formats.end()),
       times_s_(std::move(times_s)) {}
 
-void SeriesFiles::write(int step,
-                        const std::vector<std::shared_ptr<const volume::DenseVolume>>& channels) const {
+void SeriesFiles::write(int step, const std::vector<FieldVolume>& channels) const {
+  std::vector<volume::DenseVolume> copies;
+  for (const FieldVolume& channel : channels) copies.push_back(channel.copy());
   std::vector<const volume::DenseVolume*> volumes;
-  for (const auto& channel : channels) volumes.push_back(channel.get());
+  for (const volume::DenseVolume& copy : copies) volumes.push_back(&copy);
   for (const volume::FileFormat& format : volume::fileFormats()) {
     if (formats_.count(format.name) == 0) continue;
     const fs::path file = volume::seriesFile(folder_, name_, step + 1, format.name);

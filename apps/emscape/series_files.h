@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "volume/dense_volume.h"
+#include "apps/emscape/field_volume.h"
 
 namespace emscape::app {
 
@@ -21,8 +21,8 @@ class SeriesFiles {
               std::vector<double> times_s);
 
   /// Writes a step in every format; one thread at a time.
-  /// @throws Error (other); then no file of the format that failed is there
-  void write(int step, const std::vector<std::shared_ptr<const volume::DenseVolume>>& channels) const;
+  /// @throws Error (other, device); then no file of the format that failed is there
+  void write(int step, const std::vector<FieldVolume>& channels) const;
 
   /// Removes the files of any series of this name, and series.json, from the folder.
   void removeOld() const;

@@ -12,6 +12,7 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/field_series.h"
 #include "apps/emscape/interrupt.h"
+#include "apps/emscape/place.h"
 #include "apps/emscape/series_files.h"
 #include "apps/emscape/series_state.h"
 #include "apps/emscape/version.h"
@@ -106,17 +107,23 @@ Json rangesToJson(const SeriesState& state) {
 }
 
 int simulate(SimulateOptions options, const GlobalOptions& global) {
-  const std::string device = chooseBackend(global);
   Stopwatch watch;
-  LoadedScenario input = loadScenarioWithTerrain(options.scenario);
+  const LoadedScenario input = loadScenarioWithTerrain(options.scenario);
   const std::vector<double> times_s = options.times.empty()
                                           ? scenario::timesOf(input.scenario->clock)
                                           : scenario::parseTimes(options.times, input.scenario->clock);
-  emfield::FieldOptions field_options;
-  field_options.quantities = options.quantities;
-  field_options.allow_missing_terrain = options.allow_missing_terrain;
-  field_options.cache_bytes = static_cast<std::size_t>(options.cache_mib * (1 << 20));
-  FieldSeries series(std::move(input), times_s, field_options);
+  std::string device;
+  const std::unique_ptr<FieldSeries> opened = openAtPlace(global, "float", [&](const Place& place) {
+    device = place.device();
+    emfield::FieldOptions field_options = place.fieldOptions();
+    field_options.quantities = options.quantities;
+    field_options.allow_missing_terrain = options.allow_missing_terrain;
+    field_options.cache_bytes = static_cast<std::size_t>(options.cache_mib * (1 << 20));
+    auto series = std::make_unique<FieldSeries>(input, times_s, field_options);
+    series->rehearse();
+    return series;
+  });
+  FieldSeries& series = *opened;
 
   makeFolder(options.folder);
   removeStaleTemporaries(options.folder);

@@ -50,6 +50,7 @@ TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {
       {"render", quick, "-o", folder / "x.png", "--times", "0:4:1"},
       {"validate", quick, "--threads", "-1"},
       {"validate", quick, "--backend", "abacus"},
+      {"bench", "render", quick, "--device-volume", "double"},
       {"bench", "field", quick, "--repeats", "0"},
   };
   for (const Arguments& arguments : wrong) {
@@ -61,26 +62,44 @@ TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {
   EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
 }
 
+/// What the program says of the GPU; empty where it can use one.
+std::string whyNoGpu() {
+  const std::string version = run({"--version"}).out;
+  const std::size_t none = version.find("GPU: none");
+  const std::size_t line = none != std::string::npos ? none : version.find("GPU: this build");
+  return line == std::string::npos ? "" : version.substr(line);
+}
+
 TEST(CommandLine, ADeviceThatCannotBeHadIsOneLineWithStatus4) {
+  if (whyNoGpu().empty()) GTEST_SKIP() << "there is a GPU";
   const TemporaryFolder folder;
   const std::string quick = shippedScenario("quick.yaml");
   for (const Arguments& arguments :
        {Arguments{"simulate", quick, "-o", folder / "x"}, Arguments{"bench", "field", quick},
-        Arguments{"render", quick, "-o", folder / "x.png"}}) {
+        Arguments{"render", quick, "-o", folder / "x.png"}, Arguments{"bench", "render", quick},
+        Arguments{"bench", "reconstruction", quick}, Arguments{"render", quick, "--realtime"}}) {
     Arguments with_backend = arguments;
     with_backend.insert(with_backend.end(), {"--backend", "cuda"});
     const ProgramResult result = run(with_backend);
     EXPECT_EQ(result.status, kDevice);
     EXPECT_EQ(lines(result.err), 1) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("--backend cuda"));
+    EXPECT_THAT(result.err, HasSubstr("backend cuda: "));
+    EXPECT_EQ(result.out, "");
   }
   EXPECT_TRUE(folder.files().empty());
 }
 
-TEST(CommandLine, AutoSaysOnceWhyItRunsOnTheCpuAndQuietDoesNot) {
+TEST(CommandLine, VersionSaysWhichGpuAnswersOrWhyNone) {
+  EXPECT_THAT(run({"--version"}).out, HasSubstr("\nGPU: "));
+}
+
+TEST(CommandLine, AutoSaysOnceWhereItRunsAndQuietDoesNot) {
   const TemporaryFolder folder;
   const Arguments arguments{"simulate", shippedScenario("quick.yaml"), "-o", folder / "a", "--times", "0"};
-  EXPECT_THAT(run(arguments).err, HasSubstr("running on the CPU"));
+  const std::string said = run(arguments).err;
+  const std::string expected = whyNoGpu().empty() ? "running on the GPU: " : "running on the CPU: ";
+  EXPECT_THAT(said, HasSubstr(expected));
+  EXPECT_EQ(said.find("running on"), said.rfind("running on"));
   Arguments quiet = arguments;
   quiet.insert(quiet.end(), {"--force", "--quiet"});
   EXPECT_EQ(run(quiet).err, "");
