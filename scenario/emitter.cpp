@@ -18,11 +18,6 @@ const char* toString(Polarization polarization) {
   return kNames[static_cast<int>(polarization)];
 }
 
-const char* toString(PropagationModel model) {
-  static constexpr const char* kNames[] = {"free_space", "horizon", "diffraction", "two_ray", "itm", "p528"};
-  return kNames[static_cast<int>(model)];
-}
-
 const char* toString(DetectionMethod method) {
   static constexpr const char* kNames[] = {"exact", "albersheim", "shnidman"};
   return kNames[static_cast<int>(method)];

@@ -8,18 +8,16 @@
 
 #include "base/error.h"
 #include "scenario/antenna.h"
+#include "scenario/propagation.h"
 #include "scenario/scan.h"
 
 namespace emscape::scenario {
 
 enum class EmitterKind { radar, transmitter, jammer };
 enum class Polarization { horizontal, vertical, slant_45, slant_135, circular_right, circular_left };
-/// The propagation models that the scenario schema knows; emfield says which of them it can compute.
-enum class PropagationModel { free_space, horizon, diffraction, two_ray, itm, p528 };
 
 const char* toString(EmitterKind kind);
 const char* toString(Polarization polarization);
-const char* toString(PropagationModel model);
 
 /// How far (dB) an antenna keeps the orthogonal polarisation down unless a receiver says otherwise: what
 /// antennas of one nominal polarisation reach off their axis.
@@ -86,10 +84,15 @@ struct Emitter {
   Polarization polarization = Polarization::vertical;
   AntennaPtr antenna;
   ScanSpec scan;
-  PropagationModel propagation = PropagationModel::horizon;
+  PropagationModel propagation = PropagationModel::diffraction;
+  DiffractionSettings diffraction;
+  TwoRaySettings two_ray;
+  ItmSettings itm;
+  P528Settings p528;
   RadarReceiver receiver;              ///< radars only
   std::vector<TimeInterval> active_s;  ///< empty: always
   FilePlace place;                     ///< where the scenario describes it
+  FilePlace frequency_place;           ///< and its frequency
 };
 
 }  // namespace emscape::scenario

@@ -11,6 +11,7 @@
 #include "scenario/clock.h"
 #include "scenario/emitter.h"
 #include "scenario/platform.h"
+#include "scenario/propagation.h"
 #include "scenario/terrain.h"
 
 namespace emscape::scenario {
@@ -29,6 +30,10 @@ struct Atmosphere {
   double temperature_k = 288.15;
   double vapour_g_m3 = 7.5;
   double rain_mm_h = 0;
+  std::optional<double> rain_height_m;  ///< above mean sea level, up to where it rains; none: by latitude
+  GasLosses gases = GasLosses::automatic;
+  double sea_level_refractivity = 301;  ///< N-units, for itm, which takes the rays' curvature from it
+  RadioClimate climate = RadioClimate::continental_temperate;
 };
 
 /// A named frequency interval, for combine by band.
@@ -66,6 +71,7 @@ struct Scenario {
   Region region;
   std::optional<TerrainSpec> terrain;
   Atmosphere atmosphere;
+  Ground ground;
   std::vector<Platform> platforms;
   std::vector<Emitter> emitters;
   std::vector<ReceiverProfile> receivers;  ///< the first is used for received_power_dbm

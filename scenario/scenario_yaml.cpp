@@ -69,8 +69,28 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
 }
 
 Atmosphere parseAtmosphere(const Section& section) {
-  return {section.number("k_factor"), section.number("pressure_hpa"), section.number("temperature_k"),
-          section.number("vapour_g_m3"), section.number("rain_mm_h")};
+  Atmosphere atmosphere;
+  atmosphere.k_factor = section.number("k_factor");
+  atmosphere.pressure_hpa = section.number("pressure_hpa");
+  atmosphere.temperature_k = section.number("temperature_k");
+  atmosphere.vapour_g_m3 = section.number("vapour_g_m3");
+  atmosphere.rain_mm_h = section.number("rain_mm_h");
+  atmosphere.rain_height_m = section.optionalNumber("rain_height_m");
+  atmosphere.gases = section.choice<GasLosses>("gases");
+  atmosphere.sea_level_refractivity = section.number("sea_level_refractivity");
+  atmosphere.climate = section.choice<RadioClimate>("climate");
+  return atmosphere;
+}
+
+Ground parseGround(const Section& section) {
+  Ground ground;
+  ground.kind = section.choice<GroundKind>("kind");
+  ground.relative_permittivity = section.optionalNumber("relative_permittivity");
+  ground.conductivity_s_m = section.optionalNumber("conductivity_s_m");
+  ground.roughness_m = section.number("roughness_m");
+  ground.surface_msl_m = section.optionalNumber("surface_msl_m");
+  ground.place = section.place();
+  return ground;
 }
 
 ReceiverProfile parseReceiverProfile(const Section& section) {
@@ -149,6 +169,7 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
   scenario.region = parseRegion(root.section("region"), context);
   if (root.has("terrain")) scenario.terrain = parseTerrain(root.section("terrain"), context);
   scenario.atmosphere = parseAtmosphere(root.section("atmosphere"));
+  scenario.ground = parseGround(root.section("ground"));
   for (const Section& item : root.sections("platforms"))
     scenario.platforms.push_back(parsePlatform(item, context));
   for (const Section& item : root.sections("emitters")) {

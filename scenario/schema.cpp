@@ -158,8 +158,92 @@ const ObjectSpec& atmosphereSpec() {
           byDefault("temperature_k", number("K").from(180).to(340), Atmosphere{}.temperature_k,
                     "at sea level"),
           byDefault("vapour_g_m3", number("g/m3").from(0).to(100), Atmosphere{}.vapour_g_m3, "water vapour"),
-          byDefault("rain_mm_h", number("mm/h").from(0).to(200), Atmosphere{}.rain_mm_h, "rain rate"),
+          byDefault("rain_mm_h", number("mm/h").from(0).to(200), Atmosphere{}.rain_mm_h,
+                    "rain rate, everywhere up to rain_height_m; its loss is added to every model's"),
+          optional("rain_height_m", number("m").from(0).to(20000),
+                   "above mean sea level, up to where it rains; by default by latitude, 5000 in the tropics"),
+          byDefault("gases", choiceUpTo(GasLosses::never), toString(Atmosphere{}.gases),
+                    "loss to oxygen and water vapour; auto: with every model but free_space and horizon; "
+                    "p528 holds its own"),
+          byDefault("sea_level_refractivity", number().from(200).to(450),
+                    Atmosphere{}.sea_level_refractivity,
+                    "N-units; for itm, whose rays bend by it and not by k_factor"),
+          byDefault("climate", choiceUpTo(RadioClimate::maritime_temperate_over_sea),
+                    toString(Atmosphere{}.climate), "for itm's statistics"),
       }};
+  return spec;
+}
+
+const ObjectSpec& groundSpec() {
+  static const ObjectSpec spec{
+      "ground",
+      "",
+      {
+          byDefault("kind", choiceUpTo(GroundKind::concrete), toString(Ground{}.kind),
+                    "what the ground is to the waves; sea and fresh water by frequency"),
+          optional("relative_permittivity", number().from(1).to(200), "by default that of the kind"),
+          optional("conductivity_s_m", number("S/m").from(0).to(100), "by default that of the kind"),
+          byDefault("roughness_m", number("m").from(0).to(1000), Ground{}.roughness_m,
+                    "standard deviation of the surface's height, for two_ray"),
+          optional("surface_msl_m", kHeight,
+                   "height of the smooth surface of two_ray and p528; by default of the ground below each "
+                   "emitter"),
+      }};
+  return spec;
+}
+
+const ObjectSpec& diffractionSpec() {
+  static const ObjectSpec spec{
+      "diffraction",
+      "",
+      {byDefault("method", choiceUpTo(DiffractionMethod::deygout), toString(DiffractionSettings{}.method),
+                 "delta_bullington: terrain as one edge and the earth's bulge; single_edge, deygout (three "
+                 "edges): terrain alone")}};
+  return spec;
+}
+
+const ObjectSpec& twoRaySpec() {
+  static const ObjectSpec spec{
+      "two_ray",
+      "",
+      {byDefault("sum", choiceUpTo(TwoRaySum::envelope), toString(TwoRaySettings{}.sum),
+                 "coherent: lobes and nulls; envelope: the lobes' tops, where voxels are larger than lobes"),
+       byDefault("roughness_model", choiceUpTo(RoughnessModel::miller_brown),
+                 toString(TwoRaySettings{}.roughness_model), "what roughness leaves of the reflection")}};
+  return spec;
+}
+
+KeySpec percentKey(const char* name, double default_value, const char* description) {
+  return byDefault(name, number("percent").from(0.01).to(99.99), default_value, description);
+}
+
+const ObjectSpec& itmSpec() {
+  static const ObjectSpec spec{
+      "itm",
+      "",
+      {
+          byDefault("form", choiceUpTo(ItmForm::area), toString(ItmSettings{}.form),
+                    "point_to_point: over the terrain's profiles; area: over terrain of irregularity_m"),
+          percentKey("time_percent", ItmSettings{}.time_percent, "of the time the loss is not exceeded"),
+          percentKey("location_percent", ItmSettings{}.location_percent, "of places; area form alone"),
+          percentKey("situation_percent", ItmSettings{}.situation_percent, "of such links (confidence)"),
+          byDefault("service", choiceUpTo(ItmService::broadcast), toString(ItmSettings{}.service),
+                    "whose statistics they are"),
+          byDefault("irregularity_m", number("m").from(0).to(1000), ItmSettings{}.irregularity_m,
+                    "of the terrain, area form: 0 sea, 30 plains, 90 hills, 200 mountains"),
+          byDefault("transmitter_siting", choiceUpTo(ItmSiting::very_careful),
+                    toString(ItmSettings{}.transmitter_siting), "area form"),
+          byDefault("receiver_siting", choiceUpTo(ItmSiting::very_careful),
+                    toString(ItmSettings{}.receiver_siting), "area form"),
+      }};
+  return spec;
+}
+
+const ObjectSpec& p528Spec() {
+  static const ObjectSpec spec{
+      "p528",
+      "",
+      {percentKey("time_percent", P528Settings{}.time_percent, "of the time the loss is not exceeded")}};
   return spec;
 }
 
@@ -341,6 +425,10 @@ const ObjectSpec& emitterSpec() {
                    "how the beam moves; by default it is fixed along the heading"),
           byDefault("propagation", choiceUpTo(PropagationModel::p528), toString(Emitter{}.propagation),
                     "model of the path loss"),
+          optional("diffraction", object(diffractionSpec()), "how; also above itm's heights"),
+          optional("two_ray", object(twoRaySpec()), "how"),
+          optional("itm", object(itmSpec()), "how"),
+          optional("p528", object(p528Spec()), "how"),
           required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
           optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMostItems),
                    "[begin, end) of the times at which it radiates; always by default"),
@@ -457,6 +545,7 @@ const ObjectSpec& scenarioSpec() {
           optional("terrain", object(terrainSpec()),
                    "the ground; by default a smooth earth at mean sea level"),
           optional("atmosphere", object(atmosphereSpec()), "what the waves travel through"),
+          optional("ground", object(groundSpec()), "what the waves meet below"),
           required("platforms", listOf(object(platformSpec()), 1, kMostItems).distinct(),
                    "what carries emitters"),
           required("emitters", listOf(object(emitterSpec()), 1, kMostItems).distinct(), "what radiates"),

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/host_device.h"
+#include "scenario/propagation.h"
 
 namespace emscape::emfield {
 
@@ -25,7 +26,7 @@ struct GroundConstants {
 constexpr GroundConstants kDiffractionLand{22, 0.003};
 constexpr GroundConstants kDiffractionSea{80, 5};
 
-enum class GroundKind { sea, fresh_water, wet_ground, average_ground, dry_ground, concrete };
+using scenario::GroundKind;
 
 /// Constants of a kind of ground at a frequency. Waters by P.527 at 15 degrees (sea water of 35 g/kg): the
 /// conductivity holds the loss of the turning dipoles too, and grows with frequency. Grounds by one pair for

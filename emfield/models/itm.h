@@ -18,6 +18,7 @@
 #include "emfield/models/itm_reference.h"
 #include "emfield/models/itm_variability.h"
 #include "emfield/models/model_limits.h"
+#include "scenario/propagation.h"
 
 namespace emscape::emfield {
 
@@ -143,8 +144,7 @@ struct ItmResult {
   EMSCAPE_HD bool refused() const { return static_cast<int>(status) >= 1000; }
 };
 
-/// How the places of antennas are chosen in area mode.
-enum class ItmSiting { random = 0, careful = 1, very_careful = 2 };
+using scenario::ItmSiting;
 
 template <class Real>
 struct ItmArea {

@@ -20,6 +20,7 @@
 #include "emfield/models/complex.h"
 #include "emfield/models/diffraction_spherical_earth.h"
 #include "emfield/models/model_limits.h"
+#include "scenario/propagation.h"
 
 namespace emscape::emfield {
 
@@ -36,17 +37,8 @@ constexpr ModelLimit kTwoRayRoughness{
     "roughness (rms)", "m", 1, 0, 10, Beyond::warned, "shadowing of waves by waves is not modelled"};
 constexpr const ModelLimit* kTwoRayLimits[] = {&kTwoRayFrequency, &kTwoRayHeight, &kTwoRayRoughness};
 
-/// How roughness takes from the coherent reflection, with z = 8 pi^2 (sigma sin psi / lambda)^2.
-enum class RoughnessModel {
-  ament,         ///< exp(-z): heights Gaussian (Ament 1953)
-  miller_brown,  ///< exp(-z) I0(z): waves as sines of random phase (Miller, Brown, Vegh 1984); fits the sea
-};
-
-/// What of the interference is kept.
-enum class TwoRaySum {
-  coherent,  ///< lobes and nulls
-  envelope,  ///< the lobes' tops: |1| + |reflected|
-};
+using scenario::RoughnessModel;
+using scenario::TwoRaySum;
 
 struct TwoRayParameters {
   double frequency_hz = 0;
