@@ -1,6 +1,5 @@
 # Options and what holds for every target of the project.
 option(EMSCAPE_TESTS "Build the tests" ON)
-option(EMSCAPE_BENCH "Build the benchmark programs" OFF)
 option(EMSCAPE_WERROR "Treat warnings as errors" ON)
 set(EMSCAPE_SANITIZE "" CACHE STRING "Sanitizer of every target: address, thread or empty")
 set_property(CACHE EMSCAPE_SANITIZE PROPERTY STRINGS "" address thread)

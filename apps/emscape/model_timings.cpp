@@ -1,0 +1,223 @@
+#include "apps/emscape/model_timings.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "apps/emscape/interrupt.h"
+#include "base/units.h"
+#include "bench/itm_cases.h"
+#include "emfield/models/diffraction_sweep.h"
+#include "emfield/models/gases.h"
+#include "emfield/models/itm.h"
+#include "emfield/models/p528.h"
+#include "emfield/models/rain.h"
+#include "emfield/models/two_ray.h"
+
+namespace emscape::app {
+namespace {
+
+using namespace emfield;
+
+constexpr double kEffectiveEarth_m = 6371000 * 4.0 / 3;
+constexpr double kPlaneLength_m = 60e3;
+constexpr double kFrequencies_hz[] = {1e8, 1e9, 1e10};
+
+/// Of the calling thread: other load on the machine does not count.
+double cpuTime_s() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+/// CPU time (s) of the fastest run. The results' sum is kept, so that nothing of it can be left out.
+template <class Run>
+double fastest_s(int repeats, Run run) {
+  double least = HUGE_VAL;
+  volatile double sum = 0;
+  for (int i = 0; i < repeats; ++i) {
+    stopIfInterrupted();
+    const double begin = cpuTime_s();
+    sum = sum + static_cast<double>(run());
+    least = std::min(least, cpuTime_s() - begin);
+  }
+  return least;
+}
+
+/// @param evaluate  called with 0..count - 1, returns a number
+template <class Evaluate>
+double perSecond(int repeats, int count, Evaluate evaluate) {
+  const double time_s = fastest_s(repeats, [&] {
+    double sum = 0;
+    for (int i = 0; i < count; ++i) sum += static_cast<double>(evaluate(i));
+    return sum;
+  });
+  return count / time_s;
+}
+
+/// Hills of several sizes, 600 m from the lowest to the highest.
+struct Hills {
+  std::vector<double> range_m;
+  std::vector<float> height_msl_m;
+
+  Hills(int posts, double phase) {
+    for (int i = 0; i < posts; ++i) {
+      const double x = kPlaneLength_m * i / (posts - 1);
+      range_m.push_back(x);
+      double height = 400;
+      for (int k = 0; k < 6; ++k)
+        height += 160 / (k + 1.0) * std::sin(phase * (k + 1) + x / 9000 * std::pow(2.2, k));
+      height_msl_m.push_back(static_cast<float>(height));
+    }
+  }
+  TerrainProfile profile() const {
+    return {range_m.data(), height_msl_m.data(), static_cast<int>(range_m.size())};
+  }
+};
+
+PlaneTiming timePlane(int repeats, int posts_per_range, double top_msl_m) {
+  PlaneTiming timing;
+  timing.posts = (kPlaneRanges - 1) * posts_per_range + 1;
+  timing.top_msl_m = top_msl_m;
+  std::vector<double> heights, by_path(std::size_t{kPlaneRanges} * kPlaneHeights), by_plane(by_path.size());
+  for (int j = 0; j < kPlaneHeights; ++j) heights.push_back(top_msl_m * (j + 1) / kPlaneHeights);
+  DiffractionMemory<double> memory(timing.posts);
+  for (const double frequency_hz : kFrequencies_hz) {
+    const Hills hills(timing.posts, std::log(frequency_hz));
+    DiffractionParameters parameters;
+    parameters.frequency_hz = frequency_hz;
+    parameters.effective_earth_radius_m = kEffectiveEarth_m;
+    const auto model = diffractionModel<double>(parameters);
+    const double tx_msl_m = static_cast<double>(hills.height_msl_m[0]) + 20;
+    timing.paths_ms += 1e3 * fastest_s(repeats, [&] {
+                         for (int r = 1; r < kPlaneRanges; ++r) {
+                           const TerrainProfile path = hills.profile().upTo(r * posts_per_range);
+                           for (int j = 0; j < kPlaneHeights; ++j) {
+                             by_path[static_cast<std::size_t>(r) * kPlaneHeights + j] =
+                                 deltaBullington(model, path, tx_msl_m, heights[j]).loss_db;
+                           }
+                         }
+                         return by_path.back();
+                       });
+    timing.plane_ms += 1e3 * fastest_s(repeats, [&] {
+                         DiffractionSweep<double> sweep(model, hills.profile(), tx_msl_m, memory.scratch());
+                         for (int r = 1; r < kPlaneRanges; ++r) {
+                           while (sweep.post() < r * posts_per_range) sweep.advance();
+                           sweep.column(heights.data(), kPlaneHeights,
+                                        &by_plane[static_cast<std::size_t>(r) * kPlaneHeights]);
+                         }
+                         return by_plane.back();
+                       });
+    for (std::size_t i = kPlaneHeights; i < by_path.size(); ++i) {
+      timing.largest_difference_db =
+          std::max(timing.largest_difference_db, std::abs(by_path[i] - by_plane[i]));
+    }
+  }
+  timing.paths_ms /= std::size(kFrequencies_hz);
+  timing.plane_ms /= std::size(kFrequencies_hz);
+  return timing;
+}
+
+/// Adds a timing in double and one in float, compared with it.
+template <class PerSecond>
+void addBothKinds(std::vector<ModelTiming>& timings, const std::string& model, const std::string& what,
+                  PerSecond perSecondOf) {
+  timings.push_back({model, what + ", double", perSecondOf(double{}), 0, ""});
+  const double in_double = timings.back().evaluations_per_s;
+  timings.push_back({model, what + ", float", perSecondOf(float{}), 0, "double"});
+  timings.back().ratio = timings.back().evaluations_per_s / in_double;
+}
+
+void timeItm(int repeats, std::vector<ModelTiming>& timings) {
+  constexpr int kCases = 200, kEvaluations = 20000;
+  const bench::ItmCases cases = bench::makeItmCases(kCases, kItmPosts - 1);
+  addBothKinds(timings, "itm", "point to point, 300 posts", [&](auto real) {
+    using Real = decltype(real);
+    return perSecond(repeats, kEvaluations, [&](int i) {
+      const auto which = static_cast<std::size_t>(i % kCases);
+      const ItmProfile<float> profile{cases.profile(which), cases.intervals, 90.0 + i % 7};
+      return itmPointToPoint(profile, bench::linkAs<Real>(cases.links[which]), ItmQuantiles<Real>()).loss_db;
+    });
+  });
+}
+
+void timeTwoRay(int repeats, std::vector<ModelTiming>& timings) {
+  TwoRayParameters parameters;
+  parameters.frequency_hz = 3e9;
+  parameters.effective_earth_radius_m = kEffectiveEarth_m;
+  parameters.ground = groundConstants(GroundKind::sea, parameters.frequency_hz);
+  parameters.roughness_m = 0.3;
+  addBothKinds(timings, "two_ray", "a point over the sea, to beyond the horizon", [&](auto real) {
+    using Real = decltype(real);
+    const auto model = twoRayModel<Real>(parameters);
+    return perSecond(repeats, 100000, [&](int i) {
+      return twoRayExcessDb(model, Real(500 + i), Real(20), Real(10 + i % 300));
+    });
+  });
+}
+
+void timeP528(int repeats, std::vector<ModelTiming>& timings) {
+  constexpr double kFrequency_hz = 1.2e9;
+  const auto atmosphere = std::make_shared<const P528Atmosphere>(kFrequency_hz);
+  timings.push_back(
+      {"p528", "a curve of one pair of heights",
+       perSecond(
+           repeats, 100,
+           [&](int i) { return P528Curve(atmosphere, kFrequency_hz, 15, 1000 + 100.0 * i).horizon_m(); }),
+       0, ""});
+  const P528Curve curve(atmosphere, kFrequency_hz, 15, 10000);
+  timings.push_back({"p528", "a point of a curve, to 800 km",
+                     perSecond(repeats, 800, [&](int i) { return curve.at(1000.0 * i, 50).loss_db; }), 0,
+                     ""});
+}
+
+void timeAtmosphere(int repeats, std::vector<ModelTiming>& timings) {
+  const AirState air = standardAtmosphere(0);
+  timings.push_back(
+      {"gases", "specific attenuation, line by line",
+       perSecond(repeats, 2000, [&](int i) { return gasAttenuation(1e9 + 1e8 * i, air).total_db_per_km(); }),
+       0, ""});
+  const RainCoefficients<double> rain = rainCoefficients(1e10, 0, 0);
+  timings.push_back(
+      {"rain", "coefficients of a frequency",
+       perSecond(repeats, 20000, [&](int i) { return rainCoefficients(1e9 + 1e6 * i, 0.1, 0).k; }), 0, ""});
+  timings.push_back(
+      {"rain", "specific attenuation of a rate",
+       perSecond(repeats, 100000, [&](int i) { return rain.specificAttenuation_db_per_km(1 + 1e-3 * i); }), 0,
+       ""});
+}
+
+/// One path over 200 posts, and a point of a plane.
+void timeDiffraction(int repeats, std::vector<ModelTiming>& timings) {
+  const PlaneTiming plane = timePlane(repeats, 1, 6000);
+  constexpr double kPoints = (kPlaneRanges - 1.0) * kPlaneHeights;
+  timings.push_back(
+      {"diffraction", "path by path, 2 to 200 posts, double", kPoints / plane.paths_ms * 1e3, 0, ""});
+  timings.push_back({"diffraction", "a point of a plane, 200 x 100 to 6 km, double",
+                     kPoints / plane.plane_ms * 1e3, plane.ratio(), "path by path"});
+}
+
+}  // namespace
+
+std::vector<ModelTiming> timeModels(int repeats) {
+  std::vector<ModelTiming> timings;
+  timeDiffraction(repeats, timings);
+  timeItm(repeats, timings);
+  timeTwoRay(repeats, timings);
+  timeP528(repeats, timings);
+  timeAtmosphere(repeats, timings);
+  return timings;
+}
+
+std::vector<PlaneTiming> timePlanes(int repeats) {
+  std::vector<PlaneTiming> timings;
+  for (const int posts_per_range : {1, 4}) {
+    for (const double top_msl_m : {2000.0, 6000.0, 10000.0})
+      timings.push_back(timePlane(repeats, posts_per_range, top_msl_m));
+  }
+  return timings;
+}
+
+}  // namespace emscape::app
