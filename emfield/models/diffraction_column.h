@@ -37,9 +37,18 @@ class DiffractionColumn {
   EMSCAPE_HD bool losses(const Real (&rx_msl_m)[kReceivers], Real (&loss_db)[kReceivers]);
 
  private:
+  /// A receiver, and the largest values of all obstacles.
+  struct Found {
+    Real rx_m, slope;     ///< slope: of the line of sight
+    Real rx_slope;        ///< from the receiver, over the chord
+    Real nu;              ///< of a clear path
+    Real highest_m;       ///< over the line of sight, without the earth's bulge
+    Real rx_plain_slope;  ///< from the receiver, without the bulge
+  };
+
   EMSCAPE_HD Real heightOf(int i) const { return Real(posts_.height_msl_m(i)) - base_; }
   EMSCAPE_HD bool isClearOfEarth(Real rx_m) const;
-  EMSCAPE_HD Real lackingDb(Real rx_m, Real slope, Real highest_m, Real rx_plain_slope);
+  EMSCAPE_HD Real lackingDb(const Found& at);
 
   DiffractionModel<Real> model_;
   const Posts& posts_;
@@ -96,15 +105,14 @@ EMSCAPE_HD bool DiffractionColumn<Real, Posts>::isClearOfEarth(Real rx_m) const 
 
 /// What Bullington's loss lacks of the spherical earth's (dB).
 template <class Real, class Posts>
-EMSCAPE_HD Real DiffractionColumn<Real, Posts>::lackingDb(Real rx_m, Real slope, Real highest_m,
-                                                          Real rx_plain_slope) {
+EMSCAPE_HD Real DiffractionColumn<Real, Posts>::lackingDb(const Found& at) {
   TerrainTrend<Real> trend = trend_;
-  trend.highest_m = highest_m;
-  if (highest_m > 0) {
-    trend.tx_angle = steepest_plain_ - slope;
-    trend.rx_angle = slope + rx_plain_slope;
+  trend.highest_m = at.highest_m;
+  if (at.highest_m > 0) {
+    trend.tx_angle = steepest_plain_ - at.slope;
+    trend.rx_angle = at.slope + at.rx_plain_slope;
   }
-  const EffectiveHeights<Real> heights = effectiveHeights(trend, tx_, rx_m);
+  const EffectiveHeights<Real> heights = effectiveHeights(trend, tx_, at.rx_m);
   const Real spherical_db = sphericalEarthLossDb(model_.earth, distance_m_, heights.tx_m, heights.rx_m);
   if (spherical_db <= 0) return 0;
   if (smooth_.tx == 0) {
@@ -133,6 +141,7 @@ EMSCAPE_HD bool DiffractionColumn<Real, Posts>::losses(const Real (&rx_msl_m)[kR
   const Real tx_slope = steepest_ + k * d;  // over the chord
   Real rx_m[kReceivers], slope[kReceivers];
   Real rx_slope[kReceivers], nu[kReceivers], highest_m[kReceivers], rx_plain_slope[kReceivers];
+  EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) {
     rx_m[j] = model_.raised_m(rx_msl_m[j] - base_, trend_.rx_ground_msl_m);
     slope[j] = (rx_m[j] - tx_) / d;
@@ -146,6 +155,7 @@ EMSCAPE_HD bool DiffractionColumn<Real, Posts>::losses(const Real (&rx_msl_m)[kR
     const Real range = Real(posts_.range_m(i)), beyond = d - range, height = heightOf(i);
     if (has_blocked || has_earth) {
       const Real inverse = 1 / beyond, bend = k * range;
+      EMSCAPE_UNROLL
       for (int j = 0; j < kReceivers; ++j) {
         const Real here = (height - rx_m[j]) * inverse;
         rx_slope[j] = here + bend > rx_slope[j] ? here + bend : rx_slope[j];
@@ -153,6 +163,7 @@ EMSCAPE_HD bool DiffractionColumn<Real, Posts>::losses(const Real (&rx_msl_m)[kR
       }
     }
     if (has_earth) {
+      EMSCAPE_UNROLL
       for (int j = 0; j < kReceivers; ++j) {
         const Real above = height - tx_ - slope[j] * range;
         highest_m[j] = above > highest_m[j] ? above : highest_m[j];
@@ -161,19 +172,28 @@ EMSCAPE_HD bool DiffractionColumn<Real, Posts>::losses(const Real (&rx_msl_m)[kR
     if (has_clear) {
       const Real factor = std::sqrt(factor2 / (range * beyond));
       const Real above = height - tx_ + k * range * beyond;
+      EMSCAPE_UNROLL
       for (int j = 0; j < kReceivers; ++j) {
         const Real here = (above - slope[j] * range) * factor;
         nu[j] = here > nu[j] ? here : nu[j];
       }
     }
   }
+  // What follows is long, and is there once: its loop is not unrolled.
+  Found found[kReceivers];
+  EMSCAPE_UNROLL
+  for (int j = 0; j < kReceivers; ++j) {
+    found[j] = {rx_m[j], slope[j], rx_slope[j], nu[j], highest_m[j], rx_plain_slope[j]};
+  }
   bool is_free_above = false;
   for (int j = 0; j < kReceivers; ++j) {
-    if (tx_slope >= slope[j]) nu[j] = bullingtonEdgeNu(model_, d, slope[j], tx_slope, rx_slope[j]);
-    loss_db[j] = bullingtonLossDb(nu[j], d);
-    const bool is_clear_of_earth = !has_earth || isClearOfEarth(rx_m[j]);
-    if (!is_clear_of_earth) loss_db[j] += lackingDb(rx_m[j], slope[j], highest_m[j], rx_plain_slope[j]);
-    is_free_above = is_clear_of_earth && nu[j] <= kKnifeEdgeClear<Real>;
+    const Found& at = found[j];
+    const Real edge_nu =
+        tx_slope >= at.slope ? bullingtonEdgeNu(model_, d, at.slope, tx_slope, at.rx_slope) : at.nu;
+    loss_db[j] = bullingtonLossDb(edge_nu, d);
+    const bool is_clear_of_earth = !has_earth || isClearOfEarth(at.rx_m);
+    if (!is_clear_of_earth) loss_db[j] += lackingDb(at);
+    is_free_above = is_clear_of_earth && edge_nu <= kKnifeEdgeClear<Real>;
   }
   return is_free_above;
 }
