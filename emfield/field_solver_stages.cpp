@@ -165,6 +165,7 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   out.time_utc = snapshot.time_utc;
   out.floor = setup.recipes[c].product.floor;
   out.categorical = quantity.categorical;
+  if (quantity.scale != nullptr) out.extra[volume::kScaleKey] = quantity.scale;
   out.extra["scenario"] = setup.scenario->name;
   out.extra["scenario_hash"] = setup.scenario->hash;
   std::string names, near_field;

@@ -1,6 +1,7 @@
 #include "emfield/quantities.h"
 
 #include "base/error.h"
+#include "volume/dense_volume.h"
 
 namespace emscape::emfield {
 
@@ -14,11 +15,13 @@ const std::vector<QuantityInfo>& quantityTable() {
       {Quantity::snr_db, "snr_db", "dB", "single-pulse signal-to-noise of the best radar for its target",
        false},
       {Quantity::detection_probability, "detection_probability", "",
-       "probability that the radars detect their target, jamming included", false},
+       "probability that the radars detect their target, jamming included", false, volume::kProbabilityScale},
       {Quantity::jammer_to_signal_db, "jammer_to_signal_db", "dB",
-       "jamming over the target's echo at the receiver of the radar that bears it best", false},
+       "jamming over the target's echo at the receiver of the radar that bears it best", false,
+       volume::kRatioBelowScale},
       {Quantity::burn_through_margin_db, "burn_through_margin_db", "dB",
-       "how far the echo exceeds what burning through the jamming takes; 60 dB at most", false},
+       "how far the echo exceeds what burning through the jamming takes; 60 dB at most", false,
+       volume::kRatioAboveScale},
       {Quantity::emitter_count, "emitter_count", "", "emitters above the count threshold", false},
       {Quantity::dominant_emitter, "dominant_emitter", "",
        "index of the emitter with the largest power density", true},

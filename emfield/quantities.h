@@ -20,10 +20,11 @@ enum class Quantity {
 
 struct QuantityInfo {
   Quantity quantity;
-  const char* name;         ///< as in scenario files and volumes
-  const char* unit;         ///< for colour bars; empty for counts and indices
-  const char* description;  ///< one line
-  bool categorical;         ///< indices: nearest sampling, integer grids
+  const char* name;             ///< as in scenario files and volumes
+  const char* unit;             ///< for colour bars; empty for counts and indices
+  const char* description;      ///< one line
+  bool categorical;             ///< indices: nearest sampling, integer grids
+  const char* scale = nullptr;  ///< as volume::kScaleKey has it; null: none
 };
 
 /// Quantities of radars and their targets; the other emitters do not enter.

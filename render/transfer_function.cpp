@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/error.h"
 
@@ -67,6 +68,13 @@ constexpr TransferFunction::OpacityPoint kRangeOpacity[] = {{0.0, 0.0},   {0.2, 
                                                             {0.7, 0.018}, {0.9, 0.07}, {1.0, 0.16}};
 constexpr double kCategoryOpacity = 0.03;
 
+/// Of a probability: clear where it is small, a shell at one half.
+constexpr TransferFunction::OpacityPoint kProbabilityOpacity[] = {{0.0, 0.0},  {0.1, 0.001}, {0.4, 0.01},
+                                                                  {0.5, 0.05}, {0.6, 0.03},  {1.0, 0.04}};
+/// Of a ratio (dB) of which what lies below 0 is looked for: a shell at 0, little above.
+constexpr TransferFunction::OpacityPoint kRatioOpacity[] = {{-30, 0},  {-30, 0.04}, {-3, 0.04}, {0, 0.08},
+                                                            {3, 0.01}, {10, 0.002}, {30, 0.003}};
+
 TransferFunction namedDefault(const volume::VolumeInfo& info) {
   TransferFunction function;
   function.name = "default";
@@ -105,6 +113,29 @@ std::vector<float> sortedSample(const volume::DenseVolume& volume) {
 double roundUnit(double range) {
   const double power = std::pow(10.0, std::floor(std::log10(range / 10)));
   return range / power >= 50 ? 5 * power : power;
+}
+
+/// The function of a scale that the volume names; none for volumes that name none.
+std::optional<TransferFunction> functionOfScale(const volume::VolumeInfo& info) {
+  const auto scale = info.extra.find(volume::kScaleKey);
+  if (scale == info.extra.end()) return std::nullopt;
+  TransferFunction function = namedDefault(info);
+  if (scale->second == volume::kProbabilityScale) {
+    function.colors = colorsOver(colorMap("viridis"), 0, 1);
+    function.opacities.assign(std::begin(kProbabilityOpacity), std::end(kProbabilityOpacity));
+    return function;
+  }
+  const bool is_above = scale->second == volume::kRatioAboveScale;
+  if (!is_above && scale->second != volume::kRatioBelowScale) return std::nullopt;
+  function.opacities.assign(std::begin(kRatioOpacity), std::end(kRatioOpacity));
+  function.colors =
+      colorsOver(colorMap("diverging"), function.opacities.front().at, function.opacities.back().at);
+  if (!is_above) return function;
+  for (auto& point : function.colors) point.at = -point.at;
+  for (auto& point : function.opacities) point.at = -point.at;
+  std::reverse(function.colors.begin(), function.colors.end());
+  std::reverse(function.opacities.begin(), function.opacities.end());
+  return function;
 }
 
 }  // namespace
@@ -175,6 +206,7 @@ double TransferFunction::highest() const {
 }
 
 TransferFunction defaultTransferFunction(const volume::VolumeInfo& info) {
+  if (const auto function = functionOfScale(info)) return *function;
   TransferFunction function = namedDefault(info);
   const double lowest = info.range_min;
   const double range = info.range_max > info.range_min ? double{info.range_max} - info.range_min : 1.0;
@@ -190,6 +222,7 @@ TransferFunction defaultTransferFunction(const volume::VolumeInfo& info) {
 }
 
 TransferFunction defaultTransferFunction(const volume::DenseVolume& volume) {
+  if (const auto function = functionOfScale(volume.info)) return *function;
   const std::vector<float> values = sortedSample(volume);
   if (volume.info.categorical || values.empty()) return defaultTransferFunction(volume.info);
   const auto quantile = [&](double part) {

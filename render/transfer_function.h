@@ -61,10 +61,10 @@ struct TransferFunction {
   double highest() const;
 };
 
-/// A sensible function for a volume: viridis, opacity rising from nothing, both by how frequent the values
-/// are, so that the common weak field stays clear and the rare strong one shows; the palette where it is
-/// categorical. Round numbers at both ends. For a series take one function of one of its volumes, so that
-/// colours mean the same throughout.
+/// A sensible function for a volume. That of the scale that it names (volume::kScaleKey); else viridis,
+/// opacity rising from nothing, both by how frequent the values are, so that the common weak field stays
+/// clear and the rare strong one shows; the palette where it is categorical. Round numbers at both ends. For
+/// a series take one function of one of its volumes, so that colours mean the same throughout.
 TransferFunction defaultTransferFunction(const volume::DenseVolume& volume);
 /// The same where only the range of the values is known.
 TransferFunction defaultTransferFunction(const volume::VolumeInfo& info);

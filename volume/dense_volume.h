@@ -26,6 +26,12 @@ struct VolumeInfo {
   std::map<std::string, std::string> extra;  ///< further metadata by key: scenario hash, version, warnings
 };
 
+/// Key of VolumeInfo::extra that says what the values' scale is, where colours should know: one of these.
+constexpr const char* kScaleKey = "scale";
+constexpr const char* kProbabilityScale = "probability";  ///< 0..1
+constexpr const char* kRatioBelowScale = "ratio, below";  ///< dB about 0; what lies below 0 is looked for
+constexpr const char* kRatioAboveScale = "ratio, above";  ///< dB about 0; what lies above 0 is looked for
+
 /// Values in dense order. Voxels below ground or without a known field are masked: they hold `info.floor`,
 /// are inactive in .vdb and are never drawn.
 struct DenseVolume {

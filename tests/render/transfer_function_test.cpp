@@ -53,6 +53,28 @@ TEST(TransferFunction, ARepeatedOpacityPointIsAJump) {
   EXPECT_DOUBLE_EQ(f.opacity(1), 0.5);
 }
 
+TEST(TransferFunction, DefaultKnowsTheScaleThatAVolumeNames) {
+  volume::VolumeInfo info = decibels();
+  info.extra[volume::kScaleKey] = volume::kProbabilityScale;
+  const TransferFunction probability = defaultTransferFunction(info);
+  EXPECT_DOUBLE_EQ(probability.lowest(), 0);
+  EXPECT_DOUBLE_EQ(probability.highest(), 1);
+  EXPECT_EQ(probability.opacity(0), 0);
+  EXPECT_GT(probability.opacity(0.5), probability.opacity(0.8));
+
+  info.extra[volume::kScaleKey] = volume::kRatioBelowScale;
+  const TransferFunction below = defaultTransferFunction(info);
+  info.extra[volume::kScaleKey] = volume::kRatioAboveScale;
+  const TransferFunction above = defaultTransferFunction(info);
+  EXPECT_EQ(below.opacity(info.floor), 0);
+  for (const double ratio_db : {-40.0, -30.0, -20.0, -1.0, 0.0, 5.0, 30.0, 60.0}) {
+    EXPECT_DOUBLE_EQ(below.opacity(ratio_db), above.opacity(-ratio_db)) << ratio_db;
+    EXPECT_FLOAT_EQ(below.color(ratio_db).r, above.color(-ratio_db).r) << ratio_db;
+  }
+  EXPECT_GT(below.color(-20).b, below.color(-20).r) << "blue where what is looked for prevails";
+  EXPECT_GT(below.color(20).r, below.color(20).b);
+}
+
 TEST(TransferFunction, DefaultSpansTheRangeAndHidesTheFloor) {
   const TransferFunction f = defaultTransferFunction(decibels());
   EXPECT_DOUBLE_EQ(f.lowest(), -100);
