@@ -20,6 +20,9 @@ class FrameCaster {
   virtual void setVolume(std::shared_ptr<const volume::DenseVolume> volume) = 0;
   virtual void setVolume(std::shared_ptr<const volume::DeviceVolume> volume) = 0;
 
+  /// See Renderer.
+  virtual std::size_t volumeBytes() const = 0;
+
   /// See Renderer. @param scene  prepared, of the volume that was set last
   virtual FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size,
                            const StopFlag* stop) = 0;

@@ -57,6 +57,10 @@ void Renderer::setVolume(std::shared_ptr<const volume::DeviceVolume> volume) {
   impl_->setVolume(std::move(volume), set.grid(), set.info.categorical);
 }
 
+std::size_t Renderer::volumeBytes() const {
+  return impl_->caster->volumeBytes();
+}
+
 void Renderer::setHeightField(std::shared_ptr<const HeightField> height_field) {
   impl_->scene.setHeightField(std::move(height_field));
 }

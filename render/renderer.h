@@ -19,7 +19,7 @@ namespace emscape::render {
 /// Where pictures are cast.
 struct RendererOptions {
   Backend backend = Backend::cpu;  ///< cpu or cuda; see resolveBackend() for wishes
-  /// How a GPU keeps volumes that come from the host's memory
+  /// How a GPU keeps volumes that come from the host's memory; sparse32: all volumes
   volume::VoxelPrecision precision = volume::VoxelPrecision::float32;
 };
 
@@ -44,6 +44,8 @@ class Renderer {
   /// A GPU reads it where it lies; it waits for what is being written, and who writes next waits for it. The
   /// CPU gets a copy.
   void setVolume(std::shared_ptr<const volume::DeviceVolume> volume);
+  /// Memory of the GPU that the volume takes; 0 with the CPU.
+  std::size_t volumeBytes() const;
   /// Null: no ground is drawn. @throws Error (bad_input) for an impossible field
   void setHeightField(std::shared_ptr<const HeightField> height_field);
   void setTransferFunction(const TransferFunction& function);

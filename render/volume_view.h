@@ -35,6 +35,7 @@ struct VolumeView {
   int masked_below = 0;                         ///< no voxel of a layer from here up is masked
   bool all_finite = true;                       ///< no value is NaN or infinite
   std::uint64_t texture = 0;                    ///< on a GPU: of the values, which are null then
+  const void* sparse = nullptr;                 ///< on a GPU, where there is no texture: a NanoVDB grid
   CodedValues coded;
 
   EMSCAPE_HD Vec3d lower() const { return {-0.5, -0.5, -0.5}; }
@@ -69,49 +70,64 @@ EMSCAPE_HD inline float lerp(float a, float b, float fraction) {
 
 /// Voxels of an array.
 struct ArrayVoxels {
-  EMSCAPE_HD static float at(const VolumeView& volume, int i, int j, int k) { return volume.at(i, j, k); }
+  const VolumeView& volume;
+  EMSCAPE_HD explicit ArrayVoxels(const VolumeView& of) : volume(of) {}
+  EMSCAPE_HD float at(int i, int j, int k) const { return volume.at(i, j, k); }
 };
 
-/// Trilinear between voxel centres. Nothing is drawn where the nearest voxel is masked; elsewhere what lies
-/// below ground does not bleed into the air, as masked voxels hold the value above them. NaN draws nothing.
-template <class Voxels>
-struct TrilinearSamplerOf {
+/// Whether the voxel nearest to a position is masked.
+EMSCAPE_HD inline bool nearestIsMasked(const VolumeView& volume, const Vec3f& position) {
+  if (volume.masked_below == 0 || !(position.z < static_cast<float>(volume.masked_below))) return false;
+  return volume.isMasked(CellPosition(position.x, volume.dims.x).nearest(),
+                         CellPosition(position.y, volume.dims.y).nearest(),
+                         CellPosition(position.z, volume.dims.z).nearest());
+}
+
+/// What samplers have in common. Nothing is drawn where the nearest voxel is masked, and where there is no
+/// value (NaN). Sampler: fetch(volume, shifted), the value whatever is masked; kShift is to be added to each
+/// coordinate before.
+template <class Sampler>
+struct SamplerOf {
+  static constexpr float kShift = 0;
+
+  /// @return whether something is drawn there
   EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
+    if (nearestIsMasked(volume, position)) return false;
+    const float shift = Sampler::kShift;
+    value = Sampler::fetch(volume, position + Vec3f{shift, shift, shift});
+    return value == value;
+  }
+};
+
+/// Trilinear between voxel centres. What lies below ground does not bleed into the air, as masked voxels hold
+/// the value above them.
+template <class Voxels>
+struct TrilinearSamplerOf : SamplerOf<TrilinearSamplerOf<Voxels>> {
+  EMSCAPE_HD static float fetch(const VolumeView& volume, const Vec3f& position) {
     const CellPosition x(position.x, volume.dims.x);
     const CellPosition y(position.y, volume.dims.y);
     const CellPosition z(position.z, volume.dims.z);
-    if (z.low < volume.masked_below && volume.isMasked(x.nearest(), y.nearest(), z.nearest())) return false;
+    const Voxels voxels(volume);
     const auto row = [&](int j, int k) {
-      return lerp(Voxels::at(volume, x.low, j, k), Voxels::at(volume, x.high, j, k), x.fraction);
+      return lerp(voxels.at(x.low, j, k), voxels.at(x.high, j, k), x.fraction);
     };
     const float below = lerp(row(y.low, z.low), row(y.high, z.low), y.fraction);
     const float above = lerp(row(y.low, z.high), row(y.high, z.high), y.fraction);
-    value = lerp(below, above, z.fraction);
-    return value == value;
+    return lerp(below, above, z.fraction);
   }
 };
 using TrilinearSampler = TrilinearSamplerOf<ArrayVoxels>;
 
-/// The value of the nearest voxel, for indices. Masked voxels and NaN draw nothing.
+/// The value of the nearest voxel, for indices.
 template <class Voxels>
-struct NearestSamplerOf {
-  EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
-    const int i = CellPosition(position.x, volume.dims.x).nearest();
-    const int j = CellPosition(position.y, volume.dims.y).nearest();
-    const int k = CellPosition(position.z, volume.dims.z).nearest();
-    if (volume.isMasked(i, j, k)) return false;
-    value = Voxels::at(volume, i, j, k);
-    return value == value;
+struct NearestSamplerOf : SamplerOf<NearestSamplerOf<Voxels>> {
+  EMSCAPE_HD static float fetch(const VolumeView& volume, const Vec3f& position) {
+    return Voxels(volume).at(CellPosition(position.x, volume.dims.x).nearest(),
+                             CellPosition(position.y, volume.dims.y).nearest(),
+                             CellPosition(position.z, volume.dims.z).nearest());
   }
 };
 using NearestSampler = NearestSamplerOf<ArrayVoxels>;
-
-/// A sample, or NaN where nothing is drawn.
-template <class Sampler>
-EMSCAPE_HD float sampleOrNaN(const VolumeView& volume, const Vec3f& position) {
-  float value = 0;
-  return Sampler::sample(volume, position, value) ? value : NAN;
-}
 
 /// What a ray finds of the brick around a position.
 struct BrickStep {
@@ -134,21 +150,23 @@ struct SkipView {
   Dims dims;
 
   /// Brick along one axis and the distance to its far face; the outer bricks reach to infinity.
-  EMSCAPE_HD int along(float position, float direction, int voxels, int bricks, float& leave) const {
+  /// @param per_voxel  distance along the ray per voxel of the axis; infinite: along none
+  EMSCAPE_HD int along(float position, float per_voxel, int voxels, int bricks, float& leave) const {
     const int brick = CellPosition(position, voxels).low >> kEdgeBits;
-    const bool forward = direction > 0.0F;
-    if (direction == 0.0F || (forward ? brick + 1 >= bricks : brick <= 0)) return brick;
+    const bool forward = per_voxel > 0.0F;
+    if (per_voxel - per_voxel != 0.0F || (forward ? brick + 1 >= bricks : brick <= 0)) return brick;
     const float face = static_cast<float>((forward ? brick + 1 : brick) << kEdgeBits);
-    const float distance = (face - position) / direction;
+    const float distance = (face - position) * per_voxel;
     if (distance < leave) leave = distance;
     return brick;
   }
 
-  EMSCAPE_HD BrickStep at(const VolumeView& volume, const Vec3f& position, const Vec3f& direction) const {
+  /// @param per_voxel  1 / direction of the ray
+  EMSCAPE_HD BrickStep at(const VolumeView& volume, const Vec3f& position, const Vec3f& per_voxel) const {
     float leave = 1e9F;
-    const int x = along(position.x, direction.x, volume.dims.x, dims.x, leave);
-    const int y = along(position.y, direction.y, volume.dims.y, dims.y, leave);
-    const int z = along(position.z, direction.z, volume.dims.z, dims.z, leave);
+    const int x = along(position.x, per_voxel.x, volume.dims.x, dims.x, leave);
+    const int y = along(position.y, per_voxel.y, volume.dims.y, dims.y, leave);
+    const int z = along(position.z, per_voxel.z, volume.dims.z, dims.z, leave);
     const float sure = leave - kFaceMargin;
     return {(static_cast<long long>(z) * dims.y + y) * dims.x + x, sure > 0.0F ? sure : 0.0F};
   }

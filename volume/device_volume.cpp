@@ -10,8 +10,10 @@ std::size_t deviceBytes(const Dims& dims, VoxelPrecision precision) {
   const auto voxels = static_cast<std::size_t>(dims.count());
   const auto columns = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
   const std::size_t bricks = static_cast<std::size_t>(brickDims(dims, kBrickEdge).count());
-  return voxels * (precision == VoxelPrecision::float32 ? 4 : 2) + columns * sizeof(std::int32_t) +
-         bricks * sizeof(ValueRange);
+  const std::size_t voxel_bytes = precision == VoxelPrecision::float32   ? 4
+                                  : precision == VoxelPrecision::float16 ? 2
+                                                                         : 0;
+  return voxels * voxel_bytes + columns * sizeof(std::int32_t) + bricks * sizeof(ValueRange);
 }
 
 std::shared_ptr<DeviceVolume> DeviceVolumeRing::next(const Grid& grid, VoxelPrecision precision) {

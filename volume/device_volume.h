@@ -11,13 +11,15 @@
 
 namespace emscape::volume {
 
-/// How a GPU keeps a voxel.
+/// How a GPU keeps voxels.
 enum class VoxelPrecision {
   float32,
-  float16  ///< half the memory; 11 significant bits, -65504..65504
+  float16,  ///< half the memory; 11 significant bits, -65504..65504
+  sparse32  ///< as a NanoVDB grid without what is at the floor; written by upload() alone
 };
 
-/// Memory of the GPU that a volume of these dims takes, what is derived from its values included.
+/// Memory of the GPU that a volume of these dims takes, what is derived from its values included. Of a sparse
+/// one this is the least: the rest depends on its values.
 std::size_t deviceBytes(const Dims& dims, VoxelPrecision precision);
 
 class DeviceStorage;  // volume/cuda/device_storage.h
@@ -37,6 +39,8 @@ class DeviceVolume {
 
   const Grid& grid() const { return grid_; }
   VoxelPrecision precision() const { return precision_; }
+  /// Memory of the GPU that it takes.
+  std::size_t bytes() const;
 
   /// What the values mean. Set by whoever writes them.
   VolumeInfo info;
@@ -47,7 +51,8 @@ class DeviceVolume {
   const std::vector<std::uint16_t>& firstValidK() const { return first_valid_k_; }
 
   /// Takes values, mask and info of a volume of the same dims. Returns when they are copied.
-  /// @throws Error (bad_input) if the dims differ or the volume is malformed, (device)
+  /// @throws Error (bad_input) if the dims differ or the volume is malformed, (device) if a sparse one does
+  /// not fit
   void upload(const DenseVolume& volume);
   /// A copy in the host's memory, for files. @throws Error (device)
   DenseVolume download() const;

@@ -16,6 +16,7 @@ using FileMetaData = ::nanovdb::io::MetaData;
 using FileCodec = ::nanovdb::io::Codec;
 using ::nanovdb::BBox;
 using ::nanovdb::Coord;
+using ::nanovdb::FloatGrid;
 using ::nanovdb::GridData;
 using ::nanovdb::GridType;
 using ::nanovdb::NanoLeaf;

@@ -1,25 +1,9 @@
-// The one unit that turns OpenVDB grids into NanoVDB's: it takes long to compile.
-#include <nanovdb/util/OpenToNanoVDB.h>
-
 #include "base/whole_file.h"
-#include "volume/nanovdb_wrapper.h"
+#include "volume/nanovdb_grid.h"
 #include "volume/nvdb.h"
-#include "volume/vdb_grid.h"
 #include "volume/volume_json.h"
 
 namespace emscape::volume {
-namespace {
-
-nano::Handle toNano(const DenseVolume& volume, const FilePlace& place) {
-  const openvdb::GridBase::Ptr grid = toOpenVdb(volume, place);
-  if (volume.info.categorical) {
-    return nanovdb::OpenToNanoVDB<std::int32_t, std::int32_t>()(
-        *openvdb::gridPtrCast<openvdb::Int32Grid>(grid));
-  }
-  return nanovdb::OpenToNanoVDB<float, float>()(*openvdb::gridPtrCast<openvdb::FloatGrid>(grid));
-}
-
-}  // namespace
 
 void writeNvdb(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes) {
   if (volumes.empty()) throw Error(ErrorCode::bad_input, {path.string()}, "no volume to write");

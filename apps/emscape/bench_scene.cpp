@@ -129,6 +129,7 @@ Json BenchScene::json() const {
            {{"name", name_},
             {"quantity", volume_.info().quantity},
             {"dims", {dims.x, dims.y, dims.z}},
+            {"device_bytes", renderer_.volumeBytes()},
             {"drawn_lower_m", triple(box.lower_m)},
             {"drawn_upper_m", triple(box.drawnUpper_m())},
             {"vertical_exaggeration", box.vertical_exaggeration}}},

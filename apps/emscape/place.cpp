@@ -4,7 +4,9 @@ namespace emscape::app {
 namespace {
 
 volume::VoxelPrecision precisionOf(const std::string& device_volume) {
-  return device_volume == "half" ? volume::VoxelPrecision::float16 : volume::VoxelPrecision::float32;
+  if (device_volume == "half") return volume::VoxelPrecision::float16;
+  if (device_volume == "sparse") return volume::VoxelPrecision::sparse32;
+  return volume::VoxelPrecision::float32;
 }
 
 }  // namespace
@@ -12,7 +14,10 @@ volume::VoxelPrecision precisionOf(const std::string& device_volume) {
 emfield::FieldOptions Place::fieldOptions() const {
   emfield::FieldOptions options;
   options.backend = choice.backend;
-  options.device_precision = precisionOf(device_volume);
+  // A field is written by kernels, which need every voxel to be there.
+  if (precisionOf(device_volume) == volume::VoxelPrecision::float16) {
+    options.device_precision = volume::VoxelPrecision::float16;
+  }
   return options;
 }
 
@@ -25,10 +30,11 @@ render::RendererOptions Place::rendererOptions() const {
 
 void addDeviceVolumeOption(CLI::App& command, std::string& device_volume) {
   command
-      .add_option("--device-volume", device_volume,
-                  "How a GPU keeps the volume: in 32 bit, or in 16 bit: half the memory, "
-                  "11 significant bits")
-      ->check(CLI::IsMember({"float", "half"}));
+      .add_option(
+          "--device-volume", device_volume,
+          "How a GPU keeps the volume: in 32 bit; in 16 bit, half the memory and 11 significant bits; or "
+          "sparse, as a NanoVDB grid without what is at the floor")
+      ->check(CLI::IsMember({"float", "half", "sparse"}));
 }
 
 }  // namespace emscape::app

@@ -23,7 +23,7 @@ struct Place {
   render::RendererOptions rendererOptions() const;
 };
 
-/// --device-volume float|half
+/// --device-volume float|half|sparse
 void addDeviceVolumeOption(CLI::App& command, std::string& device_volume);
 
 /// Opens what works where --backend says, and tells where that is; see openOnBackend().

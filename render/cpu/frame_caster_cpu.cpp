@@ -17,6 +17,7 @@ class CpuFrameCaster : public FrameCaster {
  public:
   void setVolume(std::shared_ptr<const volume::DenseVolume> volume) override;
   void setVolume(std::shared_ptr<const volume::DeviceVolume> volume) override;
+  std::size_t volumeBytes() const override { return 0; }
   FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size, const StopFlag* stop) override;
   FrameReport restore(const Scene& scene, const StopFlag* stop) override;
 

@@ -34,6 +34,8 @@ class CudaFrameCaster : public FrameCaster {
   FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size, const StopFlag* stop) override;
   FrameReport restore(const Scene& scene, const StopFlag* stop) override;
 
+  std::size_t volumeBytes() const override { return volume_ ? volume_->bytes() : 0; }
+
   void lend(Image& /*image*/) override {}
   void giveBack(Image& image, const FrameReport& report) override {
     if (report.complete) fetch(image);
@@ -98,6 +100,10 @@ void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DenseVolume> volum
 }
 
 void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volume) {
+  constexpr auto kSparse = volume::VoxelPrecision::sparse32;
+  if (precision_ == kSparse && volume->precision() != kSparse) {
+    return setVolume(std::make_shared<const volume::DenseVolume>(volume->download()));
+  }
   volume_ = std::move(volume);
   scene_.volumeChanged();
 }
@@ -105,9 +111,12 @@ void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volu
 CastLaunch CudaFrameCaster::prepare(const Scene& scene, ImageSize size) {
   scene_.update(scene, volume_->storage(), stream_);
   mode_ = scene.settings().mode;
-  sampling_ = scene.categorical()                                       ? Sampling::nearest
-              : scene.settings().plain || mode_ == CompositingMode::iso ? Sampling::accurate
-                                                                        : Sampling::filtered;
+  const bool accurate = scene.settings().plain || mode_ == CompositingMode::iso;
+  if (volume_->precision() == volume::VoxelPrecision::sparse32) {
+    sampling_ = scene.categorical() ? Sampling::sparse_nearest : Sampling::sparse;
+  } else {
+    sampling_ = scene.categorical() ? Sampling::nearest : accurate ? Sampling::accurate : Sampling::filtered;
+  }
   layer_.resize(static_cast<std::size_t>(size.count()));
   picture8_.resize(layer_.size());
   CastLaunch launch = scene_.launch(scene, volume_->storage(), sampling_, size);

@@ -30,7 +30,9 @@ struct PixelSet {
 enum class Sampling {
   filtered,  ///< by the texture unit, with fractions of 8 bits
   accurate,  ///< as on the CPU, by eight texels
-  nearest
+  nearest,
+  sparse,  ///< as on the CPU, by eight voxels of a NanoVDB grid
+  sparse_nearest
 };
 
 /// A transfer function's colours as the kernels that filter hold them in shared memory: r g, b a as halves.
@@ -49,6 +51,8 @@ struct CastLaunch {
   float4* layer = nullptr;                  ///< the volume alone, a pixel of the picture each
 };
 void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
+/// The same for a sparse sampling alone.
+void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 
 /// Where every pixel's ray meets the ground (infinity: nowhere), and its colour there.
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream);

@@ -18,22 +18,18 @@ EMSCAPE_HD inline float texelAt([[maybe_unused]] std::uint64_t texture, [[maybe_
 }
 
 /// Trilinear as the texture unit does it: fractions of 8 bits. VolumeView::texture filters.
-struct FilteredSampler {
-  EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
-    if (position.z < static_cast<float>(volume.masked_below)) {
-      const CellPosition x(position.x, volume.dims.x);
-      const CellPosition y(position.y, volume.dims.y);
-      const CellPosition z(position.z, volume.dims.z);
-      if (volume.isMasked(x.nearest(), y.nearest(), z.nearest())) return false;
-    }
-    value = texelAt(volume.texture, position.x + 0.5F, position.y + 0.5F, position.z + 0.5F);
-    return value == value;
+struct FilteredSampler : SamplerOf<FilteredSampler> {
+  static constexpr float kShift = 0.5F;  // texels are counted from the corner of the first one
+  EMSCAPE_HD static float fetch(const VolumeView& volume, const Vec3f& texel) {
+    return texelAt(volume.texture, texel.x, texel.y, texel.z);
   }
 };
 
 /// Single voxels. VolumeView::texture does not filter.
 struct TextureVoxels {
-  EMSCAPE_HD static float at(const VolumeView& volume, int i, int j, int k) {
+  const VolumeView& volume;
+  EMSCAPE_HD explicit TextureVoxels(const VolumeView& of) : volume(of) {}
+  EMSCAPE_HD float at(int i, int j, int k) const {
     return texelAt(volume.texture, static_cast<float>(i) + 0.5F, static_cast<float>(j) + 0.5F,
                    static_cast<float>(k) + 0.5F);
   }

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "volume/cuda/device_storage.h"
+#include "volume/cuda/sparse_voxels.h"
 
 namespace emscape::volume {
 namespace {
@@ -26,6 +27,7 @@ std::string dimsText(const Dims& dims) {
 
 void checkFits(const Dims& dims, VoxelPrecision precision) {
   checkDims(dims, {});
+  if (precision == VoxelPrecision::sparse32) return;  // setSparse() knows what it needs
   const bool half = precision == VoxelPrecision::float16;
   const std::string who =
       "GPU: a volume of " + dimsText(dims) + " voxels in " + (half ? "16" : "32") + " bit";
@@ -60,17 +62,38 @@ __global__ void storeSlab(const float* values, const std::int32_t* first_valid_k
   }
 }
 
-__global__ void loadSlab(VoxelWriter voxels, const std::int32_t* first_valid_k, float floor, int begin_k,
-                         int end_k, float* values) {
-  const int columns = voxels.dims.x * voxels.dims.y;
+/// Texels of a texture that does not filter.
+struct PointTexels {
+  cudaTextureObject_t texture;
+  __device__ float at(int i, int j, int k) const {
+    return tex3D<float>(texture, static_cast<float>(i) + 0.5F, static_cast<float>(j) + 0.5F,
+                        static_cast<float>(k) + 0.5F);
+  }
+};
+
+/// What kernels that read make a thread's voxels of.
+struct TexelSource {
+  cudaTextureObject_t texture;
+  __device__ PointTexels voxels() const { return {texture}; }
+};
+struct SparseSource {
+  const void* grid;
+  __device__ SparseVoxels voxels() const { return SparseVoxels(grid); }
+};
+
+template <class Source>
+__global__ void loadSlab(Source source, Dims dims, const std::int32_t* first_valid_k, float floor,
+                         int begin_k, int end_k, float* values) {
+  const int columns = dims.x * dims.y;
   const int column = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (column >= columns) return;
-  const int i = column % voxels.dims.x;
-  const int j = column / voxels.dims.x;
+  const auto voxels = source.voxels();
+  const int i = column % dims.x;
+  const int j = column / dims.x;
   const int first_valid = first_valid_k == nullptr ? 0 : first_valid_k[column];
   for (int k = begin_k; k < end_k; ++k) {
     values[static_cast<long long>(k - begin_k) * columns + column] =
-        k < first_valid ? floor : voxels.read(i, j, k);
+        k < first_valid ? floor : voxels.at(i, j, k);
   }
 }
 
@@ -82,11 +105,13 @@ __device__ float warpLeast(float value) {
 }
 
 /// A warp finds the range of one brick; see Bricks.
-__global__ void findBricks(cudaTextureObject_t points, Dims dims, Dims brick_dims,
-                           const std::int32_t* first_valid_k, ValueRange* ranges) {
+template <class Source>
+__global__ void findBricks(Source source, Dims dims, Dims brick_dims, const std::int32_t* first_valid_k,
+                           ValueRange* ranges) {
   const long long brick = (static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x) / kWarp;
   const int lane = static_cast<int>(threadIdx.x) % kWarp;
   if (brick >= brick_dims.count()) return;
+  const auto voxels = source.voxels();
   const long long row = brick / brick_dims.x;
   const VoxelInterval x = withApron(static_cast<int>(brick % brick_dims.x), kBrickEdge, dims.x);
   const VoxelInterval y = withApron(static_cast<int>(row % brick_dims.y), kBrickEdge, dims.y);
@@ -101,8 +126,7 @@ __global__ void findBricks(cudaTextureObject_t points, Dims dims, Dims brick_dim
     if (masked) masked = z.end - 1 < first_valid_k[static_cast<long long>(j) * dims.x + i];
     for (int k = z.begin; k < z.end; ++k) {
       // NaN fails both comparisons
-      const float value = tex3D<float>(points, static_cast<float>(i) + 0.5F, static_cast<float>(j) + 0.5F,
-                                       static_cast<float>(k) + 0.5F);
+      const float value = voxels.at(i, j, k);
       least = value < least ? value : least;
       greatest = value > greatest ? value : greatest;
     }
@@ -125,8 +149,7 @@ DeviceStorage::DeviceStorage(const Dims& dims, VoxelPrecision precision)
     : dims_(dims), precision_(precision) {
   checkFits(dims, precision);
   try {
-    allocate(precision == VoxelPrecision::float16 ? cudaCreateChannelDescHalf()
-                                                  : cudaCreateChannelDesc<float>());
+    allocate();
   } catch (...) {
     release();
     throw;
@@ -137,7 +160,14 @@ DeviceStorage::~DeviceStorage() {
   release();
 }
 
-void DeviceStorage::allocate(const cudaChannelFormatDesc& format) {
+void DeviceStorage::allocate() {
+  brick_dims_ = brickDims(dims_, kBrickEdge);
+  bricks_.resize(static_cast<std::size_t>(brick_dims_.count()));
+  if (precision_ == VoxelPrecision::float32) allocateTexels(cudaCreateChannelDesc<float>());
+  if (precision_ == VoxelPrecision::float16) allocateTexels(cudaCreateChannelDescHalf());
+}
+
+void DeviceStorage::allocateTexels(const cudaChannelFormatDesc& format) {
   const cudaExtent extent =
       make_cudaExtent(static_cast<std::size_t>(dims_.x), static_cast<std::size_t>(dims_.y),
                       static_cast<std::size_t>(dims_.z));
@@ -149,8 +179,6 @@ void DeviceStorage::allocate(const cudaChannelFormatDesc& format) {
   check(cudaCreateSurfaceObject(&surface_, &resource), "cudaCreateSurfaceObject");
   linear_ = makeTexture(cudaFilterModeLinear);
   point_ = makeTexture(cudaFilterModePoint);
-  brick_dims_ = brickDims(dims_, kBrickEdge);
-  bricks_.resize(static_cast<std::size_t>(brick_dims_.count()));
 }
 
 cudaTextureObject_t DeviceStorage::makeTexture(cudaTextureFilterMode filter) const {
@@ -175,6 +203,29 @@ void DeviceStorage::release() {
   if (array_ != nullptr) cudaFreeArray(array_);
 }
 
+/// Calls `use` with where kernels read voxels from.
+template <class Use>
+void DeviceStorage::withSource(const Use& use) const {
+  if (precision_ == VoxelPrecision::sparse32) {
+    use(SparseSource{sparseGrid()});
+  } else {
+    use(TexelSource{point_});
+  }
+}
+
+void DeviceStorage::setSparse(const std::uint8_t* grid, std::size_t bytes, cudaStream_t stream) {
+  sparse_.resize(0);
+  std::size_t free_bytes = 0, total_bytes = 0;
+  check(cudaMemGetInfo(&free_bytes, &total_bytes), "cudaMemGetInfo");
+  if (bytes > free_bytes) {
+    throw Error(ErrorCode::device, "GPU: a sparse volume of " + dimsText(dims_) + " voxels needs " +
+                                       mebibytes(bytes) + ", of which " + mebibytes(free_bytes) +
+                                       " are free");
+  }
+  sparse_.upload(grid, bytes, stream);
+  check(cudaStreamSynchronize(stream), "upload of a sparse volume");
+}
+
 VoxelWriter DeviceStorage::beginWriting(cudaStream_t stream) {
   const std::lock_guard<std::mutex> lock(order_);
   read_.holdBack(stream);
@@ -183,9 +234,11 @@ VoxelWriter DeviceStorage::beginWriting(cudaStream_t stream) {
 }
 
 void DeviceStorage::endWriting(cudaStream_t stream) {
-  findBricks<<<blocksFor(brick_dims_.count() * kWarp), kThreads, 0, stream>>>(point_, dims_, brick_dims_,
-                                                                              firstValidK(), bricks_.data());
-  checkLaunch("findBricks");
+  withSource([&](const auto& source) {
+    findBricks<<<blocksFor(brick_dims_.count() * kWarp), kThreads, 0, stream>>>(
+        source, dims_, brick_dims_, firstValidK(), bricks_.data());
+    checkLaunch("findBricks");
+  });
   const std::lock_guard<std::mutex> lock(order_);
   written_.record(stream);
 }
@@ -247,9 +300,11 @@ void DeviceStorage::readTo(float* host_values, float floor, cudaStream_t stream)
   Buffer<float> slab(static_cast<std::size_t>(columns) * static_cast<std::size_t>(layers));
   for (int begin_k = 0; begin_k < dims_.z; begin_k += layers) {
     const int end_k = std::min(begin_k + layers, dims_.z);
-    loadSlab<<<blocksFor(columns), kThreads, 0, stream>>>(voxels(), firstValidK(), floor, begin_k, end_k,
-                                                          slab.data());
-    checkLaunch("loadSlab");
+    withSource([&](const auto& source) {
+      loadSlab<<<blocksFor(columns), kThreads, 0, stream>>>(source, dims_, firstValidK(), floor, begin_k,
+                                                            end_k, slab.data());
+      checkLaunch("loadSlab");
+    });
     check(cudaMemcpyAsync(host_values + columns * begin_k, slab.data(),
                           sizeof(float) * static_cast<std::size_t>(columns * (end_k - begin_k)),
                           cudaMemcpyDeviceToHost, stream),

@@ -51,7 +51,7 @@ class DeviceStorage {
   DeviceStorage& operator=(const DeviceStorage&) = delete;
 
   /// Kernels launched on the stream from here on may write: they wait for those that read. Kernels write
-  /// every voxel, masked ones too.
+  /// every voxel, masked ones too; of a sparse volume none.
   VoxelWriter beginWriting(cudaStream_t stream);
   /// All kernels that write are launched: the bricks follow, then those who read may begin.
   void endWriting(cudaStream_t stream);
@@ -65,6 +65,9 @@ class DeviceStorage {
   cudaTextureObject_t pointTexture() const { return point_; }
   /// In device memory; of what endWriting() found.
   BricksView bricks() const;
+  /// In device memory; null but for a sparse volume.
+  const void* sparseGrid() const { return sparse_.size() > 0 ? sparse_.data() : nullptr; }
+  std::size_t sparseBytes() const { return sparse_.size(); }
   /// In device memory, one a column; null where no voxel is masked.
   const std::int32_t* firstValidK() const { return masked_below_ > 0 ? first_valid_k_.data() : nullptr; }
   int maskedBelow() const { return masked_below_; }
@@ -73,11 +76,17 @@ class DeviceStorage {
   void setMask(const std::vector<std::uint16_t>& first_valid_k);
   /// On the stream: writes all voxels from values in dense order, masked ones not looked at.
   void writeFrom(const float* host_values, cudaStream_t stream);
+  /// Of a sparse volume: all voxels anew, on the stream. @param grid  as readyForSampling() has it.
+  /// @throws Error (device) that names the bytes needed and free
+  void setSparse(const std::uint8_t* grid, std::size_t bytes, cudaStream_t stream);
   /// On the stream; waits for it. Masked voxels are given the floor.
   void readTo(float* host_values, float floor, cudaStream_t stream) const;
 
  private:
-  void allocate(const cudaChannelFormatDesc& format);
+  template <class Use>
+  void withSource(const Use& use) const;
+  void allocate();
+  void allocateTexels(const cudaChannelFormatDesc& format);
   cudaTextureObject_t makeTexture(cudaTextureFilterMode filter) const;
   void release();
   VoxelWriter voxels() const { return {surface_, dims_, precision_}; }
@@ -88,6 +97,7 @@ class DeviceStorage {
   cudaArray_t array_ = nullptr;
   cudaSurfaceObject_t surface_ = 0;
   cudaTextureObject_t linear_ = 0, point_ = 0;
+  emscape::cuda::Buffer<std::uint8_t> sparse_;
   emscape::cuda::Buffer<std::int32_t> first_valid_k_;
   int masked_below_ = 0;
   Dims brick_dims_;

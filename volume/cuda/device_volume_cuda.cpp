@@ -3,12 +3,17 @@
 
 #include "volume/cuda/device_storage.h"
 #include "volume/device_volume.h"
+#include "volume/nanovdb_grid.h"
 
 namespace emscape::volume {
 
 DeviceVolume::DeviceVolume(const Grid& grid, VoxelPrecision precision)
     : grid_(grid), precision_(precision), storage_(std::make_unique<DeviceStorage>(grid.dims, precision)) {}
 DeviceVolume::~DeviceVolume() = default;
+
+std::size_t DeviceVolume::bytes() const {
+  return deviceBytes(grid_.dims, precision_) + storage_->sparseBytes();
+}
 
 void DeviceVolume::setMask(const std::vector<std::uint16_t>& first_valid_k) {
   if (first_valid_k == first_valid_k_) return;
@@ -32,7 +37,12 @@ void DeviceVolume::upload(const DenseVolume& volume) {
   setMask(volume.first_valid_k);
   const emscape::cuda::Stream stream;
   storage_->beginWriting(stream);
-  storage_->writeFrom(volume.values.data(), stream);
+  if (precision_ == VoxelPrecision::sparse32) {
+    const nano::Handle grid = toNano(readyForSampling(volume), {});
+    storage_->setSparse(grid.data(), grid.size(), stream);
+  } else {
+    storage_->writeFrom(volume.values.data(), stream);
+  }
   storage_->endWriting(stream);
   stream.wait();
 }

@@ -1,0 +1,24 @@
+#include "render/cuda/cast_rays.h"
+#include "volume/cuda/sparse_voxels.h"
+
+namespace emscape::render::cuda {
+namespace {
+
+/// Voxels of a NanoVDB grid, for one sample: the nodes that it passes through are looked up once.
+class GridVoxels : public volume::SparseVoxels {
+ public:
+  EMSCAPE_HD explicit GridVoxels(const VolumeView& volume) : volume::SparseVoxels(volume.sparse) {}
+};
+
+}  // namespace
+
+void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
+  if (sampling == Sampling::sparse_nearest) {
+    return startVolume<NearestSamplerOf<GridVoxels>, GlobalColors, false>(launch, mode, stream);
+  }
+  using Sampler = TrilinearSamplerOf<GridVoxels>;
+  return launch.task.shading.shades_fog ? startVolume<Sampler, GlobalColors, true>(launch, mode, stream)
+                                        : startVolume<Sampler, GlobalColors, false>(launch, mode, stream);
+}
+
+}  // namespace emscape::render::cuda
