@@ -86,19 +86,23 @@ struct DetectionCurveView {
   float first_snr_db = 0;
   float steps_per_db = 0;
 
-  /// Rises with snr_db. Below the first knot its value, beyond the last its value; NaN for NaN.
+  /// Rises with snr_db; without branches, for SIMD. Below the first knot its value, beyond the last its
+  /// value; NaN for NaN.
   /// @accuracy 1e-4 absolute of detectionProbability; 2e-3 of the formulas
   EMSCAPE_HD float operator()(float snr_db) const {
     const float index = (snr_db - first_snr_db) * steps_per_db;
-    if (!(index > 0)) return index <= 0 ? knots[0].probability : index;
-    if (index >= float(count - 1)) return knots[count - 1].probability;
-    const int i = int(index);
-    const float t = index - float(i);
+    const float not_below = index > 0 ? index : 0.0f;
+    const int whole = int(not_below < float(count) ? not_below : float(count));
+    const int i = whole < count - 2 ? whole : count - 2;
+    const float beyond = not_below - float(i);
+    const float t = beyond < 1 ? beyond : 1.0f;
     const Knot a = knots[i], b = knots[i + 1];
     const float rise = b.probability - a.probability;
     // Hermite's cubic; its slopes are limited so that it never falls.
-    return a.probability +
-           t * (a.rise + t * (3 * rise - 2 * a.rise - b.rise + t * (a.rise + b.rise - 2 * rise)));
+    const float probability =
+        a.probability +
+        t * (a.rise + t * (3 * rise - 2 * a.rise - b.rise + t * (a.rise + b.rise - 2 * rise)));
+    return index == index ? probability : index;
   }
 };
 

@@ -10,11 +10,10 @@ namespace emscape::emfield {
 
 /// Jamming at the radars of channels where it counts. A radar whose jammers changed has changed.
 void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, std::vector<bool>& emitter_changed) {
-  const std::vector<bool> own = emitter_changed;
   std::vector<bool> done(emitters.size());
   for (const Channel& channel : setup.channels) {
-    const bool jammed_anew =
-        std::any_of(channel.jammers.begin(), channel.jammers.end(), [&](int j) { return own[j]; });
+    const bool jammed_anew = std::any_of(channel.jammers.begin(), channel.jammers.end(),
+                                         [&](int j) { return emitter_changed[j]; });
     for (int e : channel.emitters) {
       EmitterCache& cache = emitters[e];
       if (channel.jammers.empty() || done[e] || !cache.state.active) continue;
@@ -48,28 +47,11 @@ std::vector<RadarShare> FieldSolver::Impl::radarShares(int e) const {
     const Channel& channel = setup.channels[c];
     const auto place = std::find(channel.emitters.begin(), channel.emitters.end(), e);
     if (place == channel.emitters.end() || setup.recipes[c].radars.empty()) continue;
-    RadarShare share;
-    share.channel = static_cast<int>(c);
-    share.task = setup.recipes[c].radars[place - channel.emitters.begin()];
-    const bool is_held = share.task.look.kind == LookKind::held;
-    const scenario::BeamPose& frame = is_held ? state.beam : state.mount;
-    share.task.look.steer_u = static_cast<float>(state.beam.steer_u);
-    share.task.look.steer_v = static_cast<float>(state.beam.steer_v);
-    share.forward = vecCast<float>(frame.forward);
-    share.right = vecCast<float>(frame.right);
-    share.up = vecCast<float>(frame.up);
-    for (const JammerInSight& jammer : emitters[e].jammers) {
-      if (channel.jammers.empty()) break;
-      const Vec3d& ray = jammer.direction;
-      const double to_noise =
-          jammer.power_density_wm2 *
-          jammingToNoise_m2_w(setup.scenario->emitters[e], setup.scenario->emitters[jammer.jammer]);
-      if (!(to_noise > 0)) continue;
-      share.jammers.push_back(
-          {vecCast<float>(Vec3d{dot(ray, frame.forward), dot(ray, frame.right), dot(ray, frame.up)}),
-           static_cast<float>(to_noise)});
-    }
-    shares.push_back(std::move(share));
+    const RadarTask& task = setup.recipes[c].radars[place - channel.emitters.begin()];
+    const std::vector<JammerInSight> none;
+    shares.push_back(
+        radarShare(*setup.scenario, e, state, task, channel.jammers.empty() ? none : emitters[e].jammers));
+    shares.back().channel = static_cast<int>(c);
   }
   return shares;
 }

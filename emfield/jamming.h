@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "emfield/radar_product.h"
 #include "emfield/terrain_fan.h"
 #include "scenario/snapshot.h"
 
@@ -26,5 +27,11 @@ struct JammerInSight {
 std::vector<JammerInSight> jammersInSight(const scenario::Snapshot& snapshot, int radar,
                                           const std::vector<int>& jammers, const scenario::Terrain* terrain,
                                           const FanResolution& resolution, std::string* warning);
+
+/// A radar's part in a channel at one instant.
+/// @param task     as the channel's recipe has it
+/// @param jammers  that count in the channel
+RadarShare radarShare(const scenario::Scenario& scenario, int radar, const scenario::EmitterState& state,
+                      const RadarTask& task, const std::vector<JammerInSight>& jammers);
 
 }  // namespace emscape::emfield

@@ -25,7 +25,7 @@ struct RadarLook {
   /// turned: sines and cosines of the lowest and of the highest elevation.
   float sin_lowest = -1, cos_lowest = 0;
   float sin_highest = 1, cos_highest = 0;
-  /// held: the direction cosines to which a phased array is steered.
+  /// held: the direction cosines to which a phased array is steered; turned: 0.
   float steer_u = 0, steer_v = 0;
 };
 
@@ -35,26 +35,39 @@ struct Aim {
   float steer_u = 0, steer_v = 0;
 };
 
-/// The aim at a target, or as near to it as the look lets the beam come.
+/// The aim at a target, or as near to it as the look lets the beam come. Without branches, for SIMD.
 /// @param target  direction in the look's frame, of any length above 0
 EMSCAPE_HD inline Aim aimAt(const RadarLook& look, const Vec3f& target) {
-  if (look.kind == LookKind::held) return {1, 0, 1, 0, look.steer_u, look.steer_v};
+  const bool turns = look.kind == LookKind::turned, steers = look.kind == LookKind::steered;
   const float level = std::sqrt(target.x * target.x + target.y * target.y);
   const float inverse_length = 1 / std::sqrt(dot(target, target));
-  if (look.kind == LookKind::steered) {
-    return {1, 0, 1, 0, target.y * inverse_length, target.z * inverse_length};
-  }
-  Aim aim;
-  const float cos_azimuth = level > 0 ? target.x / level : 1;
-  const float sin_azimuth = level > 0 ? target.y / level : 0;
-  const bool is_within = cos_azimuth >= look.cos_azimuth;
-  aim.cos_azimuth = is_within ? cos_azimuth : look.cos_azimuth;
-  aim.sin_azimuth = is_within ? sin_azimuth : std::copysign(look.sin_azimuth, sin_azimuth);
-  const float sin_elevation = target.z * inverse_length;
+  const float cos_azimuth = level > 0 ? target.x / level : 1.0f;
+  const float sin_azimuth = level > 0 ? target.y / level : 0.0f;
+  const float sin_elevation = target.z * inverse_length, cos_elevation = level * inverse_length;
+  const bool is_beside = cos_azimuth < look.cos_azimuth;
   const bool is_below = sin_elevation<look.sin_lowest, is_above = sin_elevation> look.sin_highest;
-  aim.sin_elevation = is_below ? look.sin_lowest : is_above ? look.sin_highest : sin_elevation;
-  aim.cos_elevation = is_below ? look.cos_lowest : is_above ? look.cos_highest : level * inverse_length;
+  const float nearest_cos_azimuth = is_beside ? look.cos_azimuth : cos_azimuth;
+  const float nearest_sin_azimuth = is_beside ? std::copysign(look.sin_azimuth, sin_azimuth) : sin_azimuth;
+  const float not_above_cos = is_above ? look.cos_highest : cos_elevation;
+  const float not_above_sin = is_above ? look.sin_highest : sin_elevation;
+  const float nearest_cos_elevation = is_below ? look.cos_lowest : not_above_cos;
+  const float nearest_sin_elevation = is_below ? look.sin_lowest : not_above_sin;
+  Aim aim;
+  aim.cos_azimuth = turns ? nearest_cos_azimuth : 1.0f;
+  aim.sin_azimuth = turns ? nearest_sin_azimuth : 0.0f;
+  aim.cos_elevation = turns ? nearest_cos_elevation : 1.0f;
+  aim.sin_elevation = turns ? nearest_sin_elevation : 0.0f;
+  aim.steer_u = steers ? target.y * inverse_length : look.steer_u;
+  aim.steer_v = steers ? sin_elevation : look.steer_v;
   return aim;
+}
+
+/// A direction of the look's frame in the frame of the antenna so aimed.
+EMSCAPE_HD inline Vec3f turnedBy(const Aim& aim, const Vec3f& direction) {
+  const float ahead = direction.x * aim.cos_azimuth + direction.y * aim.sin_azimuth;
+  return {ahead * aim.cos_elevation + direction.z * aim.sin_elevation,
+          direction.y * aim.cos_azimuth - direction.x * aim.sin_azimuth,
+          direction.z * aim.cos_elevation - ahead * aim.sin_elevation};
 }
 
 /// Amplitude (relative voltage, 0..1) of an antenna so aimed.
@@ -62,11 +75,7 @@ EMSCAPE_HD inline Aim aimAt(const RadarLook& look, const Vec3f& target) {
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline float amplitudeTowards(const scenario::PatternView& pattern, const Aim& aim,
                                          const Vec3f& direction) {
-  const float ahead = direction.x * aim.cos_azimuth + direction.y * aim.sin_azimuth;
-  const Vec3f turned{ahead * aim.cos_elevation + direction.z * aim.sin_elevation,
-                     direction.y * aim.cos_azimuth - direction.x * aim.sin_azimuth,
-                     direction.z * aim.cos_elevation - ahead * aim.sin_elevation};
-  return scenario::amplitudeOf<kind>(pattern, turned, aim.steer_u, aim.steer_v);
+  return scenario::amplitudeOf<kind>(pattern, turnedBy(aim, direction), aim.steer_u, aim.steer_v);
 }
 
 }  // namespace emscape::emfield

@@ -45,18 +45,16 @@ struct RadarTask {
   int jammer_count = 0;
 };
 
-/// Root of an echo's signal-to-noise; 0 in shadow.
+/// Root of an echo's signal-to-noise, but for the excess loss of the path; 0 in shadow.
 /// @param beam  with the look's frame as its forward, right and up
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline float echoToNoiseRoot(const RadarTask& task, const EmitterBeam& beam, std::size_t column,
-                                        std::size_t voxel, float t_m) {
+                                        float t_m) {
   const VoxelRay ray = voxelRay(beam, column, t_m);
   const Aim aim = aimAt(task.look, ray.direction);
   const Vec3f unit = ray.direction * (1 / std::sqrt(ray.length2_m2 + 1e-12f));
   const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, unit);
-  const ExcessCode* excess = beam.geometry.excess;
-  const float path = excess == nullptr ? 1.0f : excessFactor(excess[voxel]);
-  return task.echo_root * ray.isotropic_wm2 * path * amplitude * amplitude;
+  return task.echo_root * ray.isotropic_wm2 * amplitude * amplitude;
 }
 
 /// One jammer's power over the noise while the radar looks at the voxel.
@@ -68,20 +66,40 @@ EMSCAPE_HD inline float jammingToNoise(const RadarTask& task, const EmitterBeam&
   return jammer.boresight_to_noise * amplitude * amplitude;
 }
 
-/// Adds what a radar makes of its echo to a channel's accumulator.
-EMSCAPE_HD inline float withRadar(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
-                                  float accumulated) {
+/// A channel's accumulator with what a radar makes of its echo. Without branches, for SIMD.
+template <RadarMeasure measure>
+EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
+                                 float accumulated) {
   const float echo_to_noise = echo_to_noise_root * echo_to_noise_root;
   float value = echo_to_noise_root;
-  if (task.measure == RadarMeasure::signal_to_jamming) {
-    const float limit = task.ceiling * jamming_to_noise;
+  if constexpr (measure == RadarMeasure::signal_to_jamming) {
     const float ratio = task.factor * echo_to_noise;
-    value = ratio < limit ? ratio / jamming_to_noise : (echo_to_noise > 0 ? task.ceiling : 0.0f);
-  } else if (task.measure == RadarMeasure::detection) {
-    value = echo_to_noise > 0 ? task.curve(fastRatioToDb(echo_to_noise / (1 + jamming_to_noise))) : 0.0f;
-    if (task.reduction == Reduction::sum) return accumulated + value * (1 - accumulated);
+    const bool is_jammed = ratio < task.ceiling * jamming_to_noise;
+    const float unjammed = echo_to_noise > 0 ? task.ceiling : 0.0f;
+    value = is_jammed ? ratio / jamming_to_noise : unjammed;
+  } else if constexpr (measure == RadarMeasure::detection) {
+    const float probability = task.curve(fastRatioToDb(echo_to_noise / (1 + jamming_to_noise)));
+    value = echo_to_noise > 0 ? probability : 0.0f;
+    const float either = accumulated + value * (1 - accumulated);
+    value = task.reduction == Reduction::sum ? either : value;
   }
   return value > accumulated ? value : accumulated;
+}
+
+/// The same where the measure is not known before.
+EMSCAPE_HD inline float withRadar(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
+                                  float accumulated) {
+  switch (task.measure) {
+    case RadarMeasure::signal_to_jamming:
+      return withEcho<RadarMeasure::signal_to_jamming>(task, echo_to_noise_root, jamming_to_noise,
+                                                       accumulated);
+    case RadarMeasure::detection:
+      return withEcho<RadarMeasure::detection>(task, echo_to_noise_root, jamming_to_noise, accumulated);
+    case RadarMeasure::root_of_signal_to_noise:
+      break;
+  }
+  return withEcho<RadarMeasure::root_of_signal_to_noise>(task, echo_to_noise_root, jamming_to_noise,
+                                                         accumulated);
 }
 
 /// A pass of one radar over the voxels of a channel.
@@ -94,16 +112,19 @@ struct RadarPass {
   float* accumulator = nullptr;      ///< dense order
 };
 
-/// One voxel of a pass: what the loops of both backends do.
+/// One voxel of a pass. The CPU does the same row by row.
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k) {
+  const RadarTask& task = pass.task;
   const std::size_t voxel = static_cast<std::size_t>(k) * pass.dims.x * pass.dims.y + column;
-  const float root = echoToNoiseRoot<kind>(pass.task, pass.beam, column, voxel, pass.t_m[k]);
+  const float t_m = pass.t_m[k];
+  float root = echoToNoiseRoot<kind>(task, pass.beam, column, t_m);
+  if (pass.beam.geometry.excess != nullptr) root *= excessFactor(pass.beam.geometry.excess[voxel]);
   float jamming = 0;
-  for (int n = 0; n < pass.task.jammer_count; ++n) {
-    jamming += jammingToNoise<kind>(pass.task, pass.beam, pass.task.jammers[n], column, pass.t_m[k]);
+  for (int n = 0; n < task.jammer_count; ++n) {
+    jamming += jammingToNoise<kind>(task, pass.beam, task.jammers[n], column, t_m);
   }
-  pass.accumulator[voxel] = withRadar(pass.task, root, jamming, pass.accumulator[voxel]);
+  pass.accumulator[voxel] = withRadar(task, root, jamming, pass.accumulator[voxel]);
 }
 
 /// Runs a pass on the CPU. Voxels below first_row_k are left as they are.

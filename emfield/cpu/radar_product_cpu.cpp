@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/simd.h"
 #include "emfield/radar_product.h"
 
 namespace emscape::emfield {
@@ -8,31 +10,117 @@ namespace {
 
 using scenario::PatternKind;
 
+/// A run of voxels along x: those of the columns from `column` on, all at z = t_m.
+struct Row {
+  std::size_t column;
+  int count;
+  float t_m;
+};
+
 template <PatternKind kind>
-void addRows(const RadarPass& pass, int begin, int end) {
-  for (int j = begin; j < end; ++j) {
-    for (int k = pass.first_row_k == nullptr ? 0 : pass.first_row_k[j]; k < pass.dims.z; ++k) {
-      const std::size_t first = static_cast<std::size_t>(j) * pass.dims.x;
-      for (int i = 0; i < pass.dims.x; ++i) addEcho<kind>(pass, first + i, k);
-    }
+__attribute__((always_inline)) inline void fillEchoes(const RadarPass& pass, const Row& row, float* root) {
+  const RadarTask task = pass.task;
+  const EmitterBeam beam = pass.beam;
+#pragma omp simd
+  for (int i = 0; i < row.count; ++i) {
+    root[i] = echoToNoiseRoot<kind>(task, beam, row.column + i, row.t_m);
+  }
+}
+
+template <PatternKind kind>
+__attribute__((always_inline)) inline void addJamming(const RadarPass& pass, const JammerAtRadar& jammer,
+                                                      const Row& row, float* jamming) {
+  const RadarTask task = pass.task;
+  const EmitterBeam beam = pass.beam;
+  const JammerAtRadar local = jammer;
+#pragma omp simd
+  for (int i = 0; i < row.count; ++i) {
+    jamming[i] += jammingToNoise<kind>(task, beam, local, row.column + i, row.t_m);
+  }
+}
+
+template <PatternKind kind>
+__attribute__((always_inline)) inline void fillRow(const RadarPass& pass, const Row& row, float* root,
+                                                   float* jamming) {
+  fillEchoes<kind>(pass, row, root);
+  std::fill_n(jamming, row.count, 0.0f);
+  for (int n = 0; n < pass.task.jammer_count; ++n) addJamming<kind>(pass, pass.task.jammers[n], row, jamming);
+}
+
+EMSCAPE_SIMD_CLONES void isotropicRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::isotropic>(pass, row, root, jamming);
+}
+EMSCAPE_SIMD_CLONES void gaussianRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::gaussian>(pass, row, root, jamming);
+}
+EMSCAPE_SIMD_CLONES void separableRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::separable>(pass, row, root, jamming);
+}
+EMSCAPE_SIMD_CLONES void phasedArrayRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::phased_array>(pass, row, root, jamming);
+}
+EMSCAPE_SIMD_CLONES void gridRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::grid>(pass, row, root, jamming);
+}
+
+void fillRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  switch (pass.beam.pattern.kind) {
+    case PatternKind::isotropic:
+      return isotropicRow(pass, row, root, jamming);
+    case PatternKind::gaussian:
+      return gaussianRow(pass, row, root, jamming);
+    case PatternKind::separable:
+      return separableRow(pass, row, root, jamming);
+    case PatternKind::phased_array:
+      return phasedArrayRow(pass, row, root, jamming);
+    case PatternKind::grid:
+      return gridRow(pass, row, root, jamming);
+  }
+}
+
+EMSCAPE_SIMD_CLONES void applyExcess(const ExcessCode* excess, int count, float* root) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) root[i] *= excessFactor(excess[i]);
+}
+
+template <RadarMeasure measure>
+__attribute__((always_inline)) inline void accumulate(const RadarTask& pass_task, int count,
+                                                      const float* root, const float* jamming,
+                                                      float* accumulator) {
+  const RadarTask task = pass_task;
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    accumulator[i] = withEcho<measure>(task, root[i], jamming[i], accumulator[i]);
+  }
+}
+
+EMSCAPE_SIMD_CLONES void accumulateRow(const RadarTask& task, int count, const float* root,
+                                       const float* jamming, float* accumulator) {
+  switch (task.measure) {
+    case RadarMeasure::root_of_signal_to_noise:
+      return accumulate<RadarMeasure::root_of_signal_to_noise>(task, count, root, jamming, accumulator);
+    case RadarMeasure::signal_to_jamming:
+      return accumulate<RadarMeasure::signal_to_jamming>(task, count, root, jamming, accumulator);
+    case RadarMeasure::detection:
+      return accumulate<RadarMeasure::detection>(task, count, root, jamming, accumulator);
   }
 }
 
 }  // namespace
 
 void radarCpu(const RadarPass& pass) {
-  parallelFor(pass.dims.y, 1, [&](int begin, int end) {
-    switch (pass.beam.pattern.kind) {
-      case PatternKind::isotropic:
-        return addRows<PatternKind::isotropic>(pass, begin, end);
-      case PatternKind::gaussian:
-        return addRows<PatternKind::gaussian>(pass, begin, end);
-      case PatternKind::separable:
-        return addRows<PatternKind::separable>(pass, begin, end);
-      case PatternKind::phased_array:
-        return addRows<PatternKind::phased_array>(pass, begin, end);
-      case PatternKind::grid:
-        return addRows<PatternKind::grid>(pass, begin, end);
+  const Dims& dims = pass.dims;
+  parallelFor(dims.y, 1, [&](int begin, int end) {
+    std::vector<float> root(dims.x), jamming(dims.x);
+    for (int j = begin; j < end; ++j) {
+      for (int k = pass.first_row_k == nullptr ? 0 : pass.first_row_k[j]; k < dims.z; ++k) {
+        const std::size_t column = static_cast<std::size_t>(j) * dims.x;
+        const std::size_t voxel = static_cast<std::size_t>(k) * dims.x * dims.y + column;
+        fillRow(pass, {column, dims.x, pass.t_m[k]}, root.data(), jamming.data());
+        const ExcessCode* excess = pass.beam.geometry.excess;
+        if (excess != nullptr) applyExcess(excess + voxel, dims.x, root.data());
+        accumulateRow(pass.task, dims.x, root.data(), jamming.data(), pass.accumulator + voxel);
+      }
     }
   });
 }
