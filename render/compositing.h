@@ -24,6 +24,15 @@ EMSCAPE_HD inline Rgba shortened(const Rgba& sample, float part) {
   return sample.a > 0.0F ? sample * (opacityOver(sample.a, part) / sample.a) : sample;
 }
 
+/// 0..1; NaN is 0.
+EMSCAPE_HD inline float heldToUnit(float value) {
+#if defined(__CUDA_ARCH__)
+  return __saturatef(value);  // part of the instruction before
+#else
+  return value > 0.0F ? (value < 1.0F ? value : 1.0F) : 0.0F;
+#endif
+}
+
 /// A transfer function as a table over normalised values f in 0..1. Plain data.
 struct TransferView {
   const Rgba* samples = nullptr;  ///< premultiplied, opacity corrected for the sampling step
@@ -34,10 +43,7 @@ struct TransferView {
   float scale = 0;   ///< f per unit of the value
 
   /// f of a value, clamped to 0..1; NaN is 0.
-  EMSCAPE_HD float normalized(float value) const {
-    const float f = (value - lowest) * scale;
-    return f > 0.0F ? (f < 1.0F ? f : 1.0F) : 0.0F;
-  }
+  EMSCAPE_HD float normalized(float value) const { return heldToUnit((value - lowest) * scale); }
   EMSCAPE_HD int index(float f) const { return static_cast<int>(f * static_cast<float>(last) + 0.5F); }
 };
 
@@ -50,25 +56,32 @@ struct TransferView {
 ///   add(f, sample)        takes one sample
 ///   done(ahead, next)     whether nothing from sample `next` on can matter (any more than early termination
 ///                         allows); ahead.exceeds(next, f): whether any sample from there on can exceed f
-///   result(transfer)      the ray's colour, premultiplied
+///   kEndsItself           add() changes nothing once done() is true: done() need not be asked after each
+///   sample result(transfer)      the ray's colour, premultiplied
 /// `volume_highest_f` is the largest f that any sample can have.
 
+/// Opacity beyond which what lies behind does not matter; rays that are cast exactly go on to the end.
 constexpr float kOpaqueEnough = 0.99F;
+constexpr float kNeverOpaqueEnough = 2.0F;
 
 /// Direct volume rendering: emission and absorption.
 struct DvrCompositor {
   static constexpr bool kNeedsColor = true;
-  bool exact = false;
+  static constexpr bool kEndsItself = true;
+  float opaque_enough = kOpaqueEnough;
   Rgba sum;
 
-  EMSCAPE_HD DvrCompositor(bool exact_cast, float /*gamma*/, float /*volume_highest_f*/)
-      : exact(exact_cast) {}
-  EMSCAPE_HD void add(float /*f*/, const Rgba& sample) { sum = over(sum, sample); }
+  EMSCAPE_HD DvrCompositor(float opaque, float /*gamma*/, float /*volume_highest_f*/)
+      : opaque_enough(opaque) {}
+  EMSCAPE_HD void add(float f, const Rgba& sample) { addIf(true, f, sample); }
+  EMSCAPE_HD void addIf(bool shows, float /*f*/, const Rgba& sample) {
+    sum = sum + sample * (shows && !(sum.a > opaque_enough) ? 1.0F - sum.a : 0.0F);
+  }
   EMSCAPE_HD bool canSkip(float level) const { return level < SkipView::kNever; }
   EMSCAPE_HD bool ignores(float /*f*/, const Rgba& sample) const { return !(sample.a > 0.0F); }
   template <class Ahead>
   EMSCAPE_HD bool done(Ahead& /*ahead*/, int /*next*/) const {
-    return !exact && sum.a > kOpaqueEnough;
+    return sum.a > opaque_enough;
   }
   EMSCAPE_HD Rgba result(const TransferView& /*transfer*/) const { return sum; }
 };
@@ -77,12 +90,16 @@ struct DvrCompositor {
 /// largest.
 struct MipCompositor {
   static constexpr bool kNeedsColor = false;
+  static constexpr bool kEndsItself = true;
   float volume_highest = 1;
   float highest = -1;
 
-  EMSCAPE_HD MipCompositor(bool /*exact_cast*/, float /*gamma*/, float volume_highest_f)
+  EMSCAPE_HD MipCompositor(float /*opaque*/, float /*gamma*/, float volume_highest_f)
       : volume_highest(volume_highest_f) {}
-  EMSCAPE_HD void add(float f, const Rgba& /*sample*/) { highest = f > highest ? f : highest; }
+  EMSCAPE_HD void add(float f, const Rgba& sample) { addIf(true, f, sample); }
+  EMSCAPE_HD void addIf(bool shows, float f, const Rgba& /*sample*/) {
+    highest = shows && f > highest ? f : highest;
+  }
   EMSCAPE_HD bool canSkip(float level) const { return level <= highest; }
   EMSCAPE_HD bool ignores(float f, const Rgba& /*sample*/) const { return f <= highest; }
   template <class Ahead>
@@ -98,13 +115,14 @@ struct MipCompositor {
 /// before it. gamma = -1 is DVR, 0 is MIDA; above 0 the picture blends towards MIP.
 struct MidaCompositor {
   static constexpr bool kNeedsColor = true;
+  static constexpr bool kEndsItself = false;  // what is ahead decides
   float gamma = 0;
-  bool exact = false;
+  float opaque_enough = kOpaqueEnough;
   MipCompositor mip;
   Rgba sum;
 
-  EMSCAPE_HD MidaCompositor(bool exact_cast, float gamma_value, float volume_highest_f)
-      : gamma(gamma_value), exact(exact_cast), mip(exact_cast, gamma_value, volume_highest_f) {}
+  EMSCAPE_HD MidaCompositor(float opaque, float gamma_value, float volume_highest_f)
+      : gamma(gamma_value), opaque_enough(opaque), mip(opaque, gamma_value, volume_highest_f) {}
   EMSCAPE_HD void add(float f, const Rgba& sample) {
     const float before = mip.highest > 0.0F ? mip.highest : 0.0F;
     const float delta = f > before ? f - before : 0.0F;
@@ -119,7 +137,7 @@ struct MidaCompositor {
   }
   template <class Ahead>
   EMSCAPE_HD bool done(Ahead& ahead, int next) const {
-    return !exact && sum.a > kOpaqueEnough && !ahead.exceeds(next, mip.highest);
+    return sum.a > opaque_enough && !ahead.exceeds(next, mip.highest);
   }
   EMSCAPE_HD Rgba result(const TransferView& transfer) const {
     return gamma <= 0.0F ? sum : sum * (1.0F - gamma) + mip.result(transfer) * gamma;

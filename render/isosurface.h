@@ -78,7 +78,7 @@ EMSCAPE_HD IsoHit firstCrossing(const VolumeView& volume, const SkipView& skip, 
     last = point;
     int ahead = 1;
     if (skip.levels != nullptr && n >= next_brick) {
-      const BrickStep brick = skip.at(volume, pieces.at(point.distance), pieces.direction);
+      const BrickStep brick = skip.at(volume, pieces.at(point.distance), pieces.per_voxel);
       const int inside = pieces.stepsIn(brick.leave);  // joint n + inside surely lies in the brick
       next_brick = n + inside + 1;
       if (skip.levels[brick.index] < SkipView::kNever && inside > 1) ahead = inside;

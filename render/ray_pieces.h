@@ -10,17 +10,21 @@ namespace emscape::render {
 /// The part of a ray in the box of voxels, from where it enters: pieces of one step, the last one shorter.
 struct RayPieces {
   Vec3f start;
-  Vec3f direction;   ///< of unit length: distances are in voxels
-  float length = 0;  ///< >= 0
-  float step = 1;    ///< > 0
-  int whole = 0;     ///< number of pieces of a whole step
-  int count = 0;     ///< number of pieces
+  Vec3f direction;     ///< of unit length: distances are in voxels
+  Vec3f per_voxel;     ///< 1 / direction
+  float length = 0;    ///< >= 0
+  float step = 1;      ///< > 0
+  float per_step = 1;  ///< 1 / step
+  int whole = 0;       ///< number of pieces of a whole step
+  int count = 0;       ///< number of pieces
 
   EMSCAPE_HD RayPieces(const Vec3f& first, const Vec3f& along, float length_voxels, float step_voxels)
       : start(first),
         direction(along),
+        per_voxel{1.0F / along.x, 1.0F / along.y, 1.0F / along.z},
         length(length_voxels),
         step(step_voxels),
+        per_step(1.0F / step_voxels),
         whole(static_cast<int>(length_voxels / step_voxels)),
         count(whole + (last() > 0.0F ? 1 : 0)) {}
 
@@ -33,9 +37,10 @@ struct RayPieces {
   /// Distance of the joint before piece n; n = count: of the end.
   EMSCAPE_HD float joint(int n) const { return n <= whole ? static_cast<float>(n) * step : length; }
   EMSCAPE_HD Vec3f at(float distance) const { return start + direction * distance; }
-  /// How many whole steps a distance holds, at most `count`.
+  /// How many whole steps a distance holds, at most `count`; to rounding, which the distances of BrickStep
+  /// leave room for.
   EMSCAPE_HD int stepsIn(float distance) const {
-    const float steps = distance / step;
+    const float steps = distance * per_step;
     return steps < static_cast<float>(count) ? static_cast<int>(steps) : count;
   }
 };
@@ -59,7 +64,7 @@ class LookAhead {
     highest_ = -1.0F;
     until_ = pieces_.count;
     while (next < pieces_.count) {
-      const BrickStep brick = skip_.at(volume_, pieces_.at(pieces_.middle(next)), pieces_.direction);
+      const BrickStep brick = skip_.at(volume_, pieces_.at(pieces_.middle(next)), pieces_.per_voxel);
       next += 1 + pieces_.stepsIn(brick.leave);
       if (skip_.highest[brick.index] < highest_) continue;
       highest_ = skip_.highest[brick.index];

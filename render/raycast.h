@@ -39,8 +39,8 @@ struct CameraView {
     const double plane_x = ((2.0 * (x + 0.5) - size.width) / size.height + shift_x) * half_height;
     const double plane_y = (1.0 - 2.0 * (y + 0.5) / size.height + shift_y) * half_height;
     const Vec3d offset = right * plane_x + up * plane_y;
-    if (orthographic) return {eye + offset, normalized(forward)};
-    return {eye, normalized(forward + offset)};
+    const Vec3d along = orthographic ? forward : forward + offset;
+    return {orthographic ? eye + offset : eye, along * (1.0 / length(along))};
   }
 };
 
@@ -56,8 +56,9 @@ EMSCAPE_HD inline void clipAxis(double origin, double direction, double lower, d
     if (!(origin > lower && origin < upper)) interval.end = interval.begin;
     return;
   }
-  const double to_lower = (lower - origin) / direction;
-  const double to_upper = (upper - origin) / direction;
+  const double per_unit = 1.0 / direction;
+  const double to_lower = (lower - origin) * per_unit;
+  const double to_upper = (upper - origin) * per_unit;
   const double enter = direction > 0.0 ? to_lower : to_upper;
   const double leave = direction > 0.0 ? to_upper : to_lower;
   if (enter > interval.begin) interval.begin = enter;
@@ -90,7 +91,9 @@ struct RaycastTask {
   float step_voxels = 1;
   float mida_gamma = 0;
   float volume_highest_f = 1;
-  bool exact = false;
+  float opaque_enough = kOpaqueEnough;  ///< or kNeverOpaqueEnough
+
+  EMSCAPE_HD bool isExact() const { return opaque_enough > 1.0F; }
 
   /// Where the ray of a pixel meets the ground.
   EMSCAPE_HD GroundHit groundAt(int x, int y) const {
@@ -117,7 +120,7 @@ struct RaycastTask {
   EMSCAPE_HD Rgba castVolume(int x, int y, double limit, const Colors& colors, float highest_f) const {
     const Ray ray = camera.ray(x, y);
     const RayInterval inside = insideOf(ray, limit);
-    Compositor compositor(exact, mida_gamma, highest_f);
+    Compositor compositor(opaque_enough, mida_gamma, highest_f);
     if (inside.end > inside.begin) {
       march<Compositor, Sampler, kMayShade, kBatch>(piecesOf(ray, inside), colors, compositor);
     }
@@ -147,15 +150,11 @@ struct RaycastTask {
     LookAhead ahead(skip, volume, pieces);
     const Vec3f to_viewer = kMayShade ? shading.toViewer(pieces.direction) : Vec3f{};
     // Takes the sample of piece n, of `part` of a step. @return whether nothing behind it matters
-    const auto take = [&](int n, float part, const Vec3f& position, float value) {
-      if (!(value == value)) return false;
-      const float f = transfer.normalized(value);
-      Rgba sample;
-      if constexpr (Compositor::kNeedsColor) sample = colors.at(transfer.index(f));
+    const auto take = [&](int n, float part, float value, float f, Rgba sample) {
       if (compositor.ignores(f, sample)) return false;
       if constexpr (Compositor::kNeedsColor) {
         if (kMayShade && shading.shades_fog && sample.a > 0.0F) {
-          const Vec3f gradient = gradientAt<Sampler>(volume, position, value);
+          const Vec3f gradient = gradientAt<Sampler>(volume, pieces.at(pieces.middle(n)), value);
           sample = shading.litFog(sample, gradient * transfer.scale, to_viewer);
         }
         if (part < 1.0F) sample = shortened(sample, part);
@@ -163,31 +162,58 @@ struct RaycastTask {
       compositor.add(f, sample);
       return compositor.done(ahead, n + 1);
     };
+    const auto colorOf = [&](float f) {
+      return Compositor::kNeedsColor ? colors.at(transfer.index(f)) : Rgba{};
+    };
+    const float shift = Sampler::kShift;
+    const Vec3f fetch_start = pieces.start + Vec3f{shift, shift, shift};
     int next_brick = 0;  // the first sample that may lie in another brick than the last one looked at
     for (int n = 0; n < pieces.whole;) {
       if (skip.levels != nullptr && n >= next_brick) {
-        const BrickStep brick = skip.at(volume, pieces.at(pieces.wholeMiddle(n)), pieces.direction);
+        const BrickStep brick = skip.at(volume, pieces.at(pieces.wholeMiddle(n)), pieces.per_voxel);
         next_brick = n + 1 + pieces.stepsIn(brick.leave);
         if (compositor.canSkip(skip.levels[brick.index])) {
           n = next_brick;
           continue;
         }
       }
+      // Stage by stage and with few branches, so that the waits of a batch fall together.
       float values[kBatch];
+      float fs[kBatch];
+      Rgba samples[kBatch];
       EMSCAPE_UNROLL
       for (int i = 0; i < kBatch; ++i) {
-        values[i] = sampleOrNaN<Sampler>(volume, pieces.at(pieces.wholeMiddle(n + i)));
+        values[i] = Sampler::fetch(volume, fetch_start + pieces.direction * pieces.wholeMiddle(n + i));
+      }
+      if (volume.masked_below > 0) {
+        EMSCAPE_UNROLL
+        for (int i = 0; i < kBatch; ++i) {
+          if (nearestIsMasked(volume, pieces.at(pieces.wholeMiddle(n + i)))) values[i] = NAN;
+        }
       }
       EMSCAPE_UNROLL
       for (int i = 0; i < kBatch; ++i) {
-        const bool taken = i == 0 || n + i < pieces.whole;
-        if (taken && take(n + i, 1.0F, pieces.at(pieces.wholeMiddle(n + i)), values[i])) return;
+        fs[i] = transfer.normalized(values[i]);
+        samples[i] = colorOf(fs[i]);
       }
+      bool ends = false;
+      EMSCAPE_UNROLL
+      for (int i = 0; i < kBatch; ++i) {
+        const bool shows = values[i] == values[i] && (i == 0 || n + i < pieces.whole);
+        if constexpr (Compositor::kEndsItself && !kMayShade) {
+          compositor.addIf(shows, fs[i], samples[i]);
+        } else {
+          if (shows && !ends) ends = take(n + i, 1.0F, values[i], fs[i], samples[i]);
+        }
+      }
+      if (Compositor::kEndsItself ? compositor.done(ahead, n + kBatch) : ends) return;
       n += kBatch;
     }
     if (pieces.whole < pieces.count) {
-      const Vec3f position = pieces.at(pieces.middle(pieces.whole));
-      take(pieces.whole, pieces.last() / step_voxels, position, sampleOrNaN<Sampler>(volume, position));
+      float value = 0;
+      if (!Sampler::sample(volume, pieces.at(pieces.middle(pieces.whole)), value)) return;
+      const float f = transfer.normalized(value);
+      take(pieces.whole, pieces.last() / step_voxels, value, f, colorOf(f));
     }
   }
 

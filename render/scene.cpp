@@ -156,7 +156,7 @@ RaycastTask Scene::task(ImageSize size) const {
   if (ground_) task.ground = ground_->view();
   task.step_voxels = static_cast<float>(settings_.step_voxels);
   task.mida_gamma = static_cast<float>(settings_.mida_gamma);
-  task.exact = settings_.exact;
+  task.opaque_enough = settings_.exact ? kNeverOpaqueEnough : kOpaqueEnough;
   return task;
 }
 

@@ -159,7 +159,7 @@ struct DvrLanes {
   Color sum;
   HWY_INLINE DvrLanes() : sum(Color::zero()) {}
   HWY_INLINE M live(const RaycastTask& task, LanesAhead& /*ahead*/, M active, F /*next*/) const {
-    return task.exact ? active : hn::And(active, hn::Le(sum.a, hn::Set(kF, kOpaqueEnough)));
+    return task.isExact() ? active : hn::And(active, hn::Le(sum.a, hn::Set(kF, kOpaqueEnough)));
   }
   HWY_INLINE M canSkip(F level) const { return hn::Lt(level, hn::Set(kF, SkipView::kNever)); }
   HWY_INLINE M add(const RaycastTask& /*task*/, M /*active*/, F /*f*/, const Color& sample) {
@@ -195,7 +195,7 @@ struct MidaLanes {
   MipLanes mip;
   HWY_INLINE MidaLanes() : sum(Color::zero()) {}
   HWY_INLINE M live(const RaycastTask& task, LanesAhead& ahead, M active, F next) const {
-    if (task.exact) return active;
+    if (task.isExact()) return active;
     const M opaque = hn::And(active, hn::Gt(sum.a, hn::Set(kF, kOpaqueEnough)));
     if (hn::AllFalse(kF, opaque)) return active;
     return hn::Or(hn::AndNot(opaque, active), ahead.exceeds(opaque, next, mip.highest));

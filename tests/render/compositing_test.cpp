@@ -23,7 +23,7 @@ const std::vector<Sample> kRay{{0.2F, {0.02F, 0.01F, 0.0F, 0.05F}},
 
 template <class Compositor>
 Compositor composite(float gamma) {
-  Compositor compositor(true, gamma, 1.0F);
+  Compositor compositor(kNeverOpaqueEnough, gamma, 1.0F);
   for (const Sample& sample : kRay) compositor.add(sample.f, sample.color);
   return compositor;
 }
@@ -83,7 +83,7 @@ struct Ahead {
 };
 
 TEST(Compositing, MidaDoesNotEndWhileALaterSampleMayExceedTheMaximum) {
-  MidaCompositor compositor(false, 0, 1.0F);
+  MidaCompositor compositor(kOpaqueEnough, 0, 1.0F);
   compositor.add(0.5F, {1, 1, 1, 1});
   Ahead higher{0.6F}, same{0.5F};
   EXPECT_FALSE(compositor.done(higher, 1));
@@ -91,9 +91,9 @@ TEST(Compositing, MidaDoesNotEndWhileALaterSampleMayExceedTheMaximum) {
 }
 
 TEST(Compositing, MidaDoesNotEndBeforeItIsOpaqueNorIfExact) {
-  MidaCompositor thin(false, 0, 1.0F);
+  MidaCompositor thin(kOpaqueEnough, 0, 1.0F);
   thin.add(0.5F, {0.98F, 0.98F, 0.98F, 0.98F});
-  MidaCompositor exact(true, 0, 1.0F);
+  MidaCompositor exact(kNeverOpaqueEnough, 0, 1.0F);
   exact.add(0.5F, {1, 1, 1, 1});
   Ahead nothing{-1};
   EXPECT_FALSE(thin.done(nothing, 1));
@@ -103,22 +103,22 @@ TEST(Compositing, MidaDoesNotEndBeforeItIsOpaqueNorIfExact) {
 TEST(Compositing, IgnoredSamplesChangeNothing) {
   const Rgba clear;
   const Rgba faint{0, 0, 0, 0.01F};
-  EXPECT_TRUE(DvrCompositor(true, 0, 1).ignores(0.9F, clear));
-  EXPECT_FALSE(DvrCompositor(true, 0, 1).ignores(0.0F, faint));
-  MidaCompositor mida(true, 0, 1);
+  EXPECT_TRUE(DvrCompositor(kNeverOpaqueEnough, 0, 1).ignores(0.9F, clear));
+  EXPECT_FALSE(DvrCompositor(kNeverOpaqueEnough, 0, 1).ignores(0.0F, faint));
+  MidaCompositor mida(kNeverOpaqueEnough, 0, 1);
   EXPECT_FALSE(mida.ignores(0.4F, clear));
   mida.add(0.4F, faint);
   EXPECT_TRUE(mida.ignores(0.4F, clear));
   EXPECT_FALSE(mida.ignores(0.5F, clear));
   EXPECT_FALSE(mida.ignores(0.1F, faint));
-  MipCompositor mip(true, 0, 1);
+  MipCompositor mip(kNeverOpaqueEnough, 0, 1);
   mip.add(0.4F, clear);
   EXPECT_TRUE(mip.ignores(0.4F, faint));
   EXPECT_FALSE(mip.ignores(0.5F, clear));
 }
 
 TEST(Compositing, MidaDoesNotSkipTransparentSamplesThatRaiseTheMaximum) {
-  MidaCompositor compositor(true, 0, 1.0F);
+  MidaCompositor compositor(kNeverOpaqueEnough, 0, 1.0F);
   compositor.add(0.4F, {0.1F, 0.1F, 0.1F, 0.2F});
   EXPECT_TRUE(compositor.canSkip(0.4F));
   EXPECT_FALSE(compositor.canSkip(0.5F));
@@ -126,8 +126,8 @@ TEST(Compositing, MidaDoesNotSkipTransparentSamplesThatRaiseTheMaximum) {
 }
 
 TEST(Compositing, DvrEndsEarlyUnlessExact) {
-  DvrCompositor early(false, 0, 1);
-  DvrCompositor exact(true, 0, 1);
+  DvrCompositor early(kOpaqueEnough, 0, 1);
+  DvrCompositor exact(kNeverOpaqueEnough, 0, 1);
   for (DvrCompositor* compositor : {&early, &exact}) compositor->add(0.5F, {0.99F, 0.99F, 0.99F, 0.995F});
   Ahead more{1};
   EXPECT_TRUE(early.done(more, 1));
