@@ -239,6 +239,23 @@ TEST_F(CudaField, EveryReductionIsTheCpus) {
             1e-3 * static_cast<double>(pair.difference().voxels));
 }
 
+TEST_F(CudaField, RadarsProductsAreTheCpus) {
+  std::mt19937 random(6);
+  for (const auto look : {scenario::RadarLook::scan, scenario::RadarLook::target}) {
+    const auto scenario = randomScenario(random, FrameKind::altitude,
+                                         {PropagationModel::free_space, PropagationModel::horizon}, 900, 12);
+    for (std::size_t e = 0; e < scenario->emitters.size(); ++e) {
+      scenario->emitters[e].frequency_hz = 1e9;
+      if (e % 3 == 1) scenario->emitters[e].kind = scenario::EmitterKind::jammer;
+    }
+    scenario->output.radar_look = look;
+    scenario->output.quantities = {"snr_db", "detection_probability", "jammer_to_signal_db",
+                                   "burn_through_margin_db"};
+    Pair pair(scenario, nullptr);
+    expectSameField(pair, random, 4);
+  }
+}
+
 TEST_F(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
   std::mt19937 random(5);
   const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, 0.05);
@@ -251,7 +268,7 @@ TEST_F(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
     Pair pair(scenario, terrain, options);
     expectSameField(pair, random, 2);
     const auto& mask = pair.gpu().volumes().front()->first_valid_k;
-    EXPECT_GT(std::count(mask.begin(), mask.end(), 29), 100);
+    EXPECT_GT(std::count(mask.begin(), mask.end(), 29), 20);
     options.backend = Backend::cuda;
     options.allow_missing_terrain = false;
     EXPECT_THROW(FieldSolver(scenario, terrain, options), Error);

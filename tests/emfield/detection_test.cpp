@@ -135,6 +135,45 @@ TEST(Detection, CurveIsWithinItsAccuracyAndNeverFalls) {
   }
 }
 
+TEST(Detection, FormulasTurnedRoundAreTheirInverses) {
+  for (const int pulses : {1, 10, 100}) {
+    for (const double pfa : {1e-3, 1e-6}) {
+      const Detector steady{Swerling::steady, pulses, pfa};
+      for (const double pd : {0.1, 0.3, 0.5, 0.9}) {
+        EXPECT_NEAR(albersheimProbability(steady, albersheimSnrDb(steady, pd)), pd, 1e-9);
+        for (const Swerling swerling : kAllCases) {
+          const Detector detector{swerling, pulses, pfa};
+          EXPECT_NEAR(shnidmanProbability(detector, shnidmanSnrDb(detector, pd)), pd, 1e-6);
+        }
+      }
+    }
+  }
+}
+
+TEST(Detection, CurvesOfFormulasAreNearThemAndNeverFall) {
+  for (const int pulses : {1, 12, 200}) {
+    for (const Swerling swerling : kAllCases) {
+      const Detector detector{swerling, pulses, 1e-6};
+      const DetectionCurve curve(detector, scenario::DetectionMethod::shnidman);
+      const DetectionCurve steady(detector, scenario::DetectionMethod::albersheim);
+      double worst = 0;
+      float before = 0;
+      for (float snr_db = -20; snr_db < 40; snr_db += 0.0371f) {
+        const float pd = curve.view()(snr_db);
+        ASSERT_GE(pd, before - 1e-7f);
+        before = pd;
+        const double exact = shnidmanProbability(detector, snr_db);
+        if (exact > 0.1 && exact < 0.99) worst = std::max(worst, std::abs(pd - exact));
+        const double formula = albersheimProbability(detector, snr_db);
+        if (formula > 0.1 && formula < 0.9) {
+          ASSERT_NEAR(steady.view()(snr_db), formula, 2e-3);
+        }
+      }
+      EXPECT_LT(worst, 2e-3) << int(swerling) << ", " << pulses;
+    }
+  }
+}
+
 TEST(Detection, RefusesWhatLiesOutsideItsRanges) {
   EXPECT_EQ(messageOf([] {
               detectionThreshold({Swerling::steady, 0, 1e-6});
@@ -243,9 +282,9 @@ struct PolarizationEllipse {
 /// @see Blake 1980; C. A. Balanis, Antenna Theory, section 2.12 (in axial ratios)
 double passedBetween(const PolarizationEllipse& a, const PolarizationEllipse& b) {
   const double a2 = a.axial_ratio * a.axial_ratio, b2 = b.axial_ratio * b.axial_ratio;
-  return 0.5 + (4 * a.axial_ratio * b.axial_ratio +
-                (1 - a2) * (1 - b2) * std::cos(2 * (a.tilt_rad - b.tilt_rad))) /
-                   (2 * (1 + a2) * (1 + b2));
+  return 0.5 +
+         (4 * a.axial_ratio * b.axial_ratio + (1 - a2) * (1 - b2) * std::cos(2 * (a.tilt_rad - b.tilt_rad))) /
+             (2 * (1 + a2) * (1 + b2));
 }
 
 TEST(Polarization, MismatchOfTheNamedOnesIsThatOfTheirEllipses) {

@@ -1,0 +1,181 @@
+// Jamming through the whole pipeline against closed forms: the values are read from voxels.
+
+#include <gtest/gtest.h>
+
+#include "tests/emfield/radar_duel.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+
+TEST(JammerToSignal, OfASelfScreeningJammerIsTheClosedForm) {
+  const scenario::Emitter radar = trackingRadar(), jammer = jammerOf(2);
+  for (const double range_m : {5e3, 10e3, 40e3}) {
+    const auto scenario = duel(radar, jammer, range_m, 0);
+    const double expected =
+        jammerToSignalDb(linkTowardsTarget(radar), 5, range_m, linkTowardsRadar(jammer, kGain_dbi), range_m);
+    EXPECT_NEAR(east(scenario, "jammer_to_signal_db", range_m), expected, 1e-3);
+  }
+}
+
+TEST(JammerToSignal, OfAStandOffJammerGrowsWithTheFourthPowerOfRange) {
+  const scenario::Emitter radar = trackingRadar(), jammer = jammerOf(500);
+  const auto scenario = duel(radar, jammer, 0, 60e3);  // a right angle off: through the side lobes
+  for (const double range_m : {5e3, 10e3, 20e3, 40e3}) {
+    const double expected = jammerToSignalDb(linkTowardsTarget(radar), 5, range_m,
+                                             linkTowardsRadar(jammer, kGain_dbi - 35), 60e3);
+    EXPECT_NEAR(east(scenario, "jammer_to_signal_db", range_m), expected, 1e-3);
+  }
+}
+
+TEST(JammerToSignal, IsAdamysAndTheNavysDecibelForm) {
+  // D. L. Adamy, EW 101, 2001, chapter 9, and NAWCWD TP 8347, section 4-7, with ERP in dBm, ranges in km:
+  //   self-protection J/S = 71 + ERPj - ERPs + 20 log R - 10 log RCS
+  //   stand-off       J/S = 71 + ERPj - ERPs + 40 log R - 20 log Rj + Gs - Gm - 10 log RCS
+  // 71 rounds 10 log(4 pi 10^6) = 70.992.
+  scenario::Emitter radar = trackingRadar(), jammer = jammerOf(500);
+  jammer.bandwidth_hz = 0;
+  jammer.polarization = radar.polarization;
+  jammer.losses_db = 0;
+  const double erp_s_dbm = ratioToDb(radar.power_w) + 30 - radar.losses_db + kGain_dbi;
+  const double erp_j_dbm = ratioToDb(jammer.power_w) + 30;
+  const double common_db = 70.992 + erp_j_dbm - erp_s_dbm - 10 * std::log10(5.0);
+  EXPECT_NEAR(east(duel(radar, jammer, 20e3, 0), "jammer_to_signal_db", 20e3),
+              common_db + 20 * std::log10(20.0), 2e-3);
+  EXPECT_NEAR(east(duel(radar, jammer, 0, 60e3), "jammer_to_signal_db", 20e3),
+              common_db + 40 * std::log10(20.0) - 20 * std::log10(60.0) - 35, 2e-3);
+}
+
+TEST(JammerToSignal, EntersThroughThePatternAtTheAngleBetweenTargetAndJammer) {
+  const scenario::Emitter radar = trackingRadar(), jammer = jammerOf(100);
+  const double in_line = east(duel(radar, jammer, 60e3, 0), "jammer_to_signal_db", 20e3);
+  for (const double off_deg : {1.0, 1.5, 3.0, 4.5}) {
+    const auto scenario =
+        duel(radar, jammer, 60e3 * std::cos(degToRad(off_deg)), 60e3 * std::sin(degToRad(off_deg)));
+    const double pattern_db = std::max(-35.0, 10 * std::log10(0.5) * std::pow(off_deg / 1.5, 2));
+    EXPECT_NEAR(east(scenario, "jammer_to_signal_db", 20e3) - in_line, pattern_db, 0.01) << off_deg;
+  }
+}
+
+TEST(JammerToSignal, KnowsTheJammersOwnAntenna) {
+  const scenario::Emitter radar = trackingRadar();
+  scenario::Emitter jammer = jammerOf(100);
+  const double isotropic = east(duel(radar, jammer, 0, 60e3), "jammer_to_signal_db", 20e3);
+  jammer.antenna = scenario::makeGaussian(20, 10, 10, -40);
+  jammer.scan.azimuth_deg = 185;  // the radar lies to the south, below the jammer's own horizontal plane
+  jammer.scan.elevation_deg = -radToDeg(60e3 / 6.37e6);
+  const double off_by_half = ratioToDb(0.5);
+  EXPECT_NEAR(east(duel(radar, jammer, 0, 60e3), "jammer_to_signal_db", 20e3) - isotropic, 20 + off_by_half,
+              0.02);
+}
+
+TEST(JammerToSignal, KnowsBandsAndPolarisations) {
+  const scenario::Emitter radar = trackingRadar();
+  scenario::Emitter jammer = jammerOf(100);
+  const auto ratio = [&] { return east(duel(radar, jammer, 0, 60e3), "jammer_to_signal_db", 20e3); };
+  const double wide = ratio();
+  jammer.bandwidth_hz = 1e5;
+  EXPECT_NEAR(ratio() - wide, ratioToDb(20.0), 1e-3) << "all of a narrow jammer's power enters";
+  jammer.frequency_hz = kFrequency_hz + 10e6;
+  EXPECT_EQ(ratio(), -300) << "beside the band: no jamming, the floor";
+  jammer = jammerOf(100);
+  jammer.polarization = scenario::Polarization::horizontal;
+  EXPECT_NEAR(ratio() - wide, ratioToDb(2.0), 1e-3);
+  jammer.polarization = scenario::Polarization::vertical;
+  EXPECT_NEAR(ratio() - wide, ratioToDb(2.0) - scenario::kCrossPolarIsolation_db, 1e-3);
+}
+
+TEST(JammerToSignal, DoesNotCountProcessingWhichBurnThroughDoes) {
+  scenario::Emitter radar = trackingRadar();
+  radar.receiver.required_signal_to_jammer_db = 10;
+  const scenario::Emitter jammer = jammerOf(100);
+  const double ratio = east(duel(radar, jammer, 0, 60e3), "jammer_to_signal_db", 20e3);
+  EXPECT_NEAR(east(duel(radar, jammer, 0, 60e3), "burn_through_margin_db", 20e3), -ratio - 10, 1e-3);
+  radar.receiver.processing_gain_db = 13;
+  EXPECT_NEAR(east(duel(radar, jammer, 0, 60e3), "jammer_to_signal_db", 20e3), ratio, 1e-3);
+  EXPECT_NEAR(east(duel(radar, jammer, 0, 60e3), "burn_through_margin_db", 20e3), -ratio + 3, 1e-3);
+}
+
+TEST(JammerToSignal, TakesTheHorizonForTheJammerToo) {
+  scenario::Emitter radar = trackingRadar(), jammer = jammerOf(1e5);
+  jammer.propagation = scenario::PropagationModel::horizon;
+  auto scenario = emptyScenario(FrameKind::altitude, 44, -71, {20e3, 20e3, 2000}, {20, 20, 4});
+  addEmitter(*scenario, {44, -71, 30}, radar);
+  addEmitter(*scenario, {45.5, -71, 100}, jammer);  // 167 km: the radio horizon is at 41 + 23 km
+  scenario->output.quantities = {"jammer_to_signal_db"};
+  EXPECT_EQ(valueAt(*solve(scenario), 3, 3, 1), -300);
+  scenario->platforms.back().track[0].position.height_ellipsoid_m = 3000;
+  EXPECT_GT(valueAt(*solve(scenario), 3, 3, 1), -50);
+}
+
+TEST(JammerToSignal, IsThatOfTheRadarThatBearsItBest) {
+  scenario::Emitter strong = trackingRadar(), weak = trackingRadar();
+  weak.name = "weak";
+  weak.power_w /= 10;
+  const scenario::Emitter jammer = jammerOf(100);
+  auto scenario = duel(weak, jammer, 0, 60e3);
+  const double alone = east(scenario, "jammer_to_signal_db", 20e3);
+  addEmitter(*scenario, middleOf(*scenario), strong);
+  EXPECT_NEAR(east(scenario, "jammer_to_signal_db", 20e3), alone - 10, 1e-3);
+  scenario->output.combine = scenario::CombineMode::per_emitter;
+  EXPECT_NEAR(east(scenario, "jammer_to_signal_db", 20e3), alone, 1e-3) << "the first radar's own";
+}
+
+TEST(JammerToSignal, OfSeveralJammersIsOfTheSumOfTheirPowers) {
+  const scenario::Emitter radar = trackingRadar(), jammer = jammerOf(100);
+  auto scenario = duel(radar, jammer, 0, 60e3);
+  const double alone = east(scenario, "jammer_to_signal_db", 20e3);
+  addEmitter(*scenario, pointAt(*scenario, 0, 60e3), jammer);
+  addEmitter(*scenario, pointAt(*scenario, 0, -60e3), jammer);
+  EXPECT_NEAR(east(scenario, "jammer_to_signal_db", 20e3), alone + ratioToDb(3), 1e-3);
+}
+
+TEST(BurnThrough, OfASelfScreeningJammerIsAtItsClosedFormRange) {
+  scenario::Emitter radar = trackingRadar();
+  radar.receiver.required_signal_to_jammer_db = 6;
+  scenario::Emitter jammer = jammerOf(1);
+  // So strong that the target shows from 10 km inwards.
+  jammer.power_w = std::pow(
+      selfScreeningBurnThrough_m(linkTowardsTarget(radar), 5, linkTowardsRadar(jammer, kGain_dbi), -6) / 10e3,
+      2);
+  EXPECT_NEAR(east(duel(radar, jammer, 10e3, 0), "burn_through_margin_db", 10e3), 0, 1e-3);
+  EXPECT_NEAR(east(duel(radar, jammer, 20e3, 0), "burn_through_margin_db", 20e3), -20 * std::log10(2.0),
+              1e-3);
+}
+
+TEST(BurnThrough, OfAStandOffJammerIsAtItsClosedFormRange) {
+  scenario::Emitter radar = trackingRadar();
+  radar.receiver.required_signal_to_jammer_db = 6;
+  scenario::Emitter jammer = jammerOf(1);
+  jammer.power_w = std::pow(
+      standOffBurnThrough_m(linkTowardsTarget(radar), 5, linkTowardsRadar(jammer, kGain_dbi - 35), 60e3, -6) /
+          10e3,
+      4);
+  const auto scenario = duel(radar, jammer, 0, 60e3);
+  EXPECT_NEAR(east(scenario, "burn_through_margin_db", 10e3), 0, 1e-3);
+  EXPECT_NEAR(east(scenario, "burn_through_margin_db", 20e3), -40 * std::log10(2.0), 1e-3);
+}
+
+TEST(BurnThrough, AsksByDefaultForWhatHalfTheDetectionsTake) {
+  scenario::Emitter radar = trackingRadar();
+  radar.receiver.pulses = 8;
+  EXPECT_DOUBLE_EQ(requiredSignalToJammerDb(radar.receiver), requiredSnrDb(detectorOf(radar.receiver), 0.5));
+  // Against jamming far above the noise both say the same: where the margin is 0, Pd is 1/2.
+  scenario::Emitter jammer = jammerOf(1e6);
+  const auto scenario = duel(radar, jammer, 0, 60e3);
+  scenario->output.radar_look = scenario::RadarLook::target;
+  const double margin_db = east(scenario, "burn_through_margin_db", 10e3);
+  scenario->emitters[1].power_w *= dbToRatio(margin_db);
+  EXPECT_NEAR(east(scenario, "burn_through_margin_db", 10e3), 0, 1e-3);
+  EXPECT_NEAR(east(scenario, "detection_probability", 10e3), 0.5, 0.01);
+}
+
+TEST(BurnThrough, OfAnUnjammedRadarIsItsCeiling) {
+  const auto scenario = duel(trackingRadar(), jammerOf(100), 0, 60e3);
+  scenario->emitters[1].active_s = {{5, 10}};
+  EXPECT_NEAR(east(scenario, "burn_through_margin_db", 20e3), 60, 1e-3);
+}
+
+}  // namespace
+}  // namespace emscape::emfield
