@@ -8,8 +8,10 @@
 
 #include "base/units.h"
 #include "emfield/detection.h"
+#include "emfield/path_radar.h"
 #include "emfield/path_verdict.h"
 #include "emfield/products.h"
+#include "emfield/radar_receiver.h"
 
 namespace emscape::emfield {
 namespace {
@@ -62,6 +64,18 @@ double quantityOf(Quantity quantity, const scenario::Scenario& scenario, int emi
          static_cast<double>(recipe.product.offset_db);
 }
 
+/// Of spreading over the slant range (dB/m2).
+double spreading_dbm2(const PathGeometry& geometry) {
+  const double distance_m = std::max(geometry.slant_range_m, static_cast<double>(kSmallestDistance_m));
+  return -ratioToDb(4 * kPi * distance_m * distance_m);
+}
+
+/// Power density at the path's end if the antenna radiated as on its boresight.
+double boresightDensity_dbwm2(const Emitter& emitter, const PathBudget& budget) {
+  return ratioToDb(emitter.power_w) - emitter.losses_db + emitter.antenna->gain_dbi +
+         spreading_dbm2(budget.geometry) - budget.excess.loss_db;
+}
+
 void addRadiatedTerms(const Emitter& emitter, const PathPointing& pointing, std::vector<BudgetTerm>& terms) {
   const double power_dbw = ratioToDb(emitter.power_w);
   terms.push_back({"transmitter_power_dbw", "transmitter power", power_dbw, "dBW",
@@ -87,7 +101,8 @@ void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, dou
   const double area_db = ratioToDb(wavelength * wavelength / (4 * kPi));
   const double polarization_db =
       receiver.polarization
-          ? ratioToDb(scenario::polarizationFactor(emitter.polarization, *receiver.polarization))
+          ? ratioToDb(scenario::polarizationFactor(emitter.polarization, *receiver.polarization,
+                                                   receiver.cross_polar_isolation_db))
           : 0;
   const double of_one_watt_dbm = quantityOf(Quantity::received_power_dbm, scenario, emitter_index, 0);
   const double antenna_db = receiver.gain_dbi - receiver.losses_db;
@@ -105,26 +120,31 @@ void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, dou
       {"received_power_dbm", "received power", of_one_watt_dbm + power_density_dbwm2, "dBm", "", Kind::sum});
 }
 
-void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, double power_density_dbwm2,
+void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const RadarAtPoint& radar,
                    std::vector<BudgetTerm>& terms) {
   const scenario::RadarReceiver& receiver = scenario.emitters[emitter_index].receiver;
-  const double snr_db = quantityOf(Quantity::snr_db, scenario, emitter_index, power_density_dbwm2);
-  terms.push_back({"snr_db", "echo's signal-to-noise, one pulse", snr_db, "dB",
-                   fmt::format("there and back; target of {:g} m2, noise figure {:g} dB, {:g} MHz",
+  const char* const look = scenario.output.radar_look == scenario::RadarLook::scan
+                               ? "beam where the scan has it"
+                               : "beam on the target";
+  terms.push_back({"snr_db", "echo's signal-to-noise, one pulse", radar.snr_db, "dB",
+                   fmt::format("there and back, {}; target of {:g} m2, noise figure {:g} dB, {:g} MHz", look,
                                receiver.target_rcs_m2, receiver.noise_figure_db, receiver.bandwidth_hz / 1e6),
                    Kind::sum});
-  const Detector detector{swerlingOfCase(receiver.swerling), receiver.pulses, receiver.pfa};
+  if (std::isfinite(radar.jammer_to_signal_db)) {
+    terms.push_back({"jammer_to_signal_db", "jamming over the echo", radar.jammer_to_signal_db, "dB",
+                     "the beam on the target"});
+  }
   const std::string settings =
       fmt::format("{} pulses, Pfa {:g}, Swerling {}", receiver.pulses, receiver.pfa, receiver.swerling);
-  terms.push_back({"required_snr_db", "of which detection half of the time takes",
-                   requiredSnrDb(detector, 0.5), "dB", settings});
-  terms.push_back({"detection_probability", "probability of detection",
-                   detectionProbability(detector, detectionThreshold(detector), dbToRatio(snr_db)), "",
+  const double half_way = receiver.pfa < 0.5 ? 0.5 : 0.75;
+  terms.push_back({"required_snr_db", fmt::format("of which detection with probability {:g} takes", half_way),
+                   requiredSnrDb(detectorOf(receiver), half_way), "dB", settings});
+  terms.push_back({"detection_probability", "probability of detection", radar.detection_probability, "",
                    settings, Kind::sum});
 }
 
 std::vector<BudgetTerm> termsOf(const scenario::Snapshot& snapshot, int emitter_index,
-                                const PathBudget& budget) {
+                                const PathBudget& budget, const std::optional<RadarAtPoint>& radar) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const Emitter& emitter = scenario.emitters[emitter_index];
   std::vector<BudgetTerm> terms;
@@ -145,10 +165,11 @@ std::vector<BudgetTerm> termsOf(const scenario::Snapshot& snapshot, int emitter_
                    quantityOf(Quantity::field_strength_dbuvm, scenario, emitter_index, level_db), "dBuV/m",
                    "", Kind::sum});
   if (!scenario.receivers.empty()) addReceiverTerms(scenario, emitter_index, level_db, terms);
-  if (emitter.kind == scenario::EmitterKind::radar) addRadarTerms(scenario, emitter_index, level_db, terms);
+  if (radar) addRadarTerms(scenario, emitter_index, *radar, terms);
 
   const double wavelength = wavelength_m(emitter.frequency_hz);
-  const double free_space_db = 20 * std::log10(4 * kPi * distance_m / wavelength);
+  const double free_space_db =
+      -spreading_dbm2(budget.geometry) - ratioToDb(wavelength * wavelength / (4 * kPi));
   terms.push_back({"free_space_loss_db", "free-space loss between isotropic antennas", free_space_db, "dB",
                    "for comparison with other tools"});
   terms.push_back({"transmission_loss_db", "basic transmission loss", free_space_db + budget.excess.loss_db,
@@ -208,7 +229,12 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
                     "far field's formula is taken all the same",
                     geometry.slant_range_m, geometry.far_field_m));
   }
-  budget.terms = termsOf(snapshot, emitter_index, budget);
+  std::optional<RadarAtPoint> radar;
+  if (emitter.kind == scenario::EmitterKind::radar && state.active) {
+    radar = radarAtPoint(snapshot, emitter_index, ray, boresightDensity_dbwm2(emitter, budget), terrain,
+                         resolution);
+  }
+  budget.terms = termsOf(snapshot, emitter_index, budget, radar);
   budget.verdict = verdictOf(budget);
   return budget;
 }
