@@ -119,7 +119,8 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   FanPlace* places = atLeast(places_, works.size() * columns);
   GeometryCounts* counts = atLeast(counts_, works.size());
   atLeast(terms_, ranges_m.size());
-  check(cudaMemsetAsync(used, 0, azimuths * sizeof(int), stream), "cudaMemsetAsync");
+  // Leaning columns stand over several azimuths: of each all ranges, and more, are used.
+  check(cudaMemsetAsync(used, columns_.tilted ? 0x7f : 0, azimuths * sizeof(int), stream), "cudaMemsetAsync");
   check(cudaMemsetAsync(counts, 0, works.size() * sizeof(GeometryCounts), stream), "cudaMemsetAsync");
   std::vector<LocateTask> tasks;
   for (Work& work : works) {
@@ -263,10 +264,7 @@ void DeviceGeometry::runBatch(Batch& batch, cudaStream_t stream, StageClock& clo
   clock.end(&StageTimes::fan_ms, stream);
   clock.begin(stream);
   if (has_slopes) findShadowEdges(pieces, extent, columns_, stream);
-  if (!diffraction.empty()) {
-    fillDiffraction(sent(diffraction_, diffraction, stream), static_cast<int>(diffraction.size()), columns_,
-                    excess_grid_.ground_msl_m, firstValidK(), stream);
-  }
+  if (!diffraction.empty()) fillUprightDiffraction(diffraction, extent, stream);
   for (std::size_t p = 0; p < batch.pieces.size(); ++p) {
     const FanPiece& piece = batch.pieces[p];
     const Work& work = *batch.works[p];
@@ -274,6 +272,27 @@ void DeviceGeometry::runBatch(Batch& batch, cudaStream_t stream, StageClock& clo
     fill(work, {piece.emitter.fan, piece.samples, piece.first_interval, piece.interval_count}, stream);
   }
   clock.end(&StageTimes::plane_ms, stream);
+}
+
+void DeviceGeometry::fillUprightDiffraction(std::vector<DiffractionTask>& tasks, PieceExtent extent,
+                                            cudaStream_t stream) {
+  const auto blocksOf = [](const FanPiece& piece) {
+    return static_cast<std::size_t>(DiffractionTask::blockCount(piece.emitter.fan.range_count)) *
+           static_cast<std::size_t>(piece.interval_count + 1);
+  };
+  std::size_t blocks = 0;
+  for (const DiffractionTask& task : tasks) blocks += blocksOf(task.piece);
+  FanBlock* next_block = atLeast(blocks_, blocks);
+  TerrainSums* next_sums = atLeast(sums_, blocks);
+  for (DiffractionTask& task : tasks) {
+    task.blocks = next_block;
+    task.sums = next_sums;
+    next_block += blocksOf(task.piece);
+    next_sums += blocksOf(task.piece);
+  }
+  extent.pieces = static_cast<int>(tasks.size());
+  fillDiffraction(sent(diffraction_, tasks, stream), extent, columns_, excess_grid_.ground_msl_m,
+                  firstValidK(), stream);
 }
 
 /// The excess of any model, with memory for a column in each thread.
@@ -286,8 +305,8 @@ std::size_t DeviceGeometry::bytes() const {
   const auto bytesOf = [](const auto& buffer) { return buffer.size() * sizeof(*buffer.data()); };
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(t_m_) + bytesOf(first_valid_k_) + bytesOf(tasks_) +
                       bytesOf(pieces_) + bytesOf(ranges_m_) + bytesOf(used_ranges_) + bytesOf(places_) +
-                      bytesOf(terms_) + bytesOf(samples_) + bytesOf(diffraction_) + bytesOf(scratch_) +
-                      bytesOf(ground_msl_m_);
+                      bytesOf(terms_) + bytesOf(samples_) + bytesOf(diffraction_) + bytesOf(blocks_) +
+                      bytesOf(sums_) + bytesOf(scratch_) + bytesOf(ground_msl_m_);
   for (const Slot& slot : slots_) bytes += bytesOf(slot.numbers) + bytesOf(slot.excess);
   return bytes + (setup_.terrain == nullptr ? 0 : postBytes(setup_.terrain->view()));
 }

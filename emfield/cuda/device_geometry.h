@@ -54,6 +54,7 @@ class DeviceGeometry {
   bool isUprightDiffraction(const Work& work) const;
   std::vector<Batch> batchesOf(const std::vector<Work>& works);
   void runBatch(Batch& batch, cudaStream_t stream, StageClock& clock);
+  void fillUprightDiffraction(std::vector<DiffractionTask>& tasks, PieceExtent extent, cudaStream_t stream);
   void fill(const Work& work, const FanHeights& fan, cudaStream_t stream);
 
   const FieldSetup& setup_;
@@ -82,6 +83,8 @@ class DeviceGeometry {
   emscape::cuda::Buffer<RangeTerms<float>> terms_;
   emscape::cuda::Buffer<float> samples_;
   emscape::cuda::Buffer<DiffractionTask> diffraction_;
+  emscape::cuda::Buffer<FanBlock> blocks_;
+  emscape::cuda::Buffer<TerrainSums> sums_;
   emscape::cuda::Buffer<double> scratch_;
   emscape::cuda::Buffer<GeometryCounts> counts_;
 };

@@ -2,7 +2,6 @@
 
 #include "base/cuda/cuda_memory.h"
 #include "emfield/cuda/excess_kernels.h"
-#include "emfield/models/diffraction_column.h"
 
 namespace emscape::emfield::cuda {
 namespace {
@@ -21,45 +20,128 @@ unsigned blocksFor(int threads) {
 /// the azimuths, as readProfile().
 class FanPosts {
  public:
-  __device__ FanPosts(const FanPiece& piece, const FanPlace& place)
-      : ranges_m_(piece.emitter.fan.ranges_m), stride_(piece.interval_count + 1), distance_m_(place.range_m) {
+  __device__ FanPosts(const DiffractionTask& task, const FanPlace& place, float ground_msl_m)
+      : ranges_m_(task.piece.emitter.fan.ranges_m),
+        azimuths_(task.piece.interval_count + 1),
+        before_(task.piece.emitter.fan.lastBefore(place.range_m)),
+        distance_m_(place.range_m),
+        ground_msl_m_(ground_msl_m) {
     const int interval = static_cast<int>(place.azimuth_index);
     weight_ = static_cast<float>(place.azimuth_index - interval);
-    heights_m_ = piece.samples + (interval - piece.first_interval);
-    before_ = piece.emitter.fan.lastBefore(place.range_m);
+    heights_m_ = task.piece.samples + (interval - task.piece.first_interval);
+    blocks_ = task.blocks + (interval - task.piece.first_interval);
+    sums_ = task.sums + (interval - task.piece.first_interval);
   }
 
   __device__ int count() const { return before_ + 1; }
   __device__ double range_m(int i) const { return ranges_m_[i]; }
   __device__ float height_msl_m(int i) const {
-    const float* left = heights_m_ + i * stride_;
-    return left[0] + weight_ * (left[1] - left[0]);
+    const float* left = heights_m_ + i * azimuths_;
+    return mixed(left[0], left[1]);
+  }
+  __device__ float highest_msl_m(int b) const {
+    const FanBlock* left = blocks_ + b * azimuths_;
+    return mixed(left[0].highest_msl_m, left[1].highest_msl_m);
+  }
+  __device__ float lowered_msl_m(int b) const {
+    const FanBlock* left = blocks_ + b * azimuths_;
+    return mixed(left[0].lowered_msl_m, left[1].lowered_msl_m);
+  }
+  __device__ TerrainSums sumsBefore(int b) const {
+    const TerrainSums* left = sums_ + b * azimuths_;
+    const double weight = static_cast<double>(weight_);
+    return {left[0].v1 + weight * (left[1].v1 - left[0].v1), left[0].v2 + weight * (left[1].v2 - left[0].v2)};
   }
   __device__ double distance_m() const { return distance_m_; }
   __device__ float ground_msl_m() const { return ground_msl_m_; }
-  __device__ void setGround_m(float height_msl_m) { ground_msl_m_ = height_msl_m; }
+  /// Ranges are even but for the first ones: a guess from the end, then a few steps.
   __device__ int lastBefore(double range_m) const {
-    int begin = 0, end = before_;
-    while (begin < end) {
-      const int middle = (begin + end + 1) / 2;
-      if (ranges_m_[middle] < range_m) {
-        begin = middle;
-      } else {
-        end = middle - 1;
-      }
-    }
-    return begin;
+    if (before_ == 0) return 0;
+    const double even_m = ranges_m_[before_] - ranges_m_[before_ - 1];
+    const int guess = before_ - static_cast<int>((ranges_m_[before_] - range_m) / even_m);
+    int post = guess < 0 ? 0 : guess > before_ ? before_ : guess;
+    while (post > 0 && ranges_m_[post] >= range_m) --post;
+    while (post < before_ && ranges_m_[post + 1] < range_m) ++post;
+    return post;
   }
 
  private:
+  __device__ float mixed(float left, float right) const { return left + weight_ * (right - left); }
+
   const double* ranges_m_;
-  const float* heights_m_;
-  long long stride_;
-  float weight_;
+  long long azimuths_;
   int before_;
   double distance_m_;
-  float ground_msl_m_ = 0;
+  float ground_msl_m_;
+  float weight_;
+  const float* heights_m_;
+  const FanBlock* blocks_;
+  const TerrainSums* sums_;
 };
+
+/// Blocks, and the sums of each one's own intervals.
+__global__ void blocksKernel(const DiffractionTask* tasks) {
+  const DiffractionTask& task = tasks[blockIdx.z];
+  const FanPiece& piece = task.piece;
+  const int a = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  const int b = static_cast<int>(blockIdx.y);
+  if (a > piece.interval_count || b >= DiffractionTask::blockCount(piece.emitter.fan.range_count)) return;
+  const int used = piece.usedRanges(a);
+  const int begin = b * kDiffractionBlock;
+  const int end = min(begin + kDiffractionBlock, used);
+  const float* const heights_m = piece.samples + a * piece.azimuth_stride;
+  const double* const ranges_m = piece.emitter.fan.ranges_m;
+  const double curvature = static_cast<double>(task.model.model.half_curvature);
+  const double base = static_cast<double>(heights_m[0]);
+  FanBlock block{-HUGE_VALF, -HUGE_VALF};
+  TerrainSums sums;
+  double before_m = 0, before_height_m = 0;
+  if (begin > 0 && begin < end) {
+    before_m = ranges_m[begin - 1];
+    before_height_m = static_cast<double>(heights_m[(begin - 1) * piece.range_stride]) - base;
+  }
+  for (int i = begin; i < end; ++i) {
+    const float height_msl_m = heights_m[i * piece.range_stride];
+    const double range_m = ranges_m[i], height_m = static_cast<double>(height_msl_m) - base;
+    if (i > 0) sums.add(before_m, before_height_m, range_m, height_m);
+    before_m = range_m;
+    before_height_m = height_m;
+    const auto lowered =
+        static_cast<float>(static_cast<double>(height_msl_m) - curvature * range_m * range_m);
+    block.highest_msl_m = fmaxf(block.highest_msl_m, height_msl_m);
+    block.lowered_msl_m = fmaxf(block.lowered_msl_m, lowered);
+  }
+  const long long at = static_cast<long long>(b) * (piece.interval_count + 1) + a;
+  task.blocks[at] = block;
+  task.sums[at] = sums;
+}
+
+/// Sums of each block become those before it. A thread walks along one azimuth.
+__global__ void sumsKernel(const DiffractionTask* tasks) {
+  constexpr int kAhead = 8;
+  const DiffractionTask& task = tasks[blockIdx.y];
+  const FanPiece& piece = task.piece;
+  const int a = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (a > piece.interval_count) return;
+  const long long azimuths = piece.interval_count + 1;
+  const int blocks = DiffractionTask::blockCount(piece.usedRanges(a));
+  TerrainSums* const of = task.sums + a;
+  TerrainSums before;
+  for (int begin = 0; begin < blocks; begin += kAhead) {
+    TerrainSums own[kAhead];
+#pragma unroll
+    for (int n = 0; n < kAhead; ++n) {
+      if (begin + n < blocks) own[n] = of[(begin + n) * azimuths];
+    }
+#pragma unroll
+    for (int n = 0; n < kAhead; ++n) {
+      if (begin + n >= blocks) break;
+      of[(begin + n) * azimuths] = before;
+      before.v1 += own[n].v1;
+      before.v2 += own[n].v2;
+    }
+  }
+}
 
 __device__ void markUnknown(const ExcessOutputs& to, int column) {
   to.out.markUnknown(static_cast<std::size_t>(column));
@@ -76,14 +158,13 @@ __global__ void __launch_bounds__(kThreads)
   const int interval = static_cast<int>(place.azimuth_index) - task.piece.first_interval;
   if (interval < 0 || interval >= task.piece.interval_count) return;
 
-  FanPosts posts(task.piece, place);
   ExcessCode* const codes = task.to.out.codes + c;
   const long long layer = columns.count;
   int k = first_valid_k == nullptr ? 0 : min(static_cast<int>(first_valid_k[c]), columns.layers);
   for (int below = 0; below < k; ++below) codes[below * layer] = 0;
   bool is_free = !(place.range_m > 0);  // the emitter's own place
   if (!is_free) {
-    posts.setGround_m(ground_msl_m != nullptr ? ground_msl_m[c] : 0);
+    const FanPosts posts(task, place, ground_msl_m != nullptr ? ground_msl_m[c] : 0);
     DiffractionColumn<float, FanPosts> receivers(task.model.model, posts, task.model.tx_msl_m);
     if (receivers.isUnknown()) {
       markUnknown(task.to, c);
@@ -147,9 +228,18 @@ void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, void* 
 
 }  // namespace
 
-void fillDiffraction(const DiffractionTask* tasks, int count, const DeviceColumns& columns,
+void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, const DeviceColumns& columns,
                      const float* ground_msl_m, const std::uint16_t* first_valid_k, cudaStream_t stream) {
-  diffractionKernel<<<dim3(blocksFor(columns.count), static_cast<unsigned>(count)), kThreads, 0, stream>>>(
+  const auto count = static_cast<unsigned>(extent.pieces);
+  const dim3 blocks(blocksFor(extent.azimuths),
+                    static_cast<unsigned>(DiffractionTask::blockCount(extent.ranges)), count);
+  blocksKernel<<<blocks, kThreads, 0, stream>>>(tasks);
+  checkLaunch("terrain blocks");
+  constexpr int kWarp = 32;
+  const dim3 warps(static_cast<unsigned>((extent.azimuths + kWarp - 1) / kWarp), count);
+  sumsKernel<<<warps, kWarp, 0, stream>>>(tasks);
+  checkLaunch("terrain sums");
+  diffractionKernel<<<dim3(blocksFor(columns.count), count), kThreads, 0, stream>>>(
       tasks, columns, ground_msl_m, first_valid_k);
   checkLaunch("diffraction");
 }

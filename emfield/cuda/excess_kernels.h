@@ -5,6 +5,7 @@
 
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/excess/fill_excess.h"
+#include "emfield/models/diffraction_column.h"
 
 namespace emscape::emfield::cuda {
 
@@ -14,16 +15,30 @@ struct ExcessOutputs {
   GeometryCounts* counts = nullptr;
 };
 
+/// What DiffractionColumn knows of a block of posts along an azimuth.
+struct FanBlock {
+  float highest_msl_m, lowered_msl_m;
+};
+
 /// `diffraction` over some intervals of an emitter's fan, for upright columns: a thread a column, the profile
 /// read from the fan as often as it is needed.
 struct DiffractionTask {
   DiffractionExcess model;
   FanPiece piece;  ///< heights, azimuth fastest
   ExcessOutputs to;
+  /// Of each block of posts and each azimuth, azimuth fastest; made by fillDiffraction().
+  FanBlock* blocks = nullptr;
+  TerrainSums* sums = nullptr;  ///< before the block
+
+  /// Blocks along an azimuth of so many posts.
+  EMSCAPE_HD static constexpr int blockCount(int posts) {
+    return (posts + kDiffractionBlock - 1) / kDiffractionBlock;
+  }
 };
+/// @param extent         of the tasks' pieces
 /// @param ground_msl_m   below each column; null: from the fan
 /// @param first_valid_k  voxels below get no excess; null: none is below
-void fillDiffraction(const DiffractionTask* tasks, int count, const DeviceColumns& columns,
+void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, const DeviceColumns& columns,
                      const float* ground_msl_m, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
 /// Any model: a thread a column with memory of its own.

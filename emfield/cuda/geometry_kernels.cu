@@ -39,7 +39,7 @@ __global__ void locateKernel(const LocateTask* tasks, DeviceColumns columns) {
   if (task.fan.range_count == 0) return;
   const double azimuth_index = task.fan.azimuthIndex(point.azimuth_rad);
   task.places[c] = {azimuth_index, point.range_m};
-  const int used = columns.tilted ? task.fan.range_count : task.fan.lastBefore(point.range_m) + 1;
+  const int used = task.fan.lastBefore(point.range_m) + 1;
   int* azimuth = task.used_ranges + static_cast<int>(azimuth_index);
   if (azimuth[0] < used) atomicMax(azimuth, used);
   if (azimuth[1] < used) atomicMax(azimuth + 1, used);
@@ -61,7 +61,7 @@ __global__ void __launch_bounds__(kWarp* kRuns) readKernel(const FanPiece* piece
   const int a = static_cast<int>(blockIdx.x) * kWarp + static_cast<int>(threadIdx.x);
   const int begin = (static_cast<int>(blockIdx.y) * kRuns + static_cast<int>(threadIdx.y)) * kRun;
   if (a >= azimuths) return;
-  const int used = piece.emitter.used_ranges[piece.first_interval + a];
+  const int used = piece.usedRanges(a);
   const int end = begin + kRun < used ? begin + kRun : used;
   if (begin >= end) return;
 
@@ -91,7 +91,7 @@ __global__ void grazeKernel(const FanPiece* pieces) {
   const FanPiece& piece = pieces[blockIdx.y];
   const int a = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (a > piece.interval_count || !piece.holds_slopes) return;
-  const int used = piece.emitter.used_ranges[piece.first_interval + a];
+  const int used = piece.usedRanges(a);
   float* slopes = piece.samples + a * piece.azimuth_stride;
   float highest = -HUGE_VALF;
   for (int begin = 0; begin < used; begin += kAhead) {

@@ -41,8 +41,9 @@ struct LocateTask {
   float* numbers = nullptr;        ///< kColumnNumbers x columns
   float* shadow_edge_m = nullptr;  ///< set to "nothing is in shadow"
   FanPlace* places = nullptr;      ///< one a column
-  int* used_ranges = nullptr;      ///< raised to the ranges that some column lies behind, one an azimuth
-  float near2_m2 = 0;              ///< square of the far field's distance
+  /// One an azimuth, raised to the ranges that some column lies behind. Columns that lean may do so anywhere.
+  int* used_ranges = nullptr;
+  float near2_m2 = 0;  ///< square of the far field's distance
   GeometryCounts* counts = nullptr;
 };
 
@@ -58,6 +59,12 @@ struct FanPiece {
   /// terrain and in the end the grazing slopes.
   float* samples = nullptr;
   long long azimuth_stride = 0, range_stride = 0;
+
+  /// Samples of the piece's azimuth that are needed.
+  EMSCAPE_HD int usedRanges(int azimuth) const {
+    const int used = emitter.used_ranges[first_interval + azimuth];
+    return used < emitter.fan.range_count ? used : emitter.fan.range_count;
+  }
 };
 
 /// Numbers, places and used ranges of all columns; near voxels.

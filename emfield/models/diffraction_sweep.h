@@ -271,8 +271,12 @@ EMSCAPE_HD Real DiffractionSweep<Real>::lackingDb(Column& column, Real rx_m, Rea
   const EffectiveHeights<Real> heights = effectiveHeights(trend, tx_, rx_m);
   const Real spherical_db = sphericalEarthLossDb(model_.earth, d, heights.tx_m, heights.rx_m);
   if (spherical_db <= 0) return 0;
+  const int last = post_ - 1;
+  const auto ranges = [&](int i) { return rangeOf(i); };
   const Real smooth_nu = smoothEarthNu(
-      model_, [&](int i) { return rangeOf(i); }, post_ - 1, d, heights, smooth_);
+      model_, ranges, [&](Real range_m) { return walkTo(smooth_.tx, range_m, last, ranges); },
+      [&](Real range_m) { return walkTo(smooth_.rx, range_m, last, ranges); }, last, d, heights,
+      smooth_.clear);
   const Real lacking_db = spherical_db - bullingtonLossDb(smooth_nu, d);
   return lacking_db > 0 ? lacking_db : Real(0);
 }

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "tests/emfield/random_profile.h"
 
@@ -16,19 +17,43 @@ namespace {
 using namespace emscape::emfield::testing;
 
 /// A profile whose last post stands below the receivers.
-struct ProfilePosts {
-  TerrainProfile profile;
+class ProfilePosts {
+ public:
+  ProfilePosts(const TerrainProfile& profile, double half_curvature) : profile_(profile) {
+    TerrainSums sums;
+    for (int i = 0; i < count(); ++i) {
+      const double lowered = double(height_msl_m(i)) - half_curvature * range_m(i) * range_m(i);
+      if (i % kDiffractionBlock == 0) {
+        blocks_.push_back({height_msl_m(i), float(lowered), sums});
+      }
+      blocks_.back().highest = std::max(blocks_.back().highest, height_msl_m(i));
+      blocks_.back().lowered = std::max(blocks_.back().lowered, float(lowered));
+      if (i > 0) sums.add(profile_, i);
+    }
+  }
 
-  int count() const { return profile.count - 1; }
-  double range_m(int i) const { return profile.range_m[i]; }
-  float height_msl_m(int i) const { return profile.height_msl_m[i]; }
-  double distance_m() const { return profile.range_m[profile.count - 1]; }
-  float ground_msl_m() const { return profile.height_msl_m[profile.count - 1]; }
+  const TerrainProfile& profile() const { return profile_; }
+  int count() const { return profile_.count - 1; }
+  double range_m(int i) const { return profile_.range_m[i]; }
+  float height_msl_m(int i) const { return profile_.height_msl_m[i]; }
+  float highest_msl_m(int block) const { return blocks_[block].highest; }
+  float lowered_msl_m(int block) const { return blocks_[block].lowered; }
+  TerrainSums sumsBefore(int block) const { return blocks_[block].before; }
+  double distance_m() const { return profile_.range_m[profile_.count - 1]; }
+  float ground_msl_m() const { return profile_.height_msl_m[profile_.count - 1]; }
   int lastBefore(double range_m) const {
-    const double* const end = profile.range_m + profile.count - 1;
-    const int after = static_cast<int>(std::lower_bound(profile.range_m, end, range_m) - profile.range_m);
+    const double* const end = profile_.range_m + profile_.count - 1;
+    const int after = static_cast<int>(std::lower_bound(profile_.range_m, end, range_m) - profile_.range_m);
     return std::max(0, after - 1);
   }
+
+ private:
+  struct Block {
+    float highest, lowered;
+    TerrainSums before;
+  };
+  TerrainProfile profile_;
+  std::vector<Block> blocks_;
 };
 
 DiffractionParameters parametersAt(double frequency_hz) {
@@ -48,7 +73,7 @@ double largestDifferenceDb(const ProfileData& data, double frequency_hz, double 
   std::uniform_int_distribution<int> any_post(1, int(data.range_m.size()) - 1);
   double largest = 0;
   for (int n = 0; n < 6; ++n) {
-    const ProfilePosts posts{data.view().upTo(any_post(random))};
+    const ProfilePosts posts(data.view().upTo(any_post(random)), model.half_curvature);
     DiffractionColumn<float, ProfilePosts> column(single, posts, float(tx));
     EXPECT_FALSE(column.isUnknown());
     const double lowest = posts.ground_msl_m();
@@ -62,7 +87,7 @@ double largestDifferenceDb(const ProfileData& data, double frequency_hz, double 
         is_free = column.losses(heights, losses);
       }
       for (int j = 0; j < 8; ++j) {
-        const double truth = deltaBullington(model, posts.profile, tx, double(heights[j])).loss_db;
+        const double truth = deltaBullington(model, posts.profile(), tx, double(heights[j])).loss_db;
         largest = std::max(largest, std::abs(double(losses[j]) - truth));
       }
     }
@@ -106,7 +131,8 @@ TEST(DiffractionColumn, MissingTerrainIsUnknown) {
   ProfileData profile = madeUpProfile(random, 50, 10e3, 100);
   profile.height_msl_m[20] = std::nanf("");
   const auto model = diffractionModel<float>(parametersAt(1e9));
-  const ProfilePosts before{profile.view().upTo(19)}, beyond{profile.view().upTo(30)};
+  const ProfilePosts before(profile.view().upTo(19), double(model.half_curvature));
+  const ProfilePosts beyond(profile.view().upTo(30), double(model.half_curvature));
   EXPECT_FALSE((DiffractionColumn<float, ProfilePosts>(model, before, 500.0f).isUnknown()));
   EXPECT_TRUE((DiffractionColumn<float, ProfilePosts>(model, beyond, 500.0f).isUnknown()));
 }
