@@ -1,0 +1,67 @@
+#include "base/cuda/cuda_memory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include "tests/base/lose_device.h"
+#include "tests/gpu.h"
+
+namespace emscape::cuda {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string messageOf(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::device);
+    return error.what();
+  }
+  return "";
+}
+
+TEST(CudaMemory, GivesBackWhatWasCopiedIntoIt) {
+  EMSCAPE_NEEDS_GPU();
+  std::vector<int> numbers(1000);
+  std::iota(numbers.begin(), numbers.end(), -7);
+  Buffer<int> buffer;
+  buffer.upload(numbers);
+  const Buffer<int> moved = std::move(buffer);
+  std::vector<int> back(moved.size());
+  moved.download(back.data());
+  EXPECT_EQ(back, numbers);
+}
+
+TEST(CudaMemory, TooMuchIsToldWithTheSize) {
+  EMSCAPE_NEEDS_GPU();
+  const std::size_t bytes = std::size_t{1} << 50;
+  EXPECT_THAT(messageOf([=] { Buffer<char> buffer(bytes); }),
+              AllOf(HasSubstr("GPU: cudaMalloc of " + std::to_string(bytes) + " bytes"),
+                    HasSubstr("cudaErrorMemoryAllocation")));
+}
+
+TEST(CudaLostDevice, IsAnErrorThatNamesCallAndKernel) {
+  EMSCAPE_NEEDS_GPU();
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // a process of its own: this one's device is to live on
+  const auto lose = [] {
+    Buffer<int> buffer(10);
+    test::loseDevice();
+    std::vector<int> numbers(10);
+    const std::string message = messageOf([&] { buffer.download(numbers.data()); });
+    std::fprintf(stderr, "%s\n", message.c_str());
+    std::_Exit(message.empty() ? 1 : 0);
+  };
+  EXPECT_EXIT(lose(), testing::ExitedWithCode(0),
+              "GPU: cuda[A-Za-z ]*: .*cudaError(LaunchFailure|IllegalInstruction).*; the last kernel launched was fault");
+}
+
+}  // namespace
+}  // namespace emscape::cuda
