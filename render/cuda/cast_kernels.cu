@@ -10,12 +10,12 @@ namespace {
 class SharedColors {
  public:
   static unsigned sharedBytes(const CastLaunch& launch) {
-    return static_cast<unsigned>(launch.task.transfer.last + 1) * static_cast<unsigned>(sizeof(HalfColor));
+    return static_cast<unsigned>(pairs(launch) * sizeof(uint4));
   }
   __device__ explicit SharedColors(const CastLaunch& launch) {
-    for (int i = static_cast<int>(threadIdx.x); i <= launch.task.transfer.last; i += kTileThreads) {
-      table()[i] = launch.half_colors[i];
-    }
+    const uint4* from = reinterpret_cast<const uint4*>(launch.half_colors);
+    uint4* to = reinterpret_cast<uint4*>(table());
+    for (int i = static_cast<int>(threadIdx.x); i < pairs(launch); i += kTileThreads) to[i] = from[i];
     __syncthreads();
   }
   EMSCAPE_HD Rgba at([[maybe_unused]] int index) const {
@@ -30,9 +30,13 @@ class SharedColors {
   }
 
  private:
+  /// Entries are copied in pairs.
+  EMSCAPE_HD static int pairs(const CastLaunch& launch) {
+    return (launch.task.transfer.last + 2) / 2;
+  }
   __device__ static HalfColor* table() {
-    extern __shared__ HalfColor colors[];
-    return colors;
+    extern __shared__ uint4 colors[];
+    return reinterpret_cast<HalfColor*>(colors);
   }
 };
 

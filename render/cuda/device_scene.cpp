@@ -33,7 +33,7 @@ void DeviceScene::updateTable(const Scene& scene, cudaStream_t stream) {
   samples_.upload(rule.table.samples, entries, stream);
   projected_.upload(rule.table.projected, entries, stream);
   visible_before_.upload(rule.visible_before, entries + 1, stream);
-  std::vector<HalfColor> halves(entries);
+  std::vector<HalfColor> halves((entries + 1) / 2 * 2);  // kernels read pairs
   for (std::size_t i = 0; i < entries; ++i) {
     const Rgba& color = rule.table.samples[i];
     halves[i] = {halfPair(color.r, color.g), halfPair(color.b, color.a)};
