@@ -31,21 +31,23 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
   excess_.clear();
   unknown_columns_ = 0;
+  remarks_ = 0;
   const bool has_shadow = emitter.propagation == scenario::PropagationModel::horizon;
-  std::optional<ExcessModel> model;
+  std::optional<EmitterExcess> excess;
   if (hasExcess(scenario, emitter)) {
-    model = makeExcessModel(scenario, emitter, station);
+    excess = makeExcess(scenario, emitter, station, terrain, pathExtent(station, columns), resolution);
     excess_.resize(column_count_ * columns.t_m.size());
   }
   times.fan_ms += watch.lap_ms();
   const double lean_m = leanOf(columns);
   const ExcessGrid grid = excessGrid(columns, resolution);
   const ExcessOutput out{excess_.data(), shadow_edge_m_.data()};
-  if (model && !needsTerrain(*model)) {
-    fillExcessCpu(*model, station, grid, {}, out);
+  const bool needs_terrain = excess && excess->needsTerrain();
+  if (excess && !needs_terrain) {
+    remarks_ |= fillExcessCpu(*excess, station, grid, {}, out);
     times.plane_ms += watch.lap_ms();
   }
-  if (has_shadow || (model && needsTerrain(*model))) {
+  if (has_shadow || needs_terrain) {
     // Some intervals at a time, so that a fine fan over a wide region does not fill the memory.
     const FanShape shape = fanShape(station, coordinates, terrain, resolution, lean_m);
     const int at_once = columns.tilted ? shape.interval_count : std::max(1, kFanSamples / shape.rangeCount());
@@ -55,8 +57,9 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
       const TerrainFan fan = readTerrainFan(station, shape, terrain, first, count);
       times.fan_ms += watch.lap_ms();
       if (has_shadow) findShadowEdges(station, columns, coordinates, shape, fan, shadow_edge_m_);
-      if (model && needsTerrain(*model)) {
-        fillExcessCpu(*model, station, grid, {shape.view(), fan.height_msl_m.data(), first, count}, out);
+      if (needs_terrain) {
+        remarks_ |=
+            fillExcessCpu(*excess, station, grid, {shape.view(), fan.height_msl_m.data(), first, count}, out);
       }
       times.plane_ms += watch.lap_ms();
     }

@@ -53,6 +53,8 @@ class EmitterGeometry {
   /// Columns whose path crosses missing terrain.
   long long unknownColumns() const { return unknown_columns_; }
   bool isUnknown(std::size_t column) const;
+  /// What the model remarks on the paths: see remarkMessages().
+  unsigned remarks() const { return remarks_; }
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
   /// Bytes that an emitter takes, of a grid with so many columns and layers.
@@ -71,6 +73,7 @@ class EmitterGeometry {
   std::vector<float> shadow_edge_m_;
   std::vector<ExcessCode> excess_;  ///< columns x layers, or empty
   long long unknown_columns_ = 0;
+  unsigned remarks_ = 0;
 };
 
 }  // namespace emscape::emfield

@@ -38,6 +38,7 @@ struct GeometryRequest {
 struct GeometryFindings {
   long long unknown_columns = 0;  ///< whose path crosses missing terrain
   std::vector<bool> unknown;      ///< which they are; empty: none
+  unsigned remarks = 0;           ///< of the excess model: see remarkMessages()
   long long near_voxels = 0;      ///< nearer than the emitter's far field
 };
 

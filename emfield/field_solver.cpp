@@ -8,13 +8,13 @@
 #include "base/log.h"
 #include "base/units.h"
 #include "emfield/field_solver_impl.h"
+#include "emfield/model_check.h"
 
 namespace emscape::emfield {
 namespace {
 
 using scenario::Emitter;
 using scenario::EmitterState;
-using scenario::PropagationModel;
 
 bool samePose(const scenario::BeamPose& a, const scenario::BeamPose& b) {
   return a.forward == b.forward && a.right == b.right && a.up == b.up && a.steer_u == b.steer_u &&
@@ -51,7 +51,7 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
     : options(std::move(options_in)) {
   setup.scenario = std::move(scenario);
   setup.terrain = std::move(terrain);
-  checkModels();
+  for (const std::string& warning : checkModels(*setup.scenario)) warn(warning);
   setup.grid = gridOf(setup.scenario->region);
   setup.channels = channelsOf(*setup.scenario, options.quantities);
   for (const Channel& channel : setup.channels) setup.recipes.push_back(recipeOf(channel, *setup.scenario));
@@ -111,19 +111,6 @@ std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine(std::size_t slot_byte
             half ? "" : ", or volumes of 16 bit,"));
   }
   return makeCudaEngine(setup, slots, options.device_precision);
-}
-
-void FieldSolver::Impl::checkModels() const {
-  for (const Emitter& emitter : setup.scenario->emitters) {
-    if (emitter.propagation != PropagationModel::free_space &&
-        emitter.propagation != PropagationModel::horizon &&
-        emitter.propagation != PropagationModel::diffraction) {
-      throw Error(ErrorCode::bad_input, {setup.scenario->file},
-                  fmt::format("emitter '{}': propagation '{}' cannot be computed by this version; one of "
-                              "free_space, horizon, diffraction",
-                              emitter.name, scenario::toString(emitter.propagation)));
-    }
-  }
 }
 
 std::string FieldSolver::Impl::placeOf(std::size_t column) const {

@@ -43,7 +43,6 @@ struct FieldSolver::Impl {
 
   std::size_t chooseCached();
   std::unique_ptr<FieldEngine> makeEngine(std::size_t slot_bytes) const;
-  void checkModels() const;
   void checkHoles() const;
   std::string placeOf(std::size_t column) const;
   void warn(const std::string& warning) { ++warning_counts[warning]; }

@@ -7,13 +7,12 @@
 #include "base/error.h"
 #include "base/units.h"
 #include "emfield/field_solver_impl.h"
-#include "emfield/models/horizon.h"
+#include "emfield/model_check.h"
 
 namespace emscape::emfield {
 
 using scenario::Emitter;
 using scenario::EmitterState;
-using scenario::PropagationModel;
 
 /// Computes the geometry of some emitters, into their own slots or into that of emitters that are not cached.
 void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool into_scratch) {
@@ -45,11 +44,9 @@ void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
     }
     warn(fmt::format("emitter '{}': columns seen across missing terrain hold no field", emitter.name));
   }
-  if (emitter.propagation == PropagationModel::horizon &&
-      std::max<double>(cache.state.height_msl_m, setup.columns.t_m.back()) > kLinearRefractivityHeight_m) {
-    warn(fmt::format(
-        "emitter '{}': 'horizon' takes refractivity as linear in height, which does not hold above {:.0f} m",
-        emitter.name, kLinearRefractivityHeight_m));
+  for (const std::string& warning : pathWarnings(*setup.scenario, emitter, cache.state, setup.columns,
+                                                 setup.terrain.get(), findings.remarks)) {
+    warn(warning);
   }
   if (findings.near_voxels > 0) {
     warn(

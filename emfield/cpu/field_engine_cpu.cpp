@@ -75,6 +75,7 @@ std::vector<GeometryFindings> CpuEngine::computeGeometry(const std::vector<Geome
 
     GeometryFindings found;
     found.unknown_columns = geometry.unknownColumns();
+    found.remarks = geometry.remarks();
     if (found.unknown_columns > 0) {
       found.unknown.resize(setup_.columns.columns.size());
       for (std::size_t c = 0; c < found.unknown.size(); ++c) found.unknown[c] = geometry.isUnknown(c);

@@ -91,7 +91,10 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
       makeStation(request.state.position, request.state.height_msl_m, scenario.atmosphere.k_factor);
   const scenario::Emitter& emitter = scenario.emitters[request.emitter];
   work.has_shadow = emitter.propagation == scenario::PropagationModel::horizon;
-  if (hasExcess(scenario, emitter)) work.model = makeExcessModel(scenario, emitter, work.station);
+  if (hasExcess(scenario, emitter)) {
+    work.model = makeExcess(scenario, emitter, work.station, setup_.terrain.get(),
+                            pathExtent(work.station, setup_.columns), setup_.resolution);
+  }
   if (work.needsFan()) {
     std::vector<FanCoordinates> coordinates;
     for (int c : border_) {
@@ -138,6 +141,22 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
     tasks.push_back(task);
   }
   sent(tasks_, tasks, stream);
+
+  std::vector<float> tables;
+  for (const Work& work : works) {
+    if (!work.model) continue;
+    for (const auto& table : {work.model->model_tables, work.model->air_tables}) {
+      tables.insert(tables.end(), table->begin(), table->end());
+    }
+  }
+  const float* table = sent(model_tables_, tables, stream);
+  for (Work& work : works) {
+    if (!work.model) continue;
+    const float* const air = table + work.model->model_tables->size();
+    const float* const next = air + work.model->air_tables->size();
+    work.model = work.model->withTablesAt(table, air);
+    table = next;
+  }
 }
 
 std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<GeometryRequest>& requests,
@@ -162,7 +181,7 @@ std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<Geometry
   locateColumns(tasks_.data(), static_cast<int>(works.size()), columns_, stream);
   clock.end(&StageTimes::fan_ms, stream);
   for (const Work& work : works) {
-    if (!work.model || needsTerrain(*work.model)) continue;
+    if (!work.model || work.model->needsTerrain()) continue;
     clock.begin(stream);
     fill(work, {}, stream);
     clock.end(&StageTimes::plane_ms, stream);
@@ -178,6 +197,7 @@ std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<Geometry
   for (std::size_t r = 0; r < works.size(); ++r) {
     GeometryFindings found;
     found.unknown_columns = counts[r].unknown_columns;
+    found.remarks = counts[r].remarks;
     found.near_voxels = static_cast<long long>(counts[r].near_voxels);
     if (found.unknown_columns > 0) {
       std::vector<float> edges_m(columns);
@@ -193,7 +213,7 @@ std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<Geometry
 
 /// Columns that lean are read like any other model's: they are cut into pieces.
 bool DeviceGeometry::isUprightDiffraction(const Work& work) const {
-  return work.model && std::holds_alternative<DiffractionExcess>(*work.model) && !columns_.tilted;
+  return work.model && std::holds_alternative<DiffractionExcess>(work.model->model) && !columns_.tilted;
 }
 
 /// As many intervals at a time as the memory for samples takes.
@@ -255,7 +275,8 @@ void DeviceGeometry::runBatch(Batch& batch, cudaStream_t stream, StageClock& clo
     extent.ranges = std::max(extent.ranges, piece.emitter.fan.range_count);
     has_slopes = has_slopes || piece.holds_slopes;
     if (isUprightDiffraction(work)) {
-      diffraction.push_back({std::get<DiffractionExcess>(*work.model), piece, work.excess});
+      diffraction.push_back(
+          {std::get<DiffractionExcess>(work.model->model), work.model->air, piece, work.excess});
     }
   }
   clock.begin(stream);
@@ -306,7 +327,8 @@ std::size_t DeviceGeometry::bytes() const {
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(t_m_) + bytesOf(first_valid_k_) + bytesOf(tasks_) +
                       bytesOf(pieces_) + bytesOf(ranges_m_) + bytesOf(used_ranges_) + bytesOf(places_) +
                       bytesOf(terms_) + bytesOf(samples_) + bytesOf(diffraction_) + bytesOf(blocks_) +
-                      bytesOf(sums_) + bytesOf(scratch_) + bytesOf(ground_msl_m_);
+                      bytesOf(sums_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
+                      bytesOf(model_tables_);
   for (const Slot& slot : slots_) bytes += bytesOf(slot.numbers) + bytesOf(slot.excess);
   return bytes + (setup_.terrain == nullptr ? 0 : postBytes(setup_.terrain->view()));
 }

@@ -37,11 +37,11 @@ class DeviceGeometry {
     Station station;
     FanShape shape;
     LocateTask task;
-    std::optional<ExcessModel> model;
+    std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on
     ExcessOutputs excess;
     bool has_shadow = false;
 
-    bool needsFan() const { return has_shadow || (model && needsTerrain(*model)); }
+    bool needsFan() const { return has_shadow || (model && model->needsTerrain()); }
   };
   /// Pieces of fans that are computed at a time.
   struct Batch {
@@ -78,6 +78,7 @@ class DeviceGeometry {
   emscape::cuda::Buffer<LocateTask> tasks_;
   emscape::cuda::Buffer<FanPiece> pieces_;
   emscape::cuda::Buffer<double> ranges_m_;
+  emscape::cuda::Buffer<float> model_tables_;
   emscape::cuda::Buffer<int> used_ranges_;
   emscape::cuda::Buffer<FanPlace> places_;
   emscape::cuda::Buffer<RangeTerms<float>> terms_;

@@ -162,6 +162,12 @@ __global__ void __launch_bounds__(kThreads)
   const long long layer = columns.count;
   int k = first_valid_k == nullptr ? 0 : min(static_cast<int>(first_valid_k[c]), columns.layers);
   for (int below = 0; below < k; ++below) codes[below * layer] = 0;
+  const AirLoss& air = task.air;
+  const GridColumn& column = columns.columns[c];
+  const auto heightOf = [&](int layer_k) {
+    const int here = min(layer_k, columns.layers - 1);
+    return static_cast<float>(heightMsl_m(column, static_cast<double>(columns.t_m[here])));
+  };
   bool is_free = !(place.range_m > 0);  // the emitter's own place
   if (!is_free) {
     const FanPosts posts(task, place, ground_msl_m != nullptr ? ground_msl_m[c] : 0);
@@ -170,23 +176,24 @@ __global__ void __launch_bounds__(kThreads)
       markUnknown(task.to, c);
       for (; k < columns.layers; ++k) codes[k * layer] = kUnknownExcess;
     }
-    const GridColumn& column = columns.columns[c];
     while (k < columns.layers && !is_free) {
       float rx_msl_m[kReceivers], loss_db[kReceivers];
 #pragma unroll
-      for (int j = 0; j < kReceivers; ++j) {
-        const int here = min(k + j, columns.layers - 1);
-        rx_msl_m[j] = static_cast<float>(heightMsl_m(column, static_cast<double>(columns.t_m[here])));
-      }
+      for (int j = 0; j < kReceivers; ++j) rx_msl_m[j] = heightOf(k + j);
       is_free = receivers.losses(rx_msl_m, loss_db);
 #pragma unroll
       for (int j = 0; j < kReceivers; ++j) {
-        if (k + j < columns.layers) codes[(k + j) * layer] = excessCode(loss_db[j]);
+        if (k + j >= columns.layers) break;
+        if (!air.isClear()) loss_db[j] += air.lossDb(static_cast<float>(place.range_m), rx_msl_m[j]);
+        codes[(k + j) * layer] = excessCode(loss_db[j]);
       }
       k += kReceivers;
     }
   }
-  for (; k < columns.layers; ++k) codes[k * layer] = 0;
+  for (; k < columns.layers; ++k) {
+    codes[k * layer] =
+        air.isClear() ? 0 : excessCode(air.lossDb(static_cast<float>(place.range_m), heightOf(k)));
+  }
 }
 
 template <class Model>
@@ -244,15 +251,15 @@ void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, co
   checkLaunch("diffraction");
 }
 
-void fillExcess(const ExcessModel& model, const Station& station, const ExcessGrid& grid,
+void fillExcess(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
                 const FanHeights& fan, const ExcessOutputs& to, void* scratch, std::size_t scratch_bytes,
                 cudaStream_t stream) {
   std::visit(
       [&](const auto& m) {
-        launchExcess(ExcessTask<std::decay_t<decltype(m)>>{m, station, grid, fan}, to, scratch, scratch_bytes,
-                     stream);
+        launchExcess(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, fan}, to, scratch,
+                     scratch_bytes, stream);
       },
-      model);
+      excess.model);
 }
 
 }  // namespace emscape::emfield::cuda

@@ -24,6 +24,7 @@ struct FanBlock {
 /// read from the fan as often as it is needed.
 struct DiffractionTask {
   DiffractionExcess model;
+  AirLoss air;
   FanPiece piece;  ///< heights, azimuth fastest
   ExcessOutputs to;
   /// Of each block of posts and each azimuth, azimuth fastest; made by fillDiffraction().
@@ -42,9 +43,10 @@ void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, co
                      const float* ground_msl_m, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
 /// Any model: a thread a column with memory of its own.
+/// @param excess     its tables in device memory
 /// @param grid, fan  of device memory; fan: range fastest, none for models without terrain
 /// @param scratch    device memory; the more there is of it, the more columns are computed at a time
-void fillExcess(const ExcessModel& model, const Station& station, const ExcessGrid& grid,
+void fillExcess(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
                 const FanHeights& fan, const ExcessOutputs& to, void* scratch, std::size_t scratch_bytes,
                 cudaStream_t stream);
 

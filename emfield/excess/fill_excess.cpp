@@ -66,13 +66,13 @@ ExcessGrid excessGrid(const GridColumns& columns, const FanResolution& resolutio
   return grid;
 }
 
-unsigned fillExcessCpu(const ExcessModel& model, const Station& station, const ExcessGrid& grid,
+unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
                        const FanHeights& fan, const ExcessOutput& out) {
   return std::visit(
       [&](const auto& m) {
-        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, station, grid, fan}, out);
+        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, fan}, out);
       },
-      model);
+      excess.model);
 }
 
 }  // namespace emscape::emfield

@@ -36,6 +36,7 @@ ExcessGrid excessGrid(const GridColumns& columns, const FanResolution& resolutio
 template <class Model>
 struct ExcessTask {
   Model model;
+  AirLoss air;
   Station station;
   ExcessGrid grid;
   FanHeights fan;  ///< for models that need terrain
@@ -67,6 +68,10 @@ struct ExcessTask {
         part.profile = readProfile(fan, azimuth_index, point.range_m, part.ground_msl_m, scratch);
       }
       remarks |= model(part, scratch, scratch.excess_db + first);
+      if (air.isClear()) continue;
+      for (int k = first; k < end; ++k) {
+        scratch.excess_db[k] += air.lossDb(static_cast<float>(point.range_m), scratch.height_msl_m[k]);
+      }
     }
     return true;
   }
@@ -82,7 +87,7 @@ struct ExcessOutput {
 
 /// Runs a task on the CPU.
 /// @return the models' remarks on all columns
-unsigned fillExcessCpu(const ExcessModel& model, const Station& station, const ExcessGrid& grid,
+unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
                        const FanHeights& fan, const ExcessOutput& out);
 
 }  // namespace emscape::emfield

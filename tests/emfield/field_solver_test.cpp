@@ -259,7 +259,8 @@ TEST(FieldSolver, RefusesWhatItCannotCompute) {
   options.quantities = {"received_power_dbm"};
   EXPECT_THAT(messageOf(options), HasSubstr("needs an entry under 'receivers'"));
   scenario->emitters[1].propagation = scenario::PropagationModel::itm;
-  EXPECT_THAT(messageOf({}), HasSubstr("emitter 'jammer': propagation 'itm' cannot be computed"));
+  scenario->emitters[1].frequency_hz = 40e9;
+  EXPECT_THAT(messageOf({}), HasSubstr("emitter 'jammer': 'itm': frequency 40000 MHz is outside"));
 }
 
 }  // namespace

@@ -1,0 +1,41 @@
+/// Excess of the model `diffraction` by its options: the single largest edge, or Deygout's three.
+#pragma once
+
+#include "base/host_device.h"
+#include "emfield/excess/excess_column.h"
+#include "emfield/excess/height_bisection.h"
+#include "emfield/models/diffraction_edges.h"
+
+namespace emscape::emfield {
+
+struct EdgeExcess {
+  static constexpr bool kNeedsTerrain = true;
+  static constexpr float kTolerance_db = 0.1f;
+
+  DiffractionModel<float> model;
+  float tx_msl_m = 0;
+  bool three_edges = false;
+
+  /// @accuracy heights between evaluations: 99 % within 0.1 dB of the model
+  EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch&, float* excess_db) const {
+    const TerrainProfile& profile = column.profile;
+    float terrain = 0;  // NaN where it is missing
+    for (int i = 0; i < profile.count; ++i) terrain += profile.height_msl_m[i] * 0;
+    const bool is_missing = !(terrain == 0);
+    const float tx_m = model.raised_m(tx_msl_m, profile.height_msl_m[0]);
+    const auto lossAt = [&](int k) {
+      if (profile.count < 2) return 0.0f;
+      const float rx_m = model.raised_m(column.height_msl_m[k], column.ground_msl_m);
+      return three_edges ? deygoutLossDb(model, profile, tx_m, rx_m)
+                         : singleEdgeLossDb(model, profile, tx_m, rx_m);
+    };
+    if (is_missing) {
+      for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
+      return kMissingTerrain;
+    }
+    fillByBisection(lossAt, column.count, kTolerance_db, excess_db);
+    return 0;
+  }
+};
+
+}  // namespace emscape::emfield

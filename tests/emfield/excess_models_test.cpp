@@ -1,0 +1,417 @@
+// Models in the field against their functions, and the errors of what is interpolated.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "base/error.h"
+#include "emfield/model_check.h"
+#include "emfield/models/diffraction_edges.h"
+#include "emfield/models/gases.h"
+#include "emfield/models/p528.h"
+#include "emfield/models/rain.h"
+#include "tests/emfield/excess_paths.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using scenario::PropagationModel;
+using ::testing::HasSubstr;
+
+/// An emitter's excess, and one column of it at a time.
+class Columns {
+ public:
+  Columns(const scenario::Scenario& scenario, double tx_msl_m, const PathExtent& extent,
+          const scenario::Terrain* terrain = nullptr, double step_m = 45)
+      : station_(makeStation({44.43, -71.47, 0}, tx_msl_m, scenario.atmosphere.k_factor)),
+        excess_(makeExcess(scenario, scenario.emitters[0], station_, terrain, extent, {90, step_m})) {}
+
+  std::vector<float> fill(const ProfileData& profile, const std::vector<float>& heights_msl_m) const {
+    const int posts = static_cast<int>(profile.range_m.size()),
+              count = static_cast<int>(heights_msl_m.size());
+    std::vector<double> memory(ExcessScratch::bytes(posts + 1, count) / sizeof(double) + 1);
+    const ExcessScratch scratch = ExcessScratch::in(memory.data(), posts + 1, count);
+    ExcessColumn column;
+    column.range_m = profile.range_m.back();
+    column.ground_msl_m = profile.height_msl_m.back();
+    column.profile = profile.view();
+    column.height_msl_m = heights_msl_m.data();
+    column.count = count;
+    std::vector<float> losses(heights_msl_m.size());
+    std::visit([&](const auto& model) { remarks |= model(column, scratch, losses.data()); }, excess_.model);
+    return losses;
+  }
+  const EmitterExcess& excess() const { return excess_; }
+
+  mutable unsigned remarks = 0;
+
+ private:
+  Station station_;
+  EmitterExcess excess_;
+};
+
+std::vector<float> heightsFrom(float lowest_m, float step_m, int count) {
+  std::vector<float> heights;
+  for (int k = 0; k < count; ++k) heights.push_back(lowest_m + step_m * static_cast<float>(k));
+  return heights;
+}
+
+/// Columns of 100 heights at once against each height by itself, on random profiles.
+Spread bisectionErrors(const scenario::Scenario& scenario, const scenario::Terrain& terrain, int profiles) {
+  std::mt19937 random(11);
+  Spread spread;
+  for (int p = 0; p < profiles; ++p) {
+    const ProfileData profile = randomProfile(terrain, random, 250);
+    const Columns columns(scenario, static_cast<double>(profile.height_msl_m.front()) + 15, {60e3, 0, 6000});
+    const std::vector<float> heights = heightsFrom(profile.height_msl_m.back() + 20, 40, 100);
+    const std::vector<float> losses = columns.fill(profile, heights);
+    for (std::size_t k = 0; k < heights.size(); k += 3) {
+      spread.add(static_cast<double>(losses[k] - columns.fill(profile, {heights[k]})[0]));
+    }
+  }
+  return spread;
+}
+
+TEST(ExcessModels, HeightsBetweenEvaluationsOfEdgesAreWithinATenthOfADecibel) {
+  const scenario::TerrainPtr terrain = whiteMountainsTile();
+  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
+  const auto scenario = whiteMountains(1e9, 15);
+  for (const auto method : {scenario::DiffractionMethod::single_edge, scenario::DiffractionMethod::deygout}) {
+    scenario->emitters[0].diffraction.method = method;
+    Spread spread = bisectionErrors(*scenario, *terrain, 60);
+    EXPECT_LT(spread.quantile(0.99), 0.1) << toString(method);
+    EXPECT_LT(spread.largest(), 0.5) << toString(method);
+  }
+}
+
+TEST(ExcessModels, HeightsBetweenEvaluationsOfItmAreWithinATenthOfADecibelButForItsJumps) {
+  const scenario::TerrainPtr terrain = whiteMountainsTile();
+  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
+  const auto scenario = whiteMountains(1e9, 15);
+  scenario->emitters[0].propagation = PropagationModel::itm;
+  Spread spread = bisectionErrors(*scenario, *terrain, 60);
+  EXPECT_LT(spread.quantile(0.99), 0.1);
+  EXPECT_LT(spread.largest(), 1);
+}
+
+TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
+  const scenario::TerrainPtr terrain = whiteMountainsTile();
+  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
+  const auto scenario = whiteMountains(1e9, 15);
+  DiffractionParameters parameters;
+  parameters.frequency_hz = 1e9;
+  parameters.effective_earth_radius_m = kEffectiveEarth_m;
+  const auto model = diffractionModel<double>(parameters);
+  for (const auto method : {scenario::DiffractionMethod::single_edge, scenario::DiffractionMethod::deygout}) {
+    scenario->emitters[0].diffraction.method = method;
+    const auto volume = solve(scenario, terrain);
+    const scenario::EmitterState state = scenario::snapshotAt(scenario, terrain.get(), 0).emitters[0];
+    const double step_m = fanResolution(volume->grid, terrain.get()).range_m;
+    const GeoFrame geo(volume->grid.frame);
+    std::mt19937 random(9);
+    Spread spread;
+    while (spread.size() < 300) {
+      const int i = int(random() % 50), j = int(random() % 50), k = int(random() % 40);
+      const Vec3d center = volume->grid.center_m(i, j, k);
+      const GeodeticPosition to = geo.toGeodetic(center);
+      if (center.z < terrain->heightMsl_m(to.latitude_deg, to.longitude_deg) + 1) continue;
+      const ProfileData profile = profileTo(*terrain, state.position, to, step_m);
+      const double expected = method == scenario::DiffractionMethod::deygout
+                                  ? deygoutLossDb(model, profile.view(), state.height_msl_m, center.z)
+                                  : singleEdgeLossDb(model, profile.view(), state.height_msl_m, center.z);
+      spread.add(excessIn(*volume, i, j, k, state.position) - expected);
+    }
+    EXPECT_LT(spread.quantile(0.9), 0.1) << toString(method);
+    EXPECT_LT(spread.quantile(0.98), 0.5) << toString(method);
+  }
+}
+
+TEST(ExcessModels, ItmStandsNearTheGroundAndGoesOverToDiffractionAboveWithoutJumps) {
+  const scenario::TerrainPtr terrain = whiteMountainsTile();
+  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
+  const auto scenario = whiteMountains(300e6, 15);
+  std::mt19937 random(5);
+  const ProfileData profile = randomProfile(*terrain, random, 250);
+  const double tx_msl_m = static_cast<double>(profile.height_msl_m.front()) + 15;
+  const float ground_m = profile.height_msl_m.back();
+  const PathExtent extent{60e3, 0, 6000};
+  const Columns diffraction(*scenario, tx_msl_m, extent);
+  scenario->emitters[0].propagation = PropagationModel::itm;
+  const double step_m = profile.range_m.back() / 249 * 1.0001;
+  const Columns itm(*scenario, tx_msl_m, extent, nullptr, step_m);
+
+  ItmProfile<float> even{profile.height_msl_m.data(), 249, profile.range_m.back() / 249};
+  ItmLink<double> link;
+  link.frequency_hz = 300e6;
+  link.height_agl_m[0] = 15;
+  for (const float above_m : {2.0f, 30.0f, 500.0f, 1900.0f}) {
+    link.height_agl_m[1] = static_cast<double>(above_m);
+    const ItmResult<double> expected = itmPointToPoint(even, link, ItmQuantiles<double>{});
+    EXPECT_NEAR(itm.fill(profile, {ground_m + above_m})[0], expected.loss_db - expected.free_space_db, 0.05)
+        << above_m;
+  }
+  for (const float above_m : {3000.0f, 5000.0f}) {
+    EXPECT_EQ(itm.fill(profile, {ground_m + above_m}), diffraction.fill(profile, {ground_m + above_m}));
+  }
+  const float at_2500 = itm.fill(profile, {ground_m + 2500})[0];
+  link.height_agl_m[1] = 2500;
+  const ItmResult<double> pure = itmPointToPoint(even, link, ItmQuantiles<double>{});
+  EXPECT_NEAR(at_2500,
+              (pure.loss_db - pure.free_space_db +
+               static_cast<double>(diffraction.fill(profile, {ground_m + 2500})[0])) /
+                  2,
+              0.05)
+      << "half and half";
+  EXPECT_NEAR(itm.fill(profile, {ground_m + 2999.9f})[0], itm.fill(profile, {ground_m + 3000.1f})[0], 0.02);
+}
+
+TEST(ExcessModels, ItmQuantilesAndAreaFormReachTheField) {
+  const auto scenario = smoothEarth(PropagationModel::itm, 300e6, 20);
+  const auto median = solve(scenario)->values;
+  scenario->emitters[0].itm.time_percent = 99;
+  const auto rare = solve(scenario)->values;
+  scenario->emitters[0].itm.time_percent = 50;
+  scenario->emitters[0].itm.form = scenario::ItmForm::area;
+  scenario->emitters[0].itm.irregularity_m = 200;
+  const auto hilly = solve(scenario)->values;
+  const std::size_t corner = 0;
+  EXPECT_GT(median[corner], rare[corner] + 1);
+  EXPECT_GT(median[corner], hilly[corner] + 1);
+}
+
+TEST(ExcessModels, TwoRayInTheFieldIsTheModelAtEveryVoxel) {
+  for (const auto polarization : {scenario::Polarization::horizontal, scenario::Polarization::vertical,
+                                  scenario::Polarization::slant_45}) {
+    for (const double frequency_hz : {100e6, 3e9}) {
+      const auto scenario = smoothEarth(PropagationModel::two_ray, frequency_hz, 30, 200e3);
+      scenario->emitters[0].polarization = polarization;
+      scenario->ground.kind = scenario::GroundKind::sea;
+      scenario->ground.roughness_m = 0.2;
+      const auto volume = solve(scenario);
+      const GeodeticPosition from = scenario::snapshotAt(scenario, nullptr, 0).emitters[0].position;
+      TwoRayParameters parameters;
+      parameters.frequency_hz = frequency_hz;
+      parameters.effective_earth_radius_m = makeStation(from, 30, 4.0 / 3).effective_earth_radius_m;
+      parameters.ground = groundConstants(GroundKind::sea, frequency_hz);
+      parameters.roughness_m = 0.2;
+      const auto excessOf = [&](LinearPolarization of, double range_m, double height_m) {
+        parameters.polarization = of;
+        return twoRayExcessDb(twoRayModel<double>(parameters), range_m, 30.0, height_m);
+      };
+      for (int i = 0; i < 20; i += 3) {
+        for (int k = 0; k < 32; k += 3) {
+          const Vec3d center = volume->grid.center_m(i, 4, k);
+          const double range_m = std::hypot(center.x, center.y);
+          const double h = excessOf(LinearPolarization::horizontal, range_m, center.z);
+          const double v = excessOf(LinearPolarization::vertical, range_m, center.z);
+          const double expected = polarization == scenario::Polarization::horizontal ? h
+                                  : polarization == scenario::Polarization::vertical
+                                      ? v
+                                      : -ratioToDb((dbToRatio(-h) + dbToRatio(-v)) / 2);
+          // In nulls a hair's breadth of path counts for much.
+          EXPECT_NEAR(excessIn(*volume, i, 4, k, from), expected, 0.05 + 0.05 * std::max(0.0, expected));
+        }
+      }
+    }
+  }
+}
+
+TEST(ExcessModels, TwoRayLobesStandInTheFieldWhereFlatGroundPutsThem) {
+  // lambda d / (4 h1): first lobe at 125 m and first null at 250 m, 10 km from an antenna 20 m over the sea
+  const double frequency_hz = kSpeedOfLight;
+  auto scenario = smoothEarth(PropagationModel::two_ray, frequency_hz, 20);
+  scenario->region.size_m = {20e3, 400, 375};
+  scenario->region.dims = {2, 2, 3};
+  scenario->region.origin.longitude_deg = 5 + radToDeg(15e3 / (6378137.0 * std::cos(degToRad(52.0))));
+  scenario->emitters[0].polarization = scenario::Polarization::horizontal;
+  scenario->ground.kind = scenario::GroundKind::sea;
+  const auto volume = solve(scenario);
+  const GeodeticPosition from = scenario::snapshotAt(scenario, nullptr, 0).emitters[0].position;
+  // layers at 62.5, 187.5 and 312.5 m: half way up the lobe, half way down, half way up the next
+  EXPECT_NEAR(volume->grid.center_m(0, 0, 1).z, 187.5, 1e-3);
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(excessIn(*volume, 0, 0, k, from), -3.0, 0.8) << k;
+
+  scenario->region.size_m.z = 250;
+  scenario->region.dims.z = 2;
+  scenario->region.origin.height_msl_m =
+      62.5 + 4;  // the earth falls away by 4 m between reflection and target
+  const auto shifted = solve(scenario);
+  EXPECT_LT(excessIn(*shifted, 0, 0, 0, from), -5.5) << "lobe";
+  EXPECT_GT(excessIn(*shifted, 0, 0, 1, from), 10) << "null";
+  scenario->emitters[0].two_ray.sum = scenario::TwoRaySum::envelope;
+  EXPECT_LT(excessIn(*solve(scenario), 0, 0, 1, from), -5.5) << "the lobes' tops";
+}
+
+TEST(ExcessModels, GasesTakeTheirDecibelsPerKilometreAlongALevelPath) {
+  for (const double frequency_hz : {10e9, 22.235e9, 60e9}) {
+    auto scenario = smoothEarth(PropagationModel::free_space, frequency_hz, 5, 4000);
+    scenario->atmosphere.gases = scenario::GasLosses::always;
+    scenario->region.size_m.z = 20;
+    scenario->region.dims.z = 2;
+    const auto volume = solve(scenario);
+    const GeodeticPosition from = scenario::snapshotAt(scenario, nullptr, 0).emitters[0].position;
+    const double per_km = gasAttenuation(frequency_hz, standardAtmosphere(5)).total_db_per_km();
+    for (int i = 0; i < 20; i += 4) {
+      const Vec3d center = volume->grid.center_m(i, 3, 0);
+      const double length_km = std::hypot(center.x, center.y) / 1000;
+      EXPECT_NEAR(excessIn(*volume, i, 3, 0, from), per_km * length_km, 0.006 + 1e-3 * per_km * length_km);
+    }
+    scenario->atmosphere.gases = scenario::GasLosses::automatic;
+    EXPECT_NEAR(excessIn(*solve(scenario), 0, 3, 0, from), 0, 1e-3) << "free space alone stays that";
+  }
+}
+
+TEST(ExcessModels, GasesBetweenTheTablesNodesAreThoseOfTheRay) {
+  auto scenario = smoothEarth(PropagationModel::free_space, 60e9, 0);
+  scenario->atmosphere.gases = scenario::GasLosses::always;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(0, 1);
+  Spread spread;
+  for (const double tx_m : {10.0, 3000.0, 12000.0}) {
+    for (const double frequency_hz : {22.235e9, 60e9}) {
+      scenario->emitters[0].frequency_hz = frequency_hz;
+      std::vector<float> table;
+      const AirLoss air =
+          airLoss(*scenario, scenario->emitters[0], 52, tx_m, 6371e3, {300e3, 0, 20e3}, table);
+      for (int n = 0; n < 100; ++n) {
+        const double range_m = 300e3 * part(random), height_m = 20e3 * part(random);
+        double mean_db_per_m = 0;
+        constexpr int kSteps = 4000;
+        for (int s = 0; s < kSteps; ++s) {
+          const double t = (s + 0.5) / kSteps;
+          const double at_m =
+              tx_m + t * (height_m - tx_m) - t * (1 - t) * range_m * range_m / (2 * kEffectiveEarth_m);
+          const AirState state = standardAtmosphere(std::max(at_m, -1000.0));
+          // 20 m apart the air is the same: keeps the test fast
+          static std::map<std::pair<double, int>, double> known;
+          double& gamma = known[{frequency_hz, static_cast<int>(std::lround(at_m / 20))}];
+          if (gamma == 0) gamma = gasAttenuation(frequency_hz, state).total_db_per_km() / 1000;
+          mean_db_per_m += gamma / kSteps;
+        }
+        const double expected =
+            mean_db_per_m * static_cast<double>(air.slantRange_m(float(range_m), float(height_m)));
+        spread.add((static_cast<double>(air.lossDb(float(range_m), float(height_m))) - expected) /
+                   std::max(expected, 0.5));
+      }
+    }
+  }
+  EXPECT_LT(spread.largest(), 0.005);
+}
+
+TEST(ExcessModels, RainFallsBelowItsTopAlone) {
+  auto scenario = smoothEarth(PropagationModel::free_space, 10e9, 0);
+  scenario->atmosphere.rain_mm_h = 30;
+  scenario->emitters[0].polarization = scenario::Polarization::horizontal;
+  std::vector<float> none;
+  const auto airAt = [&](double station_m) {
+    return airLoss(*scenario, scenario->emitters[0], 52, station_m, 6371e3, {200e3, 0, 12e3}, none);
+  };
+  const double top_m = rainHeight_m(52);
+  EXPECT_NEAR(top_m, 2825, 1e-9);
+  EXPECT_EQ(rainHeight_m(10), 5000);
+  EXPECT_EQ(rainHeight_m(-31), 4000);
+  const double per_m = rainCoefficients(10e9, 0, 0).specificAttenuation_db_per_km(30.0) / 1000;
+
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> part(0, 1);
+  for (const float station_m : {10.0f, 2000.0f, 6000.0f}) {
+    const AirLoss air = airAt(static_cast<double>(station_m));
+    EXPECT_NEAR(static_cast<double>(air.lossDb(10e3f, station_m)), station_m < 2825 ? per_m * 10e3 : 0.0,
+                0.01 * per_m * 10e3 + 1e-6);
+    for (int n = 0; n < 200; ++n) {
+      const float range_m = 200e3f * part(random), height_m = 12e3f * part(random);
+      int below = 0;
+      constexpr int kSteps = 20000;
+      for (int s = 0; s < kSteps; ++s) {
+        const double t = (s + 0.5) / kSteps;
+        const double at_m = static_cast<double>(station_m) + t * static_cast<double>(height_m - station_m) -
+                            t * (1 - t) * static_cast<double>(range_m) * static_cast<double>(range_m) /
+                                (2 * kEffectiveEarth_m);
+        below += at_m < top_m ? 1 : 0;
+      }
+      EXPECT_NEAR(air.partBelowRainTop(range_m, height_m), static_cast<double>(below) / kSteps, 2e-3)
+          << station_m << " " << range_m << " " << height_m;
+    }
+  }
+  EXPECT_NEAR(airAt(0).partBelowRainTop(0, 5650), 0.5f, 1e-4) << "straight up";
+}
+
+TEST(ExcessModels, P528BetweenTheTablesNodesIsTheCurve) {
+  auto scenario = smoothEarth(PropagationModel::p528, 1.2e9, 20);
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> part(0, 1);
+  for (const double percent : {50.0, 95.0}) {
+    scenario->emitters[0].p528.time_percent = percent;
+    const double tx_m = 15;
+    const PathExtent extent{400e3, 100, 12000};
+    std::vector<float> tables;
+    const P528Excess table = p528Excess(scenario->emitters[0], tx_m, 0, extent, tables);
+    const auto atmosphere = std::make_shared<const P528Atmosphere>(1.2e9);
+    Spread spread;
+    for (int n = 0; n < 300; ++n) {
+      const double range_m = 400e3 * part(random);
+      const auto height_m = static_cast<float>(100 + 11900 * part(random));
+      const P528Loss loss =
+          P528Curve(atmosphere, 1.2e9, tx_m, static_cast<double>(height_m), true).at(range_m, percent);
+      ExcessColumn column;
+      column.range_m = range_m;
+      column.height_msl_m = &height_m;
+      column.count = 1;
+      float excess = 0;
+      table(column, {}, &excess);
+      spread.add(static_cast<double>(excess) - (loss.loss_db - loss.free_space_db));
+    }
+    EXPECT_LT(spread.median(), 0.05);
+    EXPECT_LT(spread.quantile(0.95), 0.5);
+  }
+}
+
+TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {
+  auto scenario = smoothEarth(PropagationModel::p528, 50e6, 20);
+  scenario->emitters[0].frequency_place = {"my.yaml", 12, 7};
+  const auto messageOf = [&]() -> std::string {
+    try {
+      FieldSolver solver(scenario, nullptr, {});
+    } catch (const Error& error) {
+      return toString(error.place()) + ": " + error.message();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(messageOf(),
+            "my.yaml:12:7: emitter 'site': 'p528': frequency 50 MHz is outside 100..30000 MHz: refused");
+  scenario->emitters[0].frequency_hz = 1e9;
+  scenario->emitters[0].p528 = {0.5, {"my.yaml", 20, 3}};
+  EXPECT_EQ(messageOf(),
+            "my.yaml:20:3: emitter 'site': 'p528': percentage of time 0.5 % is outside 1..99 %: refused");
+  scenario->emitters[0].propagation = PropagationModel::itm;
+  scenario->emitters[0].frequency_hz = 35e9;
+  EXPECT_EQ(messageOf(),
+            "my.yaml:12:7: emitter 'site': 'itm': frequency 35000 MHz is outside 20..20000 MHz: refused");
+  scenario->emitters[0].frequency_hz = 1e9;
+  scenario->ground.conductivity_s_m = 0;
+  scenario->ground.place = {"my.yaml", 5, 9};
+  EXPECT_THAT(messageOf(), HasSubstr("my.yaml:5:9: emitter 'site': 'itm': "));
+
+  scenario->emitters[0].propagation = PropagationModel::diffraction;
+  scenario->emitters[0].frequency_hz = 10e6;
+  EXPECT_THAT(
+      checkModels(*scenario),
+      ::testing::ElementsAre("emitter 'site': 'diffraction': frequency 10 MHz is outside 20..50000 MHz: "
+                             "computed, with a warning"));
+}
+
+TEST(ExcessModels, HeightsOutsideAModelAreWarnedOfOnce) {
+  auto scenario = smoothEarth(PropagationModel::p528, 1e9, 20);
+  scenario->region.size_m.z = 30e3;
+  FieldSolver solver(scenario, nullptr, {});
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  EXPECT_THAT(solver.warnings(),
+              ::testing::ElementsAre(HasSubstr("29531.2 m is outside 1.5..20000 m: taken as the nearest")));
+}
+
+}  // namespace
+}  // namespace emscape::emfield
