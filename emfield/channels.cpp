@@ -26,6 +26,10 @@ std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
       const bool enters = !isOfRadars(quantity) || scenario.emitters[e].kind == EmitterKind::radar;
       if (enters) emitters.push_back(static_cast<int>(e));
     }
+    if (isOfRadars(quantity) && emitters.empty()) {
+      throw Error(ErrorCode::bad_input, {scenario.file},
+                  "quantity '" + name + "' needs an emitter of kind 'radar'");
+    }
     if (scenario.output.combine == CombineMode::per_emitter && !countsEmitters(quantity)) {
       for (int e : emitters) channels.push_back({quantity, name + ":" + scenario.emitters[e].name, {e}});
     } else if (scenario.output.combine == CombineMode::per_band) {
@@ -39,7 +43,7 @@ std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
           const double frequency_hz = scenario.emitters[e].frequency_hz;
           return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
         });
-        channels.push_back(channel);
+        if (!isOfRadars(quantity) || !channel.emitters.empty()) channels.push_back(channel);
       }
     } else {
       channels.push_back({quantity, name, emitters});

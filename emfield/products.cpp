@@ -40,11 +40,6 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Out
 
 ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario) {
   ChannelRecipe recipe;
-  if (isOfRadars(channel.quantity) && channel.emitters.empty()) {
-    throw Error(
-        ErrorCode::bad_input, {scenario.file},
-        std::string("quantity '") + info(channel.quantity).name + "' needs an emitter of kind 'radar'");
-  }
   recipe.product.floor = static_cast<float>(scenario.output.floor);
   if (scenario.output.combine == scenario::CombineMode::max) recipe.reduction = Reduction::maximum;
   recipe.weights.assign(channel.emitters.size(), 1.0f);

@@ -42,13 +42,19 @@ bool isOfJamming(Quantity quantity) {
          quantity == Quantity::burn_through_margin_db;
 }
 
-Quantity quantityFromName(const std::string& name) {
+std::string quantityNames() {
   std::string names;
   for (const QuantityInfo& entry : quantityTable()) {
-    if (name == entry.name) return entry.quantity;
     names += (names.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw Error(ErrorCode::bad_input, "unknown quantity '" + name + "'; one of " + names);
+  return names;
+}
+
+Quantity quantityFromName(const std::string& name) {
+  for (const QuantityInfo& entry : quantityTable()) {
+    if (name == entry.name) return entry.quantity;
+  }
+  throw Error(ErrorCode::bad_input, "unknown quantity '" + name + "'; one of " + quantityNames());
 }
 
 }  // namespace emscape::emfield

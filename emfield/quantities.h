@@ -35,6 +35,8 @@ bool isOfJamming(Quantity quantity);
 /// All quantities, in the order of the enum.
 const std::vector<QuantityInfo>& quantityTable();
 const QuantityInfo& info(Quantity quantity);
+/// The names of all, with commas between them.
+std::string quantityNames();
 /// @throws Error (bad_input) that lists the allowed names
 Quantity quantityFromName(const std::string& name);
 

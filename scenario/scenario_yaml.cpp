@@ -161,6 +161,31 @@ void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, Pa
   }
 }
 
+/// Jammers that are in no radar's band, where the output asks what jamming does.
+void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<std::string>& quantities = scenario.output.quantities;
+  const bool counts = std::any_of(quantities.begin(), quantities.end(), [](const std::string& quantity) {
+    return quantity == "detection_probability" || quantity == "jammer_to_signal_db" ||
+           quantity == "burn_through_margin_db";
+  });
+  const std::vector<Section> sections = root.sections("emitters");
+  for (std::size_t i = 0; i < sections.size() && counts; ++i) {
+    const Emitter& jammer = scenario.emitters[i];
+    if (jammer.kind != EmitterKind::jammer) continue;
+    const bool jams =
+        std::any_of(scenario.emitters.begin(), scenario.emitters.end(), [&jammer](const Emitter& radar) {
+          return radar.kind == EmitterKind::radar &&
+                 std::abs(radar.frequency_hz - jammer.frequency_hz) <=
+                     (radar.receiver.bandwidth_hz + jammer.bandwidth_hz) / 2;
+        });
+    if (jams) continue;
+    context.problems.addWarning(
+        sections[i].placeOf("frequency_hz"),
+        fmt::format("jammer '{}' ({} Hz, {} Hz wide) lies outside the band of every radar: it jams none",
+                    jammer.name, jammer.frequency_hz, jammer.bandwidth_hz));
+  }
+}
+
 Scenario parseRoot(const Section& root, ParseContext& context) {
   Scenario scenario;
   scenario.name = root.text("name");
@@ -179,7 +204,10 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
     scenario.receivers.push_back(parseReceiverProfile(item));
   for (const Section& item : root.sections("bands")) scenario.bands.push_back(parseBand(item, context));
   scenario.output = parseOutput(root.section("output"), scenario, context);
-  if (!context.problems.hasErrors()) warnOfEmittersWithoutBand(scenario, root, context);
+  if (!context.problems.hasErrors()) {
+    warnOfEmittersWithoutBand(scenario, root, context);
+    warnOfIdleJammers(scenario, root, context);
+  }
   scenario.hash = context.hash.hex();
   return scenario;
 }

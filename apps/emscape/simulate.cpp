@@ -19,6 +19,7 @@
 #include "base/log.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
+#include "emfield/quantities.h"
 
 namespace emscape::app {
 namespace {
@@ -194,7 +195,8 @@ Examples:
       ->check(CLI::IsMember(SeriesFiles::formatNames()));
   command
       ->add_option("--quantity", options->quantities,
-                   "Quantities, with commas between them; default: the scenario's")
+                   "Quantities, with commas between them (" + emfield::quantityNames() +
+                       "); default: the scenario's")
       ->delimiter(',');
   command->add_option("--times", options->times,
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");

@@ -198,6 +198,16 @@ TEST(RadarChannels, HoldRadarsAndTheirJammers) {
   EXPECT_THAT(channels[2].emitters, ::testing::ElementsAre(0, 1, 2));
 }
 
+TEST(RadarChannels, LeaveOutBandsWithoutRadars) {
+  const auto scenario = duel(trackingRadar(), jammerOf(100), 0, 60e3);
+  scenario->output.combine = scenario::CombineMode::per_band;
+  scenario->bands = {{"L", 1e9, 2e9}, {"S", 2e9, 4e9}};
+  const auto channels = channelsOf(*scenario, {"snr_db", "jammer_to_signal_db"});
+  ASSERT_EQ(channels.size(), 2u);
+  EXPECT_EQ(channels[1].name, "jammer_to_signal_db:S");
+  EXPECT_THAT(channels[1].jammers, ::testing::ElementsAre(1));
+}
+
 TEST(RadarChannels, NeedARadar) {
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
   addEmitter(*scenario, middleOf(*scenario), plainEmitter("radio", 0));

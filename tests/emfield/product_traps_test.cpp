@@ -88,6 +88,25 @@ TEST(Traps, RadarCountsThePathTwiceAndJammingOnce) {
               2 * 10 * std::log10(0.5), 1e-3);
 }
 
+TEST(Traps, GasesAndRainCountTwiceForARadar) {
+  scenario::Emitter radar = trackingRadar(), jammer = jammerOf(100);
+  radar.frequency_hz = jammer.frequency_hz = 10e9;
+  radar.scan.azimuth_deg = 90;
+  auto scenario = duel(radar, jammer, 0, 30e3);
+  const auto snr = [&] { return east(scenario, "snr_db", 20e3); };
+  const auto density = [&] {
+    scenario->output.combine = scenario::CombineMode::per_emitter;
+    const float value = east(scenario, "power_density_dbwm2", 20e3);
+    scenario->output.combine = scenario::CombineMode::sum;
+    return value;
+  };
+  const double dry_snr = snr(), dry_density = density();
+  scenario->atmosphere.rain_mm_h = 10;
+  const double one_way_db = dry_density - density();
+  ASSERT_GT(one_way_db, 1);
+  EXPECT_NEAR(dry_snr - snr(), 2 * one_way_db, 0.02);
+}
+
 TEST(Traps, InterceptIsOneWay) {
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
   addEmitter(*scenario, middleOf(*scenario), plainEmitter("radio", 0));

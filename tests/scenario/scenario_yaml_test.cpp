@@ -189,6 +189,20 @@ TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
   EXPECT_EQ(result.problems[0].place.line, 39);
 }
 
+TEST_F(ScenarioYaml, WarnsOfAJammerOutsideEveryRadarsBand) {
+  const std::string asking = replaced(valid_, "received_power_dbm, snr_db]", "jammer_to_signal_db]");
+  EXPECT_TRUE(parseScenario(folder_.write("scenario.yaml", asking)).problems.empty());
+  const std::string text = replaced(asking, "frequency_hz: 3.0e9\n    bandwidth_hz: 20.0e6",
+                                    "frequency_hz: 3.1e9\n    bandwidth_hz: 20.0e6");
+  const ParseResult result = parseScenario(folder_.write("scenario.yaml", text));
+  ASSERT_NE(result.scenario, nullptr);
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].severity, Severity::warning);
+  EXPECT_EQ(result.problems[0].message,
+            "jammer 'jammer' (3100000000 Hz, 20000000 Hz wide) lies outside the band of every radar: it jams "
+            "none");
+}
+
 TEST_F(ScenarioYaml, TrackMayHaveBlankLinesRemarksAndAttitude) {
   folder_.write(
       "track.csv",
