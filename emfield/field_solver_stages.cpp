@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/units.h"
+#include "emfield/excess/excess_model.h"
 #include "emfield/field_solver_impl.h"
 #include "emfield/model_check.h"
 
@@ -44,8 +45,11 @@ void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
     }
     warn(fmt::format("emitter '{}': columns seen across missing terrain hold no field", emitter.name));
   }
-  for (const std::string& warning : pathWarnings(*setup.scenario, emitter, cache.state, setup.columns,
-                                                 setup.terrain.get(), findings.remarks)) {
+  const Station station =
+      makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere.k_factor);
+  for (const std::string& warning :
+       pathWarnings(*setup.scenario, emitter, cache.state, pathExtent(station, setup.columns),
+                    setup.terrain.get(), findings.remarks)) {
     warn(warning);
   }
   if (findings.near_voxels > 0) {

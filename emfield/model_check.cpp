@@ -59,44 +59,48 @@ void checkItm(const Scenario& scenario, const Emitter& emitter, Checker& checker
 
 }  // namespace
 
+std::vector<std::string> checkModel(const Scenario& scenario, const Emitter& emitter) {
+  Checker checker(emitter);
+  const FilePlace& frequency_place = emitter.frequency_place;
+  switch (emitter.propagation) {
+    case PropagationModel::free_space:
+    case PropagationModel::horizon:
+      break;
+    case PropagationModel::diffraction:
+      checker.check(kDiffractionFrequency, emitter.frequency_hz, frequency_place);
+      break;
+    case PropagationModel::two_ray:
+      checker.check(kTwoRayFrequency, emitter.frequency_hz, frequency_place);
+      checker.check(kTwoRayRoughness, scenario.ground.roughness_m, scenario.ground.place);
+      break;
+    case PropagationModel::itm:
+      checkItm(scenario, emitter, checker);
+      break;
+    case PropagationModel::p528:
+      checker.check(kP528Frequency, emitter.frequency_hz, frequency_place);
+      checker.check(kP528Percentage, emitter.p528.time_percent, emitter.p528.place);
+      break;
+  }
+  if (scenario.atmosphere.rain_mm_h > 0 && !kRainFrequency.holds(emitter.frequency_hz)) {
+    checker.warnings.push_back(
+        inModel(emitter, outsideMessage(kRainFrequency, emitter.frequency_hz), "rain"));
+  }
+  return checker.warnings;
+}
+
 std::vector<std::string> checkModels(const Scenario& scenario) {
   std::vector<std::string> warnings;
   for (const Emitter& emitter : scenario.emitters) {
-    Checker checker(emitter);
-    const FilePlace& frequency_place = emitter.frequency_place;
-    switch (emitter.propagation) {
-      case PropagationModel::free_space:
-      case PropagationModel::horizon:
-        break;
-      case PropagationModel::diffraction:
-        checker.check(kDiffractionFrequency, emitter.frequency_hz, frequency_place);
-        break;
-      case PropagationModel::two_ray:
-        checker.check(kTwoRayFrequency, emitter.frequency_hz, frequency_place);
-        checker.check(kTwoRayRoughness, scenario.ground.roughness_m, scenario.ground.place);
-        break;
-      case PropagationModel::itm:
-        checkItm(scenario, emitter, checker);
-        break;
-      case PropagationModel::p528:
-        checker.check(kP528Frequency, emitter.frequency_hz, frequency_place);
-        checker.check(kP528Percentage, emitter.p528.time_percent, emitter.p528.place);
-        break;
-    }
-    if (scenario.atmosphere.rain_mm_h > 0 && !kRainFrequency.holds(emitter.frequency_hz)) {
-      checker.warnings.push_back(
-          inModel(emitter, outsideMessage(kRainFrequency, emitter.frequency_hz), "rain"));
-    }
-    warnings.insert(warnings.end(), checker.warnings.begin(), checker.warnings.end());
+    const std::vector<std::string> of_emitter = checkModel(scenario, emitter);
+    warnings.insert(warnings.end(), of_emitter.begin(), of_emitter.end());
   }
   return warnings;
 }
 
 std::vector<std::string> pathWarnings(const Scenario& scenario, const Emitter& emitter,
-                                      const scenario::EmitterState& state, const GridColumns& columns,
+                                      const scenario::EmitterState& state, const PathExtent& extent,
                                       const scenario::Terrain* terrain, unsigned remarks) {
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere.k_factor);
-  const PathExtent extent = pathExtent(station, columns);
   const double highest_msl_m = std::max(state.height_msl_m, extent.highest_msl_m);
   std::vector<std::string> messages = remarkMessages(emitter, remarks);
   const auto check = [&](const ModelLimit& limit, double value_si) {

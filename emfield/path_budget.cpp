@@ -191,6 +191,8 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   const scenario::Scenario& scenario = *snapshot.scenario;
   const Emitter& emitter = scenario.emitters[emitter_index];
   const EmitterState& state = snapshot.emitters[emitter_index];
+  Emitter by_model = emitter;
+  by_model.propagation = model;
   PathBudget budget;
   budget.emitter = emitter.name;
   budget.time_s = snapshot.time_s;
@@ -220,7 +222,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
 
   budget.pointing = pointingOf(emitter, state.beam, ray);
   budget.obstacles = pathObstacles(profile, wavelength);
-  budget.excess = pathExcess(model, profile, emitter);
+  budget.excess = pathExcess(scenario, by_model, state, profile, terrain, resolution);
   budget.warnings = budget.excess.warnings;
   if (geometry.slant_range_m < geometry.far_field_m) {
     budget.warnings.push_back(

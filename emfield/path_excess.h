@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "emfield/path_profile.h"
-#include "scenario/emitter.h"
+#include "scenario/snapshot.h"
 
 namespace emscape::emfield {
 
@@ -21,10 +21,20 @@ struct PathExcess {
   std::vector<ExcessPart> parts;  ///< none: free space
   std::string why;                ///< how the model came to it, one clause
   std::vector<std::string> warnings;
+
+  void add(const std::string& key, const std::string& label, double part_db) {
+    parts.push_back({key, label, part_db});
+    loss_db += part_db;
+  }
 };
 
-/// @throws Error (bad_input) for a model that is not built
-PathExcess pathExcess(scenario::PropagationModel model, const PathProfile& profile,
-                      const scenario::Emitter& emitter);
+/// By the functions that fill the field's voxels; p528 by its curve itself instead of the field's table.
+/// @param emitter     with the model to take; `state` is where it stands
+/// @param terrain     null: none
+/// @param resolution  of profiles
+/// @throws Error (bad_input) for what the model refuses
+PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                      const scenario::EmitterState& state, const PathProfile& profile,
+                      const scenario::Terrain* terrain, const FanResolution& resolution);
 
 }  // namespace emscape::emfield

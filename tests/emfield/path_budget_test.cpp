@@ -1,0 +1,239 @@
+// The budget of a path against the field's voxels and against closed forms.
+#include "emfield/path_budget.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "base/error.h"
+#include "base/units.h"
+#include "tests/emfield/random_profile.h"
+#include "tests/emfield/test_scenario.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using scenario::PropagationModel;
+using ::testing::HasSubstr;
+
+constexpr GeodeticPosition kSite{44.43, -71.47, 700};
+constexpr PropagationModel kModels[] = {PropagationModel::free_space,  PropagationModel::horizon,
+                                        PropagationModel::diffraction, PropagationModel::two_ray,
+                                        PropagationModel::itm,         PropagationModel::p528};
+
+std::shared_ptr<scenario::Scenario> whiteMountains(PropagationModel model) {
+  auto scenario = emptyScenario(FrameKind::altitude, 44.4, -71.5, {40e3, 40e3, 4000}, {50, 50, 40});
+  scenario::Emitter emitter = plainEmitter("site", 0);
+  emitter.propagation = model;
+  emitter.antenna = scenario::makeGaussian(20, 30, 20, -25);
+  addEmitter(*scenario, kSite, emitter);
+  scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
+  scenario->platforms[0].track[0].position.height_agl_m = 15;
+  scenario->terrain = scenario::TerrainSpec{};
+  return scenario;
+}
+
+/// The centre of a voxel as a path's end.
+PathEnd endAt(const volume::Grid& grid, int i, int j, int k) {
+  const GeoFrame frame(grid.frame);
+  const Vec3d center = grid.center_m(i, j, k);
+  return {frame.toGeodetic(center), frame.heightMsl_m(center)};
+}
+
+struct Compared {
+  int voxels = 0;
+  int other_shadow = 0;  ///< one of both in shadow
+  std::vector<double> errors_db;
+
+  double quantile(double part) {
+    std::sort(errors_db.begin(), errors_db.end());
+    return errors_db[static_cast<std::size_t>(part * static_cast<double>(errors_db.size() - 1))];
+  }
+};
+
+/// Budgets at random voxels above the ground against what the field holds there.
+Compared compareWithField(const std::shared_ptr<scenario::Scenario>& scenario,
+                          const scenario::TerrainPtr& terrain, int count) {
+  scenario->output.floor = -300;
+  const auto volume = solve(scenario, terrain);
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), 0);
+  const FanResolution resolution = fanResolution(volume->grid, terrain.get());
+  std::mt19937 random(11);
+  Compared compared;
+  while (compared.voxels < count) {
+    const Dims& dims = volume->grid.dims;
+    const int i = int(random() % unsigned(dims.x)), j = int(random() % unsigned(dims.y)),
+              k = int(random() % unsigned(dims.z));
+    const PathEnd end = endAt(volume->grid, i, j, k);
+    if (terrain &&
+        !(end.height_msl_m > terrain->heightMsl_m(end.position.latitude_deg, end.position.longitude_deg)))
+      continue;
+    ++compared.voxels;
+    const PathBudget budget =
+        pathBudget(snapshot, 0, end, scenario->emitters[0].propagation, terrain.get(), resolution);
+    const double value = budget.find("power_density_dbwm2")->value;
+    const double voxel = static_cast<double>(valueAt(*volume, i, j, k));
+    if (std::isinf(value) || voxel <= scenario->output.floor) {
+      compared.other_shadow += std::isinf(value) != (voxel <= scenario->output.floor);
+    } else {
+      compared.errors_db.push_back(std::abs(value - voxel));
+    }
+  }
+  return compared;
+}
+
+TEST(PathBudget, IsWhatTheFieldHoldsInFreeSpace) {
+  const auto scenario = whiteMountains(PropagationModel::free_space);
+  scenario->terrain.reset();
+  Compared compared = compareWithField(scenario, nullptr, 500);
+  EXPECT_EQ(compared.other_shadow, 0);
+  EXPECT_LT(compared.quantile(1), 2e-3);
+}
+
+TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverASmoothEarth) {
+  for (const PropagationModel model : kModels) {
+    SCOPED_TRACE(scenario::toString(model));
+    const auto scenario = whiteMountains(model);
+    scenario->terrain.reset();
+    scenario->atmosphere.rain_mm_h = 10;
+    scenario->atmosphere.gases = scenario::GasLosses::always;
+    Compared compared = compareWithField(scenario, nullptr, 200);
+    EXPECT_EQ(compared.other_shadow, 0);
+    // The field takes p528 from a table, and itm at some heights only.
+    const bool is_table = model == PropagationModel::p528 || model == PropagationModel::itm;
+    EXPECT_LT(compared.quantile(0.95), is_table ? 0.1 : 0.02);
+    EXPECT_LT(compared.quantile(1), is_table ? 0.5 : 0.02);
+  }
+}
+
+TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverRealTerrain) {
+  const scenario::TerrainPtr terrain = whiteMountainsTile();
+  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
+  for (const PropagationModel model : kModels) {
+    SCOPED_TRACE(scenario::toString(model));
+    Compared compared = compareWithField(whiteMountains(model), terrain, 200);
+    // The field's terrain stands on azimuths a post apart: what is left is the terrain between them.
+    const bool is_table = model == PropagationModel::p528 || model == PropagationModel::itm;
+    EXPECT_LE(compared.other_shadow, 2);
+    EXPECT_LT(compared.quantile(0.9), is_table ? 0.1 : 0.02);
+    EXPECT_LT(compared.quantile(0.97), is_table ? 1 : 0.2);
+  }
+}
+
+TEST(PathBudget, PartsAddUpToTheSums) {
+  auto scenario = whiteMountains(PropagationModel::diffraction);
+  scenario->terrain.reset();
+  scenario->receivers.emplace_back();
+  scenario->receivers.front().gain_dbi = 3;
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
+  const PathEnd end{{44.6, -71.2, 500}, 500};
+  for (const PropagationModel model : kModels) {
+    const PathBudget budget = pathBudget(snapshot, 0, end, model, nullptr, {100, 50});
+    const auto value = [&](const char* key) { return budget.find(key)->value; };
+    EXPECT_NEAR(value("eirp_dbw"),
+                value("transmitter_power_dbw") + value("transmit_losses_db") + value("antenna_gain_dbi") +
+                    value("antenna_pattern_db"),
+                1e-9);
+    EXPECT_NEAR(value("power_density_dbwm2"),
+                value("eirp_dbw") + value("spreading_dbm2") - budget.excess.loss_db, 1e-9);
+    EXPECT_NEAR(value("field_strength_dbuvm"), value("power_density_dbwm2") + 145.76, 0.01);
+    EXPECT_NEAR(value("received_power_dbm"),
+                30 + value("power_density_dbwm2") + value("isotropic_area_dbm2") +
+                    value("receiver_antenna_db") + value("polarization_db") + value("in_band_db"),
+                1e-9);
+    EXPECT_NEAR(value("received_power_dbm"), 30 + value("eirp_dbw") + 3 - value("transmission_loss_db"),
+                1e-6);
+  }
+}
+
+/// A wall of 100 m across flat ground, half way of 20 km; both ends at 50 m.
+PathProfile overAWall(double wall_m) {
+  PathProfile profile;
+  profile.station = makeStation({44, -71, 50}, 50, 1e6);  // flat
+  profile.begin.height_msl_m = profile.end.height_msl_m = 50;
+  profile.range_m = 20e3;
+  for (int i = 0; i <= 200; ++i) {
+    profile.ranges_m.push_back(100.0 * i);
+    profile.ground_msl_m.push_back(i == 100 ? static_cast<float>(wall_m) : 0.0f);
+    profile.ray_msl_m.push_back(50);
+  }
+  return profile;
+}
+
+TEST(PathObstacles, AWallIsTheOneThatDecides) {
+  const std::vector<PathObstacle> obstacles = pathObstacles(overAWall(150), 0.3);
+  ASSERT_EQ(obstacles.size(), 1u);
+  const PathObstacle& wall = obstacles.front();
+  EXPECT_EQ(wall.range_m, 10e3);
+  EXPECT_EQ(wall.clearance_m, -100);
+  EXPECT_NEAR(wall.fresnel_radius_m, std::sqrt(0.3 * 5e3), 1e-9);
+  EXPECT_NEAR(wall.nu, std::sqrt(2.0) * 100 / std::sqrt(0.3 * 5e3), 1e-9);
+  EXPECT_NEAR(wall.knife_edge_db, 6.9 + 20 * std::log10(2 * wall.nu), 0.5);
+  EXPECT_TRUE(wall.decides);
+  EXPECT_FALSE(wall.is_earth_bulge);
+}
+
+TEST(PathObstacles, OverFlatGroundTheNearestPlaceIsNamed) {
+  const std::vector<PathObstacle> obstacles = pathObstacles(overAWall(0), 0.3);
+  ASSERT_EQ(obstacles.size(), 1u);
+  EXPECT_GT(obstacles.front().clearance_m, 0);
+  EXPECT_TRUE(obstacles.front().decides);
+}
+
+TEST(PathObstacles, CrestsWithAValleyBetweenAreSeparate) {
+  PathProfile profile = overAWall(150);
+  profile.ground_msl_m[40] = 120;
+  profile.ground_msl_m[101] = 145;  // the same crest
+  const std::vector<PathObstacle> obstacles = pathObstacles(profile, 0.3);
+  ASSERT_EQ(obstacles.size(), 2u);
+  EXPECT_EQ(obstacles[0].range_m, 4e3);
+  EXPECT_FALSE(obstacles[0].decides);
+  EXPECT_TRUE(obstacles[1].decides);
+}
+
+TEST(PathBudget, VerdictNamesWhatDecides) {
+  auto scenario = whiteMountains(PropagationModel::diffraction);
+  scenario->terrain.reset();
+  scenario->emitters[0].antenna = scenario::makeIsotropic();
+  scenario->emitters[0].active_s = {{0, 5}};
+  const auto verdict = [&](const GeodeticPosition& at, double height_msl_m, double t_s) {
+    return pathBudget(scenario::snapshotAt(scenario, nullptr, t_s), 0, {at, height_msl_m},
+                      scenario->emitters[0].propagation, nullptr, {100, 50})
+        .verdict;
+  };
+  EXPECT_THAT(verdict({44.5, -71.4, 3000}, 3000, 0), ::testing::StartsWith("Clear: "));
+  EXPECT_THAT(verdict({45.4, -71.4, 10}, 10, 0),
+              ::testing::AllOf(::testing::StartsWith("Blocked: the earth's bulge at "),
+                               HasSubstr("above the ray"), HasSubstr("the path costs ")));
+  EXPECT_EQ(verdict({44.5, -71.4, 3000}, 3000, 7), "Silent: 'site' does not radiate at t = 7 s.");
+  scenario->emitters[0].propagation = PropagationModel::horizon;
+  EXPECT_THAT(verdict({45.4, -71.4, 10}, 10, 0), HasSubstr("the model knows no field behind it"));
+  scenario->emitters[0].antenna = scenario::makeGaussian(30, 3, 3, -40);
+  EXPECT_THAT(verdict({44.3, -71.47, 3000}, 3000, 0), HasSubstr("but the antenna points "));
+}
+
+TEST(PathBudget, RefusesPathsOverMissingTerrainAndOfNoLength) {
+  const scenario::TerrainPtr terrain = whiteMountainsTile();
+  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
+  const scenario::Snapshot snapshot =
+      scenario::snapshotAt(whiteMountains(PropagationModel::diffraction), terrain.get(), 0);
+  const auto refusal = [&](const PathEnd& end) -> std::string {
+    try {
+      pathBudget(snapshot, 0, end, PropagationModel::diffraction, terrain.get(), {100, 50});
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refusal({{46, -71.47, 2000}, 2000}), HasSubstr("terrain is missing on the path, "));
+  EXPECT_THAT(refusal({{kSite.latitude_deg, kSite.longitude_deg, 2000}, 2000}),
+              HasSubstr("km long over the ground"));
+}
+
+}  // namespace
+}  // namespace emscape::emfield
