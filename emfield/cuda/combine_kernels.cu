@@ -55,13 +55,20 @@ __device__ void fillLayers(const EmitterBeam& beam, std::size_t column, const fl
   }
 }
 
-/// A thread does kLayers layers of a column: its numbers are read once for all of them.
+/// A warp of a block goes over neighbouring columns, the next one over the layers above: they share the
+/// columns' numbers in the first-level cache. Few layers a thread keep the patterns' code short, too.
+constexpr int kWarp = 32;
+constexpr int kWarps = 8;
+
+/// A thread does kLayers layers of a column.
 template <int kChannels, int kLayers, bool kDominant>
-__global__ void __launch_bounds__(kThreads) combineKernel(const __grid_constant__ Launch<kChannels> launch) {
+__global__ void __launch_bounds__(kWarp* kWarps)
+    combineKernel(const __grid_constant__ Launch<kChannels> launch) {
   const int columns = launch.dims.x * launch.dims.y;
-  const int column = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  const int column = static_cast<int>(blockIdx.x) * kWarp + static_cast<int>(threadIdx.x);
   if (column >= columns) return;
-  const int begin = static_cast<int>(blockIdx.y) * kLayers;
+  const int begin = (static_cast<int>(blockIdx.y) * kWarps + static_cast<int>(threadIdx.y)) * kLayers;
+  if (begin >= launch.dims.z) return;
   if (launch.first_valid_k != nullptr && launch.first_valid_k[column] >= begin + kLayers) return;
 
   float t_m[kLayers], power_density_wm2[kLayers], value[kChannels][kLayers];
@@ -148,10 +155,11 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
     launch.accumulators[c] = task.accumulators[channels[c]];
     launch.initial[c] = task.initial[channels[c]];
   }
-  const dim3 blocks(static_cast<unsigned>((task.dims.x * task.dims.y + kThreads - 1) / kThreads),
-                    static_cast<unsigned>((task.dims.z + kLayers - 1) / kLayers));
+  constexpr int kBlockLayers = kLayers * kWarps;
+  const dim3 blocks(static_cast<unsigned>((task.dims.x * task.dims.y + kWarp - 1) / kWarp),
+                    static_cast<unsigned>((task.dims.z + kBlockLayers - 1) / kBlockLayers));
   const auto run = [&] {
-    combineKernel<kChannels, kLayers, kDominant><<<blocks, kThreads, 0, stream>>>(launch);
+    combineKernel<kChannels, kLayers, kDominant><<<blocks, dim3(kWarp, kWarps), 0, stream>>>(launch);
     checkLaunch("combine");
     launch.keep = true;
     launch.member_count = 0;
@@ -222,7 +230,7 @@ void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaSt
   for (int c = 0; c < static_cast<int>(task.accumulators.size()); ++c) {
     if (task.accumulators[c].value == nullptr) continue;
     if (task.reductions[c] == Reduction::dominant) {
-      combineChannels<1, 8, true>(task, first_valid_k, &c, stream);
+      combineChannels<1, 2, true>(task, first_valid_k, &c, stream);
     } else {
       channels.push_back(c);
     }
@@ -231,16 +239,16 @@ void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaSt
     const int* first = channels.data() + begin;
     switch (std::min<std::size_t>(kMostChannels, channels.size() - begin)) {
       case 1:
-        combineChannels<1, 8, false>(task, first_valid_k, first, stream);
+        combineChannels<1, 2, false>(task, first_valid_k, first, stream);
         break;
       case 2:
-        combineChannels<2, 8, false>(task, first_valid_k, first, stream);
+        combineChannels<2, 2, false>(task, first_valid_k, first, stream);
         break;
       case 3:
-        combineChannels<3, 4, false>(task, first_valid_k, first, stream);
+        combineChannels<3, 2, false>(task, first_valid_k, first, stream);
         break;
       default:
-        combineChannels<4, 4, false>(task, first_valid_k, first, stream);
+        combineChannels<4, 2, false>(task, first_valid_k, first, stream);
     }
   }
 }

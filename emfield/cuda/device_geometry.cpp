@@ -54,6 +54,7 @@ DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots)
   first_valid_k_.upload(setup.columns.first_valid_k);
   columns_.columns = grid_columns_.data();
   columns_.count = static_cast<int>(setup.columns.columns.size());
+  columns_.row = setup.columns.dims.x;
   columns_.t_m = t_m_.data();
   columns_.layers = static_cast<int>(setup.columns.t_m.size());
   columns_.middle_m = setup.columns.middle_m();
@@ -327,8 +328,7 @@ std::size_t DeviceGeometry::bytes() const {
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(t_m_) + bytesOf(first_valid_k_) + bytesOf(tasks_) +
                       bytesOf(pieces_) + bytesOf(ranges_m_) + bytesOf(used_ranges_) + bytesOf(places_) +
                       bytesOf(terms_) + bytesOf(samples_) + bytesOf(diffraction_) + bytesOf(blocks_) +
-                      bytesOf(sums_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
-                      bytesOf(model_tables_);
+                      bytesOf(sums_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) + bytesOf(model_tables_);
   for (const Slot& slot : slots_) bytes += bytesOf(slot.numbers) + bytesOf(slot.excess);
   return bytes + (setup_.terrain == nullptr ? 0 : postBytes(setup_.terrain->view()));
 }

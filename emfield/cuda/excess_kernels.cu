@@ -148,12 +148,19 @@ __device__ void markUnknown(const ExcessOutputs& to, int column) {
   atomicAdd(&to.counts->unknown_columns, 1);
 }
 
-__global__ void __launch_bounds__(kThreads)
+/// Columns of a block, and of each of its warps: a square has more in common than a row.
+constexpr int kTileX = 16, kTileY = 8, kWarpX = 8, kWarpY = 4;
+
+__global__ void __launch_bounds__(kTileX* kTileY, 5)
     diffractionKernel(const DiffractionTask* tasks, DeviceColumns columns, const float* ground_msl_m,
                       const std::uint16_t* first_valid_k) {
-  const int c = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (c >= columns.count) return;
-  const DiffractionTask& task = tasks[blockIdx.y];
+  const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
+  constexpr int kWarpsX = kTileX / kWarpX;
+  const int x = static_cast<int>(blockIdx.x) * kTileX + warp % kWarpsX * kWarpX + lane % kWarpX;
+  const int y = static_cast<int>(blockIdx.y) * kTileY + warp / kWarpsX * kWarpY + lane / kWarpX;
+  if (x >= columns.row || y * columns.row >= columns.count) return;
+  const int c = y * columns.row + x;
+  const DiffractionTask& task = tasks[blockIdx.z];
   const FanPlace place = task.piece.emitter.places[c];
   const int interval = static_cast<int>(place.azimuth_index) - task.piece.first_interval;
   if (interval < 0 || interval >= task.piece.interval_count) return;
@@ -246,8 +253,10 @@ void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, co
   const dim3 warps(static_cast<unsigned>((extent.azimuths + kWarp - 1) / kWarp), count);
   sumsKernel<<<warps, kWarp, 0, stream>>>(tasks);
   checkLaunch("terrain sums");
-  diffractionKernel<<<dim3(blocksFor(columns.count), count), kThreads, 0, stream>>>(
-      tasks, columns, ground_msl_m, first_valid_k);
+  const int rows = columns.count / columns.row;
+  const dim3 tiles(static_cast<unsigned>((columns.row + kTileX - 1) / kTileX),
+                   static_cast<unsigned>((rows + kTileY - 1) / kTileY), count);
+  diffractionKernel<<<tiles, kTileX * kTileY, 0, stream>>>(tasks, columns, ground_msl_m, first_valid_k);
   checkLaunch("diffraction");
 }
 

@@ -15,6 +15,7 @@ namespace emscape::emfield::cuda {
 struct DeviceColumns {
   const GridColumn* columns = nullptr;
   int count = 0;
+  int row = 0;  ///< columns along x
   const float* t_m = nullptr;
   int layers = 0;
   double middle_m = 0;

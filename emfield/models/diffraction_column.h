@@ -60,6 +60,7 @@ class DiffractionColumn {
     Real rx_plain_slope;  ///< from the receiver, without the bulge
   };
 
+  static EMSCAPE_HD int larger(int a, int b) { return a > b ? a : b; }
   EMSCAPE_HD Real rangeOf(int i) const { return Real(posts_.range_m(i)); }
   EMSCAPE_HD Real heightOf(int i) const { return Real(posts_.height_msl_m(i)) - base_; }
   EMSCAPE_HD Block blockAt(int b) const;
@@ -85,8 +86,9 @@ class DiffractionColumn {
   Real steepest_ = -Real(HUGE_VAL);  ///< slope from the transmitter to an obstacle less its bulge d^2 / (2 a)
   Real steepest_plain_ = -Real(HUGE_VAL);        ///< the same without the bulge
   int steepest_at_ = 0, steepest_plain_at_ = 0;  ///< 0: there is no obstacle
-  /// Blocks beyond which nothing matters to the receivers still to come.
-  int last_slope_, last_plain_, last_nu_;
+  /// Posts beyond which nothing matters to the receivers still to come, as the last receiver's largest values
+  /// are there; 0: nothing matters. What is there is looked at first, so that much else can be passed over.
+  int slope_at_, plain_at_, highest_at_, nu_at_;
   int smooth_clear_ = 0;  ///< see smoothEarthNu; 0: not looked for yet
 };
 
@@ -100,7 +102,7 @@ EMSCAPE_HD DiffractionColumn<Real, Posts>::DiffractionColumn(const DiffractionMo
       distance_m_(Real(posts.distance_m())),
       bulge_(model.half_curvature * distance_m_) {
   const int last_block = (posts.count() - 1) / kDiffractionBlock;
-  last_slope_ = last_plain_ = last_nu_ = last_block;
+  slope_at_ = plain_at_ = highest_at_ = nu_at_ = posts.count() - 1;
   const double base = double(posts.height_msl_m(0));
   TerrainSums sums = posts.sumsBefore(last_block);
   int i = last_block * kDiffractionBlock;
@@ -128,14 +130,15 @@ EMSCAPE_HD typename DiffractionColumn<Real, Posts>::Block DiffractionColumn<Real
   const int begin = b * kDiffractionBlock, end = begin + kDiffractionBlock;
   const int first = begin > 0 ? begin : 1;
   const int last = end < posts_.count() ? end - 1 : posts_.count() - 1;
-  return {first, last, first <= last ? rangeOf(first) : 0, first <= last ? rangeOf(last) : 0};
+  return {first, last, rangeOf(first), rangeOf(last)};
 }
 
 template <class Real, class Posts>
 EMSCAPE_HD void DiffractionColumn<Real, Posts>::findSteepest() {
-  for (int b = 0; b <= last_slope_; ++b) {
+  if (posts_.count() == 1) return;
+  const int last_block = (posts_.count() - 1) / kDiffractionBlock;
+  for (int b = 0; b <= last_block; ++b) {
     const Block block = blockAt(b);
-    if (block.first > block.last) break;
     const Real above = Real(posts_.highest_msl_m(b)) - base_ - tx_;
     const Real lowered = Real(posts_.lowered_msl_m(b)) - base_ - tx_;
     const Real most_plain = above / (above > 0 ? block.first_m : block.last_m);
@@ -173,17 +176,26 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findRxSlopes(Found (&found)[kRec
   const Real d = distance_m_, k = model_.half_curvature;
   Real rx_m[kReceivers], slope[kReceivers];
   EMSCAPE_UNROLL
-  for (int j = 0; j < kReceivers; ++j) rx_m[j] = found[j].rx_m;
-  const auto slopeTo = [&](int i, int j) {
-    const Real range = rangeOf(i);
-    return (heightOf(i) - rx_m[j]) / (d - range) + k * range;
+  for (int j = 0; j < kReceivers; ++j) {
+    rx_m[j] = found[j].rx_m;
+    slope[j] = -Real(HUGE_VAL);
+  }
+  const int last_block = slope_at_ / kDiffractionBlock;
+  const auto look = [&](int i) {
+    const Real range = rangeOf(i), height = heightOf(i), inverse = 1 / (d - range), bend = k * range;
+    const Real of_last = slope[kReceivers - 1];
+    EMSCAPE_UNROLL
+    for (int j = 0; j < kReceivers; ++j) {
+      const Real here = (height - rx_m[j]) * inverse + bend;
+      slope[j] = here > slope[j] ? here : slope[j];
+    }
+    if (slope[kReceivers - 1] > of_last) slope_at_ = i;
   };
-  EMSCAPE_UNROLL
-  for (int j = 0; j < kReceivers; ++j) slope[j] = slopeTo(steepest_at_, j);
-  int contact = steepest_at_ / kDiffractionBlock;  // of the last receiver
-  for (int b = last_slope_; b >= 0; --b) {
+  const int before = slope_at_;
+  look(steepest_at_);
+  look(before);
+  for (int b = last_block; b >= 0; --b) {
     const Block block = blockAt(b);
-    if (block.first > block.last) break;
     const Real lowered = Real(posts_.lowered_msl_m(b)) - base_ + bulge_ * d;
     const Real to_first = 1 / (d - block.first_m), to_last = 1 / (d - block.last_m);
     bool matters = false;
@@ -193,18 +205,8 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findRxSlopes(Found (&found)[kRec
       matters |= above * (above > 0 ? to_last : to_first) - bulge_ > slope[j];
     }
     if (!matters) continue;
-    const Real of_last = slope[kReceivers - 1];
-    for (int i = block.first; i <= block.last; ++i) {
-      const Real range = rangeOf(i), height = heightOf(i), inverse = 1 / (d - range), bend = k * range;
-      EMSCAPE_UNROLL
-      for (int j = 0; j < kReceivers; ++j) {
-        const Real here = (height - rx_m[j]) * inverse + bend;
-        slope[j] = here > slope[j] ? here : slope[j];
-      }
-    }
-    if (slope[kReceivers - 1] > of_last) contact = b;
+    for (int i = block.last; i >= block.first; --i) look(i);
   }
-  last_slope_ = contact;
   EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) found[j].rx_slope = slope[j];
 }
@@ -215,19 +217,30 @@ template <int kReceivers>
 EMSCAPE_HD void DiffractionColumn<Real, Posts>::findPlain(Found (&found)[kReceivers]) {
   const Real d = distance_m_;
   Real rx_m[kReceivers], slope[kReceivers], highest_m[kReceivers], rx_slope[kReceivers];
-  const Real first_range = rangeOf(steepest_plain_at_), first_height = heightOf(steepest_plain_at_);
   EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) {
     rx_m[j] = found[j].rx_m;
     slope[j] = found[j].slope;
-    highest_m[j] = first_height - tx_ - slope[j] * first_range;
-    rx_slope[j] = (first_height - rx_m[j]) / (d - first_range);
+    highest_m[j] = rx_slope[j] = -Real(HUGE_VAL);
   }
-  int contact = steepest_plain_at_ / kDiffractionBlock;
-  int highest_at = contact;
-  for (int b = last_plain_; b >= 0; --b) {
+  const int slope_before = plain_at_, highest_before = highest_at_;
+  const auto look = [&](int i) {
+    const Real range = rangeOf(i), height = heightOf(i), inverse = 1 / (d - range);
+    const Real of_last = rx_slope[kReceivers - 1], highest_of_last = highest_m[kReceivers - 1];
+    EMSCAPE_UNROLL
+    for (int j = 0; j < kReceivers; ++j) {
+      const Real here = (height - rx_m[j]) * inverse, above = height - tx_ - slope[j] * range;
+      rx_slope[j] = here > rx_slope[j] ? here : rx_slope[j];
+      highest_m[j] = above > highest_m[j] ? above : highest_m[j];
+    }
+    if (rx_slope[kReceivers - 1] > of_last) plain_at_ = i;
+    if (highest_m[kReceivers - 1] > highest_of_last) highest_at_ = i;
+  };
+  look(steepest_plain_at_);
+  look(slope_before);
+  look(highest_before);
+  for (int b = larger(slope_before, highest_before) / kDiffractionBlock; b >= 0; --b) {
     const Block block = blockAt(b);
-    if (block.first > block.last) break;
     const Real highest = Real(posts_.highest_msl_m(b)) - base_;
     const Real to_first = 1 / (d - block.first_m), to_last = 1 / (d - block.last_m);
     bool matters = false;
@@ -238,20 +251,8 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findPlain(Found (&found)[kReceiv
       matters |= highest - tx_ - slope[j] * (slope[j] > 0 ? block.first_m : block.last_m) > highest_m[j];
     }
     if (!matters) continue;
-    const Real of_last = rx_slope[kReceivers - 1], highest_of_last = highest_m[kReceivers - 1];
-    for (int i = block.first; i <= block.last; ++i) {
-      const Real range = rangeOf(i), height = heightOf(i), inverse = 1 / (d - range);
-      EMSCAPE_UNROLL
-      for (int j = 0; j < kReceivers; ++j) {
-        const Real here = (height - rx_m[j]) * inverse, above = height - tx_ - slope[j] * range;
-        rx_slope[j] = here > rx_slope[j] ? here : rx_slope[j];
-        highest_m[j] = above > highest_m[j] ? above : highest_m[j];
-      }
-    }
-    if (rx_slope[kReceivers - 1] > of_last) contact = b;
-    if (highest_m[kReceivers - 1] > highest_of_last) highest_at = b;
+    for (int i = block.last; i >= block.first; --i) look(i);
   }
-  last_plain_ = contact > highest_at ? contact : highest_at;
   EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) {
     found[j].highest_m = highest_m[j];
@@ -271,10 +272,26 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findNu(Found (&found)[kReceivers
     slope[j] = found[j].slope;
     nu[j] = kKnifeEdgeClear<Real>;
   }
-  int contact = -1;
-  for (int b = last_nu_; b >= 0; --b) {
+  const int before = nu_at_;
+  nu_at_ = 0;
+  const auto look = [&](int i) {
+    const Real range = rangeOf(i), beyond = d - range;
+    const Real factor = std::sqrt(factor2 / (range * beyond));
+    const Real above = heightOf(i) - tx_ + k * range * beyond;
+    const Real of_last = nu[kReceivers - 1];
+    EMSCAPE_UNROLL
+    for (int j = 0; j < kReceivers; ++j) {
+      const Real here = (above - slope[j] * range) * factor;
+      nu[j] = here > nu[j] ? here : nu[j];
+    }
+    if (nu[kReceivers - 1] > of_last) nu_at_ = i;
+  };
+  if (before > 0) {
+    look(steepest_at_);
+    look(before);
+  }
+  for (int b = before > 0 ? before / kDiffractionBlock : -1; b >= 0; --b) {
     const Block block = blockAt(b);
-    if (block.first > block.last) break;
     const Real lowered = Real(posts_.lowered_msl_m(b)) - base_ - tx_;
     // where the first Fresnel zone is widest
     const Real half = d / 2;
@@ -288,20 +305,8 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findNu(Found (&found)[kReceivers
       matters |= !isBlocked(slope[j]) && (above >= 0 || above * above * factor2 < nu[j] * nu[j] * width2);
     }
     if (!matters) continue;
-    const Real of_last = nu[kReceivers - 1];
-    for (int i = block.first; i <= block.last; ++i) {
-      const Real range = rangeOf(i), beyond = d - range;
-      const Real factor = std::sqrt(factor2 / (range * beyond));
-      const Real above = heightOf(i) - tx_ + k * range * beyond;
-      EMSCAPE_UNROLL
-      for (int j = 0; j < kReceivers; ++j) {
-        const Real here = (above - slope[j] * range) * factor;
-        nu[j] = here > nu[j] ? here : nu[j];
-      }
-    }
-    if (nu[kReceivers - 1] > of_last) contact = b;
+    for (int i = block.last; i >= block.first; --i) look(i);
   }
-  last_nu_ = contact;
   EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) found[j].nu = nu[j];
 }

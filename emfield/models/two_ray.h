@@ -155,8 +155,8 @@ EMSCAPE_HD ReflectedPath<Real> reflectedPath(Real earth_radius_m, Real distance_
   };
   // height over the plane that touches the earth at the point
   const auto overPlane = [&](Real range_m, Real height_m) {
-    const Real half = std::sin(range_m / (2 * earth_radius_m));
-    return height_m - 2 * (earth_radius_m + height_m) * half * half;
+    const Real half_sine = std::sin(range_m / (2 * earth_radius_m));
+    return height_m - 2 * (earth_radius_m + height_m) * half_sine * half_sine;
   };
   const Real r1 = length(d1, 0, low), r2 = length(d2, 0, high), r = length(distance_m, low, high);
   // The point is the reflection's to a part of height over radius: take the mean of the two angles.
