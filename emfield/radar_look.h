@@ -36,11 +36,11 @@ struct Aim {
 };
 
 /// The aim at a target, or as near to it as the look lets the beam come. Without branches, for SIMD.
-/// @param target  direction in the look's frame, of any length above 0
+/// @param target  direction in the look's frame, of any length; 0: the aim is ahead
 EMSCAPE_HD inline Aim aimAt(const RadarLook& look, const Vec3f& target) {
   const bool turns = look.kind == LookKind::turned, steers = look.kind == LookKind::steered;
   const float level = std::sqrt(target.x * target.x + target.y * target.y);
-  const float inverse_length = 1 / std::sqrt(dot(target, target));
+  const float inverse_length = 1 / std::sqrt(dot(target, target) + 1e-12f);
   const float cos_azimuth = level > 0 ? target.x / level : 1.0f;
   const float sin_azimuth = level > 0 ? target.y / level : 0.0f;
   const float sin_elevation = target.z * inverse_length, cos_elevation = level * inverse_length;

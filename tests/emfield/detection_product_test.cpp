@@ -37,6 +37,7 @@ TEST_F(DetectionProduct, IsTheExactProbabilityOfTheRadarEquation) {
     for (double range_m = 1e3; range_m <= kFarthest_m; range_m += 1e3) {
       EXPECT_NEAR(valueEast(*volume, range_m), exact(radar, range_m), 1.2e-4) << swerling << ", " << range_m;
     }
+    EXPECT_GT(valueEast(*volume, 0), 0.99) << "finite at the radar itself";
   }
 }
 

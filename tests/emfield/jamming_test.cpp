@@ -1,7 +1,9 @@
 // Jamming through the whole pipeline against closed forms: the values are read from voxels.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/emfield/made_terrain.h"
 #include "tests/emfield/radar_duel.h"
 
 namespace emscape::emfield {
@@ -107,6 +109,25 @@ TEST(JammerToSignal, TakesTheHorizonForTheJammerToo) {
   EXPECT_EQ(valueAt(*solve(scenario), 3, 3, 1), -300);
   scenario->platforms.back().track[0].position.height_ellipsoid_m = 3000;
   EXPECT_GT(valueAt(*solve(scenario), 3, 3, 1), -50);
+}
+
+TEST(JammerToSignal, CountsAPathAcrossMissingTerrainAsFreeWhereThatIsAllowed) {
+  const auto terrain = std::make_shared<const MadeTerrain>(44.5, -71.5, 1.0, 0.05);
+  scenario::Emitter jammer = jammerOf(100);
+  auto scenario = emptyScenario(FrameKind::altitude, 44.5, -71.5, {10e3, 10e3, 4000}, {10, 10, 4});
+  addEmitter(*scenario, {44.5, -71.5, 2500}, trackingRadar());
+  addEmitter(*scenario, {44.97, -71.03, 2500}, jammer);  // behind the hole
+  scenario->output.quantities = {"jammer_to_signal_db"};
+  FieldOptions options;
+  options.allow_missing_terrain = true;
+  const float free = valueAt(*solve(scenario, terrain, options), 2, 3, 3);
+  scenario->emitters[1].propagation = scenario::PropagationModel::horizon;
+  FieldSolver solver(scenario, terrain, options);
+  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
+  EXPECT_NEAR(valueAt(*solver.volumes()[0], 2, 3, 3), free, 0.02);
+  EXPECT_THAT(solver.warnings(),
+              ::testing::Contains(::testing::AllOf(::testing::HasSubstr("jammer 'jammer' to radar 'radar': "),
+                                                   ::testing::HasSubstr("counted as a free path"))));
 }
 
 TEST(JammerToSignal, IsThatOfTheRadarThatBearsItBest) {
