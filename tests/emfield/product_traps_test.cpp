@@ -88,9 +88,10 @@ TEST(Traps, RadarCountsThePathTwiceAndJammingOnce) {
               2 * 10 * std::log10(0.5), 1e-3);
 }
 
-TEST(Traps, GasesAndRainCountTwiceForARadar) {
+TEST(Traps, GasesAndRainCountTwiceForAnEchoAndOnceForAJammer) {
   scenario::Emitter radar = trackingRadar(), jammer = jammerOf(100);
   radar.frequency_hz = jammer.frequency_hz = 10e9;
+  jammer.polarization = radar.polarization;  // rain does not attenuate all alike
   radar.scan.azimuth_deg = 90;
   auto scenario = duel(radar, jammer, 0, 30e3);
   const auto snr = [&] { return east(scenario, "snr_db", 20e3); };
@@ -100,11 +101,14 @@ TEST(Traps, GasesAndRainCountTwiceForARadar) {
     scenario->output.combine = scenario::CombineMode::sum;
     return value;
   };
-  const double dry_snr = snr(), dry_density = density();
+  const auto ratio = [&] { return east(scenario, "jammer_to_signal_db", 20e3); };
+  const double dry_snr = snr(), dry_density = density(), dry_ratio = ratio();
   scenario->atmosphere.rain_mm_h = 10;
   const double one_way_db = dry_density - density();
   ASSERT_GT(one_way_db, 1);
   EXPECT_NEAR(dry_snr - snr(), 2 * one_way_db, 0.02);
+  // The jammer's path is half as long again.
+  EXPECT_NEAR(ratio() - dry_ratio, 2 * one_way_db - 1.5 * one_way_db, 0.05);
 }
 
 TEST(Traps, InterceptIsOneWay) {
