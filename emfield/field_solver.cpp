@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "base/units.h"
+#include "emfield/excess/excess_model.h"
 #include "emfield/field_solver_impl.h"
 #include "emfield/model_check.h"
 
@@ -223,7 +224,12 @@ MemoryUse FieldSolver::memoryUse() const {
   const Impl& impl = *impl_;
   MemoryUse use;
   use.bytes_per_column_and_emitter = EmitterGeometry::kBytesPerColumn;
-  for (const EmitterCache& emitter : impl.emitters) use.uncached_emitters += emitter.is_cached ? 0 : 1;
+  for (std::size_t e = 0; e < impl.emitters.size(); ++e) {
+    use.uncached_emitters += impl.emitters[e].is_cached ? 0 : 1;
+    if (!hasExcess(*impl.setup.scenario, impl.setup.scenario->emitters[e])) continue;
+    use.bytes_per_voxel_and_emitter +=
+        static_cast<double>(sizeof(ExcessCode)) / static_cast<double>(impl.emitters.size());
+  }
   impl.engine->addMemory(use);
   use.total_bytes += impl.setup.columns.columns.size() * sizeof(GridColumn);
   return use;

@@ -77,7 +77,14 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std
     checkSteps(scenario, terrain.get(), problems);
     emfield::FieldOptions options;
     options.allow_missing_terrain = true;  // told above
-    emfield::FieldSolver(scenario, terrain, options);
+    const emfield::FieldSolver solver(scenario, terrain, options);
+    for (const std::string& warning : solver.warnings()) {
+      Problem problem;
+      problem.place.file = scenario->file;
+      problem.severity = Severity::warning;
+      problem.message = warning;
+      problems.push_back(problem);
+    }
   } catch (const Error& error) {
     problems.push_back(problemOf(error, scenario->file));
   }

@@ -208,7 +208,11 @@ bool EmitterExcess::needsTerrain() const {
 std::vector<std::string> remarkMessages(const Emitter& emitter, unsigned remarks) {
   std::vector<std::string> messages;
   if (emitter.propagation != PropagationModel::itm) return messages;
-  messages = itmMessages(remarks & ~(kMissingTerrain | kItmRefused));
+  std::string all;
+  for (const std::string& message : itmMessages(remarks & ~(kMissingTerrain | kItmRefused))) {
+    all += (all.empty() ? "on some paths: " : "; ") + message;
+  }
+  if (!all.empty()) messages.push_back(all);
   if ((remarks & kItmRefused) != 0) {
     messages.push_back(
         "paths refused, on which 'diffraction' stands instead: the refractivity at the surface "

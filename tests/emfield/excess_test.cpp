@@ -113,6 +113,10 @@ TEST(Excess, TakesMemoryOnlyWhereAModelHasOne) {
   }
   scenario->emitters[0].propagation = PropagationModel::diffraction;
   EXPECT_EQ(bytesOf(), columns * (40 + 2 * 32));
+  addEmitter(*scenario, {52, 5, 100}, plainEmitter("free", 0));
+  FieldSolver solver(scenario, nullptr, {});
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  EXPECT_EQ(solver.memoryUse().bytes_per_voxel_and_emitter, 1) << "one of two";
 }
 
 TEST(Excess, AnEmitterBeyondTheMemoryBoundHasTheSameField) {

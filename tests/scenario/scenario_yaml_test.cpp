@@ -79,6 +79,47 @@ TEST_F(ScenarioYaml, ReadsEverySection) {
   EXPECT_EQ(scenario->output.quantities.at(2), "snr_db");
 }
 
+TEST_F(ScenarioYaml, ReadsWhatModelsAreTold) {
+  const std::string model = "    propagation: free_space\n";
+  ASSERT_NE(valid_.find(model), std::string::npos);
+  auto scenario = load(valid_);
+  EXPECT_EQ(scenario->emitters[1].propagation, PropagationModel::diffraction) << "by default";
+  EXPECT_EQ(scenario->emitters[1].diffraction.method, DiffractionMethod::delta_bullington);
+  EXPECT_EQ(scenario->atmosphere.gases, GasLosses::automatic);
+  EXPECT_EQ(scenario->ground.kind, GroundKind::average_ground);
+  EXPECT_FALSE(scenario->ground.surface_msl_m);
+
+  const std::string text = replaced(valid_, "atmosphere: {k_factor: 1.3333, rain_mm_h: 2}",
+                                    "atmosphere: {rain_mm_h: 2, rain_height_m: 3100, gases: never, "
+                                    "climate: desert, sea_level_refractivity: 280}\n"
+                                    "ground: {kind: sea, roughness_m: 0.3, surface_msl_m: 2}");
+  scenario = load(replaced(text, model,
+                           "    propagation: itm\n"
+                           "    itm: {form: area, time_percent: 95, service: broadcast, irregularity_m: 30}\n"
+                           "    diffraction: {method: deygout}\n"));
+  EXPECT_EQ(scenario->atmosphere.rain_height_m, 3100);
+  EXPECT_EQ(scenario->atmosphere.gases, GasLosses::never);
+  EXPECT_EQ(scenario->atmosphere.climate, RadioClimate::desert);
+  EXPECT_EQ(scenario->atmosphere.sea_level_refractivity, 280);
+  EXPECT_EQ(scenario->ground.kind, GroundKind::sea);
+  EXPECT_EQ(scenario->ground.roughness_m, 0.3);
+  EXPECT_EQ(scenario->ground.surface_msl_m, 2);
+  const Emitter& jammer = scenario->emitters[3];
+  EXPECT_EQ(jammer.propagation, PropagationModel::itm);
+  EXPECT_EQ(jammer.itm.form, ItmForm::area);
+  EXPECT_EQ(jammer.itm.time_percent, 95);
+  EXPECT_EQ(jammer.itm.service, ItmService::broadcast);
+  EXPECT_EQ(jammer.itm.irregularity_m, 30);
+  EXPECT_EQ(jammer.diffraction.method, DiffractionMethod::deygout);
+  EXPECT_GT(jammer.itm.place.line, jammer.place.line);
+
+  scenario = load(replaced(valid_, model,
+                           "    propagation: two_ray\n"
+                           "    two_ray: {sum: envelope, roughness_model: ament}\n"));
+  EXPECT_EQ(scenario->emitters[3].two_ray.sum, TwoRaySum::envelope);
+  EXPECT_EQ(scenario->emitters[3].two_ray.roughness_model, RoughnessModel::ament);
+}
+
 TEST_F(ScenarioYaml, GivesNoProblemForAValidScenario) {
   EXPECT_TRUE(parseScenario(folder_.write("scenario.yaml", valid_)).problems.empty());
 }

@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+"""Draws the pictures of models.md: a vertical slice of each scenario in scenarios/models.
+
+    docs/make_models.py [EMSCAPE] [NAME...]      writes docs/images/model_NAME.png; by default all
+"""
+
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# Name: colours (dBW/m2). The slices lie east to west; the camera looks north.
+PICTURES = {
+    "horizon": "-130:-50",
+    "diffraction": "-130:-50",
+    "deygout": "-130:-50",
+    "itm": "-130:-50",
+    "two_ray": "-105:-65",
+    "p528": "-130:-70",
+    "gases": "-160:-60",
+    "rain": "-140:-60",
+}
+
+
+def draw(emscape, name, colours):
+    picture = ROOT / "docs" / "images" / f"model_{name}.png"
+    with tempfile.TemporaryDirectory() as folder:
+        full = pathlib.Path(folder) / "full.png"
+        subprocess.run(
+            [emscape, "render", ROOT / "scenarios" / "models" / f"{name}.yaml", "-o", full, "--quiet",
+             "--backend", "cpu", "--size", "640x280", "--mode", "mip", f"--range={colours}", "--theme", "light",
+             "--terrain", "off", "--transfer", ROOT / "scenarios" / "transfer" / "slice_viridis.json", "--camera",
+             "orbit:azimuth_deg=180,elevation_deg=0,distance=1.3,fov_deg=20,projection=orthographic"],
+            check=True)
+        # 96 colours are enough, and take a quarter of the space.
+        subprocess.run(
+            ["ffmpeg", "-loglevel", "error", "-y", "-i", full, "-vf",
+             "split[a][b];[a]palettegen=max_colors=96[p];[b][p]paletteuse=dither=none", picture],
+            check=True)
+    print(f"{picture.relative_to(ROOT)}: {picture.stat().st_size / 1024:.1f} KiB")
+
+
+def main():
+    emscape = sys.argv[1] if len(sys.argv) > 1 else str(ROOT / "build" / "release" / "bin" / "emscape")
+    for name in sys.argv[2:] or PICTURES:
+        draw(emscape, name, PICTURES[name])
+
+
+if __name__ == "__main__":
+    main()
