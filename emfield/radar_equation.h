@@ -61,7 +61,7 @@ EMSCAPE_HD inline double echoPower_w(const RadarLink& radar, double rcs_m2, doub
 /// Jamming power (W) in the radar's band, at its receiver:
 ///   J = EIRP Gr lambda^2 / ((4 pi R)^2 L A) b
 /// with b the part of the jammer's band within the radar's: Br / Bj for a wider one in tune.
-/// @see Skolnik, Radar Handbook, 3rd ed., section 24.3; D. L. Adamy, EW 101, 2001, chapter 9
+/// @see Skolnik, Radar Handbook, 3rd ed., chapter 24; D. L. Adamy, EW 101, 2001, chapter 9
 EMSCAPE_HD inline double jammingPower_w(const RadarLink& radar, const JammerLink& jammer, double range_m,
                                         double excess_db = 0) {
   const double spread = wavelength_m(radar.frequency_hz) / (4 * kPi * range_m);

@@ -21,7 +21,8 @@ const char* toString(Polarization polarization);
 
 /// How far (dB) an antenna keeps the orthogonal polarisation down unless a receiver says otherwise: what
 /// antennas of one nominal polarisation reach off their axis.
-/// @see D. L. Adamy, EW 101, 2001, section 3.3: 25 dB between orthogonal linear, and between circular senses
+/// @see D. L. Adamy, EW 101, 2001, chapter 3: about 25 dB between orthogonal linear, and between circular
+/// senses
 constexpr double kCrossPolarIsolation_db = 25;
 
 /// Part of the power (0..1) that passes between two polarisations: |<e_t, e_r>|^2, at least what a real
@@ -62,8 +63,8 @@ struct ReceiverProfile {
   double gain_dbi = 0;
   double losses_db = 0;
   std::optional<Polarization> polarization;  ///< none: matched to every emitter
-  double center_frequency_hz = 0;  ///< 0: tuned to every emitter
-  double bandwidth_hz = 0;         ///< 0: as wide as the emitter's signal
+  double center_frequency_hz = 0;            ///< 0: tuned to every emitter
+  double bandwidth_hz = 0;                   ///< 0: as wide as the emitter's signal
   double cross_polar_isolation_db = kCrossPolarIsolation_db;
 };
 

@@ -32,7 +32,8 @@ TEST(JammerToSignal, OfAStandOffJammerGrowsWithTheFourthPowerOfRange) {
 }
 
 TEST(JammerToSignal, IsAdamysAndTheNavysDecibelForm) {
-  // D. L. Adamy, EW 101, 2001, chapter 9, and NAWCWD TP 8347, section 4-7, with ERP in dBm, ranges in km:
+  // D. L. Adamy, EW 101, 2001, chapter 9, and NAWCWD TP 8347, sections 4-7 and 4-9, with ERP in dBm, ranges
+  // in km:
   //   self-protection J/S = 71 + ERPj - ERPs + 20 log R - 10 log RCS
   //   stand-off       J/S = 71 + ERPj - ERPs + 40 log R - 20 log Rj + Gs - Gm - 10 log RCS
   // 71 rounds 10 log(4 pi 10^6) = 70.992.
