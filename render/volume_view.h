@@ -7,6 +7,7 @@
 #include "base/host_device.h"
 #include "base/vec.h"
 #include "volume/bricks.h"
+#include "volume/sparse_block.h"
 
 namespace emscape::render {
 
@@ -35,7 +36,7 @@ struct VolumeView {
   int masked_below = 0;                         ///< no voxel of a layer from here up is masked
   bool all_finite = true;                       ///< no value is NaN or infinite
   std::uint64_t texture = 0;                    ///< on a GPU: of the values, which are null then
-  const void* sparse = nullptr;                 ///< on a GPU, where there is no texture: a NanoVDB grid
+  const volume::SparseBlock* sparse = nullptr;  ///< on a GPU, where there is no texture; see SparseVoxels
   CodedValues coded;
 
   EMSCAPE_HD Vec3d lower() const { return {-0.5, -0.5, -0.5}; }

@@ -1,13 +1,14 @@
 #include "render/cuda/cast_rays.h"
-#include "volume/cuda/sparse_voxels.h"
+#include "volume/sparse_block.h"
 
 namespace emscape::render::cuda {
 namespace {
 
-/// Voxels of a NanoVDB grid, for one sample: the nodes that it passes through are looked up once.
+/// Voxels of a NanoVDB grid.
 class GridVoxels : public volume::SparseVoxels {
  public:
-  EMSCAPE_HD explicit GridVoxels(const VolumeView& volume) : volume::SparseVoxels(volume.sparse) {}
+  EMSCAPE_HD explicit GridVoxels(const VolumeView& volume)
+      : volume::SparseVoxels(volume.sparse, volume.dims) {}
 };
 
 }  // namespace

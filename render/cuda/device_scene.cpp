@@ -79,7 +79,7 @@ CastLaunch DeviceScene::launch(const Scene& scene, const volume::DeviceStorage& 
   task.volume.first_valid_k = storage.firstValidK();
   task.volume.masked_below = storage.maskedBelow();
   task.volume.texture = sampling == Sampling::filtered ? storage.linearTexture() : storage.pointTexture();
-  task.volume.sparse = storage.sparseGrid();
+  task.volume.sparse = storage.sparseBlocks();
   task.transfer.samples = samples_.data();
   task.transfer.projected = projected_.data();
   task.skip = {highest_.data(), scene.settings().skip_empty ? levels_.data() : nullptr,

@@ -4,8 +4,8 @@
 
 #include "tests/gpu.h"
 #include "tests/volume/sample_volumes.h"
-#include "volume/cuda/sparse_voxels.h"
 #include "volume/device_volume.h"
+#include "volume/sparse_grid.h"
 
 namespace emscape::volume {
 namespace {
@@ -29,6 +29,16 @@ float filledValue(const DenseVolume& volume, int i, int j, int k) {
   return volume.values[static_cast<std::size_t>(volume.grid.index(i, j, k))];
 }
 
+std::vector<SparseBlock> blocksOf(const nano::Handle& grid, const Dims& dims) {
+  std::vector<SparseBlock> blocks;
+  for (int z = 0; z < dims.z; z += 8) {
+    for (int y = 0; y < dims.y; y += 8) {
+      for (int x = 0; x < dims.x; x += 8) blocks.push_back(sparseBlockAt(grid.data(), x / 8, y / 8, z / 8));
+    }
+  }
+  return blocks;
+}
+
 bool sameValue(float a, float b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
@@ -36,8 +46,9 @@ bool sameValue(float a, float b) {
 TEST(NanovdbGrid, SamplesInTheAirFindTheSameVoxelsAsInTheDenseVolume) {
   for (const DenseVolume& volume : {test::fieldVolume(), test::categoricalVolume(), test::plainVolume()}) {
     const nano::Handle grid = toNano(readyForSampling(volume), {});
-    const SparseVoxels voxels(grid.data());
     const Dims& dims = volume.grid.dims;
+    const std::vector<SparseBlock> blocks = blocksOf(grid, dims);
+    const SparseVoxels voxels(blocks.data(), dims);
     for (int k = 0; k < dims.z; ++k) {
       for (int j = 0; j < dims.y; ++j) {
         for (int i = 0; i < dims.x; ++i) {

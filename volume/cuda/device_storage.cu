@@ -3,7 +3,7 @@
 #include <string>
 
 #include "volume/cuda/device_storage.h"
-#include "volume/cuda/sparse_voxels.h"
+#include "volume/sparse_grid.h"
 
 namespace emscape::volume {
 namespace {
@@ -77,9 +77,18 @@ struct TexelSource {
   __device__ PointTexels voxels() const { return {texture}; }
 };
 struct SparseSource {
-  const void* grid;
-  __device__ SparseVoxels voxels() const { return SparseVoxels(grid); }
+  const SparseBlock* blocks;
+  Dims dims;
+  __device__ SparseVoxels voxels() const { return {blocks, dims}; }
 };
+
+__global__ void listBlocks(const void* grid, Dims block_dims, SparseBlock* blocks) {
+  const long long block = static_cast<long long>(blockIdx.x) * blockDim.x + threadIdx.x;
+  if (block >= block_dims.count()) return;
+  const long long row = block / block_dims.x;
+  blocks[block] = sparseBlockAt(grid, static_cast<int>(block % block_dims.x),
+                                static_cast<int>(row % block_dims.y), static_cast<int>(row / block_dims.y));
+}
 
 template <class Source>
 __global__ void loadSlab(Source source, Dims dims, const std::int32_t* first_valid_k, float floor,
@@ -207,7 +216,7 @@ void DeviceStorage::release() {
 template <class Use>
 void DeviceStorage::withSource(const Use& use) const {
   if (precision_ == VoxelPrecision::sparse32) {
-    use(SparseSource{sparseGrid()});
+    use(SparseSource{sparse_blocks_.data(), dims_});
   } else {
     use(TexelSource{point_});
   }
@@ -215,6 +224,8 @@ void DeviceStorage::withSource(const Use& use) const {
 
 void DeviceStorage::setSparse(const std::uint8_t* grid, std::size_t bytes, cudaStream_t stream) {
   sparse_.resize(0);
+  static_assert(1 << SparseBlock::kEdgeBits == kBrickEdge, "as many blocks as bricks");
+  sparse_blocks_.resize(bricks_.size());
   std::size_t free_bytes = 0, total_bytes = 0;
   check(cudaMemGetInfo(&free_bytes, &total_bytes), "cudaMemGetInfo");
   if (bytes > free_bytes) {
@@ -223,6 +234,9 @@ void DeviceStorage::setSparse(const std::uint8_t* grid, std::size_t bytes, cudaS
                                        " are free");
   }
   sparse_.upload(grid, bytes, stream);
+  listBlocks<<<blocksFor(brick_dims_.count()), kThreads, 0, stream>>>(sparse_.data(), brick_dims_,
+                                                                      sparse_blocks_.data());
+  checkLaunch("listBlocks");
   check(cudaStreamSynchronize(stream), "upload of a sparse volume");
 }
 

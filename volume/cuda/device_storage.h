@@ -9,6 +9,7 @@
 #include "base/cuda/cuda_memory.h"
 #include "volume/bricks.h"
 #include "volume/device_volume.h"
+#include "volume/sparse_block.h"
 
 #if defined(__CUDACC__)
 #include <surface_indirect_functions.h>
@@ -66,8 +67,8 @@ class DeviceStorage {
   /// In device memory; of what endWriting() found.
   BricksView bricks() const;
   /// In device memory; null but for a sparse volume.
-  const void* sparseGrid() const { return sparse_.size() > 0 ? sparse_.data() : nullptr; }
-  std::size_t sparseBytes() const { return sparse_.size(); }
+  const SparseBlock* sparseBlocks() const { return sparse_blocks_.data(); }
+  std::size_t sparseBytes() const { return sparse_.size() + sparse_blocks_.size() * sizeof(SparseBlock); }
   /// In device memory, one a column; null where no voxel is masked.
   const std::int32_t* firstValidK() const { return masked_below_ > 0 ? first_valid_k_.data() : nullptr; }
   int maskedBelow() const { return masked_below_; }
@@ -97,7 +98,8 @@ class DeviceStorage {
   cudaArray_t array_ = nullptr;
   cudaSurfaceObject_t surface_ = 0;
   cudaTextureObject_t linear_ = 0, point_ = 0;
-  emscape::cuda::Buffer<std::uint8_t> sparse_;
+  emscape::cuda::Buffer<std::uint8_t> sparse_;  ///< a NanoVDB grid
+  emscape::cuda::Buffer<SparseBlock> sparse_blocks_;
   emscape::cuda::Buffer<std::int32_t> first_valid_k_;
   int masked_below_ = 0;
   Dims brick_dims_;
