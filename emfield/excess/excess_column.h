@@ -27,7 +27,7 @@ constexpr unsigned kMissingTerrain = 1u << 31;
 struct ExcessScratch {
   double* range_m = nullptr;
   float* ground_msl_m = nullptr;
-  float* even_ground_msl_m = nullptr;  ///< for models that want even spacing
+  float* even_ground_msl_m = nullptr;  ///< for models that want even spacing; a post more
   float* height_msl_m = nullptr;
   float* excess_db = nullptr;
   float* other_db = nullptr;  ///< of a second model
@@ -36,7 +36,7 @@ struct ExcessScratch {
   /// @param posts  of the longest profile
   static EMSCAPE_HD std::size_t bytes(int posts, int layers) {
     return std::size_t(posts) * (sizeof(double) + 7 * sizeof(float) + 2 * sizeof(int)) +
-           3 * sizeof(float) * std::size_t(layers) + sizeof(double);
+           3 * sizeof(float) * std::size_t(layers) + sizeof(float) + sizeof(double);
   }
   /// @param memory  bytes(posts, layers), aligned for double
   static EMSCAPE_HD ExcessScratch in(void* memory, int posts, int layers) {
@@ -49,7 +49,7 @@ struct ExcessScratch {
       return taken;
     };
     scratch.ground_msl_m = take(posts);
-    scratch.even_ground_msl_m = take(posts);
+    scratch.even_ground_msl_m = take(posts + 1);
     scratch.height_msl_m = take(layers);
     scratch.excess_db = take(layers);
     scratch.other_db = take(layers);

@@ -67,7 +67,7 @@ ItmExcess itmExcess(const Scenario& scenario, const Emitter& emitter, const Stat
   excess.area.irregularity_m = static_cast<float>(emitter.itm.irregularity_m);
   excess.area.siting[0] = emitter.itm.transmitter_siting;
   excess.area.siting[1] = emitter.itm.receiver_siting;
-  excess.step_m = resolution.range_m;
+  excess.step_m = resolution.arc_m;  // as the posts lie
   return excess;
 }
 

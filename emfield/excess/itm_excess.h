@@ -87,7 +87,7 @@ struct ItmExcess {
   static EMSCAPE_HD double heightAgl(const ExcessColumn& column, int k) {
     return static_cast<double>(above(column.height_msl_m[k], column.ground_msl_m));
   }
-  /// @return the number of intervals, at least 2 and no more than the profile has posts
+  /// @return the number of intervals, at least 2 and no more than the profile has
   EMSCAPE_HD int spaceEvenly(const TerrainProfile& profile, float* heights_msl_m) const {
     const int last = profile.count - 1;
     const double length_m = profile.range_m[last];
