@@ -13,3 +13,17 @@
 #else
 #define EMSCAPE_UNROLL
 #endif
+
+namespace emscape {
+
+/// a * b + c. On the device in one instruction also where the compiler is told to keep products and sums
+/// apart, which makes results independent of the kernel that they are computed in.
+EMSCAPE_HD inline float multiplyAdd(float a, float b, float c) {
+#if defined(__CUDA_ARCH__)
+  return __fmaf_rn(a, b, c);
+#else
+  return a * b + c;
+#endif
+}
+
+}  // namespace emscape

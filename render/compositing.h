@@ -44,7 +44,9 @@ struct TransferView {
 
   /// f of a value, clamped to 0..1; NaN is 0.
   EMSCAPE_HD float normalized(float value) const { return heldToUnit((value - lowest) * scale); }
-  EMSCAPE_HD int index(float f) const { return static_cast<int>(f * static_cast<float>(last) + 0.5F); }
+  EMSCAPE_HD int index(float f) const {
+    return static_cast<int>(multiplyAdd(f, static_cast<float>(last), 0.5F));
+  }
 };
 
 /// What every compositor offers: samples come front to back; `f` is normalised, `sample` premultiplied and
@@ -64,26 +66,41 @@ struct TransferView {
 constexpr float kOpaqueEnough = 0.99F;
 constexpr float kNeverOpaqueEnough = 2.0F;
 
+constexpr int kMostRayParts = 8;
+
 /// Direct volume rendering: emission and absorption.
 struct DvrCompositor {
   static constexpr bool kNeedsColor = true;
   static constexpr bool kEndsItself = true;
+  static constexpr int kParts = kMostRayParts;
   float opaque_enough = kOpaqueEnough;
+  float opacity_before = 0;  ///< of the parts before this one
   Rgba sum;
 
   EMSCAPE_HD DvrCompositor(float opaque, float /*gamma*/, float /*volume_highest_f*/)
       : opaque_enough(opaque) {}
   EMSCAPE_HD void add(float f, const Rgba& sample) { addIf(true, f, sample); }
   EMSCAPE_HD void addIf(bool shows, float /*f*/, const Rgba& sample) {
-    sum = sum + sample * (shows && !(sum.a > opaque_enough) ? 1.0F - sum.a : 0.0F);
+    sum = addScaled(sample, shows && !isDone() ? 1.0F - sum.a : 0.0F, sum);
   }
   EMSCAPE_HD bool canSkip(float level) const { return level < SkipView::kNever; }
   EMSCAPE_HD bool ignores(float /*f*/, const Rgba& sample) const { return !(sample.a > 0.0F); }
   template <class Ahead>
   EMSCAPE_HD bool done(Ahead& /*ahead*/, int /*next*/) const {
-    return sum.a > opaque_enough;
+    return isDone();
   }
+  EMSCAPE_HD DvrCompositor behind() const {
+    DvrCompositor part(opaque_enough, 0, 0);
+    part.opacity_before = sum.a;
+    return part;
+  }
+  EMSCAPE_HD void join(const DvrCompositor& part) { sum = over(sum, part.sum); }
   EMSCAPE_HD Rgba result(const TransferView& /*transfer*/) const { return sum; }
+
+ private:
+  EMSCAPE_HD bool isDone() const {
+    return multiplyAdd(sum.a, 1.0F - opacity_before, opacity_before) > opaque_enough;
+  }
 };
 
 /// Maximum intensity projection: the colour of the largest value, its opacity relative to the function's
@@ -91,6 +108,7 @@ struct DvrCompositor {
 struct MipCompositor {
   static constexpr bool kNeedsColor = false;
   static constexpr bool kEndsItself = true;
+  static constexpr int kParts = kMostRayParts;
   float volume_highest = 1;
   float highest = -1;
 
@@ -106,6 +124,8 @@ struct MipCompositor {
   EMSCAPE_HD bool done(Ahead& /*ahead*/, int /*next*/) const {
     return highest >= volume_highest;
   }
+  EMSCAPE_HD MipCompositor behind() const { return *this; }
+  EMSCAPE_HD void join(const MipCompositor& part) { addIf(true, part.highest, {}); }
   EMSCAPE_HD Rgba result(const TransferView& transfer) const {
     return highest >= 0.0F ? transfer.projected[transfer.index(highest)] : Rgba{};
   }
@@ -116,6 +136,7 @@ struct MipCompositor {
 struct MidaCompositor {
   static constexpr bool kNeedsColor = true;
   static constexpr bool kEndsItself = false;  // what is ahead decides
+  static constexpr int kParts = 1;            // a later maximum fades what lies before it
   float gamma = 0;
   float opaque_enough = kOpaqueEnough;
   MipCompositor mip;
@@ -127,9 +148,9 @@ struct MidaCompositor {
     const float before = mip.highest > 0.0F ? mip.highest : 0.0F;
     const float delta = f > before ? f - before : 0.0F;
     mip.add(f, sample);
-    const float beta = 1.0F - delta * (1.0F + (gamma < 0.0F ? gamma : 0.0F));
-    const float through = 1.0F - beta * sum.a;
-    sum = sum * beta + sample * through;
+    const float beta = multiplyAdd(-delta, 1.0F + (gamma < 0.0F ? gamma : 0.0F), 1.0F);
+    const float through = multiplyAdd(-beta, sum.a, 1.0F);
+    sum = addScaled(sample, through, sum * beta);
   }
   EMSCAPE_HD bool canSkip(float level) const { return mip.canSkip(level); }
   EMSCAPE_HD bool ignores(float f, const Rgba& sample) const {
@@ -139,6 +160,8 @@ struct MidaCompositor {
   EMSCAPE_HD bool done(Ahead& ahead, int next) const {
     return sum.a > opaque_enough && !ahead.exceeds(next, mip.highest);
   }
+  EMSCAPE_HD MidaCompositor behind() const { return *this; }
+  EMSCAPE_HD void join(const MidaCompositor& part) { *this = part; }
   EMSCAPE_HD Rgba result(const TransferView& transfer) const {
     return gamma <= 0.0F ? sum : sum * (1.0F - gamma) + mip.result(transfer) * gamma;
   }

@@ -25,9 +25,14 @@ EMSCAPE_HD inline Rgba operator*(const Rgba& p, float s) {
 inline bool operator==(const Rgba& p, const Rgba& q) {
   return p.r == q.r && p.g == q.g && p.b == q.b && p.a == q.a;
 }
+/// p * s + q.
+EMSCAPE_HD inline Rgba addScaled(const Rgba& p, float s, const Rgba& q) {
+  return {multiplyAdd(p.r, s, q.r), multiplyAdd(p.g, s, q.g), multiplyAdd(p.b, s, q.b),
+          multiplyAdd(p.a, s, q.a)};
+}
 /// What is seen of `back` behind `front`.
 EMSCAPE_HD inline Rgba over(const Rgba& front, const Rgba& back) {
-  return front + back * (1.0F - front.a);
+  return addScaled(back, 1.0F - front.a, front);
 }
 
 /// Width and height in pixels. Pixel (x, y): x to the right, y down, from 0.

@@ -36,7 +36,13 @@ struct RayPieces {
   EMSCAPE_HD float wholeMiddle(int n) const { return (static_cast<float>(n) + 0.5F) * step; }
   /// Distance of the joint before piece n; n = count: of the end.
   EMSCAPE_HD float joint(int n) const { return n <= whole ? static_cast<float>(n) * step : length; }
-  EMSCAPE_HD Vec3f at(float distance) const { return start + direction * distance; }
+  EMSCAPE_HD Vec3f at(float distance) const { return from(start, distance); }
+  /// As at(), for a start that is shifted.
+  EMSCAPE_HD Vec3f from(const Vec3f& shifted_start, float distance) const {
+    return {multiplyAdd(direction.x, distance, shifted_start.x),
+            multiplyAdd(direction.y, distance, shifted_start.y),
+            multiplyAdd(direction.z, distance, shifted_start.z)};
+  }
   /// How many whole steps a distance holds, at most `count`; to rounding, which the distances of BrickStep
   /// leave room for.
   EMSCAPE_HD int stepsIn(float distance) const {

@@ -118,13 +118,36 @@ struct RaycastTask {
   ///                comes out does not depend on it
   template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
   EMSCAPE_HD Rgba castVolume(int x, int y, double limit, const Colors& colors, float highest_f) const {
-    const Ray ray = camera.ray(x, y);
-    const RayInterval inside = insideOf(ray, limit);
     Compositor compositor(opaque_enough, mida_gamma, highest_f);
-    if (inside.end > inside.begin) {
-      march<Compositor, Sampler, kMayShade, kBatch>(piecesOf(ray, inside), colors, compositor);
+    const RayPieces pieces = piecesOf(x, y, limit);
+    for (int part = 0; part < Compositor::kParts && pieces.count > 0; ++part) {
+      Compositor next = compositor.behind();
+      const bool done = castPart<Compositor, Sampler, kMayShade, kBatch>(pieces, part, colors, next);
+      compositor.join(next);
+      if (done) break;
     }
     return compositor.result(transfer);
+  }
+
+  /// One of Compositor::kParts parts of a ray, the first one in front.
+  /// @return whether nothing behind it matters
+  template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
+  EMSCAPE_HD bool castPart(const RayPieces& pieces, int part, const Colors& colors,
+                           Compositor& compositor) const {
+    constexpr int kParts = Compositor::kParts;
+    constexpr int kWhole = kMostRayParts * kMostRayParts;  // parts of whole batches
+    const int length = kParts == 1 ? pieces.whole : (pieces.whole + kWhole - 1) / kWhole * kMostRayParts;
+    const int begin = part * length;
+    const int end = begin + length < pieces.whole ? begin + length : pieces.whole;
+    return march<Compositor, Sampler, kMayShade, kBatch>(pieces, begin, end, part + 1 == kParts, colors,
+                                                         compositor);
+  }
+
+  /// The pieces of a pixel's ray in the volume, none where it does not meet it. @param limit  as above
+  EMSCAPE_HD RayPieces piecesOf(int x, int y, double limit) const {
+    const Ray ray = camera.ray(x, y);
+    const RayInterval inside = insideOf(ray, limit);
+    return piecesOf(ray, inside.end > inside.begin ? inside : RayInterval{});
   }
 
   /// The isosurface as a pixel shows it, premultiplied.
@@ -145,8 +168,11 @@ struct RaycastTask {
   }
 
  private:
+  /// Whole pieces begin .. end of a ray, and the last one, which is shorter, if that is asked for.
+  /// @return whether nothing behind them matters
   template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
-  EMSCAPE_HD void march(const RayPieces& pieces, const Colors& colors, Compositor& compositor) const {
+  EMSCAPE_HD bool march(const RayPieces& pieces, int begin, int end, bool with_last, const Colors& colors,
+                        Compositor& compositor) const {
     LookAhead ahead(skip, volume, pieces);
     const Vec3f to_viewer = kMayShade ? shading.toViewer(pieces.direction) : Vec3f{};
     // Takes the sample of piece n, of `part` of a step. @return whether nothing behind it matters
@@ -168,7 +194,7 @@ struct RaycastTask {
     const float shift = Sampler::kShift;
     const Vec3f fetch_start = pieces.start + Vec3f{shift, shift, shift};
     int next_brick = 0;  // the first sample that may lie in another brick than the last one looked at
-    for (int n = 0; n < pieces.whole;) {
+    for (int n = begin; n < end;) {
       if (skip.levels != nullptr && n >= next_brick) {
         const BrickStep brick = skip.at(volume, pieces.at(pieces.wholeMiddle(n)), pieces.per_voxel);
         next_brick = n + 1 + pieces.stepsIn(brick.leave);
@@ -183,7 +209,7 @@ struct RaycastTask {
       Rgba samples[kBatch];
       EMSCAPE_UNROLL
       for (int i = 0; i < kBatch; ++i) {
-        values[i] = Sampler::fetch(volume, fetch_start + pieces.direction * pieces.wholeMiddle(n + i));
+        values[i] = Sampler::fetch(volume, pieces.from(fetch_start, pieces.wholeMiddle(n + i)));
       }
       if (volume.masked_below > 0) {
         EMSCAPE_UNROLL
@@ -199,22 +225,23 @@ struct RaycastTask {
       bool ends = false;
       EMSCAPE_UNROLL
       for (int i = 0; i < kBatch; ++i) {
-        const bool shows = values[i] == values[i] && (i == 0 || n + i < pieces.whole);
+        const bool shows = values[i] == values[i] && (i == 0 || n + i < end);
         if constexpr (Compositor::kEndsItself && !kMayShade) {
           compositor.addIf(shows, fs[i], samples[i]);
         } else {
           if (shows && !ends) ends = take(n + i, 1.0F, values[i], fs[i], samples[i]);
         }
       }
-      if (Compositor::kEndsItself ? compositor.done(ahead, n + kBatch) : ends) return;
+      if (Compositor::kEndsItself ? compositor.done(ahead, n + kBatch) : ends) return true;
       n += kBatch;
     }
-    if (pieces.whole < pieces.count) {
-      float value = 0;
-      if (!Sampler::sample(volume, pieces.at(pieces.middle(pieces.whole)), value)) return;
-      const float f = transfer.normalized(value);
-      take(pieces.whole, pieces.last() / step_voxels, value, f, colorOf(f));
+    float value = 0;
+    if (!with_last || pieces.whole == pieces.count ||
+        !Sampler::sample(volume, pieces.at(pieces.middle(pieces.whole)), value)) {
+      return false;
     }
+    const float f = transfer.normalized(value);
+    return take(pieces.whole, pieces.last() / step_voxels, value, f, colorOf(f));
   }
 
   EMSCAPE_HD RayInterval insideOf(const Ray& ray, double limit) const {

@@ -66,7 +66,7 @@ struct CellPosition {
 };
 
 EMSCAPE_HD inline float lerp(float a, float b, float fraction) {
-  return a + fraction * (b - a);
+  return multiplyAdd(fraction, b - a, a);
 }
 
 /// Voxels of an array.

@@ -66,6 +66,7 @@ class CudaFrameCaster : public FrameCaster {
   Sampling sampling_ = Sampling::filtered;
 
   cuda::Layers layers_;  ///< of the picture that was drawn last
+  Buffer<unsigned> next_tile_;
   Buffer<float4> layer_;
   Buffer<float4> picture_;
   Buffer<uchar4> picture8_;
@@ -120,6 +121,11 @@ CastLaunch CudaFrameCaster::prepare(const Scene& scene, ImageSize size) {
   layer_.resize(static_cast<std::size_t>(size.count()));
   picture8_.resize(layer_.size());
   CastLaunch launch = scene_.launch(scene, volume_->storage(), sampling_, size);
+  if (next_tile_.size() == 0) {
+    next_tile_.resize(1);
+    check(cudaMemsetAsync(next_tile_.data(), 0, sizeof(unsigned), stream_), "cudaMemset");
+  }
+  launch.next_tile = next_tile_.data();
   launch.layer = layer_.data();
   layers_ = {};
   layers_.size = size;
@@ -244,6 +250,7 @@ bool CudaFrameCaster::castAdaptive(CastLaunch launch, const FramePlan& plan, Lau
 
   if (!train.goOn()) return false;
   const auto along = [](int pixels) { return (pixels + kLatticeStep - 1) / kLatticeStep; };
+  launch.few_rays = true;
   launch.pixels.lattice = {0, 0, kLatticeStep, kLatticeStep, along(size.width), along(size.height)};
   cast(launch);
   train.launched();

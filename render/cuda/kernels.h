@@ -48,6 +48,8 @@ struct CastLaunch {
   const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for Sampling::filtered
   const float* volume_highest_f = nullptr;  ///< one
   const float* limits = nullptr;            ///< one a pixel: where the ground is; null: no ground
+  bool few_rays = false;                    ///< so few that several threads are to share a ray
+  unsigned* next_tile = nullptr;            ///< 0, before each launch and after it; one a stream
   float4* layer = nullptr;                  ///< the volume alone, a pixel of the picture each
 };
 void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
