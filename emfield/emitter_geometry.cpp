@@ -35,7 +35,9 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   const bool has_shadow = emitter.propagation == scenario::PropagationModel::horizon;
   std::optional<EmitterExcess> excess;
   if (hasExcess(scenario, emitter)) {
-    excess = makeExcess(scenario, emitter, station, terrain, pathExtent(station, columns), resolution);
+    const bool needs_extent = needsPathExtent(scenario, emitter);
+    excess = makeExcess(scenario, emitter, station, terrain,
+                        needs_extent ? pathExtent(station, columns) : PathExtent{}, resolution);
     excess_.resize(column_count_ * columns.t_m.size());
   }
   times.fan_ms += watch.lap_ms();

@@ -93,8 +93,10 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   const scenario::Emitter& emitter = scenario.emitters[request.emitter];
   work.has_shadow = emitter.propagation == scenario::PropagationModel::horizon;
   if (hasExcess(scenario, emitter)) {
-    work.model = makeExcess(scenario, emitter, work.station, setup_.terrain.get(),
-                            pathExtent(work.station, setup_.columns), setup_.resolution);
+    const bool needs_extent = needsPathExtent(scenario, emitter);
+    work.model =
+        makeExcess(scenario, emitter, work.station, setup_.terrain.get(),
+                   needs_extent ? pathExtent(work.station, setup_.columns) : PathExtent{}, setup_.resolution);
   }
   if (work.needsFan()) {
     std::vector<FanCoordinates> coordinates;

@@ -121,6 +121,10 @@ bool hasExcess(const Scenario& scenario, const Emitter& emitter) {
   return !is_bound || hasAirLoss(scenario, emitter);
 }
 
+bool needsPathExtent(const Scenario& scenario, const Emitter& emitter) {
+  return emitter.propagation == PropagationModel::p528 || hasAirLoss(scenario, emitter);
+}
+
 PathExtent pathExtent(const Station& station, const GridColumns& columns) {
   // A grid's border holds its farthest columns, and those whose heights reach farthest.
   PathExtent extent;

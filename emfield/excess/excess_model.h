@@ -44,6 +44,9 @@ struct EmitterExcess {
 /// memory for it.
 bool hasExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
 
+/// Whether makeExcess() looks at where an emitter's paths end.
+bool needsPathExtent(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
+
 /// Where a grid's paths from a station end.
 PathExtent pathExtent(const Station& station, const GridColumns& columns);
 

@@ -205,6 +205,23 @@ TEST_F(CudaField, IsTheCpusOverTerrain) {
   }
 }
 
+TEST_F(CudaField, EveryModelIsTheCpus) {
+  std::mt19937 random(10);
+  const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0);
+  for (const PropagationModel model :
+       {PropagationModel::free_space, PropagationModel::diffraction, PropagationModel::two_ray,
+        PropagationModel::itm, PropagationModel::p528}) {
+    SCOPED_TRACE(scenario::toString(model));
+    const auto scenario = randomScenario(random, FrameKind::altitude, {model}, 1900, 3);
+    for (scenario::Emitter& emitter : scenario->emitters) emitter.antenna = scenario::makeIsotropic();
+    scenario->emitters[1].diffraction.method = scenario::DiffractionMethod::deygout;
+    scenario->atmosphere.gases = scenario::GasLosses::always;
+    scenario->atmosphere.rain_mm_h = 5;
+    Pair pair(scenario, terrain);
+    expectSameField(pair, random, 2);
+  }
+}
+
 TEST_F(CudaField, IsTheCpusOverRealTerrain) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   if (terrain == nullptr) GTEST_SKIP() << "no reference elevation data";
