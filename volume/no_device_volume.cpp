@@ -18,6 +18,9 @@ DeviceVolume::DeviceVolume(const Grid& grid, VoxelPrecision precision) : grid_(g
   refuse();
 }
 DeviceVolume::~DeviceVolume() = default;
+std::size_t DeviceVolume::bytes() const {
+  refuse();
+}
 void DeviceVolume::setMask(const std::vector<std::uint16_t>& /*first_valid_k*/) {
   refuse();
 }
