@@ -126,7 +126,7 @@ bool needsPathExtent(const Scenario& scenario, const Emitter& emitter) {
 }
 
 PathExtent pathExtent(const Station& station, const GridColumns& columns) {
-  // A grid's border holds its farthest columns, and those whose heights reach farthest.
+  // A grid's corners hold its farthest columns; they or its middle those whose heights reach farthest.
   PathExtent extent;
   extent.lowest_msl_m = HUGE_VAL;
   extent.highest_msl_m = -HUGE_VAL;
@@ -139,15 +139,9 @@ PathExtent pathExtent(const Station& station, const GridColumns& columns) {
       extent.farthest_m = std::max(extent.farthest_m, fanCoordinates(station, column, t_m).range_m);
     }
   };
-  for (int i = 0; i < columns.dims.x; ++i) {
-    take(i, 0);
-    take(i, columns.dims.y - 1);
+  for (const int i : {0, columns.dims.x / 2, columns.dims.x - 1}) {
+    for (const int j : {0, columns.dims.y / 2, columns.dims.y - 1}) take(i, j);
   }
-  for (int j = 0; j < columns.dims.y; ++j) {
-    take(0, j);
-    take(columns.dims.x - 1, j);
-  }
-  take(columns.dims.x / 2, columns.dims.y / 2);
   return extent;
 }
 

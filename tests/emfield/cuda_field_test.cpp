@@ -213,7 +213,10 @@ TEST_F(CudaField, EveryModelIsTheCpus) {
         PropagationModel::itm, PropagationModel::p528}) {
     SCOPED_TRACE(scenario::toString(model));
     const auto scenario = randomScenario(random, FrameKind::altitude, {model}, 1900, 3);
-    for (scenario::Emitter& emitter : scenario->emitters) emitter.antenna = scenario::makeIsotropic();
+    for (scenario::Emitter& emitter : scenario->emitters) {
+      emitter.antenna = scenario::makeIsotropic();
+      emitter.frequency_hz = std::max(emitter.frequency_hz, 2e8);
+    }
     scenario->emitters[1].diffraction.method = scenario::DiffractionMethod::deygout;
     scenario->atmosphere.gases = scenario::GasLosses::always;
     scenario->atmosphere.rain_mm_h = 5;
