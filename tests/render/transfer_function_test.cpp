@@ -67,7 +67,7 @@ TEST(TransferFunction, DefaultKnowsTheScaleThatAVolumeNames) {
   info.extra[volume::kScaleKey] = volume::kRatioAboveScale;
   const TransferFunction above = defaultTransferFunction(info);
   EXPECT_EQ(below.opacity(info.floor), 0);
-  for (const double ratio_db : {-40.0, -30.0, -20.0, -1.0, 0.0, 5.0, 30.0, 60.0}) {
+  for (const double ratio_db : {-40.0, -30.5, -29.5, -20.0, -1.0, 0.0, 5.0, 30.0, 60.0}) {
     EXPECT_DOUBLE_EQ(below.opacity(ratio_db), above.opacity(-ratio_db)) << ratio_db;
     EXPECT_FLOAT_EQ(below.color(ratio_db).r, above.color(-ratio_db).r) << ratio_db;
   }
