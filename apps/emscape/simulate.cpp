@@ -194,9 +194,9 @@ Examples:
       ->delimiter(',')
       ->check(CLI::IsMember(SeriesFiles::formatNames()));
   command
-      ->add_option("--quantity", options->quantities,
-                   "Quantities, with commas between them (" + emfield::quantityNames() +
-                       "); default: the scenario's")
+      ->add_option(
+          "--quantity", options->quantities,
+          "Quantities, with commas between them (" + emfield::quantityNames() + "); default: the scenario's")
       ->delimiter(',');
   command->add_option("--times", options->times,
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");

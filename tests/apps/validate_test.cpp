@@ -29,7 +29,8 @@ class Validate : public testing::Test {
 };
 
 TEST_F(Validate, ShippedScenariosAreWithoutFault) {
-  for (const char* name : {"quick.yaml", "sphere_64.yaml", "eme_200.yaml", "jacksboro.yaml", "jamming.yaml"}) {
+  for (const char* name :
+       {"quick.yaml", "sphere_64.yaml", "eme_200.yaml", "jacksboro.yaml", "jamming.yaml"}) {
     const ProgramResult result = run({"validate", shippedScenario(name)});
     EXPECT_EQ(result.status, 0) << name << result.out << result.err;
   }

@@ -60,7 +60,8 @@ TEST(CudaLostDevice, IsAnErrorThatNamesCallAndKernel) {
     std::_Exit(message.empty() ? 1 : 0);
   };
   EXPECT_EXIT(lose(), testing::ExitedWithCode(0),
-              "GPU: cuda[A-Za-z ]*: .*cudaError(LaunchFailure|IllegalInstruction).*; the last kernel launched was fault");
+              "GPU: cuda[A-Za-z ]*: .*cudaError(LaunchFailure|IllegalInstruction).*; the last kernel "
+              "launched was fault");
 }
 
 }  // namespace
