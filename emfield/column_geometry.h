@@ -2,16 +2,49 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 #include "base/host_device.h"
+#include "emfield/excess/excess_code.h"
 #include "emfield/fan_coordinates.h"
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
 
 namespace emscape::emfield {
 
+/// Column arrays as the loops read them, x fastest. In the emitter's east-north-up axes a voxel at z = t lies
+/// at b + t d.
+struct ColumnGeometryView {
+  const float* base_east_m = nullptr;
+  const float* base_north_m = nullptr;
+  const float* base_up_m = nullptr;
+  const float* axis_east = nullptr;
+  const float* axis_north = nullptr;
+  const float* axis_up = nullptr;
+  /// Squared distance (m2) of the emitter from the column's line, and t (m) of the point nearest to it, so
+  /// that the distance squared is offset2 + (t - nearest)^2: no cancellation, however near.
+  const float* offset2_m2 = nullptr;
+  const float* nearest_t_m = nullptr;
+  /// Added to the straight line's rise (m) so that it points along the start of the refracted ray.
+  /// @accuracy launch angle within 0.001 degree to 500 km and 10 km of height: it is that of the column's
+  /// middle
+  const float* lift_m = nullptr;
+  /// Voxels below this z (m) are in shadow; -infinity: none is. NaN: unknown.
+  const float* shadow_edge_m = nullptr;
+  /// Excess loss of each voxel, dense order; null: none.
+  const ExcessCode* excess = nullptr;
+};
+
 /// Numbers that columnGeometry() gives, in the order of ColumnGeometryView.
 constexpr int kColumnNumbers = 9;
+
+/// @param numbers  kColumnNumbers x columns, as columnGeometry() fills them
+inline ColumnGeometryView columnGeometryView(const float* numbers, std::size_t columns,
+                                             const float* shadow_edge_m, const ExcessCode* excess) {
+  const auto array = [&](std::size_t n) { return numbers + n * columns; };
+  return {array(0), array(1), array(2), array(3),      array(4), array(5),
+          array(6), array(7), array(8), shadow_edge_m, excess};
+}
 
 /// @param coordinates  of the column's foot below its middle
 /// @param middle_m     z of the middle

@@ -92,19 +92,8 @@ void EmitterGeometry::locateColumns(const Station& station, const GridColumns& c
 }
 
 ColumnGeometryView EmitterGeometry::view() const {
-  const float* first = arrays_.data();
-  const std::size_t n = column_count_;
-  return {first,
-          first + n,
-          first + 2 * n,
-          first + 3 * n,
-          first + 4 * n,
-          first + 5 * n,
-          first + 6 * n,
-          first + 7 * n,
-          first + 8 * n,
-          shadow_edge_m_.data(),
-          excess_.empty() ? nullptr : excess_.data()};
+  return columnGeometryView(arrays_.data(), column_count_, shadow_edge_m_.data(),
+                            excess_.empty() ? nullptr : excess_.data());
 }
 
 bool EmitterGeometry::isUnknown(std::size_t column) const {

@@ -114,9 +114,10 @@ void printObstacles(const PathBudget& budget) {
   }
 }
 
-/// "-inf" is said in words.
+/// Infinity is said in words; what rounds to nothing has no sign.
 std::string valueText(double value) {
-  return std::isinf(value) ? (value < 0 ? "none" : "all") : fmt::format("{:.2f}", value);
+  if (std::isinf(value)) return value < 0 ? "none" : "all";
+  return fmt::format("{:.2f}", std::abs(value) < 0.005 ? 0.0 : value);
 }
 
 void printBudget(const PathBudget& budget) {

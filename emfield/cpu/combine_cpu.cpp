@@ -4,18 +4,12 @@
 #include "base/parallel.h"
 #include "base/simd.h"
 #include "emfield/combine.h"
+#include "emfield/cpu/row.h"
 
 namespace emscape::emfield {
 namespace {
 
 using scenario::PatternKind;
-
-/// A run of voxels along x: `count` columns from `column` on, all at z = t_m.
-struct Row {
-  std::size_t column;
-  int count;
-  float t_m;
-};
 
 template <PatternKind kind>
 __attribute__((always_inline)) inline void fillPiece(const EmitterBeam& emitter, const Row& row, float* out) {

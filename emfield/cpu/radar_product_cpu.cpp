@@ -3,19 +3,13 @@
 
 #include "base/parallel.h"
 #include "base/simd.h"
+#include "emfield/cpu/row.h"
 #include "emfield/radar_product.h"
 
 namespace emscape::emfield {
 namespace {
 
 using scenario::PatternKind;
-
-/// A run of voxels along x: those of the columns from `column` on, all at z = t_m.
-struct Row {
-  std::size_t column;
-  int count;
-  float t_m;
-};
 
 template <PatternKind kind>
 __attribute__((always_inline)) inline void fillEchoes(const RadarPass& pass, const Row& row, float* root) {

@@ -69,19 +69,10 @@ DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots)
 }
 
 ColumnGeometryView DeviceGeometry::view(int slot) const {
-  const float* first = slots_[slot].numbers.data();
-  const std::size_t n = static_cast<std::size_t>(columns_.count);
-  return {first,
-          first + n,
-          first + 2 * n,
-          first + 3 * n,
-          first + 4 * n,
-          first + 5 * n,
-          first + 6 * n,
-          first + 7 * n,
-          first + 8 * n,
-          first + kColumnNumbers * n,
-          slots_[slot].has_excess ? slots_[slot].excess.data() : nullptr};
+  const float* numbers = slots_[slot].numbers.data();
+  const std::size_t columns = static_cast<std::size_t>(columns_.count);
+  return columnGeometryView(numbers, columns, numbers + kColumnNumbers * columns,
+                            slots_[slot].has_excess ? slots_[slot].excess.data() : nullptr);
 }
 
 /// The fan reaches every column as soon as it reaches those at the grid's border.
