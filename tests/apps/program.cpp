@@ -31,7 +31,7 @@ fs::path makeTemporaryFolder() {
 
 RunningProgram::RunningProgram(const Arguments& arguments, const std::string& shell_prefix)
     : output_(makeTemporaryFolder()) {
-  std::string command = shell_prefix + " exec " + quoted(EMSCAPE_PROGRAM);
+  std::string command = shell_prefix + " exec " + quoted(besideThisProgram("emscape"));
   for (const std::string& argument : arguments) command += " " + quoted(argument);
   command +=
       " </dev/null >" + quoted((output_ / "out").string()) + " 2>" + quoted((output_ / "err").string());
@@ -55,6 +55,10 @@ ProgramResult RunningProgram::wait() {
                        readFile(output_ / "out"), readFile(output_ / "err")};
   fs::remove_all(output_);
   return result;
+}
+
+std::string besideThisProgram(const std::string& name) {
+  return (fs::read_symlink("/proc/self/exe").parent_path() / name).string();
 }
 
 ProgramResult run(const Arguments& arguments, const std::string& shell_prefix) {
@@ -94,6 +98,15 @@ std::string shippedScenario(const std::string& name) {
 
 const std::string& quick() {
   static const std::string file = shippedScenario("quick.yaml");
+  return file;
+}
+
+std::string longScenario(const TemporaryFolder& folder, int duration_s) {
+  std::string text = readFile(quick());
+  text.replace(text.find("duration_s: 4"), 13, "duration_s: " + std::to_string(duration_s));
+  text.replace(text.find("[40, 40, 20]"), 12, "[60, 60, 40]");
+  const std::string file = folder / "long.yaml";
+  writeFile(file, text);
   return file;
 }
 

@@ -30,6 +30,9 @@ class RunningProgram {
   pid_t process_ = -1;
 };
 
+/// What was built beside this test's program.
+std::string besideThisProgram(const std::string& name);
+
 /// Runs `emscape ARGUMENTS` to its end.
 ProgramResult run(const Arguments& arguments, const std::string& shell_prefix = "");
 
@@ -56,5 +59,7 @@ void writeFile(const std::filesystem::path& file, const std::string& text);
 std::string shippedScenario(const std::string& name);
 /// The smallest of them.
 const std::string& quick();
+/// The same with more voxels and a step a second, written into a folder: it can be interrupted.
+std::string longScenario(const TemporaryFolder& folder, int duration_s);
 
 }  // namespace emscape::test

@@ -19,16 +19,6 @@ using testing::HasSubstr;
 using testing::IsSupersetOf;
 using testing::Not;
 
-/// A scenario that takes long enough to be interrupted.
-std::string slowScenario(const TemporaryFolder& folder) {
-  std::string text = readFile(quick());
-  text.replace(text.find("duration_s: 4"), 13, "duration_s: 80");
-  text.replace(text.find("[40, 40, 20]"), 12, "[60, 60, 40]");
-  const std::string file = folder / "slow.yaml";
-  writeFile(file, text);
-  return file;
-}
-
 json infoOf(const std::string& file) {
   const ProgramResult result = run({"info", file, "--json"});
   EXPECT_EQ(result.status, 0) << result.err;
@@ -93,7 +83,7 @@ TEST(Simulate, ResumeRefusesOtherOptionsAndSaysWhich) {
 
 TEST(Simulate, ASeriesThatWasKilledResumesToTheSameFiles) {
   const TemporaryFolder folder;
-  const std::string scenario = slowScenario(folder);
+  const std::string scenario = longScenario(folder, 80);
   const Arguments arguments{"simulate", scenario, "-o",      folder / "s",
                             "--format", "raw",    "--range", "-120:20"};
   RunningProgram first(arguments);
@@ -121,7 +111,7 @@ TEST(Simulate, ASeriesThatWasKilledResumesToTheSameFiles) {
 TEST(Simulate, CtrlCLeavesWholeFilesAndStatus130) {
   const TemporaryFolder folder;
   RunningProgram program(
-      {"simulate", slowScenario(folder), "-o", folder / "s", "--format", "vti", "--range", "-120:20"});
+      {"simulate", longScenario(folder, 80), "-o", folder / "s", "--format", "vti", "--range", "-120:20"});
   while (!std::filesystem::exists(folder / "s/quick_0002.vti"))
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   program.signal(SIGINT);

@@ -1,0 +1,123 @@
+// A GPU that is lost in the middle of a whole command: one error, and nothing but whole files.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.h"
+#include "tests/gpu.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::MatchesRegex;
+using testing::Not;
+
+/// Runs a command on a GPU that is lost once the file `sign` is there.
+void runAndLoseDevice(Arguments arguments, const std::string& sign) {
+  arguments.insert(arguments.end(), {"--backend", "cuda", "--quiet", "--json"});
+  const ProgramResult result = run(arguments, "export LD_PRELOAD='" + besideThisProgram("liblose_device.so") +
+                                                  "' EMSCAPE_LOSE_DEVICE_AT='" + sign + "';");
+  EXPECT_EQ(result.status, 4);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, MatchesRegex("emscape: error: GPU: [^\n]+: [^\n]+ \\(cudaError[A-Za-z]+\\)"
+                                       "(; the last kernel launched was [^\n]+)?\n"));
+}
+
+/// What lies in a folder, by name.
+std::map<std::string, std::string> contentsOf(const TemporaryFolder& folder) {
+  std::map<std::string, std::string> contents;
+  for (const std::string& file : folder.files()) contents[file] = readFile(folder.path() / file);
+  return contents;
+}
+
+void expectNoTemporaries(const TemporaryFolder& folder) {
+  EXPECT_THAT(folder.files(), Not(Contains(HasSubstr(".part-"))));
+}
+
+/// How many steps of a series the CPU can draw; it reads every voxel of each.
+int stepsThatCanBeRead(const std::string& series) {
+  const TemporaryFolder pictures;
+  const ProgramResult result = run(
+      {"render", series, "-o", pictures / "p", "--size", "16x12", "--backend", "cpu", "--quiet", "--json"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  return result.status == 0 ? json::parse(result.out).at("frames").get<int>() : 0;
+}
+
+TEST(CudaLostDevice, InSimulateLeavesWholeStepsAndTheCpuGoesOn) {
+  EMSCAPE_NEEDS_GPU();
+  const TemporaryFolder folder;
+  constexpr int kSteps = 301;
+  const Arguments simulate{
+      "simulate", longScenario(folder, kSteps - 1), "-o", folder / "s", "--format", "vdb,vti", "--range",
+      "-120:20"};
+  runAndLoseDevice(simulate, folder / "s/quick_0002.vti");
+  expectNoTemporaries(folder);
+  const int finished = json::parse(readFile(folder / "s/series.json")).at("finished_steps");
+  EXPECT_GE(finished, 1);
+  EXPECT_LT(finished, kSteps);
+  EXPECT_GE(stepsThatCanBeRead(folder / "s"), finished);
+  EXPECT_GE(stepsThatCanBeRead(folder / "s/quick.pvd"), finished);
+
+  const std::map<std::string, std::string> left = contentsOf(folder);
+  Arguments resume = simulate;
+  resume.insert(resume.end(), {"--resume", "--backend", "cpu", "--json"});
+  const ProgramResult resumed = run(resume);
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(json::parse(resumed.out).at("steps_computed"), kSteps - finished);
+  expectNoTemporaries(folder);
+  const std::map<std::string, std::string> whole = contentsOf(folder);
+  EXPECT_EQ(whole.size(), 1 + 2 * kSteps + 2U);  // the scenario, the volumes, quick.pvd and series.json
+  for (const char* first : {"s/quick_0001.vdb", "s/quick_0001.vti"}) {
+    EXPECT_TRUE(left.at(first) == whole.at(first)) << first;
+  }
+  EXPECT_EQ(stepsThatCanBeRead(folder / "s/quick.pvd"), kSteps);
+}
+
+TEST(CudaLostDevice, InRenderLeavesWholePicturesAndNoVideo) {
+  EMSCAPE_NEEDS_GPU();
+  const TemporaryFolder folder;
+  const std::string scenario = longScenario(folder, 80);
+  ASSERT_EQ(run({"simulate", scenario, "-o", folder / "s", "--range", "-120:20"}).status, 0);
+  const bool has_ffmpeg = std::system("command -v ffmpeg >/dev/null") == 0;
+  for (const std::string& input : {scenario, folder / "s"}) {
+    const std::string pictures = folder / (input == scenario ? "computed" : "stored");
+    Arguments render{"render", input, "-o", pictures, "--size", "640x480"};
+    if (has_ffmpeg) render.insert(render.end(), {"-o", folder / "video.mp4"});
+    runAndLoseDevice(render, pictures + "/quick_0002.png");
+  }
+  expectNoTemporaries(folder);
+  const std::map<std::string, std::string> left = contentsOf(folder);
+  EXPECT_EQ(left.count("video.mp4"), 0U);
+  int count = 0;
+  for (const auto& [file, content] : left) {
+    if (std::filesystem::path(file).extension() != ".png") continue;
+    EXPECT_EQ(content.substr(content.size() - 8, 4), "IEND") << file;
+    ++count;
+  }
+  EXPECT_GE(count, 2 * 2);
+  EXPECT_LT(count, 2 * 81);
+}
+
+TEST(CudaLostDevice, InPlaybackEndsIt) {
+  EMSCAPE_NEEDS_GPU();
+  const TemporaryFolder folder;
+  const std::string scenario = longScenario(folder, 300);
+  for (const char* rays : {"full", "quarter", "adaptive"}) {
+    const std::string pictures = folder / rays;
+    runAndLoseDevice({"render", scenario, "--realtime", "-o", pictures, "--size", "640x480", "--rays", rays,
+                      "--speed", "10", "--orbit-rate", "10"},
+                     pictures + "/quick_0002.png");
+  }
+  expectNoTemporaries(folder);
+  EXPECT_THAT(folder.files(), IsSupersetOf({"full/quick_0002.png", "adaptive/quick_0002.png"}));
+}
+
+}  // namespace
+}  // namespace emscape::test
