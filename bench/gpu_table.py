@@ -38,15 +38,24 @@ def pattern_rows(results):
                 bounds.get(pattern["name"], ""))
 
 
-def field_rows(results):
-    for name in sorted(n for n in results if n.startswith("field-")):
-        result = results[name]
-        voxels = result["grid"][0] * result["grid"][1] * result["grid"][2]
-        floor = ms(voxels * 4 / BYTES_PER_S * 1e3) + " (each voxel written once)"
-        stages = ", ".join(f"{stage} {time:.2f}" for stage, time in result["stages_ms"].items())
-        for kind, time in result["update_ms"].items():
-            row(f"{name}, {result['emitters']} emitters, {kind}", ms(time), floor)
-        row(f"{name}: stages of all moved (ms): {stages}", ms(sum(result["stages_ms"].values())), floor)
+def field_table(results):
+    """A row a scenario; the CPU's times stand in cpu-field-NAME."""
+    names = sorted(n for n in results if n.startswith("field-"))
+    if not names:
+        return
+    cpus = {results[f"cpu-{name}"]["threads"] for name in names if f"cpu-{name}" in results}
+    threads = f" ({', '.join(str(count) for count in sorted(cpus))} threads)" if cpus else ""
+    print(f"\n| field (ms) | fan | plane | combine | product | all moved | by the host's clock | beams turned | each voxel "
+          f"written once | CPU{threads}: all moved | beams turned |")
+    print("|---" * 11 + "|")
+    for name in names:
+        result, cpu = results[name], results.get(f"cpu-{name}", {}).get("update_ms")
+        grid, stages, update = result["grid"], result["stages_ms"], result["update_ms"]
+        times = [*stages.values(), sum(stages.values()), update["all_moved"], update["beams_turned"],
+                 grid[0] * grid[1] * grid[2] * 4 / BYTES_PER_S * 1e3]
+        times += [cpu["all_moved"], cpu["beams_turned"]] if cpu else [None, None]
+        cells = ["" if time is None else f"{time:.2f}" if time < 10 else f"{time:.0f}" for time in times]
+        print(f"| {name.removeprefix('field-')}, {result['emitters']} emitters | " + " | ".join(cells) + " |")
 
 
 def playback_rows(results):
@@ -66,8 +75,9 @@ def main():
             results[file.stem] = json.loads(text)
     print("device:", ", ".join(sorted({result["device"] for result in results.values()})))
     print("| what | measured | floor | asked for |\n|---|---|---|---|")
-    for rows in (render_rows, pattern_rows, field_rows, playback_rows):
+    for rows in (render_rows, pattern_rows, playback_rows):
         rows(results)
+    field_table(results)
 
 
 if __name__ == "__main__":

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Makes the scenarios of `emscape bench field` in docs/performance.md: sixteen radars, and one over 200 km.
 
-    bench/make_field_scenarios.py FOLDER [--models horizon,diffraction]
+    bench/make_field_scenarios.py FOLDER
 
-Writes FOLDER/radars_MODEL.yaml (the region of scenarios/jacksboro.yaml at 200 x 200 x 100 voxels, sixteen radars spread over
-it) and FOLDER/wide_MODEL.yaml (512 x 512 x 128 voxels over 200 km, one radar in the middle) with FOLDER/wide.tif. Terrain:
-scenarios/data/jacksboro.tif (SRTM, public domain); wide.tif repeats it by reflection at its edges, as no public-domain data
-of that width is at hand. Needs python3-numpy and python3-gdal.
+Writes FOLDER/radars_VARIANT.yaml (the region of scenarios/jacksboro.yaml at 200 x 200 x 100 voxels, sixteen radars spread over
+it; `enu` is diffraction over columns that lean) and FOLDER/wide_VARIANT.yaml (512 x 512 x 128 voxels over 200 km, one radar in
+the middle) with FOLDER/wide.tif. Terrain: scenarios/data/jacksboro.tif (SRTM, public domain); wide.tif repeats it by reflection
+at its edges, as no public-domain data of that width is at hand. Needs python3-numpy and python3-gdal.
 """
 
 import argparse
@@ -26,7 +26,7 @@ duration_s: 10
 step_s: 1
 region:
   origin: {{latitude_deg: {latitude}, longitude_deg: {longitude}, height_msl_m: {height}}}
-  frame: altitude
+  frame: {frame}
   size_m: {size}
   dims: {dims}
 terrain: {{files: [{terrain}], vertical_datum: egm96}}
@@ -42,7 +42,7 @@ EMITTER = """  - name: radar {n}
     polarization: horizontal
     antenna: {antenna}
     scan: {{kind: rotate, rate_rpm: 6, elevation_deg: 1, azimuth_deg: {azimuth}}}
-    propagation: {model}
+    {propagation}
     receiver: {{noise_figure_db: 4, bandwidth_hz: 1.0e6, pulses: 12, pfa: 1.0e-6, swerling: 1, target_rcs_m2: 5}}
 """
 
@@ -54,16 +54,27 @@ ANTENNAS = [
 ]
 
 
-def scenario(name, model, places, size, dims, height, terrain):
-    text = HEAD.format(name=name, latitude=MIDDLE[0], longitude=MIDDLE[1], height=height, size=size, dims=dims,
-                       terrain=terrain) + "platforms:\n"
+# name: propagation, frame, whether there is a wide one
+VARIANTS = {
+    "horizon": ("propagation: horizon", "altitude", True),
+    "diffraction": ("propagation: diffraction", "altitude", True),
+    "deygout": ("propagation: diffraction\n    diffraction: {method: deygout}", "altitude", False),
+    "itm": ("propagation: itm", "altitude", False),
+    "enu": ("propagation: diffraction", "enu", False),
+}
+
+
+def scenario(name, variant, places, size, dims, height, terrain):
+    propagation, frame, _ = VARIANTS[variant]
+    text = HEAD.format(name=name, latitude=MIDDLE[0], longitude=MIDDLE[1], height=height, frame=frame, size=size,
+                       dims=dims, terrain=terrain) + "platforms:\n"
     for n, (latitude, longitude) in enumerate(places):
         text += f"  - name: site {n}\n    position: {{latitude_deg: {latitude:.5f}, longitude_deg: {longitude:.5f}, " \
                 "height_agl_m: 20}\n"
     text += "emitters:\n"
     for n in range(len(places)):
         text += EMITTER.format(n=n, frequency=(0.4 + 0.3 * n) * 1e9, antenna=ANTENNAS[n % len(ANTENNAS)],
-                               azimuth=22.5 * n, model=model)
+                               azimuth=22.5 * n, propagation=propagation)
     return text
 
 
@@ -92,19 +103,19 @@ def write_wide_terrain(target):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--models", default="horizon,diffraction")
     options = parser.parse_args()
     options.folder.mkdir(parents=True, exist_ok=True)
     write_wide_terrain(options.folder / "wide.tif")
     (options.folder / "jacksboro.tif").write_bytes(JACKSBORO.read_bytes())
     spread = [(MIDDLE[0] + 0.1 * (row - 1.5) / 1.5, MIDDLE[1] + 0.12 * (column - 1.5) / 1.5)
               for row in range(4) for column in range(4)]
-    for model in options.models.split(","):
-        (options.folder / f"radars_{model}.yaml").write_text(
-            scenario("sixteen radars", model, spread, [29000, 29000, 6000], [200, 200, 100], 200, "jacksboro.tif"))
-        (options.folder / f"wide_{model}.yaml").write_text(
-            scenario("two hundred kilometres", model, [MIDDLE], [200000, 200000, 10000], [512, 512, 128], 200,
-                     "wide.tif"))
+    for variant, (_, _, has_wide) in VARIANTS.items():
+        (options.folder / f"radars_{variant}.yaml").write_text(
+            scenario("sixteen radars", variant, spread, [29000, 29000, 6000], [200, 200, 100], 200, "jacksboro.tif"))
+        if has_wide:
+            (options.folder / f"wide_{variant}.yaml").write_text(
+                scenario("two hundred kilometres", variant, [MIDDLE], [200000, 200000, 10000], [512, 512, 128], 200,
+                         "wide.tif"))
 
 
 if __name__ == "__main__":
