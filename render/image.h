@@ -71,8 +71,12 @@ struct Image8 {
 
 /// One level of 0..255, rounded to nearest; values outside 0..1 are clamped, NaN is 0.
 EMSCAPE_HD inline std::uint8_t quantized(float value) {
+#if defined(__CUDA_ARCH__)
+  return static_cast<std::uint8_t>(__saturatef(value) * 255.0F + 0.5F);  // clamped by the instruction before
+#else
   const float level = value * 255.0F + 0.5F;
   return level > 0.0F ? static_cast<std::uint8_t>(level < 255.0F ? level : 255.0F) : std::uint8_t{0};
+#endif
 }
 /// The only place where a picture loses precision.
 Image8 quantize(const Image& image);

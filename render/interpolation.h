@@ -1,5 +1,7 @@
-/// What a pixel that is not cast follows from: single source for host and device.
+/// How the pixels that are not cast follow from those that are: single source for host and device.
 #pragma once
+
+#include <cstdint>
 
 #include "base/host_device.h"
 #include "render/image.h"
@@ -7,46 +9,99 @@
 
 namespace emscape::render {
 
-/// The two ways to fill a pixel, by kind of arithmetic; see Interpolation.
+/// A pixel in 8-bit levels: r in the lowest byte, then g, b and a.
+struct Rgba8 {
+  std::uint32_t levels = 0;
+};
+EMSCAPE_HD inline Rgba8 quantized(const Rgba8& p) {
+  return p;
+}
+EMSCAPE_HD inline Rgba8 quantized(const Rgba& p) {
+  return {quantized(p.r) | std::uint32_t{quantized(p.g)} << 8 | std::uint32_t{quantized(p.b)} << 16 |
+          std::uint32_t{quantized(p.a)} << 24};
+}
+EMSCAPE_HD inline Rgba toRgba(const Rgba& p) {
+  return p;
+}
+EMSCAPE_HD inline Rgba toRgba(const Rgba8& p) {
+  const auto part = [&](int bit) { return static_cast<float>(p.levels >> bit & 0xFFU) / 255.0F; };
+  return {part(0), part(8), part(16), part(24)};
+}
+
+/// The two ways to fill a pixel, by kind of arithmetic; see Interpolation. Color: what is interpolated.
+/// The mean of a colour and itself is that colour: so an edge pixel copies the one neighbour that it has.
 struct FloatArithmetic {
+  using Color = Rgba;
+  EMSCAPE_HD static const Rgba& of(const Rgba& source) { return source; }
   EMSCAPE_HD static Rgba mean(const Rgba& p, const Rgba& q) { return (p + q) * 0.5F; }
-  EMSCAPE_HD static Rgba copy(const Rgba& p) { return p; }
 };
 struct Bits8Arithmetic {
-  EMSCAPE_HD static float mean(float a, float b) {
-    return static_cast<float>((quantized(a) + quantized(b) + 1) / 2) / 255.0F;
+  using Color = Rgba8;
+  EMSCAPE_HD static Rgba8 of(const Rgba& source) { return quantized(source); }
+  /// (p + q + 1) / 2 of each byte: what both have or one has, less half of what one has.
+  EMSCAPE_HD static Rgba8 mean(const Rgba8& p, const Rgba8& q) {
+    return {(p.levels | q.levels) - ((p.levels ^ q.levels) >> 1 & 0x7F7F7F7FU)};
   }
-  EMSCAPE_HD static float copy(float a) { return static_cast<float>(quantized(a)) / 255.0F; }
-  EMSCAPE_HD static Rgba mean(const Rgba& p, const Rgba& q) {
-    return {mean(p.r, q.r), mean(p.g, q.g), mean(p.b, q.b), mean(p.a, q.a)};
-  }
-  EMSCAPE_HD static Rgba copy(const Rgba& p) { return {copy(p.r), copy(p.g), copy(p.b), copy(p.a)}; }
 };
 
-/// A pixel of a pattern, from source pixels alone: the plain form of interpolate().
+/// Four pixels of a pattern, (x, y) to (x + 1, y + 1), from source pixels alone, each of which is read once:
+/// interpolate() by cells.
+/// @param x, y  even
 /// @param source  source(x, y): a pixel that was cast
-template <class Arithmetic, class Source>
-EMSCAPE_HD Rgba pixelOf(Pattern pattern, const Source& source, ImageSize size, int x, int y) {
-  const auto between_rows = [&](int column, int row) {
-    if (row + 1 == size.height) return Arithmetic::copy(source(column, row - 1));
-    return Arithmetic::mean(source(column, row - 1), source(column, row + 1));
+/// @param put  put(column, row, color) takes pixel (x + column, y + row): Rgba, a source pixel, or
+///             Arithmetic::Color. What it is given of pixels beyond the picture has no meaning.
+template <class Arithmetic, class Source, class Put>
+EMSCAPE_HD void fillCell(Pattern pattern, ImageSize size, int x, int y, const Source& source,
+                         const Put& put) {
+  const auto meanOf = [](const Rgba& p, const Rgba& q) {
+    return Arithmetic::mean(Arithmetic::of(p), Arithmetic::of(q));
   };
-  const bool odd_x = x % 2 == 1;
-  const bool odd_y = y % 2 == 1;
-  if (pattern == Pattern::quarter) {
-    const auto column = [&](int even_x) { return odd_y ? between_rows(even_x, y) : source(even_x, y); };
-    if (!odd_x) return column(x);
-    return x + 1 == size.width ? Arithmetic::copy(column(x - 1))
-                               : Arithmetic::mean(column(x - 1), column(x + 1));
+  // Neighbours, and those of the same parity; at an edge pixels of the cell in their place.
+  const int right = x + 1 < size.width ? x + 1 : x;
+  const int below = y + 1 < size.height ? y + 1 : y;
+  const int next_x = x + 2 < size.width ? x + 2 : x;
+  const int next_y = y + 2 < size.height ? y + 2 : y;
+  const Rgba here = source(x, y);
+  switch (pattern) {
+    case Pattern::full:
+    case Pattern::adaptive: {
+      const Rgba beside = source(right, y), under = source(x, below), across = source(right, below);
+      put(0, 0, here);
+      put(1, 0, beside);
+      put(0, 1, under);
+      put(1, 1, across);
+      return;
+    }
+    case Pattern::columns: {
+      const Rgba next = source(next_x, y), under = source(x, below), next_under = source(next_x, below);
+      put(0, 0, here);
+      put(1, 0, meanOf(here, next));
+      put(0, 1, under);
+      put(1, 1, meanOf(under, next_under));
+      return;
+    }
+    case Pattern::checkerboard: {
+      const Rgba next = source(next_x, y);
+      put(0, 0, here);
+      put(1, 0, meanOf(here, next));
+      if (below == y) return;
+      if (size.width == 1) return put(0, 1, meanOf(here, source(x, next_y)));
+      const int after = right > x ? right : x - 1;
+      const Rgba across = source(after, below), before = source(x > 0 ? x - 1 : after, below);
+      put(0, 1, meanOf(before, across));
+      put(1, 1, across);
+      return;
+    }
+    case Pattern::quarter: {
+      const Rgba next = source(next_x, y), lower = source(x, next_y), next_lower = source(next_x, next_y);
+      const auto column = meanOf(here, lower);
+      put(0, 0, here);
+      put(1, 0, meanOf(here, next));
+      put(0, 1, column);
+      put(1, 1, Arithmetic::mean(column, meanOf(next, next_lower)));
+      return;
+    }
   }
-  const bool missing =
-      (pattern == Pattern::columns && odd_x) || (pattern == Pattern::checkerboard && odd_x != odd_y);
-  if (!missing) return source(x, y);
-  const bool has_left = x > 0;
-  const bool has_right = x + 1 < size.width;
-  if (has_left && has_right) return Arithmetic::mean(source(x - 1, y), source(x + 1, y));
-  if (has_left || has_right) return Arithmetic::copy(source(has_left ? x - 1 : x + 1, y));
-  return between_rows(x, y);  // a picture one pixel wide
 }
 
 }  // namespace emscape::render

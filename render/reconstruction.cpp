@@ -35,14 +35,24 @@ std::vector<Lattice> withoutEmpty(const std::vector<Lattice>& lattices) {
   return kept;
 }
 
+/// Bits8Arithmetic in floats, channel by channel: so it becomes the processor's vectors.
+struct Bits8Channels {
+  static float mean(float a, float b) {
+    return static_cast<float>((quantized(a) + quantized(b) + 1) / 2) / 255.0F;
+  }
+  static Rgba mean(const Rgba& p, const Rgba& q) {
+    return {mean(p.r, q.r), mean(p.g, q.g), mean(p.b, q.b), mean(p.a, q.a)};
+  }
+};
+
 /// Fills every second pixel of a row from its left and right neighbours, starting at first_x (0 or 1).
 template <class Arithmetic>
 void fillRow(Rgba* row, int width, int first_x) {
   if (width == 1) return;
-  if (first_x == 0) row[0] = Arithmetic::copy(row[1]);
+  if (first_x == 0) row[0] = Arithmetic::mean(row[1], row[1]);
   int x = first_x == 0 ? 2 : 1;
   for (; x + 1 < width; x += 2) row[x] = Arithmetic::mean(row[x - 1], row[x + 1]);
-  if (x < width) row[x] = Arithmetic::copy(row[x - 1]);
+  if (x < width) row[x] = Arithmetic::mean(row[x - 1], row[x - 1]);
 }
 
 /// Fills every second pixel of an odd row, from the left one on, from the rows above and below.
@@ -51,11 +61,7 @@ void fillFromRowsBeside(Image& image, int y) {
   const int width = image.size.width;
   Rgba* row = &image.at(0, y);
   const Rgba* above = row - width;
-  if (y + 1 == image.size.height) {
-    for (int x = 0; x < width; x += 2) row[x] = Arithmetic::copy(above[x]);
-    return;
-  }
-  const Rgba* below = row + width;
+  const Rgba* below = y + 1 < image.size.height ? row + width : above;
   for (int x = 0; x < width; x += 2) row[x] = Arithmetic::mean(above[x], below[x]);
 }
 
@@ -78,7 +84,7 @@ EMSCAPE_SIMD_CLONES void fillRowsFloat(Pattern pattern, Image& image, int begin,
   fillRows<FloatArithmetic>(pattern, image, begin, end);
 }
 EMSCAPE_SIMD_CLONES void fillRows8(Pattern pattern, Image& image, int begin, int end) {
-  fillRows<Bits8Arithmetic>(pattern, image, begin, end);
+  fillRows<Bits8Channels>(pattern, image, begin, end);
 }
 
 }  // namespace
