@@ -116,6 +116,16 @@ class Event {
   void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "cudaEventRecord"); }
   /// Returns at once if nothing was recorded.
   void wait() const { check(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
+  /// Whether the stream has come here; does not wait.
+  bool isReached() const {
+    const cudaError_t status = cudaEventQuery(event_);
+    if (status == cudaErrorNotReady) {
+      cudaGetLastError();  // takes it back: it is none
+      return false;
+    }
+    check(status, "cudaEventQuery");
+    return true;
+  }
   /// What is put on a stream after this waits for the event.
   void holdBack(cudaStream_t stream) const {
     check(cudaStreamWaitEvent(stream, event_, 0), "cudaStreamWaitEvent");
@@ -123,6 +133,31 @@ class Event {
 
  private:
   cudaEvent_t event_ = nullptr;
+};
+
+/// Brings a value from the GPU while the host goes on.
+template <class T>
+class Readback {
+ public:
+  Readback() { check(cudaMallocHost(reinterpret_cast<void**>(&value_), sizeof(T)), "cudaMallocHost"); }
+  ~Readback() { cudaFreeHost(value_); }
+  Readback(const Readback&) = delete;
+  Readback& operator=(const Readback&) = delete;
+
+  /// The value as what is on the stream so far leaves it. What was asked for before is forgotten.
+  void request(const T* from, cudaStream_t stream) {
+    check(cudaMemcpyAsync(value_, from, sizeof(T), cudaMemcpyDeviceToHost, stream),
+          "cudaMemcpyAsync from the GPU");
+    arrives_.record(stream);
+    requested_ = true;
+  }
+  /// @return null: nothing was asked for, or it is still to come
+  const T* arrived() const { return requested_ && arrives_.isReached() ? value_ : nullptr; }
+
+ private:
+  T* value_ = nullptr;
+  Event arrives_;
+  bool requested_ = false;
 };
 
 /// Time between two points of a stream.

@@ -23,6 +23,9 @@ void DeviceScene::update(const Scene& scene, const volume::DeviceStorage& storag
   if (versions.ground != seen_.ground || (scene.ground() && heights_.size() == 0))
     updateGround(scene, stream);
   if (versions.levels != seen_.levels) levels_current_ = false;
+  if (const BrickSummary* found = found_.arrived()) {
+    skippable_share_ = static_cast<double>(found->skippable) / static_cast<double>(levels_.size());
+  }
   if (!levels_current_) updateLevels(scene, storage.bricks(), stream);
   seen_ = versions;
 }
@@ -59,13 +62,14 @@ void DeviceScene::updateLevels(const Scene& scene, const volume::BricksView& bri
   const auto count = static_cast<std::size_t>(bricks.dims.count());
   highest_.resize(count);
   levels_.resize(count);
-  volume_highest_f_.resize(1);
-  emscape::cuda::check(cudaMemsetAsync(volume_highest_f_.data(), 0, sizeof(float), stream), "cudaMemset");
+  summary_.resize(1);
+  emscape::cuda::check(cudaMemsetAsync(summary_.data(), 0, sizeof(BrickSummary), stream), "cudaMemset");
   SkipRule rule = scene.skipRule();
   rule.table.samples = samples_.data();
   rule.table.projected = projected_.data();
   rule.visible_before = visible_before_.data();
-  findLevels(rule, bricks, highest_.data(), levels_.data(), volume_highest_f_.data(), stream);
+  findLevels(rule, bricks, highest_.data(), levels_.data(), summary_.data(), stream);
+  found_.request(summary_.data(), stream);
   levels_current_ = true;
 }
 
@@ -82,8 +86,8 @@ CastLaunch DeviceScene::launch(const Scene& scene, const volume::DeviceStorage& 
   task.volume.sparse = storage.sparseBlocks();
   task.transfer.samples = samples_.data();
   task.transfer.projected = projected_.data();
-  task.skip = {highest_.data(), scene.settings().skip_empty ? levels_.data() : nullptr,
-               storage.bricks().dims};
+  const bool skips = scene.settings().skip_empty && skippingPays(scene.settings().mode, skippable_share_);
+  task.skip = {highest_.data(), skips ? levels_.data() : nullptr, storage.bricks().dims};
   if (scene.ground()) {
     task.ground.heights = heights_.data();
     task.ground.colors = ground_colors_.data();
@@ -92,7 +96,7 @@ CastLaunch DeviceScene::launch(const Scene& scene, const volume::DeviceStorage& 
     }
   }
   launch.half_colors = half_colors_.data();
-  launch.volume_highest_f = volume_highest_f_.data();
+  launch.volume_highest_f = &summary_.data()->highest_f;
   return launch;
 }
 

@@ -19,7 +19,8 @@ class DeviceScene {
   /// @param storage  of the volume, which may be read on the stream
   void update(const Scene& scene, const volume::DeviceStorage& storage, cudaStream_t stream);
 
-  /// To be cast on the device, of what was updated; pixels and layer are left open.
+  /// To be cast on the device, of what was updated; pixels and layer are left open. Bricks are not looked for
+  /// where that does not pay by what is known, which lags a frame behind the volume.
   CastLaunch launch(const Scene& scene, const volume::DeviceStorage& storage, Sampling sampling,
                     ImageSize size) const;
 
@@ -34,8 +35,11 @@ class DeviceScene {
   emscape::cuda::Buffer<HalfColor> half_colors_;
   emscape::cuda::Buffer<int> visible_before_;
 
-  emscape::cuda::Buffer<float> highest_, levels_, volume_highest_f_;
+  emscape::cuda::Buffer<float> highest_, levels_;
+  emscape::cuda::Buffer<BrickSummary> summary_;
   bool levels_current_ = false;
+  emscape::cuda::Readback<BrickSummary> found_;  ///< comes after the frame that it was found for
+  double skippable_share_ = 1;                   ///< of the bricks, as far as is known
 
   emscape::cuda::Buffer<float> heights_;
   emscape::cuda::Buffer<Rgba> ground_colors_;

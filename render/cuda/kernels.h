@@ -99,9 +99,13 @@ void listPredicted(const std::uint8_t* classes, ImageSize size, ClassCounts* cou
 
 // --- Bricks ---
 
-/// SkipView's entries of all bricks, and the largest f of all. @param rule  pointers to device memory
-/// @param volume_highest_f  0
+/// What the bricks of a volume come to.
+struct BrickSummary {
+  float highest_f = 0;     ///< the largest f of all
+  unsigned skippable = 0;  ///< how many have a level below SkipView::kNever
+};
+/// SkipView's entries of all bricks. @param rule  pointers to device memory; summary  all 0
 void findLevels(const SkipRule& rule, const volume::BricksView& bricks, float* highest, float* levels,
-                float* volume_highest_f, cudaStream_t stream);
+                BrickSummary* summary, cudaStream_t stream);
 
 }  // namespace emscape::render::cuda
