@@ -40,6 +40,21 @@ TEST(CudaMemory, GivesBackWhatWasCopiedIntoIt) {
   EXPECT_EQ(back, numbers);
 }
 
+TEST(CudaMemory, AValueIsReadBackWithoutWaiting) {
+  EMSCAPE_NEEDS_GPU();
+  const Stream stream;
+  Buffer<int> value;
+  Readback<int> readback;
+  EXPECT_EQ(readback.arrived(), nullptr) << "nothing was asked for";
+  for (const int number : {17, -4}) {
+    value.upload({number}, stream);
+    readback.request(value.data(), stream);
+    stream.wait();
+    ASSERT_NE(readback.arrived(), nullptr);
+    EXPECT_EQ(*readback.arrived(), number);
+  }
+}
+
 TEST(CudaMemory, TooMuchIsToldWithTheSize) {
   EMSCAPE_NEEDS_GPU();
   const std::size_t bytes = std::size_t{1} << 50;
