@@ -205,9 +205,8 @@ std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<Geometry
   return all;
 }
 
-/// Columns that lean are read like any other model's: they are cut into pieces.
-bool DeviceGeometry::isUprightDiffraction(const Work& work) const {
-  return work.model && std::holds_alternative<DiffractionExcess>(work.model->model) && !columns_.tilted;
+bool DeviceGeometry::isDiffraction(const Work& work) {
+  return work.model && std::holds_alternative<DiffractionExcess>(work.model->model);
 }
 
 /// As many intervals at a time as the memory for samples takes.
@@ -231,7 +230,7 @@ std::vector<DeviceGeometry::Batch> DeviceGeometry::batchesOf(const std::vector<W
       piece.terms = terms;
       piece.holds_slopes = work.has_shadow;
       // Threads of neighbouring columns read neighbouring azimuths; one of any model a profile of its own.
-      const bool azimuth_fastest = work.has_shadow || isUprightDiffraction(work);
+      const bool azimuth_fastest = work.has_shadow || isDiffraction(work);
       piece.azimuth_stride = azimuth_fastest ? 1 : ranges;
       piece.range_stride = azimuth_fastest ? piece.interval_count + 1 : 1;
       const long long here = ranges * (piece.interval_count + 1);
@@ -268,7 +267,7 @@ void DeviceGeometry::runBatch(Batch& batch, cudaStream_t stream, StageClock& clo
     extent.azimuths = std::max(extent.azimuths, piece.interval_count + 1);
     extent.ranges = std::max(extent.ranges, piece.emitter.fan.range_count);
     has_slopes = has_slopes || piece.holds_slopes;
-    if (isUprightDiffraction(work)) {
+    if (isDiffraction(work)) {
       diffraction.push_back(
           {std::get<DiffractionExcess>(work.model->model), work.model->air, piece, work.excess});
     }
@@ -279,18 +278,18 @@ void DeviceGeometry::runBatch(Batch& batch, cudaStream_t stream, StageClock& clo
   clock.end(&StageTimes::fan_ms, stream);
   clock.begin(stream);
   if (has_slopes) findShadowEdges(pieces, extent, columns_, stream);
-  if (!diffraction.empty()) fillUprightDiffraction(diffraction, extent, stream);
+  if (!diffraction.empty()) fillDiffractions(diffraction, extent, stream);
   for (std::size_t p = 0; p < batch.pieces.size(); ++p) {
     const FanPiece& piece = batch.pieces[p];
     const Work& work = *batch.works[p];
-    if (work.has_shadow || isUprightDiffraction(work)) continue;
+    if (work.has_shadow || isDiffraction(work)) continue;
     fill(work, {piece.emitter.fan, piece.samples, piece.first_interval, piece.interval_count}, stream);
   }
   clock.end(&StageTimes::plane_ms, stream);
 }
 
-void DeviceGeometry::fillUprightDiffraction(std::vector<DiffractionTask>& tasks, PieceExtent extent,
-                                            cudaStream_t stream) {
+void DeviceGeometry::fillDiffractions(std::vector<DiffractionTask>& tasks, PieceExtent extent,
+                                      cudaStream_t stream) {
   const auto blocksOf = [](const FanPiece& piece) {
     return static_cast<std::size_t>(DiffractionTask::blockCount(piece.emitter.fan.range_count)) *
            static_cast<std::size_t>(piece.interval_count + 1);
@@ -306,7 +305,7 @@ void DeviceGeometry::fillUprightDiffraction(std::vector<DiffractionTask>& tasks,
     next_sums += blocksOf(task.piece);
   }
   extent.pieces = static_cast<int>(tasks.size());
-  fillDiffraction(sent(diffraction_, tasks, stream), extent, columns_, excess_grid_.ground_msl_m,
+  fillDiffraction(sent(diffraction_, tasks, stream), extent, excess_grid_, columns_.row, columns_.tilted,
                   firstValidK(), stream);
 }
 

@@ -51,10 +51,10 @@ class DeviceGeometry {
 
   Work prepare(const GeometryRequest& request) const;
   void place(std::vector<Work>& works, cudaStream_t stream);
-  bool isUprightDiffraction(const Work& work) const;
+  static bool isDiffraction(const Work& work);
   std::vector<Batch> batchesOf(const std::vector<Work>& works);
   void runBatch(Batch& batch, cudaStream_t stream, StageClock& clock);
-  void fillUprightDiffraction(std::vector<DiffractionTask>& tasks, PieceExtent extent, cudaStream_t stream);
+  void fillDiffractions(std::vector<DiffractionTask>& tasks, PieceExtent extent, cudaStream_t stream);
   void fill(const Work& work, const FanHeights& fan, cudaStream_t stream);
 
   const FieldSetup& setup_;

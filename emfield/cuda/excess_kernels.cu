@@ -20,18 +20,20 @@ unsigned blocksFor(int threads) {
 /// the azimuths, as readProfile().
 class FanPosts {
  public:
-  __device__ FanPosts(const DiffractionTask& task, const FanPlace& place, float ground_msl_m)
+  __device__ FanPosts(const DiffractionTask& task, const FanPlace& place)
       : ranges_m_(task.piece.emitter.fan.ranges_m),
         azimuths_(task.piece.interval_count + 1),
         before_(task.piece.emitter.fan.lastBefore(place.range_m)),
-        distance_m_(place.range_m),
-        ground_msl_m_(ground_msl_m) {
+        distance_m_(place.range_m) {
     const int interval = static_cast<int>(place.azimuth_index);
     weight_ = static_cast<float>(place.azimuth_index - interval);
     heights_m_ = task.piece.samples + (interval - task.piece.first_interval);
     blocks_ = task.blocks + (interval - task.piece.first_interval);
     sums_ = task.sums + (interval - task.piece.first_interval);
   }
+
+  /// Below the column.
+  __device__ void setGround(float ground_msl_m) { ground_msl_m_ = ground_msl_m; }
 
   __device__ int count() const { return before_ + 1; }
   __device__ double range_m(int i) const { return ranges_m_[i]; }
@@ -151,56 +153,78 @@ __device__ void markUnknown(const ExcessOutputs& to, int column) {
 /// Columns of a block, and of each of its warps: a square has more in common than a row.
 constexpr int kTileX = 16, kTileY = 8, kWarpX = 8, kWarpY = 4;
 
+/// @tparam kLeans  columns lean: they are cut into the grid's pieces, each of them over a place of its own
+template <bool kLeans>
 __global__ void __launch_bounds__(kTileX* kTileY, 5)
-    diffractionKernel(const DiffractionTask* tasks, DeviceColumns columns, const float* ground_msl_m,
+    diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid, int row,
                       const std::uint16_t* first_valid_k) {
   const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
   constexpr int kWarpsX = kTileX / kWarpX;
   const int x = static_cast<int>(blockIdx.x) * kTileX + warp % kWarpsX * kWarpX + lane % kWarpX;
   const int y = static_cast<int>(blockIdx.y) * kTileY + warp / kWarpsX * kWarpY + lane / kWarpX;
-  if (x >= columns.row || y * columns.row >= columns.count) return;
-  const int c = y * columns.row + x;
+  const auto layer = static_cast<long long>(grid.column_count);
+  if (x >= row || static_cast<long long>(y) * row >= layer) return;
+  const int c = y * row + x;
   const DiffractionTask& task = tasks[blockIdx.z];
-  const FanPlace place = task.piece.emitter.places[c];
-  const int interval = static_cast<int>(place.azimuth_index) - task.piece.first_interval;
-  if (interval < 0 || interval >= task.piece.interval_count) return;
+  FanPlace place;
+  if (!kLeans) {
+    place = task.piece.emitter.places[c];
+    const int interval = static_cast<int>(place.azimuth_index) - task.piece.first_interval;
+    if (interval < 0 || interval >= task.piece.interval_count) return;
+  }
 
   ExcessCode* const codes = task.to.out.codes + c;
-  const long long layer = columns.count;
-  int k = first_valid_k == nullptr ? 0 : min(static_cast<int>(first_valid_k[c]), columns.layers);
-  for (int below = 0; below < k; ++below) codes[below * layer] = 0;
+  const int lowest = first_valid_k == nullptr ? 0 : min(static_cast<int>(first_valid_k[c]), grid.layers);
+  for (int below = 0; below < lowest; ++below) codes[below * layer] = 0;
   const AirLoss& air = task.air;
-  const GridColumn& column = columns.columns[c];
-  const auto heightOf = [&](int layer_k) {
-    const int here = min(layer_k, columns.layers - 1);
-    return static_cast<float>(heightMsl_m(column, static_cast<double>(columns.t_m[here])));
-  };
-  bool is_free = !(place.range_m > 0);  // the emitter's own place
-  if (!is_free) {
-    const FanPosts posts(task, place, ground_msl_m != nullptr ? ground_msl_m[c] : 0);
-    DiffractionColumn<float, FanPosts> receivers(task.model.model, posts, task.model.tx_msl_m);
-    if (receivers.isUnknown()) {
-      markUnknown(task.to, c);
-      for (; k < columns.layers; ++k) codes[k * layer] = kUnknownExcess;
+  const GridColumn& column = grid.columns[c];
+  bool is_unknown = false;
+  for (int piece = 0; piece < (kLeans ? grid.pieces : 1); ++piece) {
+    const int end = kLeans ? grid.firstLayer(piece + 1) : grid.layers;
+    int k = kLeans ? max(lowest, grid.firstLayer(piece)) : lowest;
+    if (kLeans) {
+      const LocateTask& emitter = task.piece.emitter;
+      const FanCoordinates point = grid.placeOf(emitter.station, static_cast<std::size_t>(c), piece);
+      place = {emitter.fan.azimuthIndex(point.azimuth_rad), point.range_m};
     }
-    while (k < columns.layers && !is_free) {
-      float rx_msl_m[kReceivers], loss_db[kReceivers];
-#pragma unroll
-      for (int j = 0; j < kReceivers; ++j) rx_msl_m[j] = heightOf(k + j);
-      is_free = receivers.losses(rx_msl_m, loss_db);
-#pragma unroll
-      for (int j = 0; j < kReceivers; ++j) {
-        if (k + j >= columns.layers) break;
-        if (!air.isClear()) loss_db[j] += air.lossDb(static_cast<float>(place.range_m), rx_msl_m[j]);
-        codes[(k + j) * layer] = excessCode(loss_db[j]);
+    const auto heightOf = [&](int layer_k) {
+      const int here = min(layer_k, end - 1);
+      return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[here])));
+    };
+    bool is_free = !(place.range_m > 0);  // the emitter's own place
+    if (!is_free) {
+      FanPosts posts(task, place);
+      if (kLeans) {
+        posts.setGround(heightBetween(task.piece.emitter.fan, place.range_m,
+                                      [&](int range) { return posts.height_msl_m(range); }));
+      } else {
+        posts.setGround(grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : 0);
       }
-      k += kReceivers;
+      DiffractionColumn<float, FanPosts> receivers(task.model.model, posts, task.model.tx_msl_m);
+      if (receivers.isUnknown()) {
+        is_unknown = true;
+        for (; k < end; ++k) codes[k * layer] = kUnknownExcess;
+      }
+      while (k < end && !is_free) {
+        float rx_msl_m[kReceivers], loss_db[kReceivers];
+#pragma unroll
+        for (int j = 0; j < kReceivers; ++j) rx_msl_m[j] = heightOf(k + j);
+        is_free = receivers.losses(rx_msl_m, loss_db);
+#pragma unroll
+        for (int j = 0; j < kReceivers; ++j) {
+          if (k + j >= end) break;
+          if (!air.isClear()) loss_db[j] += air.lossDb(static_cast<float>(place.range_m), rx_msl_m[j]);
+          codes[(k + j) * layer] = excessCode(loss_db[j]);
+        }
+        k += kReceivers;
+      }
+    }
+    for (; k < end; ++k) {
+      codes[k * layer] =
+          air.isClear() ? 0 : excessCode(air.lossDb(static_cast<float>(place.range_m), heightOf(k)));
     }
   }
-  for (; k < columns.layers; ++k) {
-    codes[k * layer] =
-        air.isClear() ? 0 : excessCode(air.lossDb(static_cast<float>(place.range_m), heightOf(k)));
-  }
+  if (is_unknown) markUnknown(task.to, c);
 }
 
 template <class Model>
@@ -242,8 +266,8 @@ void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, void* 
 
 }  // namespace
 
-void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, const DeviceColumns& columns,
-                     const float* ground_msl_m, const std::uint16_t* first_valid_k, cudaStream_t stream) {
+void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, const ExcessGrid& grid, int row,
+                     bool leans, const std::uint16_t* first_valid_k, cudaStream_t stream) {
   const auto count = static_cast<unsigned>(extent.pieces);
   const dim3 blocks(blocksFor(extent.azimuths),
                     static_cast<unsigned>(DiffractionTask::blockCount(extent.ranges)), count);
@@ -253,10 +277,11 @@ void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, co
   const dim3 warps(static_cast<unsigned>((extent.azimuths + kWarp - 1) / kWarp), count);
   sumsKernel<<<warps, kWarp, 0, stream>>>(tasks);
   checkLaunch("terrain sums");
-  const int rows = columns.count / columns.row;
-  const dim3 tiles(static_cast<unsigned>((columns.row + kTileX - 1) / kTileX),
+  const int rows = static_cast<int>(grid.column_count) / row;
+  const dim3 tiles(static_cast<unsigned>((row + kTileX - 1) / kTileX),
                    static_cast<unsigned>((rows + kTileY - 1) / kTileY), count);
-  diffractionKernel<<<tiles, kTileX * kTileY, 0, stream>>>(tasks, columns, ground_msl_m, first_valid_k);
+  const auto kernel = leans ? diffractionKernel<true> : diffractionKernel<false>;
+  kernel<<<tiles, kTileX * kTileY, 0, stream>>>(tasks, grid, row, first_valid_k);
   checkLaunch("diffraction");
 }
 

@@ -20,8 +20,8 @@ struct FanBlock {
   float highest_msl_m, lowered_msl_m;
 };
 
-/// `diffraction` over some intervals of an emitter's fan, for upright columns: a thread a column, the profile
-/// read from the fan as often as it is needed.
+/// `diffraction` over some intervals of an emitter's fan, over all of them for columns that lean: a thread a
+/// column, the profile read from the fan as often as it is needed.
 struct DiffractionTask {
   DiffractionExcess model;
   AirLoss air;
@@ -37,10 +37,12 @@ struct DiffractionTask {
   }
 };
 /// @param extent         of the tasks' pieces
-/// @param ground_msl_m   below each column; null: from the fan
+/// @param grid           of device memory
+/// @param row            columns along x
+/// @param leans          whether the columns do
 /// @param first_valid_k  voxels below get no excess; null: none is below
-void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, const DeviceColumns& columns,
-                     const float* ground_msl_m, const std::uint16_t* first_valid_k, cudaStream_t stream);
+void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, const ExcessGrid& grid, int row,
+                     bool leans, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
 /// Any model: a thread a column with memory of its own.
 /// @param excess     its tables in device memory

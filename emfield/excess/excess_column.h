@@ -64,6 +64,18 @@ struct ExcessScratch {
   }
 };
 
+/// Height at any range up to a fan's last, linear between its samples.
+/// @param heightOf  height (m) of a sample
+template <class HeightOf>
+EMSCAPE_HD float heightBetween(const FanView& shape, double range_m, HeightOf heightOf) {
+  const int before = shape.lastBefore(range_m);
+  const int after = before + 1 < shape.range_count ? before + 1 : before;
+  const float low = heightOf(before);
+  if (after == before) return low;
+  const double part = (range_m - shape.ranges_m[before]) / (shape.ranges_m[after] - shape.ranges_m[before]);
+  return low + static_cast<float>(part) * (heightOf(after) - low);
+}
+
 /// Heights of some of a fan's intervals, as plain data.
 struct FanHeights {
   FanView shape;
@@ -85,12 +97,7 @@ struct FanHeights {
   }
   /// The same at any range up to the last.
   EMSCAPE_HD float heightAt(double azimuth_index, double range_m) const {
-    const int before = shape.lastBefore(range_m);
-    const int after = before + 1 < shape.range_count ? before + 1 : before;
-    const float low = heightAt(azimuth_index, before);
-    if (after == before) return low;
-    const double part = (range_m - shape.ranges_m[before]) / (shape.ranges_m[after] - shape.ranges_m[before]);
-    return low + static_cast<float>(part) * (heightAt(azimuth_index, after) - low);
+    return heightBetween(shape, range_m, [&](int range) { return heightAt(azimuth_index, range); });
   }
 };
 

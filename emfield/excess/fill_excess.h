@@ -27,6 +27,12 @@ struct ExcessGrid {
   EMSCAPE_HD int firstLayer(int piece) const {
     return static_cast<int>(static_cast<long long>(layers) * piece / pieces);
   }
+  /// Where a piece stands as seen from a station.
+  EMSCAPE_HD FanCoordinates placeOf(const Station& station, std::size_t column, int piece) const {
+    const auto first_m = static_cast<double>(t_m[firstLayer(piece)]);
+    const auto last_m = static_cast<double>(t_m[firstLayer(piece + 1) - 1]);
+    return fanCoordinates(station, columns[column], (first_m + last_m) / 2);
+  }
 };
 
 /// The columns of a grid, in host memory.
@@ -53,9 +59,7 @@ struct ExcessTask {
     }
     for (int piece = 0; piece < grid.pieces; ++piece) {
       const int first = grid.firstLayer(piece), end = grid.firstLayer(piece + 1);
-      const double middle_m =
-          (static_cast<double>(grid.t_m[first]) + static_cast<double>(grid.t_m[end - 1])) / 2;
-      const FanCoordinates point = fanCoordinates(station, column, middle_m);
+      const FanCoordinates point = grid.placeOf(station, c, piece);
       ExcessColumn part;
       part.range_m = point.range_m;
       part.height_msl_m = scratch.height_msl_m + first;

@@ -24,34 +24,31 @@ EMSCAPE_HD void fillByBisection(Evaluate evaluate, int count, float tolerance_db
       out[i] = out[begin] + part * (out[end] - out[begin]);
     }
   };
-  out[0] = evaluate(0);
-  for (int begin = 0; begin < count - 1; begin += kCoarsest) {
-    const int stop = begin + kCoarsest < count - 1 ? begin + kCoarsest : count - 1;
-    out[stop] = evaluate(stop);
-    // ends of the pieces still to do, the nearest last
-    int ends[kDeepest];
-    int waiting = 0;
-    ends[waiting++] = stop;
-    int from = begin;
-    while (waiting > 0) {
-      const int to = ends[waiting - 1];
-      if (to - from < 2) {
-        from = to;
-        --waiting;
-        continue;
-      }
-      const int middle = (from + to) / 2;
-      const float part = static_cast<float>(middle - from) / static_cast<float>(to - from);
-      const float line = out[from] + part * (out[to] - out[from]);
-      out[middle] = evaluate(middle);
-      if (std::fabs(out[middle] - line) <= tolerance_db && std::fabs(out[to] - out[from]) <= kSteep_db) {
-        drawLine(from, middle);
-        drawLine(middle, to);
-        from = to;
-        --waiting;
-      } else {
-        ends[waiting++] = middle;
-      }
+  const auto isStraight = [&](int begin, int middle, int end) {
+    const float part = static_cast<float>(middle - begin) / static_cast<float>(end - begin);
+    const float line = out[begin] + part * (out[end] - out[begin]);
+    return std::fabs(out[middle] - line) <= tolerance_db && std::fabs(out[end] - out[begin]) <= kSteep_db;
+  };
+  // One place calls the function: threads of a GPU's warp are to call it together.
+  int ends[kDeepest];  // of the pieces still to do, the nearest last
+  int waiting = 0, from = 0, at = 0;
+  bool is_middle = false;
+  for (;;) {
+    out[at] = evaluate(at);
+    if (is_middle && isStraight(from, at, ends[waiting - 1])) {
+      drawLine(from, at);
+      drawLine(at, ends[waiting - 1]);
+      from = ends[--waiting];
+    } else {
+      ends[waiting++] = at;
+    }
+    while (waiting > 0 && ends[waiting - 1] - from < 2) from = ends[--waiting];
+    is_middle = waiting > 0;
+    if (is_middle) {
+      at = (from + ends[waiting - 1]) / 2;
+    } else {
+      if (from == count - 1) return;
+      at = from + kCoarsest < count - 1 ? from + kCoarsest : count - 1;
     }
   }
 }

@@ -205,6 +205,16 @@ TEST_F(CudaField, IsTheCpusOverTerrain) {
   }
 }
 
+TEST_F(CudaField, ColumnsThatLeanOverSeveralPlacesAreTheCpus) {
+  std::mt19937 random(11);
+  const auto scenario = randomScenario(random, FrameKind::enu, {PropagationModel::diffraction}, 1900, 3);
+  scenario->region.size_m = {60e3, 60e3, 40e3};
+  scenario->region.dims = {100, 80, 30};
+  scenario->atmosphere.rain_mm_h = 5;
+  Pair pair(scenario, std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0));
+  expectSameField(pair, random, 2);
+}
+
 TEST_F(CudaField, EveryModelIsTheCpus) {
   std::mt19937 random(10);
   const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0);
