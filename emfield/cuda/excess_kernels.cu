@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <type_traits>
 
 #include "base/cuda/cuda_memory.h"
 #include "emfield/cuda/excess_kernels.h"
@@ -145,7 +146,9 @@ __global__ void sumsKernel(const DiffractionTask* tasks) {
   }
 }
 
+/// Once for a column; one thread at a time.
 __device__ void markUnknown(const ExcessOutputs& to, int column) {
+  if (isnan(to.out.shadow_edge_m[column])) return;
   to.out.markUnknown(static_cast<std::size_t>(column));
   atomicAdd(&to.counts->unknown_columns, 1);
 }
@@ -227,41 +230,137 @@ __global__ void __launch_bounds__(kTileX* kTileY, 5)
   if (is_unknown) markUnknown(task.to, c);
 }
 
+__device__ void note(const ExcessOutputs& to, int column, unsigned remarks) {
+  if ((remarks & kMissingTerrain) != 0) markUnknown(to, column);
+  if ((remarks & ~kMissingTerrain) != 0) atomicOr(&to.counts->remarks, remarks & ~kMissingTerrain);
+}
+
+/// Memory of columns that are computed at a time.
+class ColumnMemory {
+ public:
+  /// What one kernel leaves the next of a column.
+  struct Begun {
+    ExcessColumn column;
+    bool is_open;  ///< there is something to fill
+  };
+
+  ColumnMemory(void* memory, std::size_t bytes, int posts, int layers)
+      : memory_(static_cast<char*>(memory)), posts_(posts), layers_(layers) {
+    constexpr std::size_t kAlignment = alignof(Begun);
+    bytes_each_ =
+        (sizeof(Begun) + ExcessScratch::bytes(posts, layers) + kAlignment - 1) / kAlignment * kAlignment;
+    columns_ = static_cast<int>(std::min<std::size_t>(bytes / bytes_each_, 1 << 30)) / kThreads * kThreads;
+    if (columns_ > 0) return;
+    throw Error(ErrorCode::device, "GPU: " + std::to_string(kThreads) + " columns at a time need " +
+                                       std::to_string(kThreads * bytes_each_) + " bytes, of " +
+                                       std::to_string(bytes));
+  }
+  int columns() const { return columns_; }
+  __device__ Begun& begun(int n) const { return *reinterpret_cast<Begun*>(memory_ + n * bytes_each_); }
+  __device__ ExcessScratch scratch(int n) const {
+    return ExcessScratch::in(memory_ + n * bytes_each_ + sizeof(Begun), posts_, layers_);
+  }
+
+ private:
+  char* memory_;
+  std::size_t bytes_each_;
+  int columns_;
+  int posts_, layers_;
+};
+
+/// Whole columns, a thread each.
 template <class Model>
 __global__ void __launch_bounds__(kThreads)
     excessKernel(const __grid_constant__ ExcessTask<Model> task, const __grid_constant__ ExcessOutputs to,
-                 char* memory, std::size_t bytes_each, int posts) {
+                 const __grid_constant__ ColumnMemory memory) {
   const int thread = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   const int threads = static_cast<int>(gridDim.x * blockDim.x);
   const ExcessGrid& grid = task.grid;
-  const ExcessScratch scratch = ExcessScratch::in(memory + thread * bytes_each, posts, grid.layers);
+  const ExcessScratch scratch = memory.scratch(thread);
   for (std::size_t c = thread; c < grid.column_count; c += threads) {
     unsigned remarks = 0;
     if (!task.fillColumn(c, scratch, remarks)) continue;
-    if ((remarks & kMissingTerrain) != 0) markUnknown(to, static_cast<int>(c));
-    if ((remarks & ~kMissingTerrain) != 0) atomicOr(&to.counts->remarks, remarks & ~kMissingTerrain);
+    note(to, static_cast<int>(c), remarks);
     for (int k = 0; k < grid.layers; ++k) {
       to.out.codes[k * grid.column_count + c] = excessCode(scratch.excess_db[k]);
     }
   }
 }
 
+/// A piece of some columns.
+struct ColumnRun {
+  int first, count;
+  int piece;
+};
+
+/// What comes once for a column.
 template <class Model>
-void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, void* scratch,
-                  std::size_t scratch_bytes, cudaStream_t stream) {
-  constexpr std::size_t kAlignment = alignof(double);
-  const std::size_t bytes =
-      (ExcessScratch::bytes(task.posts(), task.grid.layers) + kAlignment - 1) / kAlignment * kAlignment;
-  const std::size_t fitting = scratch_bytes / bytes / kThreads * kThreads;
-  if (fitting == 0) {
-    throw Error(ErrorCode::device, "GPU: " + std::to_string(kThreads) + " columns at a time need " +
-                                       std::to_string(kThreads * bytes) + " bytes, of " +
-                                       std::to_string(scratch_bytes));
+__global__ void __launch_bounds__(kThreads)
+    beginKernel(const __grid_constant__ ExcessTask<Model> task, const __grid_constant__ ExcessOutputs to,
+                const __grid_constant__ ColumnMemory memory, ColumnRun run) {
+  const int n = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (n >= run.count) return;
+  const ExcessScratch scratch = memory.scratch(n);
+  ExcessColumn column;
+  const bool is_here = task.readPiece(run.first + n, run.piece, scratch, column);
+  unsigned remarks = 0;
+  const int first = task.grid.firstLayer(run.piece);
+  if (is_here) remarks = task.model.begin(column, scratch, scratch.excess_db + first);
+  memory.begun(n) = {column, is_here && remarks == 0};
+  if (remarks == 0) return;
+  note(to, run.first + n, remarks);
+  for (int k = 0; k < column.count; ++k) {
+    const float excess_db = scratch.excess_db[first + k];
+    to.out.codes[(first + k) * task.grid.column_count + run.first + n] = excessCode(excess_db);
   }
-  const std::size_t threads = std::min(fitting, task.grid.column_count);
-  excessKernel<<<blocksFor(static_cast<int>(threads)), kThreads, 0, stream>>>(
-      task, to, static_cast<char*>(scratch), bytes, task.posts());
-  checkLaunch("excess");
+}
+
+/// Parts of columns, a thread each: neighbours read the same profile.
+template <class Model>
+__global__ void __launch_bounds__(kThreads)
+    fillKernel(const __grid_constant__ ExcessTask<Model> task, const __grid_constant__ ExcessOutputs to,
+               const __grid_constant__ ColumnMemory memory, ColumnRun run, int parts) {
+  const int thread = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  const int n = thread / parts;
+  if (n >= run.count) return;
+  const ColumnMemory::Begun begun = memory.begun(n);
+  const int begin = thread % parts * kBisectionStep;
+  const int end = min(begin + kBisectionStep, begun.column.count);
+  if (!begun.is_open || begin >= end) return;
+  const ExcessScratch scratch = memory.scratch(n);
+  const int first = task.grid.firstLayer(run.piece);
+  float* const excess_db = scratch.excess_db + first;
+  float other_db[kBisectionStep + 1];
+  note(to, run.first + n, task.model.fill(begun.column, scratch, {begin, end, other_db}, excess_db));
+  task.addAir(begun.column, begin, end, excess_db);
+  for (int k = begin; k < end; ++k) {
+    to.out.codes[(first + k) * task.grid.column_count + run.first + n] = excessCode(excess_db[k]);
+  }
+}
+
+template <class Model>
+void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const ColumnMemory& memory,
+                  cudaStream_t stream) {
+  const ExcessGrid& grid = task.grid;
+  const int columns = static_cast<int>(grid.column_count);
+  if constexpr (!Model::kInParts) {
+    excessKernel<<<blocksFor(std::min(memory.columns(), columns)), kThreads, 0, stream>>>(task, to, memory);
+    checkLaunch("excess");
+  } else {
+    const int parts = (grid.firstLayer(1) + kBisectionStep) / kBisectionStep;  // pieces differ by a layer
+    const int runs = (columns + memory.columns() - 1) / memory.columns();
+    for (int piece = 0; piece < grid.pieces; ++piece) {
+      for (int r = 0; r < runs; ++r) {
+        const int first = static_cast<int>(static_cast<long long>(columns) * r / runs);
+        const int end = static_cast<int>(static_cast<long long>(columns) * (r + 1) / runs);
+        const ColumnRun run{first, end - first, piece};
+        beginKernel<<<blocksFor(run.count), kThreads, 0, stream>>>(task, to, memory, run);
+        checkLaunch("excess of columns");
+        fillKernel<<<blocksFor(run.count * parts), kThreads, 0, stream>>>(task, to, memory, run, parts);
+        checkLaunch("excess of parts");
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -290,8 +389,11 @@ void fillExcess(const EmitterExcess& excess, const Station& station, const Exces
                 cudaStream_t stream) {
   std::visit(
       [&](const auto& m) {
-        launchExcess(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, fan}, to, scratch,
-                     scratch_bytes, stream);
+        using Model = std::decay_t<decltype(m)>;
+        if constexpr (!std::is_same_v<Model, DiffractionExcess>) {  // which has a kernel of its own
+          const ExcessTask<Model> task{m, excess.air, station, grid, fan};
+          launchExcess(task, to, ColumnMemory(scratch, scratch_bytes, task.posts(), grid.layers), stream);
+        }
       },
       excess.model);
 }

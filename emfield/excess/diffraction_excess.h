@@ -9,6 +9,7 @@ namespace emscape::emfield {
 /// Delta-Bullington: one walk along the column's own profile, all its heights at its end.
 struct DiffractionExcess {
   static constexpr bool kNeedsTerrain = true;
+  static constexpr bool kInParts = false;
 
   DiffractionModel<float> model;
   float tx_msl_m = 0;

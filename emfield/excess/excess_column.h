@@ -23,6 +23,15 @@ struct ExcessColumn {
 /// What a model says of a column besides its losses: bits of its own, and this one, that terrain is missing.
 constexpr unsigned kMissingTerrain = 1u << 31;
 
+/// Some of a column's heights, for a model that fills them by bisection.
+struct ColumnPart {
+  int begin = 0, end = 0;      ///< heights begin..end - 1; begin is a multiple of kBisectionStep
+  float* memory_db = nullptr;  ///< for a height more
+
+  /// Heights of the bisection: up to the first of the next part, of which so many are in question.
+  EMSCAPE_HD int reach(int count) const { return (end < count ? end + 1 : count) - begin; }
+};
+
 /// Memory for one column at a time, cut from one block: a thread has its own.
 struct ExcessScratch {
   double* range_m = nullptr;

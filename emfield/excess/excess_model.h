@@ -2,8 +2,12 @@
 ///
 /// A model is a plain struct with
 ///     static constexpr bool kNeedsTerrain;  // whether a column's profile is read for it
+///     static constexpr bool kInParts;       // whether it is made of begin() and fill()
 ///     EMSCAPE_HD unsigned operator()(const ExcessColumn&, const ExcessScratch&, float* excess_db) const;
 /// which fills the excess (dB) of a column's voxels and returns remarks (bits). It runs on host and device.
+/// On a device that has more threads than columns fit into its memory, begin() does what comes once for a
+/// column and fill(), which also takes a ColumnPart, some of the heights of many. begin() returns 0, or
+/// kMissingTerrain with NaN for every voxel; then there is nothing to fill.
 #pragma once
 
 #include <memory>

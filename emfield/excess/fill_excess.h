@@ -50,32 +50,46 @@ struct ExcessTask {
   /// Posts of the longest profile.
   int posts() const { return fan.shape.range_count + 1; }
 
+  /// Reads what a model is told of a piece of a column.
+  /// @return false if the column lies beyond the fan's intervals
+  EMSCAPE_HD bool readPiece(std::size_t c, int piece, const ExcessScratch& scratch,
+                            ExcessColumn& part) const {
+    const int first = grid.firstLayer(piece);
+    const FanCoordinates point = grid.placeOf(station, c, piece);
+    part.range_m = point.range_m;
+    part.height_msl_m = scratch.height_msl_m + first;
+    part.count = grid.firstLayer(piece + 1) - first;
+    if constexpr (Model::kNeedsTerrain) {
+      const double azimuth_index = fan.shape.azimuthIndex(point.azimuth_rad);
+      if (!fan.holds(azimuth_index)) return false;
+      part.ground_msl_m =
+          grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : fan.heightAt(azimuth_index, point.range_m);
+      part.profile = readProfile(fan, azimuth_index, point.range_m, part.ground_msl_m, scratch);
+    }
+    for (int k = 0; k < part.count; ++k) {
+      const auto t_m = static_cast<double>(grid.t_m[first + k]);
+      scratch.height_msl_m[first + k] = static_cast<float>(heightMsl_m(grid.columns[c], t_m));
+    }
+    return true;
+  }
+
+  /// What air adds to some heights of a piece.
+  EMSCAPE_HD void addAir(const ExcessColumn& part, int begin, int end, float* excess_db) const {
+    if (air.isClear()) return;
+    for (int k = begin; k < end; ++k) {
+      excess_db[k] += air.lossDb(static_cast<float>(part.range_m), part.height_msl_m[k]);
+    }
+  }
+
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
   /// @return false if the column lies beyond the fan's intervals; `remarks` gets bits of the model
   EMSCAPE_HD bool fillColumn(std::size_t c, const ExcessScratch& scratch, unsigned& remarks) const {
-    const GridColumn& column = grid.columns[c];
-    for (int k = 0; k < grid.layers; ++k) {
-      scratch.height_msl_m[k] = static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[k])));
-    }
     for (int piece = 0; piece < grid.pieces; ++piece) {
-      const int first = grid.firstLayer(piece), end = grid.firstLayer(piece + 1);
-      const FanCoordinates point = grid.placeOf(station, c, piece);
       ExcessColumn part;
-      part.range_m = point.range_m;
-      part.height_msl_m = scratch.height_msl_m + first;
-      part.count = end - first;
-      if constexpr (Model::kNeedsTerrain) {
-        const double azimuth_index = fan.shape.azimuthIndex(point.azimuth_rad);
-        if (!fan.holds(azimuth_index)) return false;
-        part.ground_msl_m =
-            grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : fan.heightAt(azimuth_index, point.range_m);
-        part.profile = readProfile(fan, azimuth_index, point.range_m, part.ground_msl_m, scratch);
-      }
-      remarks |= model(part, scratch, scratch.excess_db + first);
-      if (air.isClear()) continue;
-      for (int k = first; k < end; ++k) {
-        scratch.excess_db[k] += air.lossDb(static_cast<float>(point.range_m), scratch.height_msl_m[k]);
-      }
+      if (!readPiece(c, piece, scratch, part)) return false;
+      float* const excess_db = scratch.excess_db + grid.firstLayer(piece);
+      remarks |= model(part, scratch, excess_db);
+      addAir(part, 0, part.count, excess_db);
     }
     return true;
   }

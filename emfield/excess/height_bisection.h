@@ -7,14 +7,16 @@
 
 namespace emscape::emfield {
 
+/// Indices between evaluations that are made in any case; what lies between two of them depends on no other.
+constexpr int kBisectionStep = 16;
+
 /// Evaluates a function at some indices of 0..count - 1 and draws straight lines between them: every
-/// kCoarsest indices, and wherever half way between two evaluations it leaves their line by more than a
-/// tolerance, or where it is so steep that a bend may hide beside the middle.
+/// kBisectionStep indices and at the last one, and wherever half way between two evaluations it leaves their
+/// line by more than a tolerance, or where it is so steep that a bend may hide beside the middle.
 /// @param evaluate  double or float of an index; called no more than once for each
 /// @param out       `count` values
 template <class Evaluate>
 EMSCAPE_HD void fillByBisection(Evaluate evaluate, int count, float tolerance_db, float* out) {
-  constexpr int kCoarsest = 16;
   constexpr int kDeepest = 8;
   constexpr float kSteep_db = 3;
   if (count <= 0) return;
@@ -48,7 +50,7 @@ EMSCAPE_HD void fillByBisection(Evaluate evaluate, int count, float tolerance_db
       at = (from + ends[waiting - 1]) / 2;
     } else {
       if (from == count - 1) return;
-      at = from + kCoarsest < count - 1 ? from + kCoarsest : count - 1;
+      at = from + kBisectionStep < count - 1 ? from + kBisectionStep : count - 1;
     }
   }
 }

@@ -29,6 +29,7 @@ EMSCAPE_HD inline float itmRangeWeight(double range_m) {
 
 struct ItmExcess {
   static constexpr bool kNeedsTerrain = true;
+  static constexpr bool kInParts = true;
   static constexpr float kTolerance_db = 0.1f;
 
   DiffractionExcess diffraction;
@@ -42,21 +43,32 @@ struct ItmExcess {
   /// @accuracy heights between evaluations: 99 % within 0.1 dB of the model, but for its jumps
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch,
                                  float* excess_db) const {
-    unsigned remarks = diffraction(column, scratch, excess_db);
-    const float tx_agl_m = above(diffraction.tx_msl_m, column.profile.height_msl_m[0]);
-    const float path_weight = itmHeightWeight(static_cast<double>(tx_agl_m)) * itmRangeWeight(column.range_m);
-    if (remarks != 0 || path_weight == 0) return remarks;
-
+    const unsigned remarks = begin(column, scratch, excess_db);
+    if (remarks != 0) return remarks;
+    return fill(column, scratch, {0, column.count, scratch.other_db}, excess_db);
+  }
+  EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
+                            float* excess_db) const {
+    const unsigned remarks = diffraction(column, scratch, excess_db);
+    if (remarks == 0 && pathWeight(column) > 0) spaceEvenly(column.profile, scratch.even_ground_msl_m);
+    return remarks;
+  }
+  EMSCAPE_HD unsigned fill(const ExcessColumn& column, const ExcessScratch& scratch, const ColumnPart& part,
+                           float* excess_db) const {
+    const float path_weight = pathWeight(column);
+    if (path_weight == 0) return 0;
     ItmProfile<float> even;
     even.heights_msl_m = scratch.even_ground_msl_m;
-    even.intervals = spaceEvenly(column.profile, scratch.even_ground_msl_m);
+    even.intervals = evenIntervals(column.profile);
     even.step_m = column.range_m / even.intervals;
-    int in_zone = 0;
-    while (in_zone < column.count && itmHeightWeight(heightAgl(column, in_zone)) > 0) ++in_zone;
+    int in_zone = part.begin;  // heights below this one, of those that the bisection reaches
+    const int most = part.begin + part.reach(column.count);
+    while (in_zone < most && itmHeightWeight(heightAgl(column, in_zone)) > 0) ++in_zone;
+    unsigned remarks = 0;
     const auto lossAt = [&](int k) {
       ItmLink<float> here = link;
-      here.height_agl_m[0] = tx_agl_m;
-      here.height_agl_m[1] = static_cast<float>(heightAgl(column, k));
+      here.height_agl_m[0] = txAgl(column);
+      here.height_agl_m[1] = static_cast<float>(heightAgl(column, part.begin + k));
       ItmResult<float> result;
       if (is_area) {
         ItmArea<float> over = area;
@@ -68,9 +80,9 @@ struct ItmExcess {
       remarks |= result.refused() ? kItmRefused : result.warnings;
       return result.loss_db - result.free_space_db;
     };
-    fillByBisection(lossAt, in_zone, kTolerance_db, scratch.other_db);
-    for (int k = 0; k < in_zone; ++k) {
-      const float other = scratch.other_db[k];
+    fillByBisection(lossAt, in_zone - part.begin, kTolerance_db, part.memory_db);
+    for (int k = part.begin; k < part.end && k < in_zone; ++k) {
+      const float other = part.memory_db[k - part.begin];
       if (!(other == other)) continue;  // refused
       const float weight = path_weight * itmHeightWeight(heightAgl(column, k));
       excess_db[k] += weight * (other - excess_db[k]);
@@ -79,6 +91,12 @@ struct ItmExcess {
   }
 
  private:
+  EMSCAPE_HD float txAgl(const ExcessColumn& column) const {
+    return above(diffraction.tx_msl_m, column.profile.height_msl_m[0]);
+  }
+  EMSCAPE_HD float pathWeight(const ExcessColumn& column) const {
+    return itmHeightWeight(static_cast<double>(txAgl(column))) * itmRangeWeight(column.range_m);
+  }
   /// Height above ground, no lower than the model allows.
   static EMSCAPE_HD float above(float height_msl_m, float ground_msl_m) {
     const float above_m = height_msl_m - ground_msl_m, least_m = static_cast<float>(kItmHeight.least);
@@ -87,13 +105,17 @@ struct ItmExcess {
   static EMSCAPE_HD double heightAgl(const ExcessColumn& column, int k) {
     return static_cast<double>(above(column.height_msl_m[k], column.ground_msl_m));
   }
-  /// @return the number of intervals, at least 2 and no more than the profile has
-  EMSCAPE_HD int spaceEvenly(const TerrainProfile& profile, float* heights_msl_m) const {
+  /// At least 2 and no more than the profile has.
+  EMSCAPE_HD int evenIntervals(const TerrainProfile& profile) const {
+    const int last = profile.count - 1;
+    int intervals = static_cast<int>(profile.range_m[last] / step_m) + 1;
+    intervals = intervals < last ? intervals : last;
+    return intervals > 2 ? intervals : 2;
+  }
+  EMSCAPE_HD void spaceEvenly(const TerrainProfile& profile, float* heights_msl_m) const {
     const int last = profile.count - 1;
     const double length_m = profile.range_m[last];
-    int intervals = static_cast<int>(length_m / step_m) + 1;
-    intervals = intervals < last ? intervals : last;
-    intervals = intervals > 2 ? intervals : 2;
+    const int intervals = evenIntervals(profile);
     int after = 1;
     for (int i = 0; i <= intervals; ++i) {
       const double at_m = length_m * i / intervals;
@@ -103,7 +125,6 @@ struct ItmExcess {
       const float before = profile.height_msl_m[after - 1];
       heights_msl_m[i] = before + part * (profile.height_msl_m[after] - before);
     }
-    return intervals;
   }
 };
 

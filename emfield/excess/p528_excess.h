@@ -16,6 +16,7 @@ namespace emscape::emfield {
 /// and horizon lie at the same place of neighbouring curves, and densest near it.
 struct P528Excess {
   static constexpr bool kNeedsTerrain = false;
+  static constexpr bool kInParts = false;
 
   const float* excess_db = nullptr;  ///< height_count x range_count, range fastest
   const float* horizon_m = nullptr;  ///< height_count

@@ -12,6 +12,7 @@ namespace emscape::emfield {
 /// Of free_space and horizon, for what the air adds.
 struct NoExcess {
   static constexpr bool kNeedsTerrain = false;
+  static constexpr bool kInParts = false;
 
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch&, float* excess_db) const {
     for (int k = 0; k < column.count; ++k) excess_db[k] = 0;
@@ -22,6 +23,7 @@ struct NoExcess {
 /// In double precision: phases are differences of paths in wavelengths, which may be many.
 struct TwoRayExcess {
   static constexpr bool kNeedsTerrain = false;
+  static constexpr bool kInParts = false;
 
   TwoRayModel<double> model;  ///< of horizontal polarisation, if both enter
   TwoRayModel<double> vertical;
