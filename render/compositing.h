@@ -59,6 +59,10 @@ struct TransferView {
 ///   done(ahead, next)     whether nothing from sample `next` on can matter (any more than early termination
 ///                         allows); ahead.exceeds(next, f): whether any sample from there on can exceed f
 ///   kEndsItself           add() changes nothing once done() is true: done() need not be asked after each
+///   kParts                parts of a ray that can be composited apart and joined; 1: it cannot be divided
+///   behind(), join(part)  a part that lies behind what is composited so far, and that part taken in
+///   nearlyDone()          true where done() is, and where rounding might make it so: of parts that were
+///                         composited without knowing what lies before them
 ///   sample result(transfer)      the ray's colour, premultiplied
 /// `volume_highest_f` is the largest f that any sample can have.
 
@@ -67,6 +71,7 @@ constexpr float kOpaqueEnough = 0.99F;
 constexpr float kNeverOpaqueEnough = 2.0F;
 
 constexpr int kMostRayParts = 8;
+constexpr int kRayHalves = 2;  ///< parts are joined to halves first, those to the ray
 
 /// Direct volume rendering: emission and absorption.
 struct DvrCompositor {
@@ -91,16 +96,16 @@ struct DvrCompositor {
   }
   EMSCAPE_HD DvrCompositor behind() const {
     DvrCompositor part(opaque_enough, 0, 0);
-    part.opacity_before = sum.a;
+    part.opacity_before = opacity();
     return part;
   }
   EMSCAPE_HD void join(const DvrCompositor& part) { sum = over(sum, part.sum); }
+  EMSCAPE_HD bool nearlyDone() const { return opacity() > opaque_enough - 1e-5F; }
   EMSCAPE_HD Rgba result(const TransferView& /*transfer*/) const { return sum; }
 
  private:
-  EMSCAPE_HD bool isDone() const {
-    return multiplyAdd(sum.a, 1.0F - opacity_before, opacity_before) > opaque_enough;
-  }
+  EMSCAPE_HD float opacity() const { return multiplyAdd(sum.a, 1.0F - opacity_before, opacity_before); }
+  EMSCAPE_HD bool isDone() const { return opacity() > opaque_enough; }
 };
 
 /// Maximum intensity projection: the colour of the largest value, its opacity relative to the function's
@@ -126,6 +131,7 @@ struct MipCompositor {
   }
   EMSCAPE_HD MipCompositor behind() const { return *this; }
   EMSCAPE_HD void join(const MipCompositor& part) { addIf(true, part.highest, {}); }
+  EMSCAPE_HD bool nearlyDone() const { return highest >= volume_highest; }
   EMSCAPE_HD Rgba result(const TransferView& transfer) const {
     return highest >= 0.0F ? transfer.projected[transfer.index(highest)] : Rgba{};
   }

@@ -21,10 +21,12 @@
 namespace emscape::render {
 
 /// A ray in index space: the direction has unit length, so that its parameter counts voxels.
-struct Ray {
-  Vec3d origin;
-  Vec3d direction;
+template <class Real>
+struct RayOf {
+  Vec3<Real> origin;
+  Vec3<Real> direction;
 };
+using Ray = RayOf<double>;
 
 /// A camera in index space.
 struct CameraView {
@@ -36,37 +38,50 @@ struct CameraView {
   ImageSize size;
 
   EMSCAPE_HD Ray ray(int x, int y) const {
-    const double plane_x = ((2.0 * (x + 0.5) - size.width) / size.height + shift_x) * half_height;
-    const double plane_y = (1.0 - 2.0 * (y + 0.5) / size.height + shift_y) * half_height;
-    const Vec3d offset = right * plane_x + up * plane_y;
-    const Vec3d along = orthographic ? forward : forward + offset;
-    return {orthographic ? eye + offset : eye, along * (1.0 / length(along))};
+    const Ray through = rayThrough<double>(x, y);
+    return {through.origin, through.direction * (1.0 / length(through.direction))};
+  }
+  /// The same with a direction of some length.
+  template <class Real>
+  EMSCAPE_HD RayOf<Real> rayThrough(int x, int y) const {
+    const auto real = [](auto number) { return static_cast<Real>(number); };
+    const Real half = real(0.5);
+    const Real plane_x = ((2 * (x + half) - size.width) / size.height + real(shift_x)) * real(half_height);
+    const Real plane_y = (1 - 2 * (y + half) / size.height + real(shift_y)) * real(half_height);
+    const Vec3<Real> offset = vecCast<Real>(right) * plane_x + vecCast<Real>(up) * plane_y;
+    return {orthographic ? vecCast<Real>(eye) + offset : vecCast<Real>(eye),
+            orthographic ? vecCast<Real>(forward) : vecCast<Real>(forward) + offset};
   }
 };
 
 /// The part of a ray in a box: empty where end <= begin. Never begins behind the origin.
-struct RayInterval {
-  double begin = 0, end = 0;
+template <class Real>
+struct RayIntervalOf {
+  Real begin = 0, end = 0;
 };
+using RayInterval = RayIntervalOf<double>;
 
 /// One axis' share of a box test. Rays that lie in a face count as outside.
-EMSCAPE_HD inline void clipAxis(double origin, double direction, double lower, double upper,
-                                RayInterval& interval) {
-  if (direction == 0.0) {
+template <class Real>
+EMSCAPE_HD inline void clipAxis(Real origin, Real direction, Real lower, Real upper,
+                                RayIntervalOf<Real>& interval) {
+  if (direction == 0) {
     if (!(origin > lower && origin < upper)) interval.end = interval.begin;
     return;
   }
-  const double per_unit = 1.0 / direction;
-  const double to_lower = (lower - origin) * per_unit;
-  const double to_upper = (upper - origin) * per_unit;
-  const double enter = direction > 0.0 ? to_lower : to_upper;
-  const double leave = direction > 0.0 ? to_upper : to_lower;
+  const Real per_unit = 1 / direction;
+  const Real to_lower = (lower - origin) * per_unit;
+  const Real to_upper = (upper - origin) * per_unit;
+  const Real enter = direction > 0 ? to_lower : to_upper;
+  const Real leave = direction > 0 ? to_upper : to_lower;
   if (enter > interval.begin) interval.begin = enter;
   if (leave < interval.end) interval.end = leave;
 }
 
-EMSCAPE_HD inline RayInterval clip(const Ray& ray, const Vec3d& lower, const Vec3d& upper) {
-  RayInterval interval{0.0, 1e300};
+template <class Real>
+EMSCAPE_HD inline RayIntervalOf<Real> clip(const RayOf<Real>& ray, const Vec3<Real>& lower,
+                                           const Vec3<Real>& upper) {
+  RayIntervalOf<Real> interval{0, static_cast<Real>(1e30)};
   clipAxis(ray.origin.x, ray.direction.x, lower.x, upper.x, interval);
   clipAxis(ray.origin.y, ray.direction.y, lower.y, upper.y, interval);
   clipAxis(ray.origin.z, ray.direction.z, lower.z, upper.z, interval);
@@ -120,13 +135,29 @@ struct RaycastTask {
   EMSCAPE_HD Rgba castVolume(int x, int y, double limit, const Colors& colors, float highest_f) const {
     Compositor compositor(opaque_enough, mida_gamma, highest_f);
     const RayPieces pieces = piecesOf(x, y, limit);
-    for (int part = 0; part < Compositor::kParts && pieces.count > 0; ++part) {
+    constexpr int kHalves = Compositor::kParts == 1 ? 1 : kRayHalves;
+    for (int half = 0; half < kHalves && pieces.count > 0; ++half) {
       Compositor next = compositor.behind();
-      const bool done = castPart<Compositor, Sampler, kMayShade, kBatch>(pieces, part, colors, next);
+      const bool done = castHalf<Compositor, Sampler, kMayShade, kBatch>(pieces, half, colors, next);
       compositor.join(next);
       if (done) break;
     }
     return compositor.result(transfer);
+  }
+
+  /// One half of the parts of a ray, or the only part. @return whether nothing behind it matters
+  template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
+  EMSCAPE_HD bool castHalf(const RayPieces& pieces, int half, const Colors& colors,
+                           Compositor& compositor) const {
+    constexpr int kPartsOfHalf = Compositor::kParts == 1 ? 1 : Compositor::kParts / kRayHalves;
+    for (int n = 0; n < kPartsOfHalf; ++n) {
+      Compositor next = compositor.behind();
+      const bool done =
+          castPart<Compositor, Sampler, kMayShade, kBatch>(pieces, half * kPartsOfHalf + n, colors, next);
+      compositor.join(next);
+      if (done) return true;
+    }
+    return false;
   }
 
   /// One of Compositor::kParts parts of a ray, the first one in front.
@@ -135,10 +166,11 @@ struct RaycastTask {
   EMSCAPE_HD bool castPart(const RayPieces& pieces, int part, const Colors& colors,
                            Compositor& compositor) const {
     constexpr int kParts = Compositor::kParts;
-    constexpr int kWhole = kMostRayParts * kMostRayParts;  // parts of whole batches
-    const int length = kParts == 1 ? pieces.whole : (pieces.whole + kWhole - 1) / kWhole * kMostRayParts;
-    const int begin = part * length;
-    const int end = begin + length < pieces.whole ? begin + length : pieces.whole;
+    // Whole batches, whatever kBatch is, and nearly as many in each part.
+    const int batches = (pieces.whole + kMostRayParts - 1) / kMostRayParts;
+    const int begin = batches * part / kParts * kMostRayParts;
+    const int next = batches * (part + 1) / kParts * kMostRayParts;
+    const int end = next < pieces.whole ? next : pieces.whole;
     return march<Compositor, Sampler, kMayShade, kBatch>(pieces, begin, end, part + 1 == kParts, colors,
                                                          compositor);
   }

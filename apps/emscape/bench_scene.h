@@ -43,6 +43,7 @@ class BenchScene {
   BenchScene(const BenchSceneOptions& options, const GlobalOptions& global, const Place& place);
 
   render::ImageSize size() const { return size_; }
+  bool onGpu() const { return place_.onGpu(); }
   const render::Renderer& renderer() const { return renderer_; }
 
   /// Turns the camera about the vertical through its target, away from where the option put it. What was

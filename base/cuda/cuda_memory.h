@@ -160,32 +160,37 @@ class Readback {
   bool requested_ = false;
 };
 
-/// Time between two points of a stream.
-class Timer {
+/// A point of a stream whose time is taken.
+class TimeMark {
  public:
-  Timer() {
-    check(cudaEventCreate(&begin_), "cudaEventCreate");
-    check(cudaEventCreate(&end_), "cudaEventCreate");
-  }
-  ~Timer() {
-    cudaEventDestroy(begin_);
-    cudaEventDestroy(end_);
-  }
-  Timer(const Timer&) = delete;
-  Timer& operator=(const Timer&) = delete;
+  TimeMark() { check(cudaEventCreate(&event_), "cudaEventCreate"); }
+  ~TimeMark() { cudaEventDestroy(event_); }
+  TimeMark(const TimeMark&) = delete;
+  TimeMark& operator=(const TimeMark&) = delete;
 
-  void begin(cudaStream_t stream) { check(cudaEventRecord(begin_, stream), "cudaEventRecord"); }
-  void end(cudaStream_t stream) { check(cudaEventRecord(end_, stream), "cudaEventRecord"); }
-  /// Waits for the end.
-  double elapsed_ms() const {
+  void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "cudaEventRecord"); }
+  /// Waits until the stream has come here. @param earlier  was recorded before, on the same stream
+  double since_ms(const TimeMark& earlier) const {
     float ms = 0;
-    check(cudaEventSynchronize(end_), "cudaEventSynchronize");
-    check(cudaEventElapsedTime(&ms, begin_, end_), "cudaEventElapsedTime");
+    check(cudaEventSynchronize(event_), "cudaEventSynchronize");
+    check(cudaEventElapsedTime(&ms, earlier.event_, event_), "cudaEventElapsedTime");
     return ms;
   }
 
  private:
-  cudaEvent_t begin_ = nullptr, end_ = nullptr;
+  cudaEvent_t event_ = nullptr;
+};
+
+/// Time between two points of a stream.
+class Timer {
+ public:
+  void begin(cudaStream_t stream) { begin_.record(stream); }
+  void end(cudaStream_t stream) { end_.record(stream); }
+  /// Waits for the end.
+  double elapsed_ms() const { return end_.since_ms(begin_); }
+
+ private:
+  TimeMark begin_, end_;
 };
 
 }  // namespace emscape::cuda

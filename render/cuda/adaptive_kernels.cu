@@ -8,11 +8,11 @@ namespace {
 /// The layer as midpoints see it; see predictMidpoint().
 struct KnownLayer {
   using Color = Rgba;
-  const float4* pixels;
+  const Layer& layer;
   ImageSize size;
 
   EMSCAPE_HD Rgba at(int x, int y) const {
-    const float4 p = pixels[static_cast<long long>(y) * size.width + x];
+    const float4 p = layer.at(x, y);
     return {p.x, p.y, p.z, p.w};
   }
 };
@@ -39,13 +39,13 @@ __global__ void __launch_bounds__(kTileThreads) predictPass(const PredictLaunch 
     const long long index = pixelIndex(size, x, y);
     std::uint8_t error_class = 0;
     if (!launch.inside[y].contains(x)) {
-      launch.layer[index] = make_float4(0, 0, 0, 0);
+      launch.layer.at(x, y) = make_float4(0, 0, 0, 0);
     } else {
       Prediction<Rgba> prediction;
       must_be_cast = !predictMidpoint(KnownLayer{launch.layer, size}, pass, x, y, prediction) ||
                      !(prediction.error_levels <= launch.tolerance_levels);
       if (!must_be_cast) {
-        launch.layer[index] = toFloat4(prediction.color);
+        launch.layer.at(x, y) = toFloat4(prediction.color);
         error_class = errorClassOf(prediction.error_levels);
       }
     }

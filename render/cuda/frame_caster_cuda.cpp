@@ -46,7 +46,7 @@ class CudaFrameCaster : public FrameCaster {
  private:
   CastLaunch prepare(const Scene& scene, ImageSize size);
   void findGround(const Scene& scene, const CastLaunch& launch);
-  void findInside(const Scene& scene, const CastLaunch& launch);
+  void findInside(const Scene& scene, ImageSize size);
   void finish(FrameReport& report);
   bool castLattices(CastLaunch launch, const std::vector<Lattice>& lattices, LaunchTrain& train,
                     FrameReport& report);
@@ -57,7 +57,7 @@ class CudaFrameCaster : public FrameCaster {
 
   const volume::VoxelPrecision precision_;
   emscape::cuda::Stream stream_;
-  emscape::cuda::Timer cast_time_, picture_time_;
+  emscape::cuda::TimeMark begin_, cast_, shown_;  ///< of the last frame, or restoration
 
   volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
   std::shared_ptr<const volume::DeviceVolume> volume_;
@@ -118,18 +118,21 @@ CastLaunch CudaFrameCaster::prepare(const Scene& scene, ImageSize size) {
   } else {
     sampling_ = scene.categorical() ? Sampling::nearest : accurate ? Sampling::accurate : Sampling::filtered;
   }
-  layer_.resize(static_cast<std::size_t>(size.count()));
-  picture8_.resize(layer_.size());
+  cuda::Layer layer;
+  layer.size = size;
+  layer_.resize(layer.length());
+  layer.pixels = layer_.data();
+  picture8_.resize(static_cast<std::size_t>(size.count()));
   CastLaunch launch = scene_.launch(scene, volume_->storage(), sampling_, size);
   if (next_tile_.size() == 0) {
     next_tile_.resize(1);
     check(cudaMemsetAsync(next_tile_.data(), 0, sizeof(unsigned), stream_), "cudaMemset");
   }
   launch.next_tile = next_tile_.data();
-  launch.layer = layer_.data();
+  launch.layer = layer;
   layers_ = {};
   layers_.size = size;
-  layers_.volume = layer_.data();
+  layers_.volume = layer;
   if (scene.ground()) {
     findGround(scene, launch);
     launch.limits = ground_distances_.data();
@@ -149,13 +152,15 @@ void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
   ground_view_ = {version, size};
 }
 
-void CudaFrameCaster::findInside(const Scene& scene, const CastLaunch& launch) {
-  const CameraView& camera = launch.task.camera;
+/// Has to be there before the first rays are cast: the host is in the way of none.
+void CudaFrameCaster::findInside(const Scene& scene, ImageSize size) {
   const unsigned version = scene.versions().view;
-  if (inside_view_.holds(version, camera.size)) return;
-  findSilhouette(camera, launch.task.volume.lower(), launch.task.volume.upper(), silhouette_);
+  if (inside_view_.holds(version, size)) return;
+  VolumeView volume;
+  volume.dims = scene.grid().dims;
+  findSilhouette(scene.task(size).camera, volume.lower(), volume.upper(), silhouette_);
   inside_.upload(silhouette_.rows, stream_);
-  inside_view_ = {version, camera.size};
+  inside_view_ = {version, size};
 }
 
 /// Rays of a launch that a ray's longest way through the volume makes at most so many samples of.
@@ -172,14 +177,14 @@ FrameReport CudaFrameCaster::draw(const Scene& scene, const FramePlan& plan, Ima
   report.pattern = plan.pattern;
   drawn_ = plan;
   if (size.count() == 0) return report;
+  if (plan.pattern == Pattern::adaptive) findInside(scene, size);
   volume_->storage().beginReading(stream_);
-  cast_time_.begin(stream_);
+  begin_.record(stream_);
   const CastLaunch launch = prepare(scene, size);
   LaunchTrain train(stream_, stop, raysFor(launch, kFrameSamples));
   layers_.pattern = plan.pattern;
   layers_.interpolation = plan.interpolation;
   if (plan.pattern == Pattern::adaptive) {
-    findInside(scene, launch);
     report.complete = castAdaptive(launch, plan, train);
   } else {
     report.complete = castLattices(launch, sourceLattices(plan.pattern, size), train, report);
@@ -195,7 +200,7 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   const ImageSize size = layers_.size;
   if (size.count() == 0) return report;
   volume_->storage().beginReading(stream_);
-  cast_time_.begin(stream_);
+  begin_.record(stream_);
   const CastLaunch launch = prepare(scene, size);
   LaunchTrain train(stream_, stop, raysFor(launch, kRestorationSamples));
   report.complete = drawn_.pattern == Pattern::adaptive
@@ -207,14 +212,13 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
 
 /// Everything is launched: shows the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
-  cast_time_.end(stream_);
-  volume_->storage().endReading(stream_);
-  picture_time_.begin(stream_);
+  cast_.record(stream_);
   if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
-  picture_time_.end(stream_);
+  shown_.record(stream_);
+  volume_->storage().endReading(stream_);
   stream_.wait();
-  report.cast_ms = cast_time_.elapsed_ms();
-  report.interpolate_ms = picture_time_.elapsed_ms();
+  report.cast_ms = cast_.since_ms(begin_);
+  report.interpolate_ms = shown_.since_ms(cast_);
 }
 
 /// @return false if it was stopped
@@ -241,8 +245,8 @@ bool CudaFrameCaster::castLattices(CastLaunch launch, const std::vector<Lattice>
 bool CudaFrameCaster::castAdaptive(CastLaunch launch, const FramePlan& plan, LaunchTrain& train) {
   constexpr std::size_t kPassCount = std::size(kPasses);
   const ImageSize size = layers_.size;
-  classes_.resize(layer_.size());
-  queue_.resize(layer_.size());
+  classes_.resize(picture8_.size());
+  queue_.resize(picture8_.size());
   queued_.resize(kPassCount);
   tolerance_levels_ = hold_.levels(plan.tolerance_levels);
   check(cudaMemsetAsync(queued_.data(), 0, kPassCount * sizeof(unsigned), stream_), "cudaMemset");
@@ -261,7 +265,7 @@ bool CudaFrameCaster::castAdaptive(CastLaunch launch, const FramePlan& plan, Lau
     predict.size = size;
     predict.inside = inside_.data();
     predict.tolerance_levels = static_cast<float>(tolerance_levels_ * kPasses[pass].tolerance);
-    predict.layer = layer_.data();
+    predict.layer = launch.layer;
     predict.classes = classes_.data();
     predict.queue = queue_.data();
     predict.queued = queued_.data() + pass;
@@ -315,7 +319,7 @@ bool CudaFrameCaster::castPredicted(CastLaunch launch, LaunchTrain& train, Frame
 void CudaFrameCaster::fetch(Image& image) {
   if (image.size != layers_.size) image = Image(layers_.size);
   if (image.pixels.empty()) return;
-  picture_.resize(layer_.size());
+  picture_.resize(picture8_.size());
   showPicture(layers_, picture_.data(), stream_);
   static_assert(sizeof(Rgba) == sizeof(float4), "a pixel is four floats");
   picture_.download(reinterpret_cast<float4*>(image.pixels.data()), stream_);

@@ -16,6 +16,21 @@
 
 namespace emscape::render::cuda {
 
+/// The volume alone as it is cast: a colour for each pixel of the picture. Pixels whose x is even or odd, and
+/// y, lie apart in four planes: so the source pixels of a pattern lie together.
+struct Layer {
+  float4* pixels = nullptr;
+  ImageSize size;
+
+  EMSCAPE_HD int columns() const { return (size.width + 1) / 2; }
+  EMSCAPE_HD int rows() const { return (size.height + 1) / 2; }
+  EMSCAPE_HD std::size_t length() const { return 4 * static_cast<std::size_t>(columns()) * rows(); }
+  EMSCAPE_HD float4& at(int x, int y) const {
+    const int row = (y % 2 * 2 + x % 2) * rows() + y / 2;
+    return pixels[static_cast<std::size_t>(row) * columns() + x / 2];
+  }
+};
+
 // --- Casting ---
 
 /// Which pixels a launch casts: those of a lattice, or a part of a list.
@@ -50,7 +65,7 @@ struct CastLaunch {
   const float* limits = nullptr;            ///< one a pixel: where the ground is; null: no ground
   bool few_rays = false;                    ///< so few that several threads are to share a ray
   unsigned* next_tile = nullptr;            ///< 0, before each launch and after it; one a stream
-  float4* layer = nullptr;                  ///< the volume alone, a pixel of the picture each
+  Layer layer;
 };
 void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 /// The same for a sparse sampling alone.
@@ -66,7 +81,7 @@ struct Layers {
   ImageSize size;
   Pattern pattern = Pattern::full;  ///< of the layer: which of its pixels count; adaptive: all
   Interpolation interpolation = Interpolation::float32;
-  const float4* volume = nullptr;
+  Layer volume;
   const float* ground_distances = nullptr;  ///< null: no ground
   const float4* ground_colors = nullptr;
 };
@@ -80,7 +95,7 @@ struct PredictLaunch {
   ImageSize size;
   const Span* inside = nullptr;  ///< one a row
   float tolerance_levels = 0;
-  float4* layer = nullptr;
+  Layer layer;
   std::uint8_t* classes = nullptr;  ///< of the estimated error, one a pixel; see errorClassOf()
   Pixel* queue = nullptr;           ///< receives the midpoints that must be cast
   unsigned* queued = nullptr;       ///< is increased by their number

@@ -44,7 +44,7 @@ __global__ void __launch_bounds__(kCellColumns* kCellRows)
     }
   }
   PixelPair<Pixel> rows[2];
-  const auto source = [&](int px, int py) { return toRgba(layers.volume[indexOf(px, py)]); };
+  const auto source = [&](int px, int py) { return toRgba(layers.volume.at(px, py)); };
   const auto toPixel = [](const auto& color) {
     if constexpr (std::is_same_v<Pixel, Rgba8>) {
       return quantized(color);
