@@ -8,6 +8,7 @@
 #include "base/cuda/cuda_memory.h"
 #include "render/cuda/kernels.h"
 #include "render/cuda/pixel_tile.h"
+#include "render/cuda/warp_tasks.h"
 
 namespace emscape::render::cuda {
 
@@ -15,15 +16,6 @@ namespace emscape::render::cuda {
 /// wait for one. More registers a thread mean fewer threads.
 template <class Compositor>
 constexpr int kBatch = Compositor::kEndsItself ? 8 : 4;
-
-/// Threads of a block, one block a multiprocessor. Warps take pixels independently of each other.
-constexpr int kCastThreads = 768;
-
-/// Where the ray of a pixel ends at the ground.
-__device__ inline double limitOf(const CastLaunch& launch, const Pixel& pixel) {
-  return launch.limits != nullptr ? launch.limits[pixelIndex(launch.task.camera.size, pixel.x, pixel.y)]
-                                  : 1e300;
-}
 
 /// The table where it lies.
 class GlobalColors {
@@ -66,243 +58,6 @@ struct SurfaceRay {
                               double limit) {
     return launch.task.castSurface<Sampler>(x, y, limit);
   }
-};
-
-/// Pixels of a launch in portions for a warp: rectangles of a lattice, pieces of a list.
-/// @param kWidth, kHeight  of a rectangle; their product is the size of a piece
-template <int kWidth, int kHeight>
-class WarpTiles {
- public:
-  static constexpr unsigned kPixels = kWidth * kHeight;
-
-  __device__ explicit WarpTiles(const PixelSet& pixels) : pixels_(pixels) {}
-
-  __device__ bool isList() const { return pixels_.list != nullptr; }
-  /// Of a lattice.
-  __device__ int columns() const { return (pixels_.lattice.columns + kWidth - 1) / kWidth; }
-  __device__ int rows() const { return (pixels_.lattice.rows + kHeight - 1) / kHeight; }
-  /// Of a list.
-  __device__ unsigned pieces() const { return (listEnd() - pixels_.first + kPixels - 1) / kPixels; }
-
-  /// @param n  of the tile's pixels, 0..kPixels - 1. @return false: there is none
-  __device__ bool pixelOfPiece(unsigned piece, unsigned n, Pixel& pixel) const {
-    const unsigned place = pixels_.first + piece * kPixels + n;
-    if (place >= listEnd()) return false;
-    pixel = pixels_.list[place];
-    return true;
-  }
-  __device__ bool pixelOfTile(int tile_column, int tile_row, int x, int y, Pixel& pixel) const {
-    const Lattice& lattice = pixels_.lattice;
-    const int column = tile_column * kWidth + x;
-    const int row = tile_row * kHeight + y;
-    if (column >= lattice.columns || row >= lattice.rows) return false;
-    pixel = {static_cast<std::uint16_t>(lattice.first_x + column * lattice.step_x),
-             static_cast<std::uint16_t>(lattice.first_y + row * lattice.step_y)};
-    return true;
-  }
-
- private:
-  __device__ unsigned listEnd() const {
-    return pixels_.length != nullptr && *pixels_.length < pixels_.end ? *pixels_.length : pixels_.end;
-  }
-
-  const PixelSet& pixels_;
-};
-
-/// What a warp is to cast, for one of its threads.
-struct WarpTask {
-  Pixel pixel;
-  bool has_pixel = false;
-  bool in_halves = false;  ///< of the whole warp: each ray by two threads, 16 apart
-};
-
-/// Which pixels a warp casts, in which order. Those of a lattice with the longest rays come first, so that a
-/// launch ends with short ones and no warp is left with a long one; rays so long that a warp would need a
-/// good part of the launch's time are cast in halves. Cells of a coarse grid over the lattice are put in
-/// order by the ray in their middle; each block finds the same order for itself.
-/// @param kMayHalve  whether rays can be cast in halves
-template <bool kMayHalve>
-class WarpTasks {
- public:
-  /// All threads of a block call it.
-  __device__ explicit WarpTasks(const CastLaunch& launch)
-      : tiles_(launch.pixels),
-        width_((tiles_.columns() + kAlong - 1) / kAlong),
-        height_((tiles_.rows() + kAlong - 1) / kAlong) {
-    if (!tiles_.isList()) sort(launch);
-  }
-
-  /// How many numbers there are. The first ones stand for half a tile each, then they stand for one, and the
-  /// last ones, which show nothing, for several: to hand out a number takes its time.
-  __device__ unsigned count() const {
-    if (tiles_.isList()) return tiles_.pieces();
-    const Tiles& tiles = found();
-    return tiles.halved + tiles.shown + (tiles.all - tiles.shown + kEmptyTiles - 1) / kEmptyTiles;
-  }
-  /// Tasks of a number.
-  __device__ unsigned tasksOf(unsigned number) const {
-    return tiles_.isList() || number < found().halved + found().shown ? 1 : kEmptyTiles;
-  }
-  /// @param n  0..tasksOf(number) - 1
-  __device__ WarpTask of(unsigned number, unsigned n, unsigned lane) const {
-    WarpTask task;
-    if (tiles_.isList()) {
-      task.has_pixel = tiles_.pixelOfPiece(number, lane, task.pixel);
-      return task;
-    }
-    const Tiles& tiles = found();
-    task.in_halves = number < 2 * tiles.halved;
-    unsigned tile = task.in_halves ? number / 2 : number - tiles.halved;
-    if (tile >= tiles.shown) tile = tiles.shown + (tile - tiles.shown) * kEmptyTiles + n;
-    if (tile >= tiles.all) return task;
-    const int in_cell = static_cast<int>(tile % tilesOfCell());
-    const int cell = order()[tile / tilesOfCell()];
-    // Threads that follow each other sample close together: the texture unit takes four of them at once.
-    const unsigned x = task.in_halves ? number % 2 * 4 + lane % 4 : lane % 8;
-    const unsigned y = task.in_halves ? lane % 16 / 4 : lane / 8;
-    task.has_pixel = tiles_.pixelOfTile(cell % kAlong * width_ + in_cell % width_,
-                                        cell / kAlong * height_ + in_cell / width_, static_cast<int>(x),
-                                        static_cast<int>(y), task.pixel);
-    return task;
-  }
-
- private:
-  static constexpr unsigned kEmptyTiles = 4;  ///< of a number
-  static constexpr int kAlong = 32;           ///< cells
-  static constexpr unsigned kCells = kAlong * kAlong;
-  static constexpr unsigned kClasses = 32;          ///< of length
-  static constexpr unsigned kRounds = kCells / 32;  ///< of a warp
-  static constexpr unsigned kWarps = kCastThreads / 32;
-  static_assert(kRounds == 32 && kClasses == 32, "lanes stand for them");
-
-  __device__ static unsigned short* order() {
-    __shared__ unsigned short cells[kCells];
-    return cells;
-  }
-  /// How many of the first tiles are cast in halves, and how many show anything, to all appearances.
-  struct Tiles {
-    unsigned halved, shown, all;
-  };
-  __device__ static Tiles& found() {
-    __shared__ Tiles tiles;
-    return tiles;
-  }
-  __device__ unsigned tilesOfCell() const { return static_cast<unsigned>(width_ * height_); }
-
-  /// A counting sort that comes to the same whatever the order in which warps run: they count their cells of
-  /// each class, and a cell's place is that of its class, of its round in it, and of its lane in that.
-  __device__ void sort(const CastLaunch& launch) {
-    __shared__ unsigned short counts[kClasses][kRounds];
-    __shared__ unsigned short first[kClasses];
-    __shared__ unsigned char classes[kCells], ranks[kCells];
-    const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
-    for (unsigned n = threadIdx.x; n < kClasses * kRounds; n += kCastThreads) (&counts[0][0])[n] = 0;
-    __syncthreads();
-    const Vec3f box = vecCast<float>(launch.task.volume.upper() - launch.task.volume.lower());
-    const float per_class = (kClasses - 1) / (length(box) + 1.0F);
-#pragma unroll 1
-    for (unsigned round = warp; round < kRounds; round += kWarps) {
-      const unsigned cell = round * 32 + lane;
-      // The first class is that of the longest, the last one has none.
-      const float length = lengthIn(launch, cell);
-      const unsigned its = kClasses - 1 - min(kClasses - 1, static_cast<unsigned>(ceilf(length * per_class)));
-      const unsigned same = __match_any_sync(~0U, its);
-      const unsigned rank = __popc(same & ((1U << lane) - 1));
-      if (rank == 0) counts[its][round] = static_cast<unsigned short>(__popc(same));
-      classes[cell] = static_cast<unsigned char>(its);
-      ranks[cell] = static_cast<unsigned char>(rank);
-    }
-    __syncthreads();
-    for (unsigned c = warp; c < kClasses; c += kWarps) {
-      const unsigned count = counts[c][lane];
-      const unsigned end = sumUpTo(count, lane);
-      counts[c][lane] = static_cast<unsigned short>(end - count);
-      if (lane == 31) first[c] = static_cast<unsigned short>(end);
-    }
-    __syncthreads();
-    if (warp == 0) {
-      const unsigned count = first[lane];
-      const unsigned end = sumUpTo(count, lane);
-      first[lane] = static_cast<unsigned short>(end - count);
-      const unsigned length = kClasses - 1 - lane;
-      const unsigned all = __shfl_sync(~0U, sumUpTo(count * length, lane), 31);
-      const unsigned long_classes = __popc(__ballot_sync(~0U, kMayHalve && isLong(length, all)));
-      const unsigned halved = __shfl_sync(~0U, end, static_cast<int>(long_classes) - 1);
-      if (length == 0) {
-        found() = {(long_classes > 0 ? halved : 0) * tilesOfCell(), (end - count) * tilesOfCell(),
-                   kCells * tilesOfCell()};
-      }
-    }
-    __syncthreads();
-    for (unsigned cell = threadIdx.x; cell < kCells; cell += kCastThreads) {
-      order()[first[classes[cell]] + counts[classes[cell]][cell / 32] + ranks[cell]] =
-          static_cast<unsigned short>(cell);
-    }
-    __syncthreads();
-  }
-
-  /// Whether rays of a length are to be halved. @param all  the lengths of all cells' rays together
-  __device__ bool isLong(unsigned length, unsigned all) const {
-    constexpr float kMostOfTime = 0.7F;
-    const float tiles_of_warp = static_cast<float>(width_ * height_) / static_cast<float>(gridDim.x * kWarps);
-    return static_cast<float>(length) > kMostOfTime * static_cast<float>(all) * tiles_of_warp;
-  }
-  /// Of the values of the lanes up to this one, it included.
-  __device__ static unsigned sumUpTo(unsigned value, unsigned lane) {
-    for (unsigned step = 1; step < 32; step *= 2) {
-      const unsigned before = __shfl_up_sync(~0U, value, step);
-      if (lane >= step) value += before;
-    }
-    return value;
-  }
-  /// Of the longest of a few rays, in voxels, about.
-  __device__ float lengthIn(const CastLaunch& launch, unsigned cell) const {
-    const int first_column = static_cast<int>(cell) % kAlong * width_;
-    const int first_row = static_cast<int>(cell) / kAlong * height_;
-    float longest = 0;
-#pragma unroll 1
-    for (int n = 0; n < 5; ++n) {  // in the corners and in the middle
-      const int column = first_column + (n == 4 ? width_ / 2 : n % 2 * (width_ - 1));
-      const int row = first_row + (n == 4 ? height_ / 2 : n / 2 * (height_ - 1));
-      Pixel pixel;
-      if (tiles_.pixelOfTile(column, row, n == 4 ? 0 : n % 2 * 7, n == 4 ? 0 : n / 2 * 3, pixel)) {
-        longest = fmaxf(longest, lengthOf(launch, pixel));
-      }
-    }
-    return longest;
-  }
-  __device__ static float lengthOf(const CastLaunch& launch, const Pixel& pixel) {
-    const RaycastTask& task = launch.task;
-    const RayOf<float> ray = task.camera.rayThrough<float>(pixel.x, pixel.y);
-    const auto inside = clip(ray, vecCast<float>(task.volume.lower()), vecCast<float>(task.volume.upper()));
-    const float voxels = length(ray.direction);
-    const float end = fminf(inside.end * voxels, static_cast<float>(limitOf(launch, pixel)));
-    return fmaxf(end - inside.begin * voxels, 0.0F);
-  }
-
-  const WarpTiles<8, 4> tiles_;
-  const int width_, height_;  ///< of a cell, in tiles
-};
-
-/// Portions of a launch, given to warps as they ask. All of them ask until there is none left.
-class TileQueue {
- public:
-  __device__ TileQueue(unsigned* next, unsigned tiles) : next_(next), tiles_(tiles) {}
-
-  /// @return false: none is left
-  __device__ bool take(unsigned lane, unsigned& tile) const {
-    if (lane == 0) {
-      tile = atomicAdd(next_, 1U);
-      // The last one to ask leaves the counter as it found it.
-      if (tile == tiles_ + gridDim.x * (blockDim.x / 32) - 1) *next_ = 0;
-    }
-    tile = __shfl_sync(~0U, tile, 0);
-    return tile < tiles_;
-  }
-
- private:
-  unsigned* next_;
-  unsigned tiles_;
 };
 
 /// What another thread of the warp holds. All threads call it.
@@ -361,7 +116,7 @@ template <class RayKind>
 __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__ CastLaunch launch) {
   const typename RayKind::Colors colors(launch);
   const WarpTasks<(RayKind::kParts > 1)> tasks(launch);
-  const TileQueue queue(launch.next_tile, tasks.count());
+  TileQueue queue(launch.next_tile, tasks.count());
   const unsigned lane = threadIdx.x % 32;
   unsigned number = 0;
   while (queue.take(lane, number)) {
@@ -384,8 +139,8 @@ __global__ void __launch_bounds__(kCastThreads) castRaysInParts(const __grid_con
   const typename RayKind::Colors colors(launch);
   const Tiles tiles(launch.pixels);
   const unsigned columns = tiles.isList() ? 1 : static_cast<unsigned>(tiles.columns());
-  const TileQueue queue(launch.next_tile,
-                        tiles.isList() ? tiles.pieces() : columns * static_cast<unsigned>(tiles.rows()));
+  TileQueue queue(launch.next_tile,
+                  tiles.isList() ? tiles.pieces() : columns * static_cast<unsigned>(tiles.rows()));
   const unsigned lane = threadIdx.x % 32;
   const unsigned ray = lane % kRays;
   unsigned number = 0;

@@ -30,6 +30,12 @@ void DeviceScene::update(const Scene& scene, const volume::DeviceStorage& storag
   seen_ = versions;
 }
 
+bool DeviceScene::isCurrent(const Scene& scene) const {
+  const Scene::Versions& versions = scene.versions();
+  return versions.table == seen_.table && versions.ground == seen_.ground &&
+         versions.levels == seen_.levels && levels_current_ && !(scene.ground() && heights_.size() == 0);
+}
+
 void DeviceScene::updateTable(const Scene& scene, cudaStream_t stream) {
   const SkipRule rule = scene.skipRule();
   const auto entries = static_cast<std::size_t>(rule.table.last) + 1;

@@ -15,7 +15,8 @@ class DeviceScene {
  public:
   /// The volume's values are others than before.
   void volumeChanged() { levels_current_ = false; }
-  /// @param scene  prepared
+  /// Whether update() has nothing to do. @param scene  prepared
+  bool isCurrent(const Scene& scene) const;
   /// @param storage  of the volume, which may be read on the stream
   void update(const Scene& scene, const volume::DeviceStorage& storage, cudaStream_t stream);
 

@@ -44,6 +44,7 @@ class CudaFrameCaster : public FrameCaster {
   void fetch(Image8& image) override;
 
  private:
+  CastLaunch begin(const Scene& scene, ImageSize size);
   CastLaunch prepare(const Scene& scene, ImageSize size);
   void findGround(const Scene& scene, const CastLaunch& launch);
   void findInside(const Scene& scene, ImageSize size);
@@ -107,6 +108,17 @@ void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volu
   }
   volume_ = std::move(volume);
   scene_.volumeChanged();
+}
+
+/// The time of a frame begins with the first work that the GPU is given.
+CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size) {
+  volume_->storage().beginReading(stream_);
+  const bool is_prepared =
+      scene_.isCurrent(scene) && (!scene.ground() || ground_view_.holds(scene.versions().view, size));
+  if (!is_prepared) begin_.record(stream_);
+  const CastLaunch launch = prepare(scene, size);
+  if (is_prepared) begin_.record(stream_);
+  return launch;
 }
 
 CastLaunch CudaFrameCaster::prepare(const Scene& scene, ImageSize size) {
@@ -178,9 +190,7 @@ FrameReport CudaFrameCaster::draw(const Scene& scene, const FramePlan& plan, Ima
   drawn_ = plan;
   if (size.count() == 0) return report;
   if (plan.pattern == Pattern::adaptive) findInside(scene, size);
-  volume_->storage().beginReading(stream_);
-  begin_.record(stream_);
-  const CastLaunch launch = prepare(scene, size);
+  const CastLaunch launch = begin(scene, size);
   LaunchTrain train(stream_, stop, raysFor(launch, kFrameSamples));
   layers_.pattern = plan.pattern;
   layers_.interpolation = plan.interpolation;
@@ -199,9 +209,7 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   report.pattern = drawn_.pattern;
   const ImageSize size = layers_.size;
   if (size.count() == 0) return report;
-  volume_->storage().beginReading(stream_);
-  begin_.record(stream_);
-  const CastLaunch launch = prepare(scene, size);
+  const CastLaunch launch = begin(scene, size);
   LaunchTrain train(stream_, stop, raysFor(launch, kRestorationSamples));
   report.complete = drawn_.pattern == Pattern::adaptive
                         ? castPredicted(launch, train, report)

@@ -39,7 +39,7 @@ TEST(CudaRestore, IsBitIdenticalToAFullCast) {
 void setLongScene(Renderer& renderer, ImageSize size) {
   const auto volume = makeEmeVolume({60, 60, 40}, 5);
   RenderSettings settings;
-  settings.step_voxels = 0.05;
+  settings.step_voxels = 0.02;
   settings.exact = true;
   settings.skip_empty = false;
   renderer.setSettings(settings);
