@@ -110,16 +110,15 @@ class WarpTasks {
     if (!list_.isList()) sort(launch);
   }
 
-  /// How many numbers there are. The first ones stand for a tile each, or for half of one, the last ones,
-  /// which show nothing, for several: to hand out a number takes its time.
+  /// How many numbers there are, with a tile, or half of one, each. Early ones carry tiles that show nothing
+  /// too: their rays are set up while others wait for samples, and no numbers are handed out for them.
   __device__ unsigned count() const {
     if (list_.isList()) return list_.pieces();
-    const Order& order = found();
-    return order.shown + (order.all - order.shown + kEmptyTiles - 1) / kEmptyTiles;
+    return max(found().shown, found().carriers);
   }
   /// Tasks of a number.
   __device__ unsigned tasksOf(unsigned number) const {
-    return list_.isList() || number < found().shown ? 1 : kEmptyTiles;
+    return list_.isList() || number >= found().carriers ? 1 : 1 + found().carried;
   }
   /// @param n  0..tasksOf(number) - 1
   __device__ WarpTask of(unsigned number, unsigned n, unsigned lane) const {
@@ -129,9 +128,8 @@ class WarpTasks {
       return task;
     }
     const Order& order = found();
-    const unsigned tile =
-        number < order.shown ? number : order.shown + (number - order.shown) * kEmptyTiles + n;
-    if (tile >= order.all) return task;
+    const unsigned tile = n == 0 ? number : order.shown + number * order.carried + n - 1;
+    if (n == 0 ? tile >= order.shown : tile >= order.all) return task;
     const unsigned entry = order.entries[tile / tilesOfCell()];
     const int in_cell = static_cast<int>(tile % tilesOfCell());
     const int cell = static_cast<int>(entry / kPortions);
@@ -152,8 +150,7 @@ class WarpTasks {
   }
 
  private:
-  static constexpr unsigned kEmptyTiles = 4;  ///< of a number
-  static constexpr int kAlong = 26;           ///< cells
+  static constexpr int kAlong = 26;  ///< cells
   static constexpr int kCorners = (kAlong + 1) * (kAlong + 1);
   static constexpr unsigned kCells = kAlong * kAlong;
   static constexpr unsigned kRounds = (kCells + 31) / 32;  ///< of a warp over the cells
@@ -167,6 +164,7 @@ class WarpTasks {
   struct Order {
     unsigned short entries[2 * kCells];  ///< cell * kPortions + portion
     unsigned shown, all;                 ///< tiles, or halves of them, that show something; all of them
+    unsigned carriers, carried;          ///< numbers that carry others, and how many each
   };
   __device__ static Order& found() {
     __shared__ Order order;
@@ -240,6 +238,8 @@ class WarpTasks {
       if (lane == kClasses - 1) {
         order.shown = (end - count) * tilesOfCell();
         order.all = end * tilesOfCell();
+        order.carriers = max(order.shown / 2, gridDim.x * kWarps);
+        order.carried = (order.all - order.shown + order.carriers - 1) / order.carriers;
       }
     }
     __syncthreads();

@@ -39,7 +39,7 @@ TEST(CudaRestore, IsBitIdenticalToAFullCast) {
 void setLongScene(Renderer& renderer, ImageSize size) {
   const auto volume = makeEmeVolume({60, 60, 40}, 5);
   RenderSettings settings;
-  settings.step_voxels = 0.02;
+  settings.step_voxels = 0.05;
   settings.exact = true;
   settings.skip_empty = false;
   renderer.setSettings(settings);
@@ -50,7 +50,7 @@ void setLongScene(Renderer& renderer, ImageSize size) {
 
 TEST(CudaRestore, CanBeStoppedInBetweenAndBegunAnew) {
   EMSCAPE_NEEDS_GPU();
-  const ImageSize size{1600, 1200};
+  const ImageSize size{2400, 1800};
   Renderer renderer(onGpu());
   setLongScene(renderer, size);
   const Image full = renderer.render(size);
