@@ -19,10 +19,10 @@ struct FramePlan {
 struct FrameReport {
   Pattern pattern = Pattern::full;
   long long rays = 0;
-  long long samples = 0;  ///< taken of the volume; 0 where they are not counted (the plain form, a GPU)
-  double cast_ms = 0;     ///< on a GPU both times are its own, taken by events
-  double interpolate_ms = 0;
-  bool complete = true;  ///< false: it was stopped; the picture then holds nothing to be shown
+  long long samples = 0;      ///< taken of the volume; 0 where they are not counted (the plain form, a GPU)
+  double cast_ms = 0;         ///< on a GPU its own time, by events, and that of all work: kernels overlap
+  double interpolate_ms = 0;  ///< 0 on a GPU
+  bool complete = true;       ///< false: it was stopped; the picture then holds nothing to be shown
 
   double total_ms() const { return cast_ms + interpolate_ms; }
 };

@@ -51,14 +51,14 @@ class CudaFrameCaster : public FrameCaster {
   void finish(FrameReport& report);
   bool castLattices(CastLaunch launch, const std::vector<Lattice>& lattices, LaunchTrain& train,
                     FrameReport& report);
-  bool castAdaptive(CastLaunch launch, const FramePlan& plan, LaunchTrain& train);
+  bool castAdaptive(const CastLaunch& launch, const FramePlan& plan, LaunchTrain& train);
   void countAdaptive(const FramePlan& plan, FrameReport& report);
   bool castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report);
   void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, stream_); }
 
   const volume::VoxelPrecision precision_;
   emscape::cuda::Stream stream_;
-  emscape::cuda::TimeMark begin_, cast_, shown_;  ///< of the last frame, or restoration
+  emscape::cuda::TimeMark begin_, end_;  ///< of the last frame, or restoration
 
   volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
   std::shared_ptr<const volume::DeviceVolume> volume_;
@@ -90,8 +90,9 @@ class CudaFrameCaster : public FrameCaster {
   ToleranceHold hold_;
   double tolerance_levels_ = 0;  ///< of the last adaptive frame
   Buffer<std::uint8_t> classes_;
-  Buffer<Pixel> queue_;      ///< rays to be cast; of a restoration all that are missing
-  Buffer<unsigned> queued_;  ///< by pass
+  Buffer<unsigned> rays_;     ///< one: how many all adaptive frames have cast, modulo 2^32
+  unsigned rays_before_ = 0;  ///< the same before the last frame
+  Buffer<Pixel> queue_;       ///< of a restoration
   Buffer<cuda::ClassCounts> counts_;
 };
 
@@ -220,13 +221,11 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
 
 /// Everything is launched: shows the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
-  cast_.record(stream_);
   if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
-  shown_.record(stream_);
+  end_.record(stream_);
   volume_->storage().endReading(stream_);
   stream_.wait();
-  report.cast_ms = cast_.since_ms(begin_);
-  report.interpolate_ms = shown_.since_ms(cast_);
+  report.cast_ms = end_.since_ms(begin_);
 }
 
 /// @return false if it was stopped
@@ -250,60 +249,40 @@ bool CudaFrameCaster::castLattices(CastLaunch launch, const std::vector<Lattice>
 }
 
 /// @return false if it was stopped
-bool CudaFrameCaster::castAdaptive(CastLaunch launch, const FramePlan& plan, LaunchTrain& train) {
-  constexpr std::size_t kPassCount = std::size(kPasses);
-  const ImageSize size = layers_.size;
+bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& plan, LaunchTrain& train) {
   classes_.resize(picture8_.size());
-  queue_.resize(picture8_.size());
-  queued_.resize(kPassCount);
-  tolerance_levels_ = hold_.levels(plan.tolerance_levels);
-  check(cudaMemsetAsync(queued_.data(), 0, kPassCount * sizeof(unsigned), stream_), "cudaMemset");
-  check(cudaMemsetAsync(classes_.data(), 0, classes_.size(), stream_), "cudaMemset");
-
-  if (!train.goOn()) return false;
-  const auto along = [](int pixels) { return (pixels + kLatticeStep - 1) / kLatticeStep; };
-  launch.few_rays = true;
-  launch.pixels.lattice = {0, 0, kLatticeStep, kLatticeStep, along(size.width), along(size.height)};
-  cast(launch);
-  train.launched();
-  for (std::size_t pass = 0; pass < kPassCount; ++pass) {
-    if (!train.goOn()) return false;
-    cuda::PredictLaunch predict;
-    predict.pass = kPasses[pass];
-    predict.size = size;
-    predict.inside = inside_.data();
-    predict.tolerance_levels = static_cast<float>(tolerance_levels_ * kPasses[pass].tolerance);
-    predict.layer = launch.layer;
-    predict.classes = classes_.data();
-    predict.queue = queue_.data();
-    predict.queued = queued_.data() + pass;
-    cuda::predictMidpoints(predict, stream_);
-    launch.pixels.list = queue_.data();
-    launch.pixels.end =
-        static_cast<unsigned>(predict.pass.columns(size)) * static_cast<unsigned>(predict.pass.rows(size));
-    launch.pixels.length = predict.queued;
-    cast(launch);
-    train.launched();
+  if (rays_.size() == 0) {
+    rays_.resize(1);
+    check(cudaMemsetAsync(rays_.data(), 0, sizeof(unsigned), stream_), "cudaMemset");
   }
+  tolerance_levels_ = hold_.levels(plan.tolerance_levels);
+  if (!train.goOn()) {
+    check(cudaMemsetAsync(classes_.data(), 0, classes_.size(), stream_), "cudaMemset");
+    return false;
+  }
+  cuda::AdaptiveLaunch adaptive{launch};
+  std::copy(std::begin(kPasses), std::end(kPasses), adaptive.passes);
+  adaptive.inside = inside_.data();
+  adaptive.tolerance_levels = static_cast<float>(tolerance_levels_);
+  adaptive.classes = classes_.data();
+  adaptive.rays = rays_.data();
+  cuda::castAdaptive(adaptive, mode_, sampling_, stream_);
+  train.launched();
   return true;
 }
 
 /// How many rays the frame came to, for the report and for the tolerance of the next one.
 void CudaFrameCaster::countAdaptive(const FramePlan& plan, FrameReport& report) {
-  std::vector<unsigned> queued(queued_.size());
-  queued_.download(queued.data(), stream_);
-  for (int y = 0; y < layers_.size.height; y += kLatticeStep) {
-    const Span& row = silhouette_.rows[static_cast<std::size_t>(y)];
-    const auto before = [](int x) { return (x + kLatticeStep - 1) / kLatticeStep; };
-    if (row.end > row.begin) report.rays += before(row.end) - before(row.begin);
-  }
-  for (const unsigned rays : queued) report.rays += rays;
+  unsigned rays = 0;
+  rays_.download(&rays, stream_);
+  report.rays = rays - std::exchange(rays_before_, rays);
   const double most_rays = std::max(plan.ray_share * static_cast<double>(silhouette_.count()), 1.0);
   hold_.drawn(tolerance_levels_, static_cast<double>(report.rays), most_rays);
 }
 
 /// Casts what the last adaptive frame predicted, the worst first. @return false if it was stopped
 bool CudaFrameCaster::castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report) {
+  queue_.resize(classes_.size());
   counts_.resize(1);
   check(cudaMemsetAsync(counts_.data(), 0, sizeof(cuda::ClassCounts), stream_), "cudaMemset");
   cuda::listPredicted(classes_.data(), layers_.size, counts_.data(), queue_.data(), stream_);

@@ -17,6 +17,22 @@ struct alignas(2 * sizeof(Pixel)) PixelPair {
   Pixel left, right;
 };
 
+/// What kernels before this one on the stream have written can be read: it may be launched while they end.
+__device__ inline void waitForKernelsBefore() {
+#if __CUDA_ARCH__ >= 900
+  asm volatile("griddepcontrol.wait;" ::: "memory");
+#endif
+}
+
+/// Whether kernels can be launched while those before them end.
+bool launchesEarly() {
+  int device = 0, major = 0;
+  emscape::cuda::check(cudaGetDevice(&device), "cudaGetDevice");
+  emscape::cuda::check(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device),
+                       "cudaDeviceGetAttribute");
+  return major >= 9;
+}
+
 /// @param Pixel  of the picture: Rgba or Rgba8
 template <class Arithmetic, bool kHasGround, class Pixel>
 __global__ void __launch_bounds__(kCellColumns* kCellRows)
@@ -29,6 +45,7 @@ __global__ void __launch_bounds__(kCellColumns* kCellRows)
     return static_cast<unsigned>(py) * static_cast<unsigned>(size.width) + static_cast<unsigned>(px);
   };
 
+  waitForKernelsBefore();
   Rgba ground[2][2];  // transparent where there is none
   if constexpr (kHasGround) {
     unsigned indices[4];
@@ -91,7 +108,17 @@ void show(const Layers& layers, Pixel* picture, cudaStream_t stream) {
   const auto kernel = layers.interpolation == Interpolation::float32
                           ? kernelFor<FloatArithmetic, Pixel>(layers)
                           : kernelFor<Bits8Arithmetic, Pixel>(layers);
-  kernel<<<grid, dim3(kCellColumns, kCellRows), 0, stream>>>(layers, picture);
+  static const bool early = launchesEarly();
+  cudaLaunchAttribute attribute{};
+  attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;
+  attribute.val.programmaticStreamSerializationAllowed = 1;
+  cudaLaunchConfig_t launch{};
+  launch.gridDim = grid;
+  launch.blockDim = dim3(kCellColumns, kCellRows);
+  launch.stream = stream;
+  launch.attrs = &attribute;
+  launch.numAttrs = early ? 1 : 0;
+  emscape::cuda::check(cudaLaunchKernelEx(&launch, kernel, layers, picture), "fillPicture");
   emscape::cuda::checkLaunch("fillPicture");
 }
 
