@@ -1,5 +1,6 @@
 #include <cuda_fp16.h>
 
+#include "render/cuda/adaptive_frame.h"
 #include "render/cuda/cast_rays.h"
 #include "render/cuda/texture_samplers.h"
 
@@ -51,9 +52,8 @@ __global__ void __launch_bounds__(kTileThreads)
   if (hit.found) colors[index] = toFloat4(hit.color);
 }
 
-}  // namespace
-
-void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
+template <class Launch>
+void startSampling(const Launch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
   const bool shades = launch.task.shading.shades_fog;
   switch (sampling) {
     case Sampling::sparse:
@@ -69,6 +69,17 @@ void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling samplin
   }
   return shades ? startVolume<FilteredSampler, SharedColors, true>(launch, mode, stream)
                 : startVolume<FilteredSampler, SharedColors, false>(launch, mode, stream);
+}
+
+}  // namespace
+
+void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
+  startSampling(launch, mode, sampling, stream);
+}
+
+void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling,
+                  cudaStream_t stream) {
+  startSampling(launch, mode, sampling, stream);
 }
 
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream) {

@@ -120,69 +120,19 @@ __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__
   const unsigned lane = threadIdx.x % 32;
   unsigned number = 0;
   while (queue.take(lane, number)) {
+    if (2 * number > tasks.count()) queue.ask(lane);  // tasks are short by now
     for (unsigned n = 0; n < tasks.tasksOf(number); ++n) {
       castTask<RayKind>(launch, colors, tasks.of(number, n, lane), lane);
     }
   }
 }
 
-/// As many threads a ray as it has parts: for launches of so few rays that most of the GPU would wait for the
-/// longest. The pixels are those that castRays() makes.
-template <class RayKind>
-__global__ void __launch_bounds__(kCastThreads) castRaysInParts(const __grid_constant__ CastLaunch launch) {
-  using Compositor = typename RayKind::Compositor;
-  constexpr unsigned kParts = RayKind::kParts;
-  constexpr unsigned kRays = 32 / kParts;
-  using Tiles = WarpTiles<2, kRays / 2>;
-  __shared__ alignas(Compositor) unsigned char memory[kCastThreads * sizeof(Compositor)];
-  Compositor* const composited = reinterpret_cast<Compositor*>(memory) + threadIdx.x / 32 * 32;
-  const typename RayKind::Colors colors(launch);
-  const Tiles tiles(launch.pixels);
-  const unsigned columns = tiles.isList() ? 1 : static_cast<unsigned>(tiles.columns());
-  TileQueue queue(launch.next_tile,
-                  tiles.isList() ? tiles.pieces() : columns * static_cast<unsigned>(tiles.rows()));
-  const unsigned lane = threadIdx.x % 32;
-  const unsigned ray = lane % kRays;
-  unsigned number = 0;
-  while (queue.take(lane, number)) {
-    Pixel pixel;
-    const bool has_pixel =
-        tiles.isList()
-            ? tiles.pixelOfPiece(number, ray, pixel)
-            : tiles.pixelOfTile(static_cast<int>(number % columns), static_cast<int>(number / columns),
-                                static_cast<int>(ray % 2), static_cast<int>(ray / 2), pixel);
-    const RayPieces pieces = launch.task.piecesOf(pixel.x, pixel.y, has_pixel ? limitOf(launch, pixel) : 0.0);
-    Compositor own = RayKind::begin(launch);
-    if (pieces.count > 0) RayKind::castPart(launch, pieces, static_cast<int>(lane / kRays), colors, own);
-    composited[lane] = own;
-    __syncwarp();
-    if (lane < kRays && has_pixel) {
-      Compositor whole = RayKind::begin(launch);
-      bool done = false;
-      for (int part = 0; part < static_cast<int>(kParts) && !done;) {
-        Compositor half = whole.behind();
-        for (unsigned n = 0; n < kParts / kRayHalves && !done; ++n, ++part) {
-          Compositor joined = half;
-          joined.join(composited[static_cast<unsigned>(part) * kRays + ray]);
-          if (joined.nearlyDone()) {  // once more, now that it is known what lies before
-            Compositor again = half.behind();
-            done = RayKind::castPart(launch, pieces, part, colors, again);
-            half.join(again);
-          } else {
-            half = joined;
-          }
-        }
-        whole.join(half);
-      }
-      launch.layer.at(pixel.x, pixel.y) = toFloat4(whole.result(launch.task.transfer));
-    }
-    __syncwarp();
-  }
-}
+/// What the largest table takes of a block's shared memory.
+constexpr int kMostSharedBytes = (kMostHalfColors + 1) * static_cast<int>(sizeof(HalfColor));
 
 /// Allows a kernel the shared memory that the largest table takes. @return its blocks that run at a time
-inline unsigned residentBlocks(void (*kernel)(CastLaunch), unsigned shared_bytes) {
-  constexpr int kMostSharedBytes = (kMostHalfColors + 1) * static_cast<int>(sizeof(HalfColor));
+template <class Launch>
+unsigned residentBlocks(void (*kernel)(Launch), unsigned shared_bytes) {
   emscape::cuda::check(
       cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, kMostSharedBytes),
       "cudaFuncSetAttribute");
@@ -196,34 +146,21 @@ inline unsigned residentBlocks(void (*kernel)(CastLaunch), unsigned shared_bytes
   return static_cast<unsigned>(multiprocessors * std::max(blocks, 1));
 }
 
-/// @param warps  that find something to do
-inline void launchKernel(void (*kernel)(CastLaunch), const char* name, const CastLaunch& launch,
-                         long long warps, unsigned resident, unsigned shared_bytes, cudaStream_t stream) {
-  if (warps == 0) return;
-  const auto blocks = static_cast<unsigned>(std::min<long long>(warps, resident));
-  kernel<<<blocks, kCastThreads, shared_bytes, stream>>>(launch);
-  emscape::cuda::checkLaunch(name);
-}
-
 template <class RayKind>
 void start(const CastLaunch& launch, cudaStream_t stream) {
   const PixelSet& pixels = launch.pixels;
   const long long rays = pixels.list != nullptr ? pixels.end - pixels.first : pixels.lattice.count();
+  if (rays == 0) return;
   const unsigned shared_bytes = RayKind::Colors::sharedBytes(launch);
-  if constexpr (RayKind::kParts > 1) {
-    if (launch.few_rays) {
-      static const unsigned resident = residentBlocks(castRaysInParts<RayKind>, shared_bytes);
-      constexpr long long kRays = 32 / RayKind::kParts;
-      return launchKernel(castRaysInParts<RayKind>, "castRaysInParts", launch, (rays + kRays - 1) / kRays,
-                          resident, shared_bytes, stream);
-    }
-  }
   static const unsigned resident = residentBlocks(castRays<RayKind>, shared_bytes);
-  launchKernel(castRays<RayKind>, "castRays", launch, (rays + 31) / 32, resident, shared_bytes, stream);
+  const auto blocks = static_cast<unsigned>(std::min<long long>((rays + 31) / 32, resident));
+  castRays<RayKind><<<blocks, kCastThreads, shared_bytes, stream>>>(launch);
+  emscape::cuda::checkLaunch("castRays");
 }
 
-template <class Sampler, class Colors, bool kMayShade>
-void startVolume(const CastLaunch& launch, CompositingMode mode, cudaStream_t stream) {
+/// @param launch  a CastLaunch, or another for which there is a start()
+template <class Sampler, class Colors, bool kMayShade, class Launch>
+void startVolume(const Launch& launch, CompositingMode mode, cudaStream_t stream) {
   switch (mode) {
     case CompositingMode::mida:
       return start<VolumeRay<MidaCompositor, Sampler, Colors, kMayShade>>(launch, stream);

@@ -5,6 +5,7 @@
 #include <cuda_runtime_api.h>
 
 #include <cstdint>
+#include <iterator>
 
 #include "render/adaptive_pass.h"
 #include "render/compositing.h"
@@ -63,7 +64,6 @@ struct CastLaunch {
   const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for Sampling::filtered
   const float* volume_highest_f = nullptr;  ///< one
   const float* limits = nullptr;            ///< one a pixel: where the ground is; null: no ground
-  bool few_rays = false;                    ///< so few that several threads are to share a ray
   unsigned* next_tile = nullptr;            ///< 0, before each launch and after it; one a stream
   Layer layer;
 };
@@ -90,18 +90,20 @@ void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream);
 
 // --- Adaptive ---
 
-struct PredictLaunch {
-  Pass pass;
-  ImageSize size;
+/// A frame: what is cast, its `pixels` aside, and what decides which pixels are.
+struct AdaptiveLaunch : CastLaunch {
+  static constexpr int kPassCount = static_cast<int>(std::size(kPasses));
+  Pass passes[kPassCount] = {};
   const Span* inside = nullptr;  ///< one a row
   float tolerance_levels = 0;
-  Layer layer;
-  std::uint8_t* classes = nullptr;  ///< of the estimated error, one a pixel; see errorClassOf()
-  Pixel* queue = nullptr;           ///< receives the midpoints that must be cast
-  unsigned* queued = nullptr;       ///< is increased by their number
+  std::uint8_t* classes =
+      nullptr;               ///< receives those of the estimated error, one a pixel; see errorClassOf()
+  unsigned* rays = nullptr;  ///< is increased by the number of rays cast
 };
-/// Every midpoint of a pass: predicts it, queues it or, outside, leaves it transparent.
-void predictMidpoints(const PredictLaunch& launch, cudaStream_t stream);
+/// Casts the frame and predicts what it does not cast; the whole layer is written.
+void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
+/// The same for a sparse sampling alone.
+void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 
 /// Counters for listPredicted(): how many pixels there are of each class, and how many are placed.
 struct ClassCounts {
