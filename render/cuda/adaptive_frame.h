@@ -180,13 +180,13 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
       half.join(next);
     }
     if (again) break;
+    // The first of a ray's threads knew what lies before its parts: nothing.
     const Compositor own = half;
-    half = whole.behind();
     bool is_sure = true;
 #pragma unroll 1
-    for (unsigned n = 0; n < threads; ++n) {
+    for (unsigned n = 1; n < threads; ++n) {
       const Compositor cast = fromLane(own, n * rays + lane % rays);
-      if (!is_sure) continue;
+      if (done || !is_sure) continue;
       if (2 * n == threads) {
         whole.join(half);
         half = whole.behind();
@@ -200,9 +200,8 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
         part = static_cast<int>(n) * parts_of_thread;
       }
     }
-    if (is_sure || lane >= rays) break;
+    if (done || is_sure || lane >= rays) break;
     end = kParts;  // the rest once more, now that it is known what lies before
-    done = false;
   }
   whole.join(half);
   return whole.result(launch.task.transfer);

@@ -120,7 +120,6 @@ __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__
   const unsigned lane = threadIdx.x % 32;
   unsigned number = 0;
   while (queue.take(lane, number)) {
-    if (2 * number > tasks.count()) queue.ask(lane);  // tasks are short by now
     for (unsigned n = 0; n < tasks.tasksOf(number); ++n) {
       castTask<RayKind>(launch, colors, tasks.of(number, n, lane), lane);
     }
