@@ -16,7 +16,8 @@ class SharedColors {
   __device__ explicit SharedColors(const CastLaunch& launch) {
     const uint4* from = reinterpret_cast<const uint4*>(launch.half_colors);
     uint4* to = reinterpret_cast<uint4*>(table());
-    for (int i = static_cast<int>(threadIdx.x); i < pairs(launch); i += kCastThreads) to[i] = from[i];
+    for (int i = static_cast<int>(threadIdx.x); i < pairs(launch); i += static_cast<int>(blockDim.x))
+      to[i] = from[i];
     __syncthreads();
   }
   EMSCAPE_HD Rgba at([[maybe_unused]] int index) const {
