@@ -10,7 +10,6 @@
 
 #include "render/adaptive_pass.h"
 #include "render/cuda/cast_rays.h"
-#include "render/interpolation.h"
 
 namespace emscape::render::cuda {
 
@@ -99,12 +98,6 @@ __device__ inline bool predictPixel(const KnownLayer& known, const Pass& pass, i
   return true;
 }
 
-/// A pixel as it was cast or predicted.
-__device__ inline void put(const AdaptiveLaunch& launch, int x, int y, const Rgba& color) {
-  launch.layer.at(x, y) = toFloat4(color);
-  if (launch.picture != nullptr) launch.picture[pixelIndex(launch.layer.size, x, y)] = quantized(color);
-}
-
 /// Leaves a pixel transparent, or as it is predicted. @return whether it must be cast instead
 __device__ inline bool mustBeCast(const AdaptiveLaunch& launch, const Pass* pass, int x, int y) {
   const ImageSize size = launch.layer.size;
@@ -118,7 +111,7 @@ __device__ inline bool mustBeCast(const AdaptiveLaunch& launch, const Pass* pass
         !(prediction.error_levels <= launch.tolerance_levels * static_cast<float>(pass->tolerance));
     if (!must_be_cast) error_class = errorClassOf(prediction.error_levels);
   }
-  if (!must_be_cast) put(launch, x, y, prediction.color);
+  if (!must_be_cast) launch.layer.at(x, y) = toFloat4(prediction.color);
   launch.classes[pixelIndex(size, x, y)] = error_class;
   return must_be_cast;
 }
@@ -219,7 +212,7 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
 
 /// All threads of a block call it. @param is_lattice  the rays are many
 template <class RayKind>
-__device__ void castQueued(const AdaptiveLaunch& launch, const typename RayKind::Colors& colors,
+__device__ void castQueued(const CastLaunch& launch, const typename RayKind::Colors& colors,
                            const BlockQueue& queue, bool is_lattice) {
   constexpr unsigned kWarps = kAdaptiveThreads / 32;
   const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
@@ -230,7 +223,8 @@ __device__ void castQueued(const AdaptiveLaunch& launch, const typename RayKind:
     for (unsigned n = warp * rays + lane; n < count; n += kWarps * rays) {
       if (lane >= rays) break;
       const Pixel pixel = queue.pixels[n];
-      put(launch, pixel.x, pixel.y, RayKind::cast(launch, colors, pixel.x, pixel.y, limitOf(launch, pixel)));
+      launch.layer.at(pixel.x, pixel.y) =
+          toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, limitOf(launch, pixel)));
     }
   } else {
     const unsigned threads = is_lattice ? kLatticeThreads : static_cast<unsigned>(RayKind::kParts);
@@ -242,7 +236,7 @@ __device__ void castQueued(const AdaptiveLaunch& launch, const typename RayKind:
       const RayPieces pieces =
           launch.task.piecesOf(pixel.x, pixel.y, has_pixel ? limitOf(launch, pixel) : 0.0);
       const Rgba color = castByThreads<RayKind>(launch, colors, pieces, threads);
-      if (has_pixel && lane < rays) put(launch, pixel.x, pixel.y, color);
+      if (has_pixel && lane < rays) launch.layer.at(pixel.x, pixel.y) = toFloat4(color);
     }
   }
 }

@@ -113,17 +113,9 @@ __device__ void castTask(const CastLaunch& launch, const typename RayKind::Color
   }
 }
 
-/// The next kernel on the stream, if it waits for this one itself, is launched while this one ends.
-__device__ inline void letNextBegin() {
-#if __CUDA_ARCH__ >= 900
-  asm volatile("griddepcontrol.launch_dependents;");
-#endif
-}
-
 /// A thread a ray, or two where a ray is long.
 template <class RayKind>
 __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__ CastLaunch launch) {
-  letNextBegin();
   const typename RayKind::Colors colors(launch);
   const WarpTasks<(RayKind::kParts > 1)> tasks(launch);
   TileQueue queue(launch.next_tile, tasks.count());

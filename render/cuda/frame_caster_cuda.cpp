@@ -71,7 +71,6 @@ class CudaFrameCaster : public FrameCaster {
   Buffer<float4> layer_;
   Buffer<float4> picture_;
   Buffer<uchar4> picture8_;
-  bool picture_is_shown_ = false;  ///< by the kernel that casts
 
   /// What belongs to a view: the ground, and the pixels whose rays meet the box.
   struct View {
@@ -119,7 +118,6 @@ CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size) {
       scene_.isCurrent(scene) && (!scene.ground() || ground_view_.holds(scene.versions().view, size));
   if (!is_prepared) begin_.record(stream_);
   const CastLaunch launch = prepare(scene, size);
-  picture_is_shown_ = false;
   if (is_prepared) begin_.record(stream_);
   return launch;
 }
@@ -223,7 +221,7 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
 
 /// Everything is launched: shows the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
-  if (report.complete && !picture_is_shown_) showPicture8(layers_, picture8_.data(), stream_);
+  if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
   end_.record(stream_);
   volume_->storage().endReading(stream_);
   stream_.wait();
@@ -268,8 +266,6 @@ bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& pl
   adaptive.tolerance_levels = static_cast<float>(tolerance_levels_);
   adaptive.classes = classes_.data();
   adaptive.rays = rays_.data();
-  picture_is_shown_ = launch.limits == nullptr;  // there is no ground behind it
-  if (picture_is_shown_) adaptive.picture = reinterpret_cast<Rgba8*>(picture8_.data());
   cuda::castAdaptive(adaptive, mode_, sampling_, stream_);
   train.launched();
   return true;

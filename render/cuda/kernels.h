@@ -9,7 +9,6 @@
 
 #include "render/adaptive_pass.h"
 #include "render/compositing.h"
-#include "render/interpolation.h"
 #include "render/raycast.h"
 #include "render/reconstruction.h"
 #include "render/silhouette.h"
@@ -100,9 +99,8 @@ struct AdaptiveLaunch : CastLaunch {
   std::uint8_t* classes =
       nullptr;               ///< receives those of the estimated error, one a pixel; see errorClassOf()
   unsigned* rays = nullptr;  ///< is increased by the number of rays cast
-  Rgba8* picture = nullptr;  ///< receives the picture, where there is no ground; null: only the layer is made
 };
-/// Casts the frame and predicts what it does not cast; the whole layer, and the picture, are written.
+/// Casts the frame and predicts what it does not cast; the whole layer is written.
 void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 /// The same for a sparse sampling alone.
 void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
