@@ -13,9 +13,6 @@
 
 namespace emscape::render::cuda {
 
-/// Threads of a block, one block a multiprocessor.
-constexpr int kAdaptiveThreads = 512;
-
 /// Threads a ray of the lattice, whose rays are many: as few as fill the GPU, since neighbouring rays share
 /// what the texture unit reads, parts of a ray do not. The passes' rays are few: a thread a part.
 /// Either 2 or as many as a ray has parts.
@@ -145,7 +142,7 @@ __device__ inline unsigned lookAtPixels(const AdaptiveLaunch& launch, int pass, 
   const AdaptiveStage stage(launch, pass);
   const unsigned pixels = stage.pixelsOfBlock();
   const unsigned end = min(first + BlockQueue::kMost, pixels);
-  for (unsigned n = first + threadIdx.x; n - threadIdx.x % 32 < end; n += kAdaptiveThreads) {
+  for (unsigned n = first + threadIdx.x; n - threadIdx.x % 32 < end; n += kCastThreads) {
     int x = 0, y = 0;
     const bool must_be_cast =
         n < end && stage.pixelOf(n, launch.layer.size, x, y) && mustBeCast(launch, stage.pass(), x, y);
@@ -214,7 +211,7 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
 template <class RayKind>
 __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Colors& colors,
                            const BlockQueue& queue, bool is_lattice) {
-  constexpr unsigned kWarps = kAdaptiveThreads / 32;
+  constexpr unsigned kWarps = kCastThreads / 32;
   const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
   if constexpr (RayKind::kParts == 1) {
     // Rays of a warp wait for each other: as few of them as leave no warp without.
@@ -243,7 +240,7 @@ __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Col
 
 /// As many blocks as run at a time.
 template <class RayKind>
-__global__ void __launch_bounds__(kAdaptiveThreads, 1)
+__global__ void __launch_bounds__(kCastThreads, 1)
     castAdaptiveFrame(const __grid_constant__ AdaptiveLaunch launch) {
   __shared__ BlockQueue queue;
   const typename RayKind::Colors colors(launch);
@@ -266,14 +263,13 @@ __global__ void __launch_bounds__(kAdaptiveThreads, 1)
 
 template <class RayKind>
 void start(const AdaptiveLaunch& launch, cudaStream_t stream) {
-  static const unsigned resident =
-      residentBlocks(castAdaptiveFrame<RayKind>, kAdaptiveThreads, kMostSharedBytes);
+  static const unsigned resident = residentBlocks(castAdaptiveFrame<RayKind>);
   cudaLaunchAttribute together{};
   together.id = cudaLaunchAttributeCooperative;
   together.val.cooperative = 1;
   cudaLaunchConfig_t config{};
   config.gridDim = resident;
-  config.blockDim = kAdaptiveThreads;
+  config.blockDim = kCastThreads;
   config.dynamicSmemBytes = RayKind::Colors::sharedBytes(launch);
   config.stream = stream;
   config.attrs = &together;

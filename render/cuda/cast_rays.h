@@ -16,8 +16,6 @@ namespace emscape::render::cuda {
 /// wait for one. More registers a thread mean fewer threads.
 template <class Compositor>
 constexpr int kBatch = Compositor::kEndsItself ? 8 : 4;
-/// The same of parts of rays, in launches of few rays and with registers to spare.
-constexpr int kPartBatch = 16;
 
 /// The table where it lies.
 class GlobalColors {
@@ -49,7 +47,7 @@ struct VolumeRay {
   }
   __device__ static bool castPart(const CastLaunch& launch, const RayPieces& pieces, int part,
                                   const Colors& colors, Compositor& compositor) {
-    return launch.task.castPart<Compositor, Sampler, kMayShade, kPartBatch>(pieces, part, colors, compositor);
+    return launch.task.castPart<Compositor, Sampler, kMayShade, kFetched>(pieces, part, colors, compositor);
   }
 };
 template <class Sampler>
@@ -133,7 +131,7 @@ constexpr int kMostSharedBytes = (kMostHalfColors + 1) * static_cast<int>(sizeof
 
 /// Allows a kernel the shared memory that the largest table takes. @return its blocks that run at a time
 template <class Launch>
-unsigned residentBlocks(void (*kernel)(Launch), int threads, unsigned shared_bytes) {
+unsigned residentBlocks(void (*kernel)(Launch)) {
   emscape::cuda::check(
       cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, kMostSharedBytes),
       "cudaFuncSetAttribute");
@@ -141,8 +139,9 @@ unsigned residentBlocks(void (*kernel)(Launch), int threads, unsigned shared_byt
   emscape::cuda::check(cudaGetDevice(&device), "cudaGetDevice");
   emscape::cuda::check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
                        "cudaDeviceGetAttribute");
-  emscape::cuda::check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, threads, shared_bytes),
-                       "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
+  emscape::cuda::check(
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, kCastThreads, kMostSharedBytes),
+      "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
   return static_cast<unsigned>(multiprocessors * std::max(blocks, 1));
 }
 
@@ -151,10 +150,9 @@ void start(const CastLaunch& launch, cudaStream_t stream) {
   const PixelSet& pixels = launch.pixels;
   const long long rays = pixels.list != nullptr ? pixels.end - pixels.first : pixels.lattice.count();
   if (rays == 0) return;
-  const unsigned shared_bytes = RayKind::Colors::sharedBytes(launch);
-  static const unsigned resident = residentBlocks(castRays<RayKind>, kCastThreads, shared_bytes);
+  static const unsigned resident = residentBlocks(castRays<RayKind>);
   const auto blocks = static_cast<unsigned>(std::min<long long>((rays + 31) / 32, resident));
-  castRays<RayKind><<<blocks, kCastThreads, shared_bytes, stream>>>(launch);
+  castRays<RayKind><<<blocks, kCastThreads, RayKind::Colors::sharedBytes(launch), stream>>>(launch);
   emscape::cuda::checkLaunch("castRays");
 }
 

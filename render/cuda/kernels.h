@@ -37,10 +37,9 @@ struct Layer {
 /// Which pixels a launch casts: those of a lattice, or a part of a list.
 struct PixelSet {
   Lattice lattice;
-  const Pixel* list = nullptr;       ///< null: the lattice
-  unsigned first = 0;                ///< of the list
-  unsigned end = 0;                  ///< of the list, one beyond the last
-  const unsigned* length = nullptr;  ///< of the list, where the host does not know it; null: `end` says it
+  const Pixel* list = nullptr;  ///< null: the lattice
+  unsigned first = 0;           ///< of the list
+  unsigned end = 0;             ///< of the list, one beyond the last
 };
 
 enum class Sampling {

@@ -15,47 +15,6 @@ __device__ inline double limitOf(const CastLaunch& launch, const Pixel& pixel) {
                                   : 1e300;
 }
 
-/// Pixels of a launch in portions for a warp: rectangles of a lattice, pieces of a list.
-/// @param kWidth, kHeight  of a rectangle; their product is the size of a piece
-template <int kWidth, int kHeight>
-class WarpTiles {
- public:
-  static constexpr unsigned kPixels = kWidth * kHeight;
-
-  __device__ explicit WarpTiles(const PixelSet& pixels) : pixels_(pixels) {}
-
-  __device__ bool isList() const { return pixels_.list != nullptr; }
-  /// Of a lattice.
-  __device__ int columns() const { return (pixels_.lattice.columns + kWidth - 1) / kWidth; }
-  __device__ int rows() const { return (pixels_.lattice.rows + kHeight - 1) / kHeight; }
-  /// Of a list.
-  __device__ unsigned pieces() const { return (listEnd() - pixels_.first + kPixels - 1) / kPixels; }
-
-  /// @param n  of the tile's pixels, 0..kPixels - 1. @return false: there is none
-  __device__ bool pixelOfPiece(unsigned piece, unsigned n, Pixel& pixel) const {
-    const unsigned place = pixels_.first + piece * kPixels + n;
-    if (place >= listEnd()) return false;
-    pixel = pixels_.list[place];
-    return true;
-  }
-  __device__ bool pixelOfTile(int tile_column, int tile_row, int x, int y, Pixel& pixel) const {
-    const Lattice& lattice = pixels_.lattice;
-    const int column = tile_column * kWidth + x;
-    const int row = tile_row * kHeight + y;
-    if (column >= lattice.columns || row >= lattice.rows) return false;
-    pixel = {static_cast<std::uint16_t>(lattice.first_x + column * lattice.step_x),
-             static_cast<std::uint16_t>(lattice.first_y + row * lattice.step_y)};
-    return true;
-  }
-
- private:
-  __device__ unsigned listEnd() const {
-    return pixels_.length != nullptr && *pixels_.length < pixels_.end ? *pixels_.length : pixels_.end;
-  }
-
-  const PixelSet& pixels_;
-};
-
 /// Portions of a launch, given to warps as they ask. All of them ask until there is none left.
 class TileQueue {
  public:
@@ -102,29 +61,31 @@ class WarpTasks {
  public:
   /// All threads of a block call it.
   __device__ explicit WarpTasks(const CastLaunch& launch)
-      : list_(launch.pixels),
+      : pixels_(launch.pixels),
         lattice_(launch.pixels.lattice),
         tile_width_(lattice_.step_x > lattice_.step_y ? 4 : 8),
         width_(cellSide(lattice_.columns, tile_width_)),
         height_(cellSide(lattice_.rows, 32 / tile_width_)) {
-    if (!list_.isList()) sort(launch);
+    if (!isList()) sort(launch);
   }
 
   /// How many numbers there are, with a tile, or half of one, each. Early ones carry tiles that show nothing
   /// too: their rays are set up while others wait for samples, and no numbers are handed out for them.
   __device__ unsigned count() const {
-    if (list_.isList()) return list_.pieces();
+    if (isList()) return (pixels_.end - pixels_.first + 31) / 32;
     return max(found().shown, found().carriers);
   }
   /// Tasks of a number.
   __device__ unsigned tasksOf(unsigned number) const {
-    return list_.isList() || number >= found().carriers ? 1 : 1 + found().carried;
+    return isList() || number >= found().carriers ? 1 : 1 + found().carried;
   }
   /// @param n  0..tasksOf(number) - 1
   __device__ WarpTask of(unsigned number, unsigned n, unsigned lane) const {
     WarpTask task;
-    if (list_.isList()) {
-      task.has_pixel = list_.pixelOfPiece(number, lane, task.pixel);
+    if (isList()) {
+      const unsigned place = pixels_.first + number * 32 + lane;
+      task.has_pixel = place < pixels_.end;
+      if (task.has_pixel) task.pixel = pixels_.list[place];
       return task;
     }
     const Order& order = found();
@@ -175,6 +136,7 @@ class WarpTasks {
   __device__ static int cellSide(int pixels, int tile) {
     return ((pixels + tile - 1) / tile + kAlong - 1) / kAlong;
   }
+  __device__ bool isList() const { return pixels_.list != nullptr; }
   __device__ unsigned tilesOfCell() const { return static_cast<unsigned>(width_ * height_); }
   /// @return false: the lattice has no such pixel
   __device__ bool pixelAt(int column, int row, Pixel& pixel) const {
@@ -254,7 +216,7 @@ class WarpTasks {
   /// The longest rays that are not halved, of a length that a warp casts in a good part of the launch's time.
   /// @param sum  of the lengths of all cells
   __device__ unsigned mostOfTask(unsigned sum) const {
-    constexpr float kPartOfTime = 0.6F;
+    constexpr float kPartOfTime = 0.5F;
     const float tiles_of_warp = static_cast<float>(tilesOfCell()) / static_cast<float>(gridDim.x * kWarps);
     return kMayHalve ? static_cast<unsigned>(kPartOfTime * tiles_of_warp * static_cast<float>(sum)) : ~0U;
   }
@@ -279,7 +241,7 @@ class WarpTasks {
     return fmaxf(end - inside.begin * voxels, 0.0F);
   }
 
-  const WarpTiles<8, 4> list_;
+  const PixelSet& pixels_;
   const Lattice lattice_;
   const int tile_width_;      ///< pixels; a tile has 32, and is near to a square of the picture
   const int width_, height_;  ///< of a cell, in tiles
