@@ -30,12 +30,12 @@ def render_rows(results):
 
 def pattern_rows(results):
     bounds = {"quarter": "at most 0.30", "columns": "at most 0.55", "adaptive": "at most 0.35"}
-    for mode in ("dvr", "mida"):
+    for mode in ("dvr-exact", "mida-exact", "dvr", "mida"):
         for pattern in results.get(f"patterns-{mode}", {}).get("patterns", []):
             row(f"{mode}, {pattern['name']} ({pattern['interpolate']}): {pattern['busy_ms']['median']:.3f} ms, restored "
                 f"{'equal' if pattern['restored_equals_full'] else 'NOT EQUAL'}",
-                f"{pattern['ratio_to_full']:.2f} of full", f"{pattern['rays_fraction_of_hits']:.2f} of the rays",
-                bounds.get(pattern["name"], ""))
+                f"{pattern['ratio_to_full']:.3f} of full", f"{pattern['rays_fraction_of_hits']:.2f} of the rays",
+                bounds.get(pattern["name"], "") if mode == "dvr-exact" else "")
 
 
 def field_table(results):
