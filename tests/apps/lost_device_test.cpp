@@ -4,6 +4,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tests/apps/program.h"
 #include "tests/gpu.h"
@@ -19,6 +20,12 @@ using testing::IsSupersetOf;
 using testing::MatchesRegex;
 using testing::Not;
 
+/// What a program says of itself: without the words of the library that draws labels about a machine that has
+/// no fonts.
+std::string withoutFontconfig(const std::string& text) {
+  return std::regex_replace(text, std::regex("Fontconfig [^\n]*\n"), "");
+}
+
 /// Runs a command on a GPU that is lost once the file `sign` is there.
 void runAndLoseDevice(Arguments arguments, const std::string& sign) {
   arguments.insert(arguments.end(), {"--backend", "cuda", "--quiet", "--json"});
@@ -26,8 +33,9 @@ void runAndLoseDevice(Arguments arguments, const std::string& sign) {
                                                   "' EMSCAPE_LOSE_DEVICE_AT='" + sign + "';");
   EXPECT_EQ(result.status, 4);
   EXPECT_EQ(result.out, "");
-  EXPECT_THAT(result.err, MatchesRegex("emscape: error: GPU: [^\n]+: [^\n]+ \\(cudaError[A-Za-z]+\\)"
-                                       "(; the last kernel launched was [^\n]+)?\n"));
+  EXPECT_THAT(withoutFontconfig(result.err),
+              MatchesRegex("emscape: error: GPU: [^\n]+: [^\n]+ \\(cudaError[A-Za-z]+\\)"
+                           "(; the last kernel launched was [^\n]+)?\n"));
 }
 
 /// What lies in a folder, by name.
@@ -83,7 +91,8 @@ TEST(CudaLostDevice, InSimulateLeavesWholeStepsAndTheCpuGoesOn) {
 TEST(CudaLostDevice, InRenderLeavesWholePicturesAndNoVideo) {
   EMSCAPE_NEEDS_GPU();
   const TemporaryFolder folder;
-  const std::string scenario = longScenario(folder, 80);
+  constexpr int kFrames = 301;  // stored volumes are drawn faster than a device is lost
+  const std::string scenario = longScenario(folder, kFrames - 1);
   ASSERT_EQ(run({"simulate", scenario, "-o", folder / "s", "--range", "-120:20"}).status, 0);
   const bool has_ffmpeg = std::system("command -v ffmpeg >/dev/null") == 0;
   for (const std::string& input : {scenario, folder / "s"}) {
@@ -102,7 +111,7 @@ TEST(CudaLostDevice, InRenderLeavesWholePicturesAndNoVideo) {
     ++count;
   }
   EXPECT_GE(count, 2 * 2);
-  EXPECT_LT(count, 2 * 81);
+  EXPECT_LT(count, 2 * kFrames);
 }
 
 TEST(CudaLostDevice, InPlaybackEndsIt) {
