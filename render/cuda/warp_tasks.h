@@ -162,10 +162,14 @@ class WarpTasks {
     if (cell < kCells) {
       const float* corner = corners + cell / kAlong * (kAlong + 1) + cell % kAlong;
       const float cells = fmaxf(fmaxf(corner[0], corner[1]), fmaxf(corner[kAlong + 1], corner[kAlong + 2]));
-      length = static_cast<unsigned>(ceilf(16 * cells));
+      constexpr float kMost = 4e6F;  // sums stay within 32 bits
+      length = static_cast<unsigned>(ceilf(fminf(16 * cells, kMost)));
     }
-    const unsigned longest_of_warp = __reduce_max_sync(~0U, length);
-    const unsigned sum_of_warp = __reduce_add_sync(~0U, length);
+    unsigned longest_of_warp = length, sum_of_warp = length;
+    for (unsigned step = 16; step > 0; step /= 2) {
+      longest_of_warp = max(longest_of_warp, __shfl_xor_sync(~0U, longest_of_warp, step));
+      sum_of_warp += __shfl_xor_sync(~0U, sum_of_warp, step);
+    }
     if (lane == 0) {
       atomicMax(&longest, longest_of_warp);
       atomicAdd(&sum, sum_of_warp);
