@@ -46,11 +46,11 @@ struct SkipRule {
   }
 };
 
-/// Whether looking for bricks to skip pays on a GPU. It costs a part of the frame whatever is found (measured
-/// on an H100, docs/performance.md: 0.14 of a full frame of DVR, 0.24 of one with a quarter of the rays, 0.5
-/// of one of MIDA), and of the samples in bricks that can be skipped two thirds are saved, as rays go in
-/// groups that skip together. MIDA moreover skips only what lies below its maximum so far. Maximum projection
-/// and isosurfaces skip most of a volume whatever it holds.
+/// Whether looking for bricks to skip pays on a GPU. It costs a part of the frame whatever is found: on an
+/// H100, while they were always looked for, about 0.14 of a full frame of DVR, 0.24 of one with a quarter of
+/// the rays, 0.5 of one of MIDA. Of the samples in bricks that can be skipped two thirds are saved, as rays
+/// go in groups that skip together. MIDA moreover skips only what lies below its maximum so far. Maximum
+/// projection and isosurfaces skip most of a volume whatever it holds.
 /// @param skippable_share  of the bricks, 0..1: those of a level below SkipView::kNever
 inline bool skippingPays(CompositingMode mode, double skippable_share) {
   constexpr double kLeastShareDvr = 0.3;

@@ -149,15 +149,22 @@ class Readback {
     check(cudaMemcpyAsync(value_, from, sizeof(T), cudaMemcpyDeviceToHost, stream),
           "cudaMemcpyAsync from the GPU");
     arrives_.record(stream);
-    requested_ = true;
+    is_awaited_ = true;
+    has_value_ = false;
   }
   /// @return null: nothing was asked for, or it is still to come
-  const T* arrived() const { return requested_ && arrives_.isReached() ? value_ : nullptr; }
+  const T* arrived() {
+    if (is_awaited_ && arrives_.isReached()) {
+      is_awaited_ = false;
+      has_value_ = true;
+    }
+    return has_value_ ? value_ : nullptr;
+  }
 
  private:
   T* value_ = nullptr;
   Event arrives_;
-  bool requested_ = false;
+  bool is_awaited_ = false, has_value_ = false;
 };
 
 /// A point of a stream whose time is taken.

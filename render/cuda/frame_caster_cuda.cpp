@@ -111,7 +111,8 @@ void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volu
   scene_.volumeChanged();
 }
 
-/// The time of a frame begins with the first work that the GPU is given.
+/// The time of a frame begins with the first work that the GPU is given, but for findInside()'s few
+/// kilobytes.
 CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size) {
   volume_->storage().beginReading(stream_);
   const bool is_prepared =
@@ -165,7 +166,7 @@ void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
   ground_view_ = {version, size};
 }
 
-/// Has to be there before the first rays are cast: the host is in the way of none.
+/// By the host, before a frame's time begins: the GPU would wait for it.
 void CudaFrameCaster::findInside(const Scene& scene, ImageSize size) {
   const unsigned version = scene.versions().view;
   if (inside_view_.holds(version, size)) return;
