@@ -36,11 +36,17 @@ inline PixelLanes operator-(const PixelLanes& p, const PixelLanes& q) {
 inline PixelLanes operator*(const PixelLanes& p, float s) {
   return {p.lanes * s};
 }
+inline PixelLanes addScaled(const PixelLanes& p, float s, const PixelLanes& q) {
+  return p * s + q;
+}
 inline PixelLanes lesser(const PixelLanes& p, const PixelLanes& q) {
   return {p.lanes < q.lanes ? p.lanes : q.lanes};
 }
 inline PixelLanes greater(const PixelLanes& p, const PixelLanes& q) {
   return {p.lanes > q.lanes ? p.lanes : q.lanes};
+}
+inline PixelLanes magnitude(const PixelLanes& p) {
+  return greater(p, PixelLanes{} - p);
 }
 inline float largestChannel(const PixelLanes& p) {
   using Order = int __attribute__((vector_size(16)));

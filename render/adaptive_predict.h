@@ -9,6 +9,8 @@
 /// Color is Rgba, or a vector of the four channels that has the operators and the functions below.
 #pragma once
 
+#include <cmath>
+
 #include "base/host_device.h"
 #include "render/image.h"
 
@@ -18,13 +20,30 @@ namespace emscape::render {
 constexpr float kLevel = 1.0F / 255;
 constexpr float kLevels = 255;
 
-// --- What a Color needs besides +, - and a product with a float ---
+/// a / b of numbers of ordinary size; on the device to two units in the last place.
+EMSCAPE_HD inline float quotient(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return __fdividef(a, b);
+#else
+  return a / b;
+#endif
+}
+
+// --- What a Color needs besides +, -, a product with a float and addScaled() ---
 
 EMSCAPE_HD inline float lesser(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return fminf(a, b);  // one instruction
+#else
   return a < b ? a : b;
+#endif
 }
 EMSCAPE_HD inline float greater(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return fmaxf(a, b);
+#else
   return a > b ? a : b;
+#endif
 }
 EMSCAPE_HD inline Rgba operator-(const Rgba& p, const Rgba& q) {
   return {p.r - q.r, p.g - q.g, p.b - q.b, p.a - q.a};
@@ -34,6 +53,9 @@ EMSCAPE_HD inline Rgba lesser(const Rgba& p, const Rgba& q) {
 }
 EMSCAPE_HD inline Rgba greater(const Rgba& p, const Rgba& q) {
   return {greater(p.r, q.r), greater(p.g, q.g), greater(p.b, q.b), greater(p.a, q.a)};
+}
+EMSCAPE_HD inline Rgba magnitude(const Rgba& p) {
+  return {std::fabs(p.r), std::fabs(p.g), std::fabs(p.b), std::fabs(p.a)};
 }
 EMSCAPE_HD inline float largestChannel(const Rgba& p) {
   return greater(greater(p.r, p.g), greater(p.b, p.a));
@@ -63,18 +85,17 @@ EMSCAPE_HD Along<Color> predictAlong(const Color& a, const Color& b, const Color
   const Color zero = uniform<Color>(0);
   const Color sum = a + b;
   const Color difference = a - b;
-  const Color step = greater(difference, zero - difference);
+  const Color step = magnitude(difference);
   const Color bend = (sum - (beyond_a + beyond_b)) * (1.0F / 16);
-  const Color limit = step * 0.25F + uniform<Color>(0.5F * kLevel);
+  const Color limit = addScaled(step, 0.25F, uniform<Color>(0.5F * kLevel));
   const Color limited = greater(lesser(bend, limit), zero - limit);
-  return {greater(sum * 0.5F + limited, zero), largestChannel(step),
-          largestChannel(greater(bend, zero - bend))};
+  return {greater(addScaled(sum, 0.5F, limited), zero), largestChannel(step),
+          largestChannel(magnitude(bend))};
 }
 /// From the two nearest alone.
 template <class Color>
 EMSCAPE_HD Along<Color> predictAlong(const Color& a, const Color& b) {
-  const Color difference = a - b;
-  return {(a + b) * 0.5F, largestChannel(greater(difference, uniform<Color>(0) - difference)), 0.0F};
+  return {(a + b) * 0.5F, largestChannel(magnitude(a - b)), 0.0F};
 }
 
 /// A pixel as it is predicted, and an estimate of its error in levels: what the tolerance is held against.
@@ -97,9 +118,9 @@ template <class Color>
 EMSCAPE_HD Prediction<Color> predict(const Along<Color>& p, const Along<Color>& q) {
   constexpr float kNoise = 0.5F * kLevel;
   const Color apart = p.color - q.color;
-  const float share = (q.step + kNoise) / (p.step + q.step + 2 * kNoise);
-  const float disagreement = largestChannel(greater(apart, uniform<Color>(0) - apart));
-  return {q.color + apart * share,
+  const float share = quotient(q.step + kNoise, p.step + q.step + 2 * kNoise);
+  const float disagreement = largestChannel(magnitude(apart));
+  return {addScaled(apart, share, q.color),
           (disagreement + lesser(p.bend, q.bend) + steepness(lesser(p.step, q.step))) * kLevels};
 }
 /// From one direction, at the picture's edge: half its step stands for the disagreement.

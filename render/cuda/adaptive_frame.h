@@ -18,50 +18,63 @@ namespace emscape::render::cuda {
 /// Either 2 or as many as a ray has parts.
 constexpr unsigned kLatticeThreads = 2;
 
-/// What a frame looks at between two barriers, as a grid: the pixels of the lattice, or a pass' midpoints.
-class AdaptiveStage {
+/// The tiles of a grid of pixels that a block looks at, and the place of each of its threads in them.
+class BlockTiles {
  public:
-  /// @param pass  -1: the lattice
-  __device__ AdaptiveStage(const AdaptiveLaunch& launch, int pass)
-      : pass_(pass < 0 ? nullptr : launch.passes + pass) {
-    const ImageSize size = launch.layer.size;
-    columns_ = pass_ != nullptr ? pass_->columns(size) : (size.width + kLatticeStep - 1) / kLatticeStep;
-    rows_ = pass_ != nullptr ? pass_->rows(size) : (size.height + kLatticeStep - 1) / kLatticeStep;
-    // Small tiles make blocks alike; where there are many of them, larger ones read pixels less often.
-    const bool are_many = static_cast<long long>(columns_) * rows_ > 1024LL * gridDim.x;
-    width_log2_ = are_many ? 3 : 2;
-    height_log2_ = are_many ? 2 : 1;
-    tile_columns_ = ((columns_ - 1) >> width_log2_) + 1;
-    tiles_ = static_cast<unsigned>(tile_columns_) * (((rows_ - 1) >> height_log2_) + 1);
-  }
-
-  /// Null: the lattice.
-  __device__ const Pass* pass() const { return pass_; }
-  /// How many pixels a block looks at, or some more.
-  __device__ unsigned pixelsOfBlock() const {
-    return ((tiles_ + gridDim.x - 1) / gridDim.x) << (width_log2_ + height_log2_);
-  }
-  /// @param n  of the block's pixels. @return false: there is none
-  __device__ bool pixelOf(unsigned n, ImageSize size, int& x, int& y) const {
+  /// @param first  of the block's pixels that the first thread is to look at
+  __device__ BlockTiles(int columns, int rows, unsigned width_log2, unsigned height_log2, unsigned first) {
+    log2_ = width_log2 + height_log2;
+    tile_columns_ = ((static_cast<unsigned>(columns) - 1) >> width_log2) + 1;
+    tiles_ = tile_columns_ * (((static_cast<unsigned>(rows) - 1) >> height_log2) + 1);
+    per_tile_columns_ = 1.0F / static_cast<float>(tile_columns_);
+    width_log2_ = width_log2;
+    height_log2_ = height_log2;
+    const unsigned n = first + threadIdx.x;
+    in_x_ = n & ((1U << width_log2) - 1);
+    in_y_ = (n >> width_log2) & ((1U << height_log2) - 1);
     // Every block has one tile of each run of so many as there are blocks. Its place in the run moves on by a
     // golden section: whatever the picture's width, its tiles do not fall in line.
-    const unsigned run = n >> (width_log2_ + height_log2_);
-    const unsigned tile = run * gridDim.x + (blockIdx.x + run * (gridDim.x * 5 / 13 + 1)) % gridDim.x;
-    if (tile >= tiles_) return false;
-    const int in_x = static_cast<int>(n & ((1U << width_log2_) - 1));
-    const int in_y = static_cast<int>((n >> width_log2_) & ((1U << height_log2_) - 1));
-    const int column = (static_cast<int>(tile % tile_columns_) << width_log2_) + in_x;
-    const int row = (static_cast<int>(tile / tile_columns_) << height_log2_) + in_y;
-    y = pass_ != nullptr ? pass_->firstY() + row * pass_->stepY() : row * kLatticeStep;
-    x = pass_ != nullptr ? pass_->firstX(y) + column * pass_->stepX() : column * kLatticeStep;
-    return column < columns_ && row < rows_ && x < size.width && y < size.height;
+    const unsigned shift = gridDim.x * 5 / 13 + 1, runs = kCastThreads >> log2_, run = n >> log2_;
+    run_ = run * gridDim.x;
+    in_run_ = (blockIdx.x + run * shift) % gridDim.x;
+    runs_ = runs * gridDim.x;
+    shift_ = runs * shift % gridDim.x;
+  }
+
+  /// How many pixels a block looks at, or some more.
+  __device__ unsigned pixelsOfBlock() const { return ((tiles_ + gridDim.x - 1) / gridDim.x) << log2_; }
+  /// On to the thread's next pixel, kCastThreads further.
+  __device__ void moveOn() {
+    run_ += runs_;
+    in_run_ += shift_;
+    if (in_run_ >= gridDim.x) in_run_ -= gridDim.x;
+  }
+  /// The pixel's place in the grid, or beyond its last column or row.
+  /// @return false: there is none
+  __device__ bool place(int& column, int& row) const {
+    const unsigned tile = run_ + in_run_;
+    // A quotient that is at most one off: there are far fewer rows than 2^22.
+    auto tile_row = static_cast<unsigned>(static_cast<float>(tile) * per_tile_columns_);
+    auto tile_column = static_cast<int>(tile - tile_row * tile_columns_);
+    if (tile_column < 0) {
+      tile_column += static_cast<int>(tile_columns_);
+      --tile_row;
+    } else if (tile_column >= static_cast<int>(tile_columns_)) {
+      tile_column -= static_cast<int>(tile_columns_);
+      ++tile_row;
+    }
+    column = static_cast<int>((static_cast<unsigned>(tile_column) << width_log2_) + in_x_);
+    row = static_cast<int>((tile_row << height_log2_) + in_y_);
+    return tile < tiles_;
   }
 
  private:
-  const Pass* pass_;
-  int columns_, rows_;
-  int width_log2_, height_log2_;  ///< of a tile
+  unsigned width_log2_, height_log2_, log2_;  ///< of a tile
   unsigned tile_columns_, tiles_;
+  float per_tile_columns_;
+  unsigned in_x_, in_y_;   ///< the thread's, of a tile
+  unsigned run_, in_run_;  ///< the first tile of a run, and the block's of it
+  unsigned runs_, shift_;  ///< how the two change
 };
 
 /// The layer as midpoints see it; see predictMidpoint(). Other blocks have written it before a barrier.
@@ -71,45 +84,78 @@ struct KnownLayer {
   ImageSize size;
 
   EMSCAPE_HD Rgba at(int x, int y) const {
-    const float4 p = layer.at(x, y);
+    const float4& p = layer.at(x, y);
     return {p.x, p.y, p.z, p.w};
   }
 };
 
-/// As predictMidpoint(); in the middle of the picture all pixels are read before the first is waited for.
-__device__ inline bool predictPixel(const KnownLayer& known, const Pass& pass, int x, int y,
-                                    Prediction<Rgba>& prediction) {
-  const int r = pass.reach;
-  if (!contains(known, x - 3 * r, y - 3 * r) || !contains(known, x + 3 * r, y + 3 * r)) {
-    return predictMidpoint(known, pass, x, y, prediction);
+/// As predictMidpoint(); where nothing is known, nothing is certain. Apart, as few pixels lie at the edge.
+__device__ __noinline__ inline Prediction<Rgba> predictAtEdge(const Layer& layer, Pass pass, int x, int y) {
+  Prediction<Rgba> prediction;
+  if (!predictMidpoint(KnownLayer{layer, layer.size}, pass, x, y, prediction)) {
+    prediction.error_levels = INFINITY;
   }
-  constexpr int kSteps[] = {-1, 1, -3, 3};
-  const int dy = pass.diagonal ? r : 0;
-  const int dx = pass.diagonal ? -r : 0;
-  Rgba p[4], q[4];
-#pragma unroll
-  for (int n = 0; n < 4; ++n) p[n] = known.at(x + kSteps[n] * r, y + kSteps[n] * dy);
-#pragma unroll
-  for (int n = 0; n < 4; ++n) q[n] = known.at(x + kSteps[n] * dx, y + kSteps[n] * r);
-  prediction = predict(predictAlong(p[0], p[1], p[2], p[3]), predictAlong(q[0], q[1], q[2], q[3]));
-  return true;
+  return prediction;
 }
 
-/// Leaves a pixel transparent, or as it is predicted. @return whether it must be cast instead
-__device__ inline bool mustBeCast(const AdaptiveLaunch& launch, const Pass* pass, int x, int y) {
-  const ImageSize size = launch.layer.size;
-  const bool is_inside = launch.inside[y].contains(x);
-  bool must_be_cast = is_inside;
-  Prediction<Rgba> prediction{};
-  std::uint8_t error_class = 0;
-  if (is_inside && pass != nullptr) {
-    must_be_cast =
-        !predictPixel({launch.layer, size}, *pass, x, y, prediction) ||
-        !(prediction.error_levels <= launch.tolerance_levels * static_cast<float>(pass->tolerance));
-    if (!must_be_cast) error_class = errorClassOf(prediction.error_levels);
+/// The known pixels in line with a midpoint (x, y): 3 and 1 times (dx, dy) before it, and behind it.
+__device__ inline void readLine(const Layer& layer, int x, int y, int dx, int dy, Rgba (&known)[4]) {
+  // They are twice (dx, dy) apart: they lie in one plane.
+  const float4* pixel = &layer.at(x - 3 * dx, y - 3 * dy);
+  const int step = dx + dy * static_cast<int>(layer.columns());
+#pragma unroll
+  for (int n = 0; n < 4; ++n) known[n] = toRgba(pixel[n * step]);
+}
+
+/// @param kPass  of kPasses
+template <int kPass>
+__device__ Prediction<Rgba> predictPixel(const Layer& layer, int x, int y) {
+  constexpr Pass kTaken = kPasses[kPass];
+  constexpr int r = kTaken.reach;
+  const auto isInside = [](int n, int length) {
+    return static_cast<unsigned>(n - 3 * r) < static_cast<unsigned>(length - 6 * r);
+  };
+  if (layer.size.width <= 6 * r || layer.size.height <= 6 * r || !isInside(x, layer.size.width) ||
+      !isInside(y, layer.size.height)) {
+    return predictAtEdge(layer, kTaken, x, y);
   }
-  if (!must_be_cast) launch.layer.at(x, y) = toFloat4(prediction.color);
-  launch.classes[pixelIndex(size, x, y)] = error_class;
+  constexpr int dy = kTaken.diagonal ? r : 0;
+  Rgba p[4], q[4];  // all of them are read before the first is waited for
+  readLine(layer, x, y, r, dy, p);
+  readLine(layer, x, y, -dy, r, q);
+  return predict(predictAlong(p[1], p[2], p[0], p[3]), predictAlong(q[1], q[2], q[0], q[3]));
+}
+
+/// What decides which pixels are cast; of an AdaptiveLaunch.
+struct Criteria {
+  Layer layer;
+  const Span* inside;
+  float tolerance_levels;
+  std::uint8_t* classes;
+};
+
+/// Leaves a pixel transparent, or as it is predicted. @param kPass  of kPasses; -1: the lattice
+/// @return whether it must be cast instead
+template <int kPass>
+__device__ bool mustBeCast(const Criteria& frame, int x, int y) {
+  const Span inside = frame.inside[y];
+  const bool is_inside = inside.contains(x);
+  bool must_be_cast = is_inside;
+  Rgba color;
+  std::uint8_t error_class = 0;
+  if constexpr (kPass >= 0) {
+    if (is_inside) {
+      constexpr auto kTolerance = static_cast<float>(kPasses[kPass].tolerance);
+      const Prediction<Rgba> prediction = predictPixel<kPass>(frame.layer, x, y);
+      must_be_cast = !(prediction.error_levels <= frame.tolerance_levels * kTolerance);
+      if (!must_be_cast) {
+        color = prediction.color;
+        error_class = errorClassOf(prediction.error_levels);
+      }
+    }
+  }
+  if (!must_be_cast) frame.layer.at(x, y) = toFloat4(color);
+  frame.classes[pixelIndex(frame.layer.size, x, y)] = error_class;
   return must_be_cast;
 }
 
@@ -119,6 +165,11 @@ struct BlockQueue {
   Pixel pixels[kMost];
   unsigned length;
   unsigned rays;  ///< of the whole frame
+
+  __device__ static BlockQueue& ofBlock() {
+    __shared__ BlockQueue queue;
+    return queue;
+  }
 
   /// Appends the pixels of those threads of a warp that have one, in their order.
   __device__ void append(bool has_pixel, int x, int y) {
@@ -135,20 +186,53 @@ struct BlockQueue {
   }
 };
 
-/// Looks at the block's pixels from the first one on, as many as the queue holds.
+/// Looks at the block's pixels from the first one on, as many as its queue holds. Called, not a part of the
+/// kernel: what one function needs would take registers from the others.
 /// @return how many the block has
-__device__ inline unsigned lookAtPixels(const AdaptiveLaunch& launch, int pass, unsigned first,
-                                        BlockQueue& queue) {
-  const AdaptiveStage stage(launch, pass);
-  const unsigned pixels = stage.pixelsOfBlock();
+template <int kPass>
+__device__ __noinline__ unsigned lookAtPixels(Criteria frame, unsigned first) {
+  __builtin_assume(__isGlobal(frame.layer.pixels));
+  __builtin_assume(__isGlobal(frame.inside));
+  __builtin_assume(__isGlobal(frame.classes));
+  constexpr bool kIsLattice = kPass < 0;
+  constexpr Pass kTaken = kPasses[kIsLattice ? 0 : kPass];
+  const ImageSize size = frame.layer.size;
+  const auto ofLattice = [](int length) { return (length + kLatticeStep - 1) / kLatticeStep; };
+  const int columns = kIsLattice ? ofLattice(size.width) : kTaken.columns(size);
+  const int rows = kIsLattice ? ofLattice(size.height) : kTaken.rows(size);
+  // Small tiles make blocks alike; where there are many of them, larger ones read pixels less often.
+  const bool is_small = kIsLattice || static_cast<long long>(columns) * rows < 768LL * gridDim.x;
+  BlockTiles tiles(columns, rows, is_small ? 2 : 3, is_small ? 1 : 2, first);
+  BlockQueue& queue = BlockQueue::ofBlock();
+  const unsigned pixels = tiles.pixelsOfBlock();
   const unsigned end = min(first + BlockQueue::kMost, pixels);
   for (unsigned n = first + threadIdx.x; n - threadIdx.x % 32 < end; n += kCastThreads) {
-    int x = 0, y = 0;
-    const bool must_be_cast =
-        n < end && stage.pixelOf(n, launch.layer.size, x, y) && mustBeCast(launch, stage.pass(), x, y);
-    queue.append(must_be_cast, x, y);
+    int column = 0, row = 0;
+    const bool is_any = n < end && tiles.place(column, row);
+    const int y = kIsLattice ? row * kLatticeStep : kTaken.firstY() + row * kTaken.stepY();
+    const int x = kIsLattice ? column * kLatticeStep : kTaken.firstX(y) + column * kTaken.stepX();
+    queue.append(is_any && x < size.width && y < size.height && mustBeCast<kPass>(frame, x, y), x, y);
+    tiles.moveOn();
   }
   return pixels;
+}
+
+/// @param pass  of kPasses; -1: the lattice
+__device__ inline unsigned lookAtPixels(const AdaptiveLaunch& launch, int pass, unsigned first) {
+  const Criteria frame{launch.layer, launch.inside, launch.tolerance_levels, launch.classes};
+  static_assert(AdaptiveLaunch::kPassCount == 4, "one case each");
+  switch (pass) {
+    case 0:
+      return lookAtPixels<0>(frame, first);
+    case 1:
+      return lookAtPixels<1>(frame, first);
+    case 2:
+      return lookAtPixels<2>(frame, first);
+    case 3:
+      return lookAtPixels<3>(frame, first);
+    default:
+      return lookAtPixels<-1>(frame, first);
+  }
 }
 
 /// Casts one ray by several threads, `rays` lanes apart, each of which takes as many of its parts; with any
@@ -242,7 +326,7 @@ __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Col
 template <class RayKind>
 __global__ void __launch_bounds__(kCastThreads, 1)
     castAdaptiveFrame(const __grid_constant__ AdaptiveLaunch launch) {
-  __shared__ BlockQueue queue;
+  BlockQueue& queue = BlockQueue::ofBlock();
   const typename RayKind::Colors colors(launch);
   if (threadIdx.x == 0) queue.rays = 0;
 #pragma unroll 1
@@ -251,7 +335,7 @@ __global__ void __launch_bounds__(kCastThreads, 1)
     for (unsigned first = 0, looked_at = ~0U; first < looked_at; first += BlockQueue::kMost) {
       if (threadIdx.x == 0) queue.length = 0;
       __syncthreads();
-      looked_at = lookAtPixels(launch, pass, first, queue);
+      looked_at = lookAtPixels(launch, pass, first);
       __syncthreads();
       if (threadIdx.x == 0) queue.rays += queue.length;
       castQueued<RayKind>(launch, colors, queue, pass < 0);
@@ -262,21 +346,10 @@ __global__ void __launch_bounds__(kCastThreads, 1)
 }
 
 template <class RayKind>
-void start(const AdaptiveLaunch& launch, cudaStream_t stream) {
+void start(const AdaptiveLaunch& launch, const Submission& to) {
   static const unsigned resident = residentBlocks(castAdaptiveFrame<RayKind>);
-  cudaLaunchAttribute together{};
-  together.id = cudaLaunchAttributeCooperative;
-  together.val.cooperative = 1;
-  cudaLaunchConfig_t config{};
-  config.gridDim = resident;
-  config.blockDim = kCastThreads;
-  config.dynamicSmemBytes = RayKind::Colors::sharedBytes(launch);
-  config.stream = stream;
-  config.attrs = &together;
-  config.numAttrs = 1;
-  // What goes wrong is told by checkLaunch(), with the kernel's name.
-  static_cast<void>(cudaLaunchKernelEx(&config, castAdaptiveFrame<RayKind>, launch));
-  emscape::cuda::checkLaunch("castAdaptiveFrame");
+  to.start("castAdaptiveFrame", castAdaptiveFrame<RayKind>,
+           {resident, kCastThreads, RayKind::Colors::sharedBytes(launch), LaunchKind::together}, launch);
 }
 
 }  // namespace emscape::render::cuda

@@ -13,23 +13,23 @@ class GridVoxels : public volume::SparseVoxels {
 };
 
 template <class Launch>
-void startSparse(const Launch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
+void startSparse(const Launch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
   if (sampling == Sampling::sparse_nearest) {
-    return startVolume<NearestSamplerOf<GridVoxels>, GlobalColors, false>(launch, mode, stream);
+    return startVolume<NearestSamplerOf<GridVoxels>, GlobalColors, false>(launch, mode, to);
   }
   using Sampler = TrilinearSamplerOf<GridVoxels>;
-  return launch.task.shading.shades_fog ? startVolume<Sampler, GlobalColors, true>(launch, mode, stream)
-                                        : startVolume<Sampler, GlobalColors, false>(launch, mode, stream);
+  return launch.task.shading.shades_fog ? startVolume<Sampler, GlobalColors, true>(launch, mode, to)
+                                        : startVolume<Sampler, GlobalColors, false>(launch, mode, to);
 }
 
 }  // namespace
 
-void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
-  startSparse(launch, mode, sampling, stream);
+void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
+  startSparse(launch, mode, sampling, to);
 }
 
-void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
-  startSparse(launch, mode, sampling, stream);
+void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
+  startSparse(launch, mode, sampling, to);
 }
 
 }  // namespace emscape::render::cuda

@@ -44,7 +44,7 @@ class CudaFrameCaster : public FrameCaster {
   void fetch(Image8& image) override;
 
  private:
-  CastLaunch begin(const Scene& scene, ImageSize size);
+  CastLaunch begin(const Scene& scene, ImageSize size, double most_samples, bool is_frame);
   CastLaunch prepare(const Scene& scene, ImageSize size);
   void findGround(const Scene& scene, const CastLaunch& launch);
   void findInside(const Scene& scene, ImageSize size);
@@ -54,11 +54,15 @@ class CudaFrameCaster : public FrameCaster {
   bool castAdaptive(const CastLaunch& launch, const FramePlan& plan, LaunchTrain& train);
   void countAdaptive(const FramePlan& plan, FrameReport& report);
   bool castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report);
-  void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, stream_); }
+  void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, to_); }
 
   const volume::VoxelPrecision precision_;
   emscape::cuda::Stream stream_;
   emscape::cuda::TimeMark begin_, end_;  ///< of the last frame, or restoration
+  cuda::FrameGraph graph_{begin_, end_};
+  cuda::Submission to_{stream_};  ///< where a frame's kernels go
+  bool at_once_ = false;          ///< to graph_
+  long long most_rays_ = 0;       ///< of a launch that can be stopped after
 
   volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
   std::shared_ptr<const volume::DeviceVolume> volume_;
@@ -111,15 +115,31 @@ void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volu
   scene_.volumeChanged();
 }
 
+/// Rays of a launch that a ray's longest way through the volume makes at most so many samples of.
+long long raysFor(const CastLaunch& launch, double samples) {
+  const Dims& dims = launch.task.volume.dims;
+  const double longest =
+      length(Vec3d{static_cast<double>(dims.x), static_cast<double>(dims.y), static_cast<double>(dims.z)});
+  return std::max<long long>(static_cast<long long>(samples * launch.task.step_voxels / longest), 1);
+}
+
 /// The time of a frame begins with the first work that the GPU is given, but for findInside()'s few
 /// kilobytes.
-CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size) {
+/// @param most_samples  of a launch that a stop waits for; is_frame: no restoration
+CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, double most_samples, bool is_frame) {
   volume_->storage().beginReading(stream_);
   const bool is_prepared =
       scene_.isCurrent(scene) && (!scene.ground() || ground_view_.holds(scene.versions().view, size));
   if (!is_prepared) begin_.record(stream_);
   const CastLaunch launch = prepare(scene, size);
-  if (is_prepared) begin_.record(stream_);
+  most_rays_ = raysFor(launch, most_samples);
+  at_once_ = is_prepared && is_frame && size.count() <= most_rays_;
+  if (at_once_) {
+    graph_.begin();
+  } else if (is_prepared) {
+    begin_.record(stream_);
+  }
+  to_ = cuda::Submission(stream_, at_once_ ? &graph_ : nullptr);
   return launch;
 }
 
@@ -177,14 +197,6 @@ void CudaFrameCaster::findInside(const Scene& scene, ImageSize size) {
   inside_view_ = {version, size};
 }
 
-/// Rays of a launch that a ray's longest way through the volume makes at most so many samples of.
-long long raysFor(const CastLaunch& launch, double samples) {
-  const Dims& dims = launch.task.volume.dims;
-  const double longest =
-      length(Vec3d{static_cast<double>(dims.x), static_cast<double>(dims.y), static_cast<double>(dims.z)});
-  return std::max<long long>(static_cast<long long>(samples * launch.task.step_voxels / longest), 1);
-}
-
 FrameReport CudaFrameCaster::draw(const Scene& scene, const FramePlan& plan, ImageSize size,
                                   const StopFlag* stop) {
   FrameReport report;
@@ -192,8 +204,8 @@ FrameReport CudaFrameCaster::draw(const Scene& scene, const FramePlan& plan, Ima
   drawn_ = plan;
   if (size.count() == 0) return report;
   if (plan.pattern == Pattern::adaptive) findInside(scene, size);
-  const CastLaunch launch = begin(scene, size);
-  LaunchTrain train(stream_, stop, raysFor(launch, kFrameSamples));
+  const CastLaunch launch = begin(scene, size, kFrameSamples, true);
+  LaunchTrain train(stream_, stop, most_rays_);
   layers_.pattern = plan.pattern;
   layers_.interpolation = plan.interpolation;
   if (plan.pattern == Pattern::adaptive) {
@@ -211,8 +223,8 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   report.pattern = drawn_.pattern;
   const ImageSize size = layers_.size;
   if (size.count() == 0) return report;
-  const CastLaunch launch = begin(scene, size);
-  LaunchTrain train(stream_, stop, raysFor(launch, kRestorationSamples));
+  const CastLaunch launch = begin(scene, size, kRestorationSamples, false);
+  LaunchTrain train(stream_, stop, most_rays_);
   report.complete = drawn_.pattern == Pattern::adaptive
                         ? castPredicted(launch, train, report)
                         : castLattices(launch, missingLattices(drawn_.pattern, size), train, report);
@@ -222,8 +234,12 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
 
 /// Everything is launched: shows the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
-  if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
-  end_.record(stream_);
+  if (report.complete) showPicture8(layers_, picture8_.data(), to_);
+  if (at_once_) {
+    graph_.submit(stream_);
+  } else {
+    end_.record(stream_);
+  }
   volume_->storage().endReading(stream_);
   stream_.wait();
   report.cast_ms = end_.since_ms(begin_);
@@ -262,12 +278,11 @@ bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& pl
     return false;
   }
   cuda::AdaptiveLaunch adaptive{launch};
-  std::copy(std::begin(kPasses), std::end(kPasses), adaptive.passes);
   adaptive.inside = inside_.data();
   adaptive.tolerance_levels = static_cast<float>(tolerance_levels_);
   adaptive.classes = classes_.data();
   adaptive.rays = rays_.data();
-  cuda::castAdaptive(adaptive, mode_, sampling_, stream_);
+  cuda::castAdaptive(adaptive, mode_, sampling_, to_);
   train.launched();
   return true;
 }
@@ -308,7 +323,7 @@ void CudaFrameCaster::fetch(Image& image) {
   if (image.size != layers_.size) image = Image(layers_.size);
   if (image.pixels.empty()) return;
   picture_.resize(picture8_.size());
-  showPicture(layers_, picture_.data(), stream_);
+  showPicture(layers_, picture_.data(), cuda::Submission(stream_));
   static_assert(sizeof(Rgba) == sizeof(float4), "a pixel is four floats");
   picture_.download(reinterpret_cast<float4*>(image.pixels.data()), stream_);
 }

@@ -1,4 +1,4 @@
-/// The ray caster's kernels as the host launches them, on a stream. All pointers are to device memory.
+/// The ray caster's kernels as the host starts them. All pointers are to device memory.
 /// @throws Error (device) that names the kernel
 #pragma once
 
@@ -9,6 +9,7 @@
 
 #include "render/adaptive_pass.h"
 #include "render/compositing.h"
+#include "render/cuda/submission.h"
 #include "render/raycast.h"
 #include "render/reconstruction.h"
 #include "render/silhouette.h"
@@ -66,9 +67,9 @@ struct CastLaunch {
   unsigned* next_tile = nullptr;            ///< 0, before each launch and after it; one a stream
   Layer layer;
 };
-void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
+void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);
 /// The same for a sparse sampling alone.
-void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
+void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);
 
 /// Where every pixel's ray meets the ground (infinity: nowhere), and its colour there.
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream);
@@ -84,15 +85,14 @@ struct Layers {
   const float* ground_distances = nullptr;  ///< null: no ground
   const float4* ground_colors = nullptr;
 };
-void showPicture(const Layers& layers, float4* picture, cudaStream_t stream);
-void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream);
+void showPicture(const Layers& layers, float4* picture, const Submission& to);
+void showPicture8(const Layers& layers, uchar4* picture, const Submission& to);
 
 // --- Adaptive ---
 
 /// A frame: what is cast, its `pixels` aside, and what decides which pixels are.
 struct AdaptiveLaunch : CastLaunch {
   static constexpr int kPassCount = static_cast<int>(std::size(kPasses));
-  Pass passes[kPassCount] = {};
   const Span* inside = nullptr;  ///< one a row
   float tolerance_levels = 0;
   std::uint8_t* classes =
@@ -100,9 +100,10 @@ struct AdaptiveLaunch : CastLaunch {
   unsigned* rays = nullptr;  ///< is increased by the number of rays cast
 };
 /// Casts the frame and predicts what it does not cast; the whole layer is written.
-void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
+void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling,
+                  const Submission& to);
 /// The same for a sparse sampling alone.
-void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
+void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);
 
 /// Counters for listPredicted(): how many pixels there are of each class, and how many are placed.
 struct ClassCounts {

@@ -99,7 +99,7 @@ auto kernelFor(const Layers& layers) {
 }
 
 template <class Pixel>
-void show(const Layers& layers, Pixel* picture, cudaStream_t stream) {
+void show(const Layers& layers, Pixel* picture, const Submission& to) {
   if (layers.size.count() == 0) return;
   const auto blocks = [](int pixels, unsigned cells) {
     return (static_cast<unsigned>(pixels) + 2 * cells - 1) / (2 * cells);
@@ -109,26 +109,18 @@ void show(const Layers& layers, Pixel* picture, cudaStream_t stream) {
                           ? kernelFor<FloatArithmetic, Pixel>(layers)
                           : kernelFor<Bits8Arithmetic, Pixel>(layers);
   static const bool early = launchesEarly();
-  cudaLaunchAttribute attribute{};
-  attribute.id = cudaLaunchAttributeProgrammaticStreamSerialization;
-  attribute.val.programmaticStreamSerializationAllowed = 1;
-  cudaLaunchConfig_t launch{};
-  launch.gridDim = grid;
-  launch.blockDim = dim3(kCellColumns, kCellRows);
-  launch.stream = stream;
-  launch.attrs = &attribute;
-  launch.numAttrs = early ? 1 : 0;
-  emscape::cuda::check(cudaLaunchKernelEx(&launch, kernel, layers, picture), "fillPicture");
-  emscape::cuda::checkLaunch("fillPicture");
+  to.start("fillPicture", kernel,
+           {grid, dim3(kCellColumns, kCellRows), 0, early ? LaunchKind::early : LaunchKind::plain}, layers,
+           picture);
 }
 
 }  // namespace
 
-void showPicture(const Layers& layers, float4* picture, cudaStream_t stream) {
-  show(layers, reinterpret_cast<Rgba*>(picture), stream);
+void showPicture(const Layers& layers, float4* picture, const Submission& to) {
+  show(layers, reinterpret_cast<Rgba*>(picture), to);
 }
-void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream) {
-  show(layers, reinterpret_cast<Rgba8*>(picture), stream);
+void showPicture8(const Layers& layers, uchar4* picture, const Submission& to) {
+  show(layers, reinterpret_cast<Rgba8*>(picture), to);
 }
 
 }  // namespace emscape::render::cuda
