@@ -20,15 +20,6 @@ namespace emscape::render {
 constexpr float kLevel = 1.0F / 255;
 constexpr float kLevels = 255;
 
-/// a / b of numbers of ordinary size; on the device to two units in the last place.
-EMSCAPE_HD inline float quotient(float a, float b) {
-#if defined(__CUDA_ARCH__)
-  return __fdividef(a, b);
-#else
-  return a / b;
-#endif
-}
-
 // --- What a Color needs besides +, -, a product with a float and addScaled() ---
 
 EMSCAPE_HD inline float lesser(float a, float b) {

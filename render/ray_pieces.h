@@ -21,10 +21,10 @@ struct RayPieces {
   EMSCAPE_HD RayPieces(const Vec3f& first, const Vec3f& along, float length_voxels, float step_voxels)
       : start(first),
         direction(along),
-        per_voxel{1.0F / along.x, 1.0F / along.y, 1.0F / along.z},
+        per_voxel{reciprocal(along.x), reciprocal(along.y), reciprocal(along.z)},
         length(length_voxels),
         step(step_voxels),
-        per_step(1.0F / step_voxels),
+        per_step(reciprocal(step_voxels)),
         whole(static_cast<int>(length_voxels / step_voxels)),
         count(whole + (last() > 0.0F ? 1 : 0)) {}
 

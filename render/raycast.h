@@ -39,15 +39,16 @@ struct CameraView {
 
   EMSCAPE_HD Ray ray(int x, int y) const {
     const Ray through = rayThrough<double>(x, y);
-    return {through.origin, through.direction * (1.0 / length(through.direction))};
+    return {through.origin, through.direction * reciprocalRoot(dot(through.direction, through.direction))};
   }
   /// The same with a direction of some length.
   template <class Real>
   EMSCAPE_HD RayOf<Real> rayThrough(int x, int y) const {
     const auto real = [](auto number) { return static_cast<Real>(number); };
     const Real half = real(0.5);
-    const Real plane_x = ((2 * (x + half) - size.width) / size.height + real(shift_x)) * real(half_height);
-    const Real plane_y = (1 - 2 * (y + half) / size.height + real(shift_y)) * real(half_height);
+    const Real width = real(size.width), height = real(size.height);
+    const Real plane_x = (quotient(2 * (x + half) - width, height) + real(shift_x)) * real(half_height);
+    const Real plane_y = (1 - quotient(2 * (y + half), height) + real(shift_y)) * real(half_height);
     const Vec3<Real> offset = vecCast<Real>(right) * plane_x + vecCast<Real>(up) * plane_y;
     return {orthographic ? vecCast<Real>(eye) + offset : vecCast<Real>(eye),
             orthographic ? vecCast<Real>(forward) : vecCast<Real>(forward) + offset};
@@ -69,7 +70,7 @@ EMSCAPE_HD inline void clipAxis(Real origin, Real direction, Real lower, Real up
     if (!(origin > lower && origin < upper)) interval.end = interval.begin;
     return;
   }
-  const Real per_unit = 1 / direction;
+  const Real per_unit = reciprocal(direction);
   const Real to_lower = (lower - origin) * per_unit;
   const Real to_upper = (upper - origin) * per_unit;
   const Real enter = direction > 0 ? to_lower : to_upper;

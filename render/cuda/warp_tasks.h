@@ -166,10 +166,15 @@ class WarpTasks {
       length = static_cast<unsigned>(ceilf(fminf(16 * cells, kMost)));
     }
     unsigned longest_of_warp = length, sum_of_warp = length;
+#if __CUDA_ARCH__ >= 800
+    longest_of_warp = __reduce_max_sync(~0U, length);
+    sum_of_warp = __reduce_add_sync(~0U, length);
+#else
     for (unsigned step = 16; step > 0; step /= 2) {
       longest_of_warp = max(longest_of_warp, __shfl_xor_sync(~0U, longest_of_warp, step));
       sum_of_warp += __shfl_xor_sync(~0U, sum_of_warp, step);
     }
+#endif
     if (lane == 0) {
       atomicMax(&longest, longest_of_warp);
       atomicAdd(&sum, sum_of_warp);
