@@ -25,7 +25,7 @@ struct RayPieces {
         length(length_voxels),
         step(step_voxels),
         per_step(reciprocal(step_voxels)),
-        whole(static_cast<int>(length_voxels / step_voxels)),
+        whole(static_cast<int>(quotient(length_voxels, step_voxels))),
         count(whole + (last() > 0.0F ? 1 : 0)) {}
 
   /// Length of the last piece, if it is shorter than a step.

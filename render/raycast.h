@@ -66,17 +66,17 @@ using RayInterval = RayIntervalOf<double>;
 template <class Real>
 EMSCAPE_HD inline void clipAxis(Real origin, Real direction, Real lower, Real upper,
                                 RayIntervalOf<Real>& interval) {
-  if (direction == 0) {
-    if (!(origin > lower && origin < upper)) interval.end = interval.begin;
-    return;
-  }
   const Real per_unit = reciprocal(direction);
   const Real to_lower = (lower - origin) * per_unit;
   const Real to_upper = (upper - origin) * per_unit;
-  const Real enter = direction > 0 ? to_lower : to_upper;
-  const Real leave = direction > 0 ? to_upper : to_lower;
-  if (enter > interval.begin) interval.begin = enter;
-  if (leave < interval.end) interval.end = leave;
+  Real enter = direction > 0 ? to_lower : to_upper;
+  Real leave = direction > 0 ? to_upper : to_lower;
+  if (direction == 0) {
+    enter = interval.begin;
+    leave = origin > lower && origin < upper ? interval.end : interval.begin;
+  }
+  interval.begin = enter > interval.begin ? enter : interval.begin;
+  interval.end = leave < interval.end ? leave : interval.end;
 }
 
 template <class Real>
@@ -274,7 +274,7 @@ struct RaycastTask {
       return false;
     }
     const float f = transfer.normalized(value);
-    return take(pieces.whole, pieces.last() / step_voxels, value, f, colorOf(f));
+    return take(pieces.whole, quotient(pieces.last(), step_voxels), value, f, colorOf(f));
   }
 
   EMSCAPE_HD RayInterval insideOf(const Ray& ray, double limit) const {
