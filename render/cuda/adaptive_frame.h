@@ -336,7 +336,7 @@ __global__ void __launch_bounds__(kCastThreads, 1)
       if (threadIdx.x == 0) queue.length = 0;
       __syncthreads();
       looked_at = lookAtPixels(launch, pass, first);
-      __syncthreads();
+      waitForCopies();  // of the colours, too
       if (threadIdx.x == 0) queue.rays += queue.length;
       castQueued<RayKind>(launch, colors, queue, pass < 0);
       __syncthreads();

@@ -13,12 +13,13 @@ class SharedColors {
   static unsigned sharedBytes(const CastLaunch& launch) {
     return static_cast<unsigned>(pairs(launch) * sizeof(uint4));
   }
+  /// Begins to copy the table: waitForCopies() is to follow.
   __device__ explicit SharedColors(const CastLaunch& launch) {
     const uint4* from = reinterpret_cast<const uint4*>(launch.half_colors);
     uint4* to = reinterpret_cast<uint4*>(table());
     for (int i = static_cast<int>(threadIdx.x); i < pairs(launch); i += static_cast<int>(blockDim.x))
-      to[i] = from[i];
-    __syncthreads();
+      __pipeline_memcpy_async(to + i, from + i, sizeof(uint4));
+    __pipeline_commit();
   }
   EMSCAPE_HD Rgba at([[maybe_unused]] int index) const {
 #if defined(__CUDA_ARCH__)

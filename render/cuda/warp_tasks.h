@@ -1,6 +1,8 @@
 /// How the warps of a launch share out its pixels. For .cu files.
 #pragma once
 
+#include <cuda_pipeline.h>
+
 #include "render/cuda/kernels.h"
 #include "render/cuda/pixel_tile.h"
 
@@ -8,6 +10,13 @@ namespace emscape::render::cuda {
 
 /// Threads of a block, one block a multiprocessor. Warps take pixels independently of each other.
 constexpr int kCastThreads = 768;
+
+/// A barrier after which what the block's threads copy to shared memory, by __pipeline_memcpy_async() too, is
+/// there.
+__device__ inline void waitForCopies() {
+  __pipeline_wait_prior(0);
+  __syncthreads();
+}
 
 /// Where the ray of a pixel ends at the ground.
 __device__ inline double limitOf(const CastLaunch& launch, const Pixel& pixel) {
@@ -59,14 +68,18 @@ struct WarpTask {
 template <bool kMayHalve>
 class WarpTasks {
  public:
-  /// All threads of a block call it.
+  /// All threads of a block call it. What they have begun to copy to shared memory is there after it.
   __device__ explicit WarpTasks(const CastLaunch& launch)
       : pixels_(launch.pixels),
         lattice_(launch.pixels.lattice),
         tile_width_(lattice_.step_x > lattice_.step_y ? 4 : 8),
         width_(cellSide(lattice_.columns, tile_width_)),
         height_(cellSide(lattice_.rows, 32 / tile_width_)) {
-    if (!isList()) sort(launch);
+    if (isList()) {
+      waitForCopies();
+    } else {
+      sort(launch);
+    }
   }
 
   /// How many numbers there are, with a tile, or half of one, each. Early ones carry tiles that show nothing
@@ -151,12 +164,12 @@ class WarpTasks {
     __shared__ float corners[kCorners];
     __shared__ unsigned longest, sum;  // of cells' rays, in 1/16 voxels: the same in every block
     __shared__ unsigned short counts[kClasses][32];
-    __shared__ unsigned short first[kClasses];
+    __shared__ unsigned short of_class[kClasses];
     const unsigned cell = threadIdx.x, warp = threadIdx.x / 32, lane = threadIdx.x % 32;
     for (unsigned n = threadIdx.x; n < kClasses * 32; n += kCastThreads) (&counts[0][0])[n] = 0;
     if (threadIdx.x == 0) longest = sum = 0;
     if (threadIdx.x < kCorners) corners[threadIdx.x] = lengthAt(launch, static_cast<int>(threadIdx.x));
-    __syncthreads();
+    waitForCopies();
 
     unsigned length = 0;
     if (cell < kCells) {
@@ -185,7 +198,9 @@ class WarpTasks {
     const bool halves = length > most;
     const unsigned work = halves ? length / 2 : length;
     const unsigned largest = longest > most ? max(longest / 2, most) : max(longest, 1U);
-    const unsigned its = kClasses - 1 - (work * (kClasses - 1) + largest - 1) / largest;
+    constexpr float kSteps = kClasses - 1;
+    const float step = ceilf(quotient(kSteps * static_cast<float>(work), static_cast<float>(largest)));
+    const auto its = static_cast<unsigned>(kSteps - fminf(step, kSteps));
     const unsigned same = __match_any_sync(~0U, cell < kCells ? its : kClasses);
     const unsigned same_halved = same & __ballot_sync(~0U, halves);
     const unsigned before = (1U << lane) - 1;
@@ -198,24 +213,21 @@ class WarpTasks {
       const unsigned count = counts[c][lane];
       const unsigned end = sumUpTo(count, lane);
       counts[c][lane] = static_cast<unsigned short>(end - count);
-      if (lane == 31) first[c] = static_cast<unsigned short>(end);
+      if (lane == 31) of_class[c] = static_cast<unsigned short>(end);
     }
     __syncthreads();
     Order& order = found();
-    if (warp == 0) {
-      const unsigned count = first[lane];
-      const unsigned end = sumUpTo(count, lane);
-      first[lane] = static_cast<unsigned short>(end - count);
-      if (lane == kClasses - 1) {
-        order.shown = (end - count) * tilesOfCell();
-        order.all = end * tilesOfCell();
-        order.carriers = max(order.shown / 2, gridDim.x * kWarps);
-        order.carried = (order.all - order.shown + order.carriers - 1) / order.carriers;
-      }
+    const unsigned end_of_class = sumUpTo(of_class[lane], lane);
+    const unsigned first_of_class = end_of_class - of_class[lane];
+    if (warp == 0 && lane == kClasses - 1) {
+      order.shown = first_of_class * tilesOfCell();
+      order.all = end_of_class * tilesOfCell();
+      order.carriers = max(order.shown / 2, gridDim.x * kWarps);
+      order.carried = (order.all - order.shown + order.carriers - 1) / order.carriers;
     }
-    __syncthreads();
+    const unsigned first = __shfl_sync(~0U, first_of_class, static_cast<int>(its));
     if (cell < kCells) {
-      unsigned short* entry = order.entries + first[its] + counts[its][warp] + rank;
+      unsigned short* entry = order.entries + first + counts[its][warp] + rank;
       entry[0] = static_cast<unsigned short>(cell * kPortions + (halves ? kFirstHalf : kWhole));
       if (halves) entry[1] = static_cast<unsigned short>(cell * kPortions + kSecondHalf);
     }
@@ -226,7 +238,8 @@ class WarpTasks {
   /// @param sum  of the lengths of all cells
   __device__ unsigned mostOfTask(unsigned sum) const {
     constexpr float kPartOfTime = 0.5F;
-    const float tiles_of_warp = static_cast<float>(tilesOfCell()) / static_cast<float>(gridDim.x * kWarps);
+    const float tiles_of_warp =
+        quotient(static_cast<float>(tilesOfCell()), static_cast<float>(gridDim.x * kWarps));
     return kMayHalve ? static_cast<unsigned>(kPartOfTime * tiles_of_warp * static_cast<float>(sum)) : ~0U;
   }
   /// Of the values of the lanes up to this one, it included.
@@ -245,7 +258,8 @@ class WarpTasks {
     const RaycastTask& task = launch.task;
     const RayOf<float> ray = task.camera.rayThrough<float>(pixel.x, pixel.y);
     const auto inside = clip(ray, vecCast<float>(task.volume.lower()), vecCast<float>(task.volume.upper()));
-    const float voxels = length(ray.direction);
+    const float square = dot(ray.direction, ray.direction);
+    const float voxels = square * rsqrtf(square);
     const float end = fminf(inside.end * voxels, static_cast<float>(limitOf(launch, pixel)));
     return fmaxf(end - inside.begin * voxels, 0.0F);
   }
