@@ -28,8 +28,8 @@ EMSCAPE_HD inline float multiplyAdd(float a, float b, float c) {
 #endif
 }
 
-/// 1 / a of an ordinary number. On the device to a unit or two in the last place, in few instructions and without
-/// a branch, so that several overlap.
+/// 1 / a of an ordinary number. On the device to a unit or two in the last place, in few instructions and
+/// without a branch, so that several overlap.
 EMSCAPE_HD inline double reciprocal(double a) {
 #if defined(__CUDA_ARCH__)
   double near = 0;  // to 20 bits and more, which each step doubles
