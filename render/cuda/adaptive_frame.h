@@ -164,7 +164,6 @@ struct BlockQueue {
   static constexpr unsigned kMost = 6144;
   Pixel pixels[kMost];
   unsigned length;
-  unsigned rays;  ///< of the whole frame
 
   __device__ static BlockQueue& ofBlock() {
     __shared__ BlockQueue queue;
@@ -328,7 +327,6 @@ __global__ void __launch_bounds__(kCastThreads, 1)
     castAdaptiveFrame(const __grid_constant__ AdaptiveLaunch launch) {
   BlockQueue& queue = BlockQueue::ofBlock();
   const typename RayKind::Colors colors(launch);
-  if (threadIdx.x == 0) queue.rays = 0;
 #pragma unroll 1
   for (int pass = -1; pass < AdaptiveLaunch::kPassCount; ++pass) {
     if (pass >= 0) cooperative_groups::this_grid().sync();
@@ -337,12 +335,11 @@ __global__ void __launch_bounds__(kCastThreads, 1)
       __syncthreads();
       looked_at = lookAtPixels(launch, pass, first);
       waitForCopies();  // of the colours, too
-      if (threadIdx.x == 0) queue.rays += queue.length;
+      if (threadIdx.x == 0) atomicAdd(launch.rays, queue.length);
       castQueued<RayKind>(launch, colors, queue, pass < 0);
       __syncthreads();
     }
   }
-  if (threadIdx.x == 0) atomicAdd(launch.rays, queue.rays);
 }
 
 template <class RayKind>
