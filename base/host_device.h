@@ -1,4 +1,4 @@
-/// Marks functions that run on the host and, compiled by nvcc, on the device.
+/// Functions that run on the host and, compiled by nvcc, on the device: their mark, and arithmetic for both.
 #pragma once
 
 #include <cmath>

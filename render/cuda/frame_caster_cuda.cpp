@@ -186,7 +186,8 @@ void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
   ground_view_ = {version, size};
 }
 
-/// By the host, before a frame's time begins: the GPU would wait for it.
+/// By the host, before a frame's time begins: the GPU would wait for it. Its quotients are exact, the GPU's
+/// are not in the last two bits of a double: a ray that grazes the box by so little counts as outside here.
 void CudaFrameCaster::findInside(const Scene& scene, ImageSize size) {
   const unsigned version = scene.versions().view;
   if (inside_view_.holds(version, size)) return;
