@@ -140,6 +140,22 @@ Span spanOf(const Outline& outline, int y, int width) {
   return first <= last ? Span{first, last + 1} : Span{};
 }
 
+/// @param trim  called with each row's wide span and its y
+template <class Trim>
+void findRows(const CameraView& camera, const Vec3d& lower, const Vec3d& upper, const Trim& trim,
+              Silhouette& silhouette) {
+  const ImageSize size = camera.size;
+  silhouette.rows.resize(static_cast<std::size_t>(size.height));
+  const Outline outline = outlineOf(camera, lower, upper);
+  parallelFor(size.height, kRowGrain, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      Span& row = silhouette.rows[static_cast<std::size_t>(y)];
+      row = spanOf(outline, y, size.width);
+      trim(row, y);
+    }
+  });
+}
+
 }  // namespace
 
 long long Silhouette::count() const {
@@ -148,23 +164,24 @@ long long Silhouette::count() const {
   return sum;
 }
 
+void findWideSilhouette(const CameraView& camera, const Vec3d& lower, const Vec3d& upper,
+                        Silhouette& silhouette) {
+  findRows(
+      camera, lower, upper, [](Span& /*row*/, int /*y*/) {}, silhouette);
+}
+
 void findSilhouette(const CameraView& camera, const Vec3d& lower, const Vec3d& upper,
                     Silhouette& silhouette) {
-  const ImageSize size = camera.size;
-  silhouette.rows.resize(static_cast<std::size_t>(size.height));
-  const Outline outline = outlineOf(camera, lower, upper);
   const auto meets = [&](int x, int y) {
     const RayInterval inside = clip(camera.ray(x, y), lower, upper);
     return inside.end > inside.begin;
   };
-  parallelFor(size.height, kRowGrain, [&](int first, int last) {
-    for (int y = first; y < last; ++y) {
-      Span row = spanOf(outline, y, size.width);
-      while (row.begin < row.end && !meets(row.begin, y)) ++row.begin;
-      while (row.begin < row.end && !meets(row.end - 1, y)) --row.end;
-      silhouette.rows[static_cast<std::size_t>(y)] = row.begin < row.end ? row : Span{};
-    }
-  });
+  const auto trim = [&](Span& row, int y) {
+    while (row.begin < row.end && !meets(row.begin, y)) ++row.begin;
+    while (row.begin < row.end && !meets(row.end - 1, y)) --row.end;
+    if (row.end <= row.begin) row = {};
+  };
+  findRows(camera, lower, upper, trim, silhouette);
 }
 
 std::vector<IndexBox> visibleBoxes(const SkipView& skip, const Dims& voxels) {

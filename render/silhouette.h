@@ -27,6 +27,11 @@ struct Silhouette {
 /// @param silhouette  is written; its memory is used again
 void findSilhouette(const CameraView& camera, const Vec3d& lower, const Vec3d& upper, Silhouette& silhouette);
 
+/// The same for rays that are cast with other rounding errors: what the box passes by within a 64th of a
+/// pixel is in it too, and every pixel of the picture where the eye is in the box or close to it.
+void findWideSilhouette(const CameraView& camera, const Vec3d& lower, const Vec3d& upper,
+                        Silhouette& silhouette);
+
 /// A box in index space.
 struct IndexBox {
   Vec3d lower, upper;

@@ -294,13 +294,12 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
 template <class RayKind>
 __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Colors& colors,
                            const BlockQueue& queue, bool is_lattice) {
-  constexpr unsigned kWarps = kCastThreads / 32;
   const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
   if constexpr (RayKind::kParts == 1) {
     // Rays of a warp wait for each other: as few of them as leave no warp without.
     const unsigned count = queue.length;
-    const unsigned rays = min(max((count + kWarps - 1) / kWarps, 1U), 32U);
-    for (unsigned n = warp * rays + lane; n < count; n += kWarps * rays) {
+    const unsigned rays = min(max((count + kCastWarps - 1) / kCastWarps, 1U), 32U);
+    for (unsigned n = warp * rays + lane; n < count; n += kCastWarps * rays) {
       if (lane >= rays) break;
       const Pixel pixel = queue.pixels[n];
       launch.layer.at(pixel.x, pixel.y) =
@@ -309,7 +308,7 @@ __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Col
   } else {
     const unsigned threads = is_lattice ? kLatticeThreads : static_cast<unsigned>(RayKind::kParts);
     const unsigned rays = 32 / threads;
-    for (unsigned first = warp * rays; first < queue.length; first += kWarps * rays) {
+    for (unsigned first = warp * rays; first < queue.length; first += kCastWarps * rays) {
       const unsigned n = first + lane % rays;
       const bool has_pixel = n < queue.length;
       const Pixel pixel = has_pixel ? queue.pixels[n] : Pixel{};

@@ -5,6 +5,7 @@
 #include "base/cuda/cuda_memory.h"
 #include "base/device.h"
 #include "render/cuda/device_scene.h"
+#include "render/cuda/kept_orders.h"
 #include "render/cuda/kernels.h"
 #include "render/cuda/launch_train.h"
 #include "render/frame_caster.h"
@@ -49,7 +50,7 @@ class CudaFrameCaster : public FrameCaster {
   void findGround(const Scene& scene, const CastLaunch& launch);
   void findInside(const Scene& scene, ImageSize size);
   void finish(FrameReport& report);
-  bool castLattices(CastLaunch launch, const std::vector<Lattice>& lattices, LaunchTrain& train,
+  bool castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices, LaunchTrain& train,
                     FrameReport& report);
   bool castAdaptive(const CastLaunch& launch, const FramePlan& plan, LaunchTrain& train);
   void countAdaptive(const FramePlan& plan, FrameReport& report);
@@ -72,6 +73,7 @@ class CudaFrameCaster : public FrameCaster {
 
   cuda::Layers layers_;  ///< of the picture that was drawn last
   Buffer<unsigned> next_tile_;
+  cuda::KeptOrders orders_;
   Buffer<float4> layer_;
   Buffer<float4> picture_;
   Buffer<uchar4> picture8_;
@@ -186,14 +188,14 @@ void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
   ground_view_ = {version, size};
 }
 
-/// By the host, before a frame's time begins: the GPU would wait for it. Its quotients are exact, the GPU's
-/// are not in the last two bits of a double: a ray that grazes the box by so little counts as outside here.
+/// By the host, before a frame's time begins: the GPU would wait for it. Wide, as the GPU's quotients are not
+/// exact in the last two bits of a double, the host's are: a ray may meet the box by so little.
 void CudaFrameCaster::findInside(const Scene& scene, ImageSize size) {
   const unsigned version = scene.versions().view;
   if (inside_view_.holds(version, size)) return;
   VolumeView volume;
   volume.dims = scene.grid().dims;
-  findSilhouette(scene.task(size).camera, volume.lower(), volume.upper(), silhouette_);
+  findWideSilhouette(scene.task(size).camera, volume.lower(), volume.upper(), silhouette_);
   inside_.upload(silhouette_.rows, stream_);
   inside_view_ = {version, size};
 }
@@ -247,18 +249,20 @@ void CudaFrameCaster::finish(FrameReport& report) {
 }
 
 /// @return false if it was stopped
-bool CudaFrameCaster::castLattices(CastLaunch launch, const std::vector<Lattice>& lattices,
+bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices,
                                    LaunchTrain& train, FrameReport& report) {
   for (const Lattice& lattice : lattices) {
     const int rows = static_cast<int>(
         std::min<long long>(std::max<long long>(train.mostRays() / lattice.columns, 1), lattice.rows));
     for (int row = 0; row < lattice.rows; row += rows) {
       if (!train.goOn()) return false;
-      Lattice& band = launch.pixels.lattice;
+      CastLaunch part = launch;
+      Lattice& band = part.pixels.lattice;
       band = lattice;
       band.first_y += row * lattice.step_y;
       band.rows = std::min(rows, lattice.rows - row);
-      cast(launch);
+      if (band.rows == lattice.rows) orders_.lend(part, stream_);
+      cast(part);
       train.launched();
     }
     report.rays += lattice.count();

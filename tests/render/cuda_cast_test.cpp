@@ -21,7 +21,7 @@ constexpr double kShareApart = 1e-3;
 
 /// A scene like those of the program: half as many voxels along each side as eme_200.
 void setEmeScene(Renderer& renderer, CompositingMode mode, bool shading, ImageSize size) {
-  const auto volume = makeEmeVolume({100, 100, 50}, 3);
+  static const auto volume = makeEmeVolume({100, 100, 50}, 3);
   RenderSettings settings;
   settings.mode = mode;
   settings.shading = shading;
@@ -210,6 +210,29 @@ TEST(CudaCast, QuantisedPictureIsThatOfThePicture) {
         }
       }
     }
+  }
+}
+
+TEST(CudaCast, PicturesDoNotDependOnThoseBefore) {
+  EMSCAPE_NEEDS_GPU();
+  // Launches take their tasks in the order found by an earlier one, of another view, mode or size.
+  std::mt19937 random(27);
+  Renderer kept(onGpu());
+  const ImageSize sizes[] = {{400, 300}, {401, 300}, {100, 400}};
+  for (int frame = 0; frame < 60; ++frame) {
+    const ImageSize size = sizes[random() % 3];
+    const auto mode = random() % 3 == 0 ? CompositingMode::mida : CompositingMode::dvr;
+    const Pattern pattern = allPatterns()[random() % (allPatterns().size() - 1)];
+    CameraSpec view;
+    view.azimuth_deg = static_cast<double>(random() % 360);
+    view.distance = 0.5 + 0.5 * static_cast<double>(random() % 4);
+    const auto draw = [&](Renderer& renderer) {
+      setEmeScene(renderer, mode, false, size);
+      renderer.setCamera(makeCamera(view, renderer.sceneBox(), size));
+      return renderer.render(size, {pattern});
+    };
+    Renderer fresh(onGpu());
+    EXPECT_TRUE(draw(kept).pixels == draw(fresh).pixels) << frame << " " << toString(pattern);
   }
 }
 

@@ -30,6 +30,16 @@ void expectExact(const CameraView& camera, const Vec3d& upper, const std::string
   }
   EXPECT_EQ(wrong, 0) << name << " of " << hits << " at " << camera.size.width << "x" << camera.size.height;
   EXPECT_EQ(silhouette.count(), hits) << name;
+
+  Silhouette wide;
+  findWideSilhouette(camera, kLower, upper, wide);
+  ASSERT_EQ(wide.rows.size(), silhouette.rows.size());
+  for (std::size_t y = 0; y < wide.rows.size(); ++y) {
+    const Span& row = silhouette.rows[y];
+    EXPECT_TRUE(row.end <= row.begin ||
+                (wide.rows[y].contains(row.begin) && wide.rows[y].contains(row.end - 1)))
+        << name << " row " << y;
+  }
 }
 
 /// A view whose axes are scaled as voxels that are no cubes scale them.
