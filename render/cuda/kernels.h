@@ -61,7 +61,7 @@ constexpr int kMostHalfColors = 4096;
 /// In which order the tasks of a lattice are cast: see OrderFinder. Right for any view of that lattice, and
 /// fast for those close to the one it was found for.
 struct alignas(16) TaskOrder {
-  static constexpr int kAlong = 38;  ///< cells
+  static constexpr int kAlong = 38;  ///< cells, in either direction
   static constexpr unsigned kCells = kAlong * kAlong;
 
   /// What it is an order of.

@@ -199,13 +199,14 @@ class OrderFinder {
     const float voxels = fmaxf(fmaxf(corner[0], corner[1]), fmaxf(corner[kAlong + 1], corner[kAlong + 2]));
     return static_cast<unsigned>(ceilf(fminf(16 * voxels, kMost)));
   }
-  /// The longest rays that are not halved, of a length that a warp casts in a good part of the launch's time.
+  /// The longest rays that are not halved, of a length that a warp casts in a good part of the launch's time:
+  /// a larger one where bricks are skipped, as halves of a ray that lie in one warp skip different ones.
   /// @param sum  of the lengths of all cells
   __device__ unsigned mostOfTask(unsigned sum) const {
-    constexpr float kPartOfTime = 0.2F;
+    const float part_of_time = launch_.task.skip.levels != nullptr ? 0.5F : 0.3F;
     const float tiles_of_warp =
         quotient(static_cast<float>(grid_.tilesOfCell()), static_cast<float>(gridDim.x * kCastWarps));
-    return kMayHalve ? static_cast<unsigned>(kPartOfTime * tiles_of_warp * static_cast<float>(sum)) : ~0U;
+    return kMayHalve ? static_cast<unsigned>(part_of_time * tiles_of_warp * static_cast<float>(sum)) : ~0U;
   }
   /// Of the values of the lanes up to this one, it included.
   __device__ static unsigned sumUpTo(unsigned value, unsigned lane) {
