@@ -1,7 +1,5 @@
-/// Functions that run on the host and, compiled by nvcc, on the device: their mark, and arithmetic for both.
+/// Marks of functions that run on the host and, compiled by nvcc, on the device, and of their loops.
 #pragma once
-
-#include <cmath>
 
 #if defined(__CUDACC__)
 #define EMSCAPE_HD __host__ __device__
@@ -15,58 +13,3 @@
 #else
 #define EMSCAPE_UNROLL
 #endif
-
-namespace emscape {
-
-/// a * b + c. On the device in one instruction also where the compiler is told to keep products and sums
-/// apart, which makes results independent of the kernel that they are computed in.
-EMSCAPE_HD inline float multiplyAdd(float a, float b, float c) {
-#if defined(__CUDA_ARCH__)
-  return __fmaf_rn(a, b, c);
-#else
-  return a * b + c;
-#endif
-}
-
-/// 1 / a of an ordinary number. On the device to a unit or two in the last place, in few instructions and
-/// without a branch, so that several overlap.
-EMSCAPE_HD inline double reciprocal(double a) {
-#if defined(__CUDA_ARCH__)
-  double near = 0;  // to 20 bits and more, which each step doubles
-  asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(near) : "d"(a));
-  near = __fma_rn(near, __fma_rn(-a, near, 1.0), near);
-  return __fma_rn(near, __fma_rn(-a, near, 1.0), near);
-#else
-  return 1.0 / a;
-#endif
-}
-EMSCAPE_HD inline float reciprocal(float a) {
-#if defined(__CUDA_ARCH__)
-  return __fdividef(1.0F, a);
-#else
-  return 1.0F / a;
-#endif
-}
-/// a / b, in the same way.
-template <class Real>
-EMSCAPE_HD Real quotient(Real a, Real b) {
-#if defined(__CUDA_ARCH__)
-  return a * reciprocal(b);
-#else
-  return a / b;
-#endif
-}
-/// 1 / sqrt(a), in the same way.
-EMSCAPE_HD inline double reciprocalRoot(double a) {
-#if defined(__CUDA_ARCH__)
-  double near = 0;
-  asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(near) : "d"(a));
-  const double half = 0.5 * a;
-  near = __fma_rn(near, __fma_rn(-half * near, near, 0.5), near);
-  return __fma_rn(near, __fma_rn(-half * near, near, 0.5), near);
-#else
-  return 1.0 / std::sqrt(a);
-#endif
-}
-
-}  // namespace emscape

@@ -11,6 +11,7 @@
 
 #include <cmath>
 
+#include "base/device_math.h"
 #include "base/host_device.h"
 #include "render/image.h"
 

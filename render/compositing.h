@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "base/device_math.h"
 #include "base/host_device.h"
 #include "render/image.h"
 #include "render/volume_view.h"

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/device_math.h"
 #include "base/host_device.h"
 
 namespace emscape::render {

@@ -1,6 +1,7 @@
 /// A ray inside the volume, cut into the pieces that it is sampled in, and what lies ahead on it.
 #pragma once
 
+#include "base/device_math.h"
 #include "base/host_device.h"
 #include "base/vec.h"
 #include "render/volume_view.h"

@@ -8,6 +8,7 @@
 /// and the scene alone.
 #pragma once
 
+#include "base/device_math.h"
 #include "base/host_device.h"
 #include "base/vec.h"
 #include "render/compositing.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "base/device_math.h"
 #include "base/host_device.h"
 #include "base/vec.h"
 #include "volume/bricks.h"

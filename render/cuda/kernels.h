@@ -74,7 +74,7 @@ struct alignas(16) TaskOrder {
   Shape shape;
   unsigned shown = 0, all = 0;         ///< tiles, or halves of them, that show something; all of them
   unsigned carriers = 0, carried = 0;  ///< numbers that carry others, and how many each
-  unsigned short entries[2 * kCells] = {};
+  unsigned short entries[2 * kCells] = {};  ///< cell * kPortions + portion; see Portion
 };
 
 struct CastLaunch {

@@ -1,6 +1,7 @@
 /// In which order the tiles of a lattice are cast. For .cu files.
 #pragma once
 
+#include "base/device_math.h"
 #include "render/cuda/cast_block.h"
 #include "render/cuda/kernels.h"
 
