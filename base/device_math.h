@@ -37,7 +37,7 @@ EMSCAPE_HD inline float reciprocal(float a) {
   return 1.0F / a;
 #endif
 }
-/// a / b, in the same way.
+/// a / b, as reciprocal().
 template <class Real>
 EMSCAPE_HD Real quotient(Real a, Real b) {
 #if defined(__CUDA_ARCH__)
@@ -46,7 +46,15 @@ EMSCAPE_HD Real quotient(Real a, Real b) {
   return a / b;
 #endif
 }
-/// 1 / sqrt(a), in the same way.
+/// a^b for a >= 0. On the device to 22 bits.
+EMSCAPE_HD inline float power(float a, float b) {
+#if defined(__CUDA_ARCH__)
+  return __powf(a, b);
+#else
+  return std::pow(a, b);
+#endif
+}
+/// 1 / sqrt(a), as reciprocal().
 EMSCAPE_HD inline double reciprocalRoot(double a) {
 #if defined(__CUDA_ARCH__)
   double near = 0;

@@ -18,11 +18,7 @@ CompositingMode parseCompositingMode(const std::string& name);
 
 /// Opacity (of one reference step) after `steps` of them: 1 - (1 - a)^steps. @param opacity 0..1, steps > 0
 EMSCAPE_HD inline float opacityOver(float opacity, float steps) {
-#if defined(__CUDA_ARCH__)
-  return opacity >= 1.0F ? 1.0F : 1.0F - __powf(1.0F - opacity, steps);  // to 22 bits
-#else
-  return opacity >= 1.0F ? 1.0F : 1.0F - std::pow(1.0F - opacity, steps);
-#endif
+  return opacity >= 1.0F ? 1.0F : 1.0F - power(1.0F - opacity, steps);
 }
 /// A sample of one step, cut to a part of it. @param sample premultiplied; part 0..1
 EMSCAPE_HD inline Rgba shortened(const Rgba& sample, float part) {

@@ -70,10 +70,15 @@ struct alignas(16) TaskOrder {
     int tile_width = 0;         ///< pixels
     unsigned warps = 0;         ///< of the launch
     bool has_halves = false;    ///< rays may be cast in halves
+
+    EMSCAPE_HD bool operator==(const Shape& other) const {
+      return columns == other.columns && rows == other.rows && tile_width == other.tile_width &&
+             warps == other.warps && has_halves == other.has_halves;
+    }
   };
   Shape shape;
-  unsigned shown = 0, all = 0;         ///< tiles, or halves of them, that show something; all of them
-  unsigned carriers = 0, carried = 0;  ///< numbers that carry others, and how many each
+  unsigned shown = 0, all = 0;              ///< tiles, or halves of them, that show something; all of them
+  unsigned carriers = 0, carried = 0;       ///< numbers that carry others, and how many each
   unsigned short entries[2 * kCells] = {};  ///< cell * kPortions + portion; see Portion
 };
 

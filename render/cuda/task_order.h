@@ -21,13 +21,11 @@ struct TileGrid {
         width(cellSide(of.columns, tile_width)),
         height(cellSide(of.rows, tileHeight())) {}
 
-  __device__ int tileHeight() const { return 32 / tile_width; }
   __device__ unsigned tilesOfCell() const { return static_cast<unsigned>(width * height); }
-  /// @return false: the lattice has no such pixel
-  __device__ bool pixelAt(int column, int row, Pixel& pixel) const {
-    pixel = {static_cast<std::uint16_t>(lattice.first_x + column * lattice.step_x),
-             static_cast<std::uint16_t>(lattice.first_y + row * lattice.step_y)};
-    return column < lattice.columns && row < lattice.rows;
+  /// @param in_cell  tile, 0..tilesOfCell() - 1; x, y  in the tile. @return false: there is no such pixel
+  __device__ bool pixelOf(int cell, int in_cell, int x, int y, Pixel& pixel) const {
+    return pixelAt((cell % kAlong * width + in_cell % width) * tile_width + x,
+                   (cell / kAlong * height + in_cell / width) * tileHeight() + y, pixel);
   }
   /// In the corner of cells, or at the lattice's edge.
   __device__ Pixel cornerAt(int column, int row) const {
@@ -38,6 +36,13 @@ struct TileGrid {
   }
 
  private:
+  __device__ int tileHeight() const { return 32 / tile_width; }
+  /// @return false: the lattice has no such pixel
+  __device__ bool pixelAt(int column, int row, Pixel& pixel) const {
+    pixel = {static_cast<std::uint16_t>(lattice.first_x + column * lattice.step_x),
+             static_cast<std::uint16_t>(lattice.first_y + row * lattice.step_y)};
+    return column < lattice.columns && row < lattice.rows;
+  }
   __device__ static int cellSide(int pixels, int tile) {
     return ((pixels + tile - 1) / tile + kAlong - 1) / kAlong;
   }
@@ -61,7 +66,7 @@ class OrderFinder {
   __device__ void find() {
     if (launch_.order != nullptr) beginToCopy(*launch_.order);
     waitForCopies();
-    const bool is_known = launch_.order != nullptr && isFor(order_.shape);
+    const bool is_known = launch_.order != nullptr && order_.shape == shape();
     const bool finds_next = launch_.order != nullptr && blockIdx.x + 1 == gridDim.x;
     if (!is_known || finds_next) sort();
     if (!finds_next) return;
@@ -91,11 +96,6 @@ class OrderFinder {
   __device__ TaskOrder::Shape shape() const {
     return {grid_.lattice.columns, grid_.lattice.rows, grid_.tile_width, gridDim.x * kCastWarps, kMayHalve};
   }
-  __device__ bool isFor(const TaskOrder::Shape& other) const {
-    const TaskOrder::Shape own = shape();
-    return other.columns == own.columns && other.rows == own.rows && other.tile_width == own.tile_width &&
-           other.warps == own.warps && other.has_halves == own.has_halves;
-  }
 
   /// A counting sort that comes to the same whatever the order in which warps run: they count the entries of
   /// each class, and an entry's place is that of its class, of its round in it, and of its lane in that.
@@ -120,15 +120,8 @@ class OrderFinder {
       longest_of_warp = max(longest_of_warp, lengths[n]);
       sum_of_warp += lengths[n];
     }
-#if __CUDA_ARCH__ >= 800
-    longest_of_warp = __reduce_max_sync(~0U, longest_of_warp);
-    sum_of_warp = __reduce_add_sync(~0U, sum_of_warp);
-#else
-    for (unsigned step = 16; step > 0; step /= 2) {
-      longest_of_warp = max(longest_of_warp, __shfl_xor_sync(~0U, longest_of_warp, step));
-      sum_of_warp += __shfl_xor_sync(~0U, sum_of_warp, step);
-    }
-#endif
+    longest_of_warp = maxOfWarp(longest_of_warp);
+    sum_of_warp = sumOfWarp(sum_of_warp);
     if (lane == 0) {
       atomicMax(&longest, longest_of_warp);
       atomicAdd(&sum, sum_of_warp);
@@ -191,9 +184,7 @@ class OrderFinder {
     __syncthreads();
   }
 
-  __device__ static unsigned cellOfThread(unsigned n) {
-    return n * kCastThreads + threadIdx.x;
-  }
+  __device__ static unsigned cellOfThread(unsigned n) { return n * kCastThreads + threadIdx.x; }
   /// Of the rays in a cell's corners, in 1/16 voxels. @param corner  its first
   __device__ static unsigned longestOf(const float* corner) {
     constexpr float kMost = 1e6F;  // sums over cells stay within 32 bits
@@ -208,6 +199,22 @@ class OrderFinder {
     const float tiles_of_warp =
         quotient(static_cast<float>(grid_.tilesOfCell()), static_cast<float>(gridDim.x * kCastWarps));
     return kMayHalve ? static_cast<unsigned>(part_of_time * tiles_of_warp * static_cast<float>(sum)) : ~0U;
+  }
+  __device__ static unsigned maxOfWarp(unsigned value) {
+#if __CUDA_ARCH__ >= 800
+    return __reduce_max_sync(~0U, value);
+#else
+    for (unsigned step = 16; step > 0; step /= 2) value = max(value, __shfl_xor_sync(~0U, value, step));
+    return value;
+#endif
+  }
+  __device__ static unsigned sumOfWarp(unsigned value) {
+#if __CUDA_ARCH__ >= 800
+    return __reduce_add_sync(~0U, value);
+#else
+    for (unsigned step = 16; step > 0; step /= 2) value += __shfl_xor_sync(~0U, value, step);
+    return value;
+#endif
   }
   /// Of the values of the lanes up to this one, it included.
   __device__ static unsigned sumUpTo(unsigned value, unsigned lane) {

@@ -93,10 +93,7 @@ class WarpTasks {
       y = static_cast<int>(lane % 16 / 4);
       if (portion == kSecondHalf) (grid_.tile_width == 8 ? x : y) += 4;
     }
-    constexpr int kAlong = TileGrid::kAlong;
-    task.has_pixel = grid_.pixelAt(
-        (cell % kAlong * grid_.width + in_cell % grid_.width) * grid_.tile_width + x,
-        (cell / kAlong * grid_.height + in_cell / grid_.width) * grid_.tileHeight() + y, task.pixel);
+    task.has_pixel = grid_.pixelOf(cell, in_cell, x, y, task.pixel);
     return task;
   }
 
