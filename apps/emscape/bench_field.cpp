@@ -205,9 +205,8 @@ Example:
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   command->add_option("--repeats", options->repeats, "Updates of each kind, of which the median is told")
       ->check(CLI::Range(1, 1000));
-  command
-      ->add_option("--emitters", options->emitters, "Names of the emitters that move and turn; default: all")
-      ->delimiter(',');
+  addListOption(*command, "--emitters", options->emitters,
+                "Names of the emitters that move and turn, with commas between them; default: all");
   addDeviceVolumeOption(*command, options->device_volume);
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchField(*options, global); }; });

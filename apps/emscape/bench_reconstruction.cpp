@@ -271,7 +271,8 @@ Example:
   emscape bench reconstruction scenarios/eme_200.yaml --transfer scenarios/transfer/paper.json --frames 100 --mode mida)");
   auto options = std::make_shared<BenchReconstructionOptions>();
   addBenchSceneOptions(*command, options->scene);
-  command->add_option("--rays", options->rays, "Patterns beside the full one; default: all")->delimiter(',');
+  addListOption(*command, "--rays", options->rays,
+                "Patterns beside the full one, with commas between them; default: all");
   addToleranceOption(*command, options->tolerance_levels);
   command->add_option("--frames", options->frames, "Views, after one to warm up")
       ->check(CLI::Range(1, 100000));

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace emscape::app {
 
@@ -14,6 +15,13 @@ struct GlobalOptions {
   bool json = false;
   bool quiet = false;
 };
+
+/// An option with several values, with commas between them: what follows a blank may be the subcommand's
+/// input.
+inline CLI::Option* addListOption(CLI::App& command, const std::string& name,
+                                  std::vector<std::string>& values, const std::string& description) {
+  return command.add_option(name, values, description)->delimiter(',')->allow_extra_args(false);
+}
 
 /// Runs the subcommand that was chosen; returns the exit status.
 using Action = std::function<int()>;

@@ -158,8 +158,7 @@ or a path over missing terrain.)");
   command->add_option("--to", options->to, "The point: LAT,LON,HEIGHT (deg, deg, m)")->required();
   command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
   command->add_flag("--agl", options->above_ground, "HEIGHT is above the ground");
-  command->add_option("--model", options->models, "Models to compare the emitter's own with")
-      ->delimiter(',')
+  addListOption(*command, "--model", options->models, "Models to compare the emitter's own with")
       ->check(CLI::IsMember(names));
   command->add_option("--plot", options->plot, "Draw the path into a file, .png or .svg")
       ->check([](const std::string& file) {

@@ -188,16 +188,12 @@ Examples:
   auto options = std::make_shared<SimulateOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   command->add_option("-o,--output", options->folder, "Folder of the series; made if need be")->required();
-  command
-      ->add_option("--format", options->formats,
-                   "File formats, with commas between them: vdb, nvdb, vti, raw")
-      ->delimiter(',')
+  addListOption(*command, "--format", options->formats,
+                "File formats, with commas between them: vdb, nvdb, vti, raw")
       ->check(CLI::IsMember(SeriesFiles::formatNames()));
-  command
-      ->add_option(
-          "--quantity", options->quantities,
-          "Quantities, with commas between them (" + emfield::quantityNames() + "); default: the scenario's")
-      ->delimiter(',');
+  addListOption(
+      *command, "--quantity", options->quantities,
+      "Quantities, with commas between them (" + emfield::quantityNames() + "); default: the scenario's");
   command->add_option("--times", options->times,
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
   command->add_option("--range", options->range, "MIN:MAX of the series if it is known; saves a pass");

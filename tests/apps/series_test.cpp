@@ -42,6 +42,14 @@ TEST(Simulate, WritesEveryFormatOfEveryStepAndNothingElse) {
   EXPECT_EQ(json::parse(result.out).at("steps"), 3);
 }
 
+TEST(Simulate, TakesItsScenarioAfterAListToo) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run({"simulate", "--format", "vdb,raw", "--quantity", "emitter_count", quick(),
+                                    "-o", folder / "s", "--times", "0:1:1"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(folder.files(), Contains("s/quick_0001.vdb"));
+}
+
 TEST(Simulate, EveryVolumeSaysTheRangeOfTheWholeSeries) {
   const TemporaryFolder folder;
   ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:4:2"}).status, 0);
