@@ -2,6 +2,8 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -148,6 +150,44 @@ int removeStaleTemporaries(const fs::path& folder) {
     if (fs::remove(entry.path(), error)) ++removed;
   }
   return removed;
+}
+
+FolderLock::FolderLock(const fs::path& folder, const std::string& name) : file_(folder / name) {
+  for (;;) {
+    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) failWriting(file_, causeOf(errno));
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const int cause = errno;
+      char holder[64] = {};
+      const ssize_t bytes = ::pread(descriptor_, holder, sizeof holder - 1, 0);
+      ::close(descriptor_);
+      if (cause != EWOULDBLOCK) failWriting(file_, causeOf(cause));
+      throw Error(
+          ErrorCode::other, {folder.string()},
+          std::string("another process writes this folder: ") + (bytes > 0 ? holder : "not known which"));
+    }
+    // The holder before may have removed the file between the two calls.
+    struct stat held {
+    }, named{};
+    if (::fstat(descriptor_, &held) == 0 && ::stat(file_.c_str(), &named) == 0 &&
+        held.st_ino == named.st_ino && held.st_dev == named.st_dev) {
+      break;
+    }
+    ::close(descriptor_);
+  }
+  char host[256] = "?";
+  ::gethostname(host, sizeof host - 1);
+  const std::string holder = "process " + std::to_string(::getpid()) + " on " + host;
+  // Only a message depends on this text.
+  if (::ftruncate(descriptor_, 0) == 0) {
+    static_cast<void>(::pwrite(descriptor_, holder.data(), holder.size(), 0) == 0);
+  }
+}
+
+FolderLock::~FolderLock() {
+  std::error_code ignored;
+  fs::remove(file_, ignored);
+  ::close(descriptor_);
 }
 
 std::vector<std::uint8_t> readWhole(const fs::path& path) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <ostream>
+#include <string>
 #include <vector>
 
 namespace emscape {
@@ -39,6 +40,22 @@ bool isTemporary(const std::filesystem::path& path);
 /// Removes from a folder the temporaries of processes that no longer run.
 /// @return how many; 0 where the folder does not exist
 int removeStaleTemporaries(const std::filesystem::path& folder);
+
+/// The exclusive right to write a folder's files, held until destruction by one process at a time; the kernel
+/// takes it back from a process that dies.
+class FolderLock {
+ public:
+  /// Creates FOLDER/NAME, which says who holds the lock and is removed with it.
+  /// @throws Error (other) that names the process that holds it, or the cause of another failure
+  FolderLock(const std::filesystem::path& folder, const std::string& name);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  std::filesystem::path file_;
+  int descriptor_ = -1;
+};
 
 /// All bytes of a file.
 /// @throws Error (bad_input) that names the path and the cause

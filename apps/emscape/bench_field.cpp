@@ -171,16 +171,16 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
                  {"total_bytes", memory.total_bytes}}}});
     return 0;
   }
-  fmt::print("device {} ({} threads), grid {} x {} x {}, {} emitters, medians of {}\n\n", device,
-             threadCount(), dims.x, dims.y, dims.z, emitters, options.repeats);
-  fmt::print("stages, all emitters moved (ms)\n");
-  fmt::print("  fan      {:10.2f}\n  plane    {:10.2f}\n  combine  {:10.2f}\n  product  {:10.2f}\n\n",
-             moved.stages.fan_ms, moved.stages.plane_ms, moved.stages.combine_ms, moved.stages.product_ms);
-  fmt::print("update (ms)\n");
-  fmt::print("  all moved     {:10.2f}\n  one moved     {:10.2f}\n  beams turned  {:10.2f}\n\n",
-             moved.update_ms, one_moved.update_ms, turned.update_ms);
-  fmt::print("combine: {:.1f} million voxel-emitters/s\n", voxels_per_s / 1e6);
-  fmt::print(
+  print("device {} ({} threads), grid {} x {} x {}, {} emitters, medians of {}\n\n", device, threadCount(),
+        dims.x, dims.y, dims.z, emitters, options.repeats);
+  print("stages, all emitters moved (ms)\n");
+  print("  fan      {:10.2f}\n  plane    {:10.2f}\n  combine  {:10.2f}\n  product  {:10.2f}\n\n",
+        moved.stages.fan_ms, moved.stages.plane_ms, moved.stages.combine_ms, moved.stages.product_ms);
+  print("update (ms)\n");
+  print("  all moved     {:10.2f}\n  one moved     {:10.2f}\n  beams turned  {:10.2f}\n\n", moved.update_ms,
+        one_moved.update_ms, turned.update_ms);
+  print("combine: {:.1f} million voxel-emitters/s\n", voxels_per_s / 1e6);
+  print(
       "memory: {:.1f} MiB; {:.1f} bytes per voxel and emitter, {:.1f} per column and emitter, {:.1f} per "
       "voxel and channel\n",
       static_cast<double>(memory.total_bytes) / (1 << 20), memory.bytes_per_voxel_and_emitter,

@@ -44,21 +44,21 @@ int benchModels(int repeats, const GlobalOptions& global) {
                {"diffraction_planes", of_planes}});
     return 0;
   }
-  fmt::print("one core, CPU time, the fastest of {} runs\n\n{:<12} {:<58} {:>12} {:>10}\n", repeats, "model",
-             "one evaluation", "a second", "us");
+  print("one core, CPU time, the fastest of {} runs\n\n{:<12} {:<58} {:>12} {:>10}\n", repeats, "model",
+        "one evaluation", "a second", "us");
   for (const ModelTiming& timing : models) {
-    fmt::print("{:<12} {:<58} {:>12.0f} {:>10.3f}{}\n", timing.model, timing.what, timing.evaluations_per_s,
-               1e6 / timing.evaluations_per_s,
-               timing.ratio > 0 ? fmt::format("  {:.2f} x {}", timing.ratio, timing.ratio_to) : "");
+    print("{:<12} {:<58} {:>12.0f} {:>10.3f}{}\n", timing.model, timing.what, timing.evaluations_per_s,
+          1e6 / timing.evaluations_per_s,
+          timing.ratio > 0 ? fmt::format("  {:.2f} x {}", timing.ratio, timing.ratio_to) : "");
   }
-  fmt::print(
+  print(
       "\ndelta-Bullington, planes of {} ranges x {} heights, double\n{:>6} {:>10} {:>16} {:>10} {:>8} "
       "{:>15}\n",
       kPlaneRanges, kPlaneHeights, "posts", "heights m", "path by path ms", "plane ms", "ratio",
       "difference dB");
   for (const PlaneTiming& timing : planes) {
-    fmt::print("{:>6} {:>10.0f} {:>16.2f} {:>10.3f} {:>8.1f} {:>15.1e}\n", timing.posts, timing.top_msl_m,
-               timing.paths_ms, timing.plane_ms, timing.ratio(), timing.largest_difference_db);
+    print("{:>6} {:>10.0f} {:>16.2f} {:>10.3f} {:>8.1f} {:>15.1e}\n", timing.posts, timing.top_msl_m,
+          timing.paths_ms, timing.plane_ms, timing.ratio(), timing.largest_difference_db);
   }
   return 0;
 }

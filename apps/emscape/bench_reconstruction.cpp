@@ -201,20 +201,19 @@ Json patternsJson(const ReconstructionBench& bench) {
 }
 
 void printTable(const ReconstructionBench& bench) {
-  fmt::print("{:<13} {:<6} {:>7} {:>8} {:>8} {:>8}  {:<15} {:<21} {:>6} {:>7}  {}\n", "rays", "interp",
-             "of hits", "busy ms", "of full", "restore", "max R-G-B-A", "mean R-G-B-A", "err %", "PSNR dB",
-             "restored");
+  print("{:<13} {:<6} {:>7} {:>8} {:>8} {:>8}  {:<15} {:<21} {:>6} {:>7}  {}\n", "rays", "interp", "of hits",
+        "busy ms", "of full", "restore", "max R-G-B-A", "mean R-G-B-A", "err %", "PSNR dB", "restored");
   for (const Measured& measured : bench.plans()) {
     const auto max = measured.error.max();
     const auto mean = measured.error.mean();
-    fmt::print("{:<13} {:<6} {:>6.1f}% {:>8.2f} {:>7.1f}% {:>8.2f}  {:<15} {:<21} {:>6.1f} {:>7.1f}  {}\n",
-               render::toString(measured.plan.pattern), render::toString(measured.plan.interpolation),
-               100 * measured.rays_in_box / bench.pixelsInBox(), medianOf(measured.busy_ms),
-               100 * medianOf(measured.ratios), medianOf(measured.restore_ms),
-               fmt::format("{}-{}-{}-{}", max[0], max[1], max[2], max[3]),
-               fmt::format("{:.2f}-{:.2f}-{:.2f}-{:.2f}", mean[0], mean[1], mean[2], mean[3]),
-               measured.error.ratioPercent(), measured.error.psnr_db(),
-               measured.restored_equals_full ? "equal" : "NOT EQUAL");
+    print("{:<13} {:<6} {:>6.1f}% {:>8.2f} {:>7.1f}% {:>8.2f}  {:<15} {:<21} {:>6.1f} {:>7.1f}  {}\n",
+          render::toString(measured.plan.pattern), render::toString(measured.plan.interpolation),
+          100 * measured.rays_in_box / bench.pixelsInBox(), medianOf(measured.busy_ms),
+          100 * medianOf(measured.ratios), medianOf(measured.restore_ms),
+          fmt::format("{}-{}-{}-{}", max[0], max[1], max[2], max[3]),
+          fmt::format("{:.2f}-{:.2f}-{:.2f}-{:.2f}", mean[0], mean[1], mean[2], mean[3]),
+          measured.error.ratioPercent(), measured.error.psnr_db(),
+          measured.restored_equals_full ? "equal" : "NOT EQUAL");
   }
 }
 
@@ -243,8 +242,7 @@ int benchReconstruction(const BenchReconstructionOptions& options, const GlobalO
     result["patterns"] = patternsJson(bench);
     printJson(result);
   } else {
-    fmt::print("{}\n{} views on a circle, medians of times, means of errors\n\n", scene.summary(),
-               options.frames);
+    print("{}\n{} views on a circle, medians of times, means of errors\n\n", scene.summary(), options.frames);
     printTable(bench);
   }
   for (const Measured& measured : bench.plans()) {

@@ -64,15 +64,13 @@ int benchRender(const BenchRenderOptions& options, const GlobalOptions& global) 
     printJson(result);
     return 0;
   }
-  fmt::print("{}\n{} rays, median of {} frames of one view\n\n", scene.summary(), options.rays,
-             options.frames);
-  fmt::print("frame (ms)   median {:.2f}, min {:.2f}, max {:.2f}; of all threads' time {:.2f}\n",
-             medianOf(times_ms), *std::min_element(times_ms.begin(), times_ms.end()),
-             *std::max_element(times_ms.begin(), times_ms.end()), medianOf(cpu_ms));
-  fmt::print("rays         {} cast; of a full picture {} meet the volume\n", report.rays, load.rays);
-  fmt::print("samples      {:.1f} million of a full picture, {:.1f} million taken: {:.3f} G/s\n",
-             static_cast<double>(load.samples) / 1e6, static_cast<double>(report.samples) / 1e6,
-             gsamples_per_s);
+  print("{}\n{} rays, median of {} frames of one view\n\n", scene.summary(), options.rays, options.frames);
+  print("frame (ms)   median {:.2f}, min {:.2f}, max {:.2f}; of all threads' time {:.2f}\n",
+        medianOf(times_ms), *std::min_element(times_ms.begin(), times_ms.end()),
+        *std::max_element(times_ms.begin(), times_ms.end()), medianOf(cpu_ms));
+  print("rays         {} cast; of a full picture {} meet the volume\n", report.rays, load.rays);
+  print("samples      {:.1f} million of a full picture, {:.1f} million taken: {:.3f} G/s\n",
+        static_cast<double>(load.samples) / 1e6, static_cast<double>(report.samples) / 1e6, gsamples_per_s);
   return 0;
 }
 

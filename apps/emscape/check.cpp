@@ -53,24 +53,23 @@ void printAsJson(const std::vector<Outcome>& checked, const std::vector<std::str
 }
 
 void printRow(const std::string& name, int cases, const FigureCheck& figure) {
-  fmt::print("{:<40} {:>6}  {:<24} {:>10.3g} {:>10.3g} {:<9} {}\n", name,
-             cases > 0 ? std::to_string(cases) : "", figure.figure, figure.max_abs_error, figure.tolerance,
-             figure.unit, figure.pass() ? "pass" : fmt::format("MISS (line {})", figure.worst_line));
+  print("{:<40} {:>6}  {:<24} {:>10.3g} {:>10.3g} {:<9} {}\n", name, cases > 0 ? std::to_string(cases) : "",
+        figure.figure, figure.max_abs_error, figure.tolerance, figure.unit,
+        figure.pass() ? "pass" : fmt::format("MISS (line {})", figure.worst_line));
 }
 
 void printAsTable(const std::vector<Outcome>& checked, const std::vector<std::string>& not_checked,
                   const ReferenceFolder& folder) {
-  fmt::print("{:<40} {:>6}  {:<24} {:>10} {:>10} {:<9} {}\n", "dataset", "cases", "figure", "max error",
-             "tolerance", "unit", "result");
+  print("{:<40} {:>6}  {:<24} {:>10} {:>10} {:<9} {}\n", "dataset", "cases", "figure", "max error",
+        "tolerance", "unit", "result");
   for (const Outcome& outcome : checked) {
     const auto& figures = outcome.check.figures;
     printRow(outcome.dataset->name, outcome.check.cases, figures.front());
     for (std::size_t i = 1; i < figures.size(); ++i) printRow("", 0, figures[i]);
   }
-  for (const std::string& name : not_checked)
-    fmt::print("{:<40} not checked: no model answers to it\n", name);
-  for (const std::string& name : folder.absent) fmt::print("{:<40} not checked: absent\n", name);
-  for (const std::string& name : folder.unknown) fmt::print("{:<40} not checked: unknown\n", name);
+  for (const std::string& name : not_checked) print("{:<40} not checked: no model answers to it\n", name);
+  for (const std::string& name : folder.absent) print("{:<40} not checked: absent\n", name);
+  for (const std::string& name : folder.unknown) print("{:<40} not checked: unknown\n", name);
 }
 
 int check(const std::string& dir, const GlobalOptions& global) {

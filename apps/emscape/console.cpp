@@ -1,11 +1,15 @@
 #include "apps/emscape/console.h"
 
-#include <fmt/core.h>
+#include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <iostream>
 #include <mutex>
+#include <system_error>
 
+#include "base/error.h"
 #include "base/log.h"
 
 namespace emscape::app {
@@ -14,8 +18,14 @@ namespace {
 std::mutex console_mutex;
 std::string shown_line;  // the progress line on the screen; empty if there is none
 
-void clearLine() {
-  if (!shown_line.empty()) fmt::print(stderr, "\r\033[K");
+/// What erases the progress line.
+std::string clearLine() {
+  return shown_line.empty() ? "" : "\r\033[K";
+}
+
+[[noreturn]] void failWriting(int error_number) {
+  throw Error(ErrorCode::other, "standard output: cannot write the result: " +
+                                    std::generic_category().message(error_number == 0 ? EIO : error_number));
 }
 
 std::string duration(double seconds) {
@@ -31,16 +41,39 @@ void installLog(const GlobalOptions& global) {
   setLogSink([quiet](LogLevel level, const std::string& message) {
     if (level == LogLevel::debug || (quiet && level == LogLevel::info)) return;
     std::lock_guard<std::mutex> lock(console_mutex);
-    clearLine();
-    fmt::print(stderr, "emscape: {}{}\n{}", level == LogLevel::warning ? "warning: " : "", message,
-               shown_line);
-    std::fflush(stderr);
+    writeMessage(fmt::format("{}emscape: {}{}\n{}", clearLine(),
+                             level == LogLevel::warning ? "warning: " : "", message, shown_line));
   });
 }
 
+void openStandardStreams() {
+  // Opened the wrong way round: whoever reads or writes is told, and the next open() takes another number.
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+    static_cast<void>(::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+  }
+}
+
+void printResult(const std::string& text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) failWriting(errno);
+}
+
 void printJson(const Json& result) {
-  fmt::print("{}\n", result.dump(2));
-  std::fflush(stdout);
+  printResult(result.dump(2) + "\n");
+  finishResult();
+}
+
+void finishResult() {
+  errno = 0;
+  std::cout.flush();  // CLI11 prints help texts through it
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) failWriting(errno);
+}
+
+void writeMessage(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+  std::clearerr(stderr);
 }
 
 ProgressBar::ProgressBar(const GlobalOptions& global, std::string task, int total)
@@ -54,7 +87,7 @@ ProgressBar::ProgressBar(const GlobalOptions& global, std::string task, int tota
 ProgressBar::~ProgressBar() {
   if (!visible_) return;
   std::lock_guard<std::mutex> lock(console_mutex);
-  clearLine();
+  writeMessage(clearLine());
   shown_line.clear();
 }
 
@@ -66,11 +99,10 @@ void ProgressBar::show(int done) {
   const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const std::string left = done > 0 ? duration(elapsed_s / fraction - elapsed_s) + " left" : "";
   std::lock_guard<std::mutex> lock(console_mutex);
-  clearLine();
+  const std::string clear = clearLine();
   shown_line =
       fmt::format("{} [{:#<{}}{:.<{}}] {}/{} {}", task_, "", filled, "", kWidth - filled, done, total_, left);
-  fmt::print(stderr, "{}", shown_line);
-  std::fflush(stderr);
+  writeMessage(clear + shown_line);
 }
 
 }  // namespace emscape::app

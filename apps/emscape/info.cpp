@@ -152,13 +152,13 @@ void printText(const Json& json, int depth) {
     const bool nested =
         value.is_object() || (value.is_array() && !value.empty() && value.front().is_object());
     if (!nested) {
-      fmt::print("{}{}: {}\n", indent, key, value.is_string() ? value.get<std::string>() : value.dump());
+      print("{}{}: {}\n", indent, key, value.is_string() ? value.get<std::string>() : value.dump());
     } else if (value.is_object()) {
-      fmt::print("{}{}:\n", indent, key);
+      print("{}{}:\n", indent, key);
       printText(value, depth + 1);
     } else {
       for (const Json& item : value) {
-        fmt::print("{}{}:\n", indent, key);
+        print("{}{}:\n", indent, key);
         printText(item, depth + 1);
       }
     }

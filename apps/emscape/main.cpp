@@ -37,16 +37,39 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
   app.add_flag("--quiet,-q", global.quiet, "Neither progress nor messages, only warnings and errors");
 }
 
+int fail(ErrorCode code, const std::string& message) {
+  printMessage("emscape: error: {}\n", message);
+  return static_cast<int>(code);
+}
+
+int run(const Action& action) {
+  try {
+    const int status = action();
+    finishResult();
+    return status;
+  } catch (const Interrupted& interrupted) {
+    printMessage("emscape: stopped by signal {}; finished files stay\n", interrupted.signal);
+    return 128 + interrupted.signal;
+  } catch (const Error& error) {
+    return fail(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::other, "out of memory; use fewer voxels (region.dims), channels or --cache-mib");
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::other, error.what());
+  } catch (...) {
+    return fail(ErrorCode::other, "unknown exception");
+  }
+}
+
 /// Parses; returns an exit status if there is nothing to run.
 int parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
     return -1;
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    return run([&] { return app.exit(help); });
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n",
-               error.what());
+    printMessage("emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n", error.what());
     return static_cast<int>(ErrorCode::usage);
   }
 }
@@ -63,31 +86,10 @@ std::string versionText() {
   return text + fmt::format(" ({})", cuda);
 }
 
-int fail(ErrorCode code, const std::string& message) {
-  fmt::print(stderr, "emscape: error: {}\n", message);
-  return static_cast<int>(code);
-}
-
-int run(const Action& action) {
-  try {
-    return action();
-  } catch (const Interrupted& interrupted) {
-    fmt::print(stderr, "emscape: stopped by signal {}; finished files stay\n", interrupted.signal);
-    return 128 + interrupted.signal;
-  } catch (const Error& error) {
-    return fail(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::other, "out of memory; use fewer voxels (region.dims), channels or --cache-mib");
-  } catch (const std::exception& error) {
-    return fail(ErrorCode::other, error.what());
-  } catch (...) {
-    return fail(ErrorCode::other, "unknown exception");
-  }
-}
-
 }  // namespace
 
 int emscapeMain(int argc, char** argv) {
+  openStandardStreams();
   CLI::App app(
       "Computes the electromagnetic environment of a scenario as a volume that changes with time, and shows "
       "it.",

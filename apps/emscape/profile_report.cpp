@@ -77,12 +77,12 @@ std::string ofEnd(const PathEnd& end, double ground_msl_m, bool has_terrain) {
 }
 
 void printRow(const char* name, const std::string& value) {
-  fmt::print("  {:<22} {}\n", name, value);
+  print("  {:<22} {}\n", name, value);
 }
 
 void printGeometry(const PathBudget& budget) {
   const emfield::PathGeometry& geometry = budget.geometry;
-  fmt::print("Geometry\n");
+  print("Geometry\n");
   printRow("emitter", ofEnd(budget.profile.begin, geometry.begin_ground_msl_m, budget.profile.has_terrain));
   printRow("point", ofEnd(budget.profile.end, geometry.end_ground_msl_m, budget.profile.has_terrain));
   printRow("range", fmt::format("{:.3f} km over the ground, {:.3f} km slant", budget.profile.range_m / 1000,
@@ -98,19 +98,18 @@ void printGeometry(const PathBudget& budget) {
 }
 
 void printObstacles(const PathBudget& budget) {
-  fmt::print(
-      "\nObstacles: the ground within 0.6 first Fresnel radii of the ray or above it, else the nearest\n");
+  print("\nObstacles: the ground within 0.6 first Fresnel radii of the ray or above it, else the nearest\n");
   if (budget.obstacles.empty()) {
-    fmt::print("  none: the path is shorter than the spacing of the terrain\n");
+    print("  none: the path is shorter than the spacing of the terrain\n");
     return;
   }
-  fmt::print("  {:>11} {:>11} {:>11} {:>14} {:>15} {:>9}\n", "distance km", "height m", "clearance m",
-             "Fresnel rad. m", "in Fresnel rad.", "alone dB");
+  print("  {:>11} {:>11} {:>11} {:>14} {:>15} {:>9}\n", "distance km", "height m", "clearance m",
+        "Fresnel rad. m", "in Fresnel rad.", "alone dB");
   for (const PathObstacle& obstacle : budget.obstacles) {
-    fmt::print("  {:11.3f} {:11.1f} {:+11.1f} {:14.1f} {:+15.2f} {:9.1f}{}{}\n", obstacle.range_m / 1000,
-               obstacle.ground_msl_m, obstacle.clearance_m, obstacle.fresnel_radius_m,
-               obstacle.clearanceInFresnelRadii(), obstacle.knife_edge_db,
-               obstacle.is_earth_bulge ? "  earth's bulge" : "", obstacle.decides ? "  decides" : "");
+    print("  {:11.3f} {:11.1f} {:+11.1f} {:14.1f} {:+15.2f} {:9.1f}{}{}\n", obstacle.range_m / 1000,
+          obstacle.ground_msl_m, obstacle.clearance_m, obstacle.fresnel_radius_m,
+          obstacle.clearanceInFresnelRadii(), obstacle.knife_edge_db,
+          obstacle.is_earth_bulge ? "  earth's bulge" : "", obstacle.decides ? "  decides" : "");
   }
 }
 
@@ -121,28 +120,27 @@ std::string valueText(double value) {
 }
 
 void printBudget(const PathBudget& budget) {
-  fmt::print("\nBudget by '{}': {}\n", scenario::toString(budget.model), budget.excess.why);
+  print("\nBudget by '{}': {}\n", scenario::toString(budget.model), budget.excess.why);
   for (const BudgetTerm& term : budget.terms) {
     const bool is_sum = term.kind == BudgetTerm::Kind::sum;
-    fmt::print("{} {:<48} {:>9} {:<8} {}\n", is_sum ? " =" : "  ", term.label, valueText(term.value),
-               term.unit, term.note);
+    print("{} {:<48} {:>9} {:<8} {}\n", is_sum ? " =" : "  ", term.label, valueText(term.value), term.unit,
+          term.note);
   }
 }
 
 void printCompared(const std::vector<Comparison>& compared, const PathBudget& own) {
   if (compared.empty()) return;
-  fmt::print("\nCompared\n  {:<12} {:>10} {:>22}\n", "model", "excess dB", "power density dBW/m2");
+  print("\nCompared\n  {:<12} {:>10} {:>22}\n", "model", "excess dB", "power density dBW/m2");
   const auto row = [](const PathBudget& budget, const char* remark) {
-    fmt::print("  {:<12} {:>10} {:>22} {}\n", scenario::toString(budget.model),
-               valueText(budget.excess.loss_db), valueText(budget.find("power_density_dbwm2")->value),
-               remark);
+    print("  {:<12} {:>10} {:>22} {}\n", scenario::toString(budget.model), valueText(budget.excess.loss_db),
+          valueText(budget.find("power_density_dbwm2")->value), remark);
   };
   row(own, "the scenario's");
   for (const Comparison& comparison : compared) {
     if (comparison.refusal.empty()) {
       row(comparison.budget, "");
     } else {
-      fmt::print("  {:<12} {}\n", scenario::toString(comparison.model), comparison.refusal);
+      print("  {:<12} {}\n", scenario::toString(comparison.model), comparison.refusal);
     }
   }
 }
@@ -185,15 +183,15 @@ Json toJson(const ProfileReport& report) {
 
 void printAsTable(const ProfileReport& report) {
   const PathBudget& budget = report.budget;
-  fmt::print("Path from '{}' at t = {:g} s ({}), {:g} MHz\n\n", budget.emitter, budget.time_s,
-             report.time_utc, budget.frequency_hz / 1e6);
+  print("Path from '{}' at t = {:g} s ({}), {:g} MHz\n\n", budget.emitter, budget.time_s, report.time_utc,
+        budget.frequency_hz / 1e6);
   printGeometry(budget);
   printObstacles(budget);
   printBudget(budget);
   printCompared(report.compared, budget);
-  if (!budget.warnings.empty()) fmt::print("\n");
-  for (const std::string& warning : budget.warnings) fmt::print("Warning: {}\n", warning);
-  fmt::print("\n{}\n", budget.verdict);
+  if (!budget.warnings.empty()) print("\n");
+  for (const std::string& warning : budget.warnings) print("Warning: {}\n", warning);
+  print("\n{}\n", budget.verdict);
 }
 
 }  // namespace emscape::app

@@ -1,5 +1,9 @@
 #include "apps/emscape/series_state.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/whole_file.h"
 
@@ -25,6 +29,7 @@ SeriesState fromJson(const Json& json) {
   if (json.at("format_version") != kFormatVersion) throw std::invalid_argument("format_version is not 1");
   SeriesState state;
   state.recipe = json.at("recipe");
+  if (!state.recipe.is_object()) throw std::invalid_argument("recipe is not an object");
   state.finished_steps = json.at("finished_steps").get<int>();
   for (const auto& [channel, range] : json.at("ranges").items()) {
     state.channels.push_back(channel);
@@ -50,6 +55,25 @@ std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder) 
 
 void writeSeriesState(const std::filesystem::path& folder, const SeriesState& state) {
   writeWhole(folder / kStateFile, [&state](std::ostream& out) { out << toJson(state).dump(2) << '\n'; });
+}
+
+void checkState(const std::filesystem::path& folder, const SeriesState& state,
+                const std::vector<std::string>& channels, int steps) {
+  const auto fail = [&](const std::string& what) {
+    throw Error(ErrorCode::bad_input, {(folder / kStateFile).string(), 0, 0},
+                "damaged: " + what + "; --force begins anew");
+  };
+  if (state.finished_steps < 0 || state.finished_steps > steps) {
+    fail(fmt::format("'finished_steps' is {}, outside 0..{}", state.finished_steps, steps));
+  }
+  for (const std::string& channel : channels) {
+    if (std::count(state.channels.begin(), state.channels.end(), channel) != 1) {
+      fail(fmt::format("'ranges' has no '{}'", channel));
+    }
+  }
+  if (state.channels.size() != channels.size()) {
+    fail(fmt::format("'ranges' has {} entries instead of {}", state.channels.size(), channels.size()));
+  }
 }
 
 void checkSameRecipe(const std::filesystem::path& folder, const Json& found, const Json& wanted) {

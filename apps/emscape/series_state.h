@@ -23,6 +23,11 @@ struct SeriesState {
 std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder);
 void writeSeriesState(const std::filesystem::path& folder, const SeriesState& state);
 
+/// @throws Error (bad_input) unless the state holds a range of each of `channels` and a possible number of
+/// steps
+void checkState(const std::filesystem::path& folder, const SeriesState& state,
+                const std::vector<std::string>& channels, int steps);
+
 /// @throws Error (bad_input) that names every part in which the recipes differ
 void checkSameRecipe(const std::filesystem::path& folder, const Json& found, const Json& wanted);
 

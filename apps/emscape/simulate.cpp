@@ -74,6 +74,7 @@ SeriesState beginState(const SimulateOptions& options, const FieldSeries& series
                     options.folder, found->finished_steps, found->recipe.value("times", Json()).size()));
   }
   checkSameRecipe(options.folder, found->recipe, state.recipe);
+  checkState(options.folder, *found, state.channels, series.count());
   return *found;
 }
 
@@ -127,6 +128,7 @@ int simulate(SimulateOptions options, const GlobalOptions& global) {
   FieldSeries& series = *opened;
 
   makeFolder(options.folder);
+  const FolderLock lock(options.folder, "series.lock");
   removeStaleTemporaries(options.folder);
   SeriesFiles files(options.folder, series.input().scenario->name, options.formats, times_s);
   if (options.force) files.removeOld();

@@ -112,10 +112,9 @@ int validate(const std::string& file, const GlobalOptions& global) {
     printJson({{"ok", ok}, {"problems", problems}});
   } else {
     for (const Problem& problem : result.problems) {
-      fmt::print("{}: {}: {}\n", emscape::toString(problem.place), toString(problem.severity),
-                 problem.message);
+      print("{}: {}: {}\n", emscape::toString(problem.place), toString(problem.severity), problem.message);
     }
-    if (ok && !global.quiet) fmt::print("{}: ok\n", file);
+    if (ok && !global.quiet) print("{}: ok\n", file);
   }
   return ok ? 0 : static_cast<int>(ErrorCode::bad_input);
 }

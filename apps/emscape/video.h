@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <string>
 
 #include "render/image.h"
 
@@ -22,17 +23,22 @@ class VideoFile {
 
   /// Adds an opaque frame of the video's size. @throws Error (other) if ffmpeg has ended
   void add(const render::Image8& frame);
-  /// @throws Error (other) if ffmpeg failed
+  /// @throws Error (other) if ffmpeg failed or reported any error: it ends with status 0 after some of them,
+  /// a full disk among them
   void finish();
 
  private:
   void closePipe();
   int waitForEnd();
+  /// Ends the process and throws what it reported.
+  [[noreturn]] void fail(const std::string& what);
+  std::string reported() const;
 
   const std::filesystem::path path_;
   const std::filesystem::path temporary_;
   const render::ImageSize size_;
   int pipe_ = -1;
+  int messages_ = -1;  ///< a file in memory that takes ffmpeg's standard output and error
   pid_t process_ = -1;
 };
 

@@ -1,8 +1,10 @@
 // What every subcommand has in common: usage, exit status, standard output.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.h"
@@ -28,6 +30,35 @@ TEST(CommandLine, HelpAndVersionAreNoErrors) {
   }
   EXPECT_THAT(run({"--help"}).out, HasSubstr("Exit status"));
   EXPECT_THAT(run({"--version"}).out, StartsWith("emscape "));
+}
+
+/// Exit status of `emscape ARGUMENTS` with its streams redirected by the shell.
+int statusOf(const std::string& arguments_and_redirections) {
+  const std::string command = besideThisProgram("emscape") + " " + arguments_and_redirections;
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+TEST(CommandLine, MessagesThatCannotBeWrittenDoNotStopTheWork) {
+  const TemporaryFolder folder;
+  for (const std::string redirection : {"2>&-", "2>/dev/full", "<&- 2>&-"}) {
+    const std::string output = folder / ("s" + std::to_string(folder.files().size()));
+    EXPECT_EQ(statusOf("simulate " + quick() + " --times 0 -o " + output + " " + redirection), 0)
+        << redirection;
+    EXPECT_EQ(statusOf("validate /nonexistent.yaml >/dev/null " + redirection), kBadInput) << redirection;
+    EXPECT_EQ(statusOf("simulate /nonexistent.yaml -o " + output + "x " + redirection), kBadInput)
+        << redirection;
+    EXPECT_EQ(statusOf("explode " + redirection), kUsage) << redirection;
+  }
+  EXPECT_EQ(folder.files().size(), 6U);
+}
+
+TEST(CommandLine, AResultThatCannotBeWrittenIsAnError) {
+  for (const std::string arguments : {"--json info ", "info ", "--json validate ", "validate "}) {
+    EXPECT_EQ(statusOf(arguments + quick() + " >/dev/full 2>/dev/null"), 1) << arguments;
+    EXPECT_EQ(statusOf(arguments + quick() + " >&- 2>/dev/null"), 1) << arguments;
+  }
+  EXPECT_EQ(statusOf("--help >/dev/full 2>/dev/null"), 1);
 }
 
 TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {

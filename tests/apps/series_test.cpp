@@ -139,6 +139,51 @@ TEST(Simulate, AFullDiskIsOneErrorAndLeavesWhatWasFinished) {
   EXPECT_THAT(folder.files(), ElementsAre("s/series.json"));
 }
 
+TEST(Simulate, ADamagedStateIsRefused) {
+  const TemporaryFolder folder;
+  const Arguments arguments{"simulate", quick(), "-o", folder / "s", "--times", "0:1:1"};
+  ASSERT_EQ(run(arguments).status, 0);
+  const std::string file = folder / "s/series.json";
+  const std::string whole = readFile(file);
+  Arguments resume = arguments;
+  resume.emplace_back("--resume");
+  const std::string finished = "\"finished_steps\": 2";
+  ASSERT_NE(whole.find(finished), std::string::npos);
+  for (const char* number : {"-3", "-2000000000", "99", "1e300", "null"}) {
+    std::string damaged = whole;
+    damaged.replace(damaged.find(finished), finished.size(), std::string("\"finished_steps\": ") + number);
+    writeFile(file, damaged);
+    const ProgramResult result = run(resume);
+    EXPECT_EQ(result.status, 3) << number << ": " << result.err;
+    EXPECT_THAT(result.err, HasSubstr("series.json")) << number;
+  }
+  for (const char* key : {"ranges", "recipe"}) {
+    json damaged = json::parse(whole);
+    damaged[key] = key == std::string("ranges") ? json::object() : json::array();
+    writeFile(file, damaged.dump());
+    EXPECT_EQ(run(resume).status, 3) << key;
+  }
+  EXPECT_EQ(folder.files().size(), 3U);
+}
+
+TEST(Simulate, ASecondProcessIsRefusedWhileOneWritesTheFolder) {
+  const TemporaryFolder folder;
+  const std::string scenario = longScenario(folder, 80);
+  const Arguments arguments{"simulate", scenario, "-o",      folder / "s",
+                            "--format", "raw",    "--range", "-120:20"};
+  RunningProgram first(arguments);
+  while (!std::filesystem::exists(folder / "s/quick_0002.raw"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  Arguments second = arguments;
+  second.emplace_back("--force");
+  const ProgramResult refused = run(second);
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_THAT(refused.err, HasSubstr("another process writes this folder: process "));
+  first.signal(SIGINT);
+  EXPECT_EQ(first.wait().status, 130);
+  EXPECT_THAT(folder.files(), Not(Contains(HasSubstr("lock"))));
+}
+
 TEST(Simulate, AFolderThatIsAFileIsAnError) {
   const TemporaryFolder folder;
   writeFile(folder / "file", "");
@@ -186,6 +231,18 @@ TEST(Render, WritesFramesAndVideoInOneGo) {
   EXPECT_THAT(folder.files(),
               ElementsAre("f/quick_0001.png", "f/quick_0002.png", "f/quick_0003.png", "v.mp4"));
   EXPECT_EQ(readFile(folder / "v.mp4").substr(4, 4), "ftyp");
+}
+
+TEST(Render, AVideoThatDoesNotFitOnTheDiskIsAnErrorAndNoFile) {
+  if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  const TemporaryFolder folder;
+  // Files may grow to 4 KiB.
+  const ProgramResult result =
+      run({"render", quick(), "-o", folder / "v.mp4", "--size", "320x240", "--times", "0:4:1"},
+          "trap '' XFSZ; ulimit -f 8;");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("v.mp4: ffmpeg"));
+  EXPECT_TRUE(folder.files().empty());
 }
 
 TEST(Render, WithoutFfmpegAVideoIsAClearErrorAndNoFile) {
