@@ -1,4 +1,4 @@
-#include "base/backend.h"
+#include "emscape/base/backend.h"
 
 namespace emscape {
 const char* toString(Backend backend) {

@@ -1,4 +1,4 @@
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape {
 

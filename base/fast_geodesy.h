@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "base/geo_frame.h"
-#include "base/host_device.h"
-#include "base/units.h"
-#include "base/vec.h"
+#include "emscape/base/geo_frame.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
+#include "emscape/base/vec.h"
 
 namespace emscape {
 

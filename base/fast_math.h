@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <cstring>
 
-#include "base/host_device.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape {
 namespace fast_math_detail {

@@ -1,4 +1,4 @@
-#include "base/geoid.h"
+#include "emscape/base/geoid.h"
 
 #include <cpl_conv.h>
 #include <gdal_priv.h>
@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape {
 namespace {

@@ -1,4 +1,4 @@
-#include "base/log.h"
+#include "emscape/base/log.h"
 
 #include <mutex>
 

@@ -1,4 +1,4 @@
-#include "base/device.h"
+#include "emscape/base/device.h"
 
 namespace emscape {
 

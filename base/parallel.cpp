@@ -1,4 +1,4 @@
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>

@@ -15,7 +15,7 @@
 #include <string>
 #include <system_error>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape {
 namespace fs = std::filesystem;

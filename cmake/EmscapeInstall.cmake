@@ -1,12 +1,10 @@
-# Installs the libraries, their headers and what find_package(emscape) reads.
+# Installs the libraries, their public headers and what find_package(emscape) reads.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/emscape")
 
-install(DIRECTORY base scenario volume emfield render
-  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/emscape"
-  FILES_MATCHING PATTERN "*.h")
+install(DIRECTORY include/emscape DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
 install(EXPORT emscape NAMESPACE emscape:: FILE emscapeTargets.cmake DESTINATION "${config_dir}")
 
 configure_package_config_file(cmake/emscapeConfig.cmake.in "${PROJECT_BINARY_DIR}/emscapeConfig.cmake"

@@ -1,12 +1,14 @@
 # emscape_module(NAME SOURCES ... [LINKS ...] [PRIVATE_LINKS ...])
-# A library emscape_NAME, called emscape::NAME, of one module's sources.
+# A library emscape_NAME, called emscape::NAME, of one module's sources. Its public headers lie in
+# include/emscape/NAME, the internal ones beside the sources.
 function(emscape_module name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS")
   add_library(emscape_${name} ${ARG_SOURCES})
   add_library(emscape::${name} ALIAS emscape_${name})
   set_target_properties(emscape_${name} PROPERTIES EXPORT_NAME ${name})
-  target_include_directories(emscape_${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
-                                                    "$<INSTALL_INTERFACE:include/emscape>")
+  target_include_directories(emscape_${name} PUBLIC "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>"
+                                                    "$<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>"
+                                                    "$<INSTALL_INTERFACE:include>")
   target_link_libraries(emscape_${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
   emscape_warnings(emscape_${name})
   install(TARGETS emscape_${name} EXPORT emscape)

@@ -1,7 +1,7 @@
 #include <algorithm>
 
-#include "base/error.h"
-#include "emfield/field_solver.h"
+#include "emscape/base/error.h"
+#include "emscape/emfield/field_solver.h"
 
 namespace emscape::emfield {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstddef>
 
-#include "base/host_device.h"
 #include "emfield/excess/excess_code.h"
 #include "emfield/fan_coordinates.h"
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -6,10 +6,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/host_device.h"
-#include "base/vec.h"
 #include "emfield/emitter_geometry.h"
-#include "scenario/antenna.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
+#include "emscape/scenario/antenna.h"
+#include "scenario/antenna_pattern.h"
 
 namespace emscape::emfield {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
-#include "base/units.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

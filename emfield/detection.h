@@ -11,8 +11,8 @@
 
 #include <vector>
 
-#include "base/host_device.h"
-#include "scenario/emitter.h"
+#include "emscape/base/host_device.h"
+#include "emscape/scenario/emitter.h"
 
 namespace emscape::emfield {
 

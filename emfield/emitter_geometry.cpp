@@ -5,12 +5,12 @@
 #include <limits>
 #include <optional>
 
-#include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "emfield/column_geometry.h"
 #include "emfield/excess/excess_model.h"
 #include "emfield/excess/fill_excess.h"
 #include "emfield/shadow.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 namespace {

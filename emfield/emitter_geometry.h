@@ -6,8 +6,8 @@
 
 #include "emfield/column_geometry.h"
 #include "emfield/terrain_fan.h"
-#include "scenario/emitter.h"
-#include "scenario/snapshot.h"
+#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::emfield {
 

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
-#include "base/units.h"
 #include "emfield/station.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
 #include "scenario/terrain_view.h"
 
 namespace emscape::emfield {

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "emfield/combine.h"
-#include "emfield/field_solver.h"
 #include "emfield/grid_columns.h"
 #include "emfield/products.h"
 #include "emfield/terrain_fan.h"
+#include "emscape/emfield/field_solver.h"
+#include "scenario/terrain_view.h"
 
 namespace emscape::emfield {
 

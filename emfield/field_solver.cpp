@@ -1,15 +1,15 @@
-#include "emfield/field_solver.h"
+#include "emscape/emfield/field_solver.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "base/error.h"
-#include "base/log.h"
-#include "base/units.h"
 #include "emfield/excess/excess_model.h"
 #include "emfield/field_solver_impl.h"
 #include "emfield/model_check.h"
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "emfield/field_engine.h"
-#include "emfield/field_solver.h"
 #include "emfield/jamming.h"
+#include "emscape/emfield/field_solver.h"
 
 namespace emscape::emfield {
 

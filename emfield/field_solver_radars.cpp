@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "base/units.h"
 #include "emfield/field_solver_impl.h"
 #include "emfield/radar_receiver.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "base/error.h"
-#include "base/units.h"
 #include "emfield/excess/excess_model.h"
 #include "emfield/field_solver_impl.h"
 #include "emfield/model_check.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 namespace {

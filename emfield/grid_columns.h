@@ -4,11 +4,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/geo_frame.h"
-#include "base/host_device.h"
-#include "base/vec.h"
-#include "scenario/terrain.h"
-#include "volume/grid.h"
+#include "emscape/base/geo_frame.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
+#include "emscape/scenario/terrain.h"
+#include "emscape/volume/grid.h"
 
 namespace emscape::emfield {
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
-#include "base/units.h"
 #include "emfield/combine.h"
-#include "emfield/path_budget.h"
 #include "emfield/radar_receiver.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/path_budget.h"
 
 namespace emscape::emfield {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "base/vec.h"
 #include "emfield/radar_product.h"
 #include "emfield/terrain_fan.h"
-#include "scenario/snapshot.h"
+#include "emscape/base/vec.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::emfield {
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "base/error.h"
 #include "emfield/excess/excess_model.h"
 #include "emfield/models/horizon.h"
 #include "emfield/models/p528.h"
 #include "emfield/models/rain.h"
+#include "emscape/base/error.h"
 
 namespace emscape::emfield {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "emfield/excess/air_loss.h"
-#include "scenario/snapshot.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::emfield {
 

@@ -1,5 +1,5 @@
-#include "base/error.h"
 #include "emfield/field_engine.h"
+#include "emscape/base/error.h"
 
 namespace emscape::emfield {
 

@@ -1,4 +1,4 @@
-#include "emfield/path_budget.h"
+#include "emscape/emfield/path_budget.h"
 
 #include <fmt/format.h>
 
@@ -6,12 +6,15 @@
 #include <cmath>
 #include <limits>
 
-#include "base/units.h"
 #include "emfield/detection.h"
 #include "emfield/path_radar.h"
 #include "emfield/path_verdict.h"
 #include "emfield/products.h"
 #include "emfield/radar_receiver.h"
+#include "emfield/station.h"
+#include "emfield/terrain_fan.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/field_solver.h"
 
 namespace emscape::emfield {
 namespace {
@@ -203,7 +206,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   budget.profile =
       readPathProfile({state.position, state.height_msl_m}, point, budget.k_factor, terrain, resolution);
   const PathProfile& profile = budget.profile;
-  const Station& station = profile.station;
+  const Station station = makeStation(state.position, state.height_msl_m, profile.k_factor);
   const double wavelength = wavelength_m(emitter.frequency_hz);
 
   PathGeometry& geometry = budget.geometry;
@@ -239,6 +242,12 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   budget.terms = termsOf(snapshot, emitter_index, budget, radar);
   budget.verdict = verdictOf(budget);
   return budget;
+}
+
+PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
+                      scenario::PropagationModel model, const scenario::Terrain* terrain) {
+  return pathBudget(snapshot, emitter, point, model, terrain,
+                    fanResolution(gridOf(snapshot.scenario->region), terrain));
 }
 
 }  // namespace emscape::emfield

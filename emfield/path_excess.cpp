@@ -1,4 +1,4 @@
-#include "emfield/path_excess.h"
+#include "emscape/emfield/path_excess.h"
 
 #include <fmt/format.h>
 
@@ -12,6 +12,7 @@
 #include "emfield/model_check.h"
 #include "emfield/models/horizon.h"
 #include "emfield/models/p528.h"
+#include "emfield/station.h"
 
 namespace emscape::emfield {
 namespace {
@@ -53,7 +54,7 @@ class OneVoxel {
 void addHorizon(const PathProfile& profile, PathExcess& excess) {
   // As the field has it: slopes in single precision.
   const HorizonGeometry<float> geometry{static_cast<float>(profile.begin.height_msl_m),
-                                        static_cast<float>(profile.station.effective_earth_radius_m)};
+                                        static_cast<float>(profile.effective_earth_radius_m)};
   std::vector<RangeTerms<float>> ranges;
   for (const double range_m : profile.ranges_m) ranges.push_back(geometry.termsAt(range_m));
   std::vector<float> slopes(profile.ranges_m.size());
@@ -114,10 +115,14 @@ void addModel(const ItmExcess& model, OneVoxel& voxel, PathExcess& excess) {
                              : "near ITM's limits it goes over to diffraction by weights";
 }
 
+Station stationOf(const PathProfile& profile) {
+  return makeStation(profile.begin.position, profile.begin.height_msl_m, profile.k_factor);
+}
+
 /// The field takes it from a table of these curves.
 void addP528(const Scenario& scenario, const Emitter& emitter, const PathProfile& profile,
              const scenario::Terrain* terrain, PathExcess& excess) {
-  const double surface_msl_m = smoothSurface_msl_m(scenario, emitter, profile.station, terrain);
+  const double surface_msl_m = smoothSurface_msl_m(scenario, emitter, stationOf(profile), terrain);
   const auto allowed = [&](double height_msl_m) {
     return std::clamp(height_msl_m - surface_msl_m, kP528Height.least, kP528Height.most);
   };
@@ -161,7 +166,7 @@ PathExcess pathExcess(const Scenario& scenario, const Emitter& emitter, const sc
     std::vector<float> tables;
     if (hasAirLoss(scenario, emitter)) {
       addAir(airLoss(scenario, emitter, profile.begin.position.latitude_deg, profile.begin.height_msl_m,
-                     profile.station.earth_radius_m, extent, tables),
+                     stationOf(profile).earth_radius_m, extent, tables),
              profile, excess);
     }
   } else {
@@ -169,7 +174,7 @@ PathExcess pathExcess(const Scenario& scenario, const Emitter& emitter, const sc
       excess.why = "spreading alone: neither terrain nor earth count";
     if (emitter.propagation == PropagationModel::horizon) addHorizon(profile, excess);
     const EmitterExcess of_model =
-        makeExcess(scenario, emitter, profile.station, terrain, extent, resolution);
+        makeExcess(scenario, emitter, stationOf(profile), terrain, extent, resolution);
     std::visit([&](const auto& model) { addModel(model, voxel, excess); }, of_model.model);
     addAir(of_model.air, profile, excess);
   }

@@ -1,13 +1,15 @@
-#include "emfield/path_profile.h"
+#include "emscape/emfield/path_profile.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
 #include "emfield/models/diffraction_knife_edge.h"
 #include "emfield/models/horizon.h"
+#include "emfield/station.h"
+#include "emfield/terrain_fan.h"
+#include "emscape/base/error.h"
 
 namespace emscape::emfield {
 namespace {
@@ -62,15 +64,17 @@ double PathProfile::fresnelRadius_m(int i, double wavelength_m) const {
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
                             const scenario::Terrain* terrain, const FanResolution& resolution) {
   PathProfile profile;
-  profile.station = makeStation(begin.position, begin.height_msl_m, k_factor);
+  const Station station = makeStation(begin.position, begin.height_msl_m, k_factor);
+  profile.k_factor = k_factor;
+  profile.effective_earth_radius_m = station.effective_earth_radius_m;
   profile.begin = begin;
   profile.end = end;
   profile.has_terrain = terrain != nullptr;
-  const FanCoordinates coordinates = fanCoordinates(
-      profile.station, surfacePoint(end.position.latitude_deg, end.position.longitude_deg).ecef_m);
+  const FanCoordinates coordinates =
+      fanCoordinates(station, surfacePoint(end.position.latitude_deg, end.position.longitude_deg).ecef_m);
   profile.azimuth_rad = coordinates.azimuth_rad;
   profile.range_m = coordinates.range_m;
-  const double longest_m = 0.5 * kPi * profile.station.earth_radius_m;
+  const double longest_m = 0.5 * kPi * station.earth_radius_m;
   if (!(profile.range_m >= kShortestPath_m && profile.range_m <= longest_m)) {
     throw Error(
         ErrorCode::bad_input,
@@ -82,11 +86,11 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_f
   path.interval_count = 0;
   path.ranges_m = pathRanges(profile.range_m, resolution.range_m);
   path.used_ranges = {path.rangeCount()};
-  profile.ground_msl_m = readTerrainFan(profile.station, path, terrain, 0, 0).height_msl_m;
+  profile.ground_msl_m = readTerrainFan(station, path, terrain, 0, 0).height_msl_m;
   profile.ranges_m = std::move(path.ranges_m);
   if (terrain != nullptr) checkTerrain(profile, *terrain);
 
-  const HorizonGeometry<double> geometry{begin.height_msl_m, profile.station.effective_earth_radius_m};
+  const HorizonGeometry<double> geometry{begin.height_msl_m, station.effective_earth_radius_m};
   const double slope = geometry.slopeTo(end.height_msl_m, geometry.termsAt(profile.range_m));
   for (const double range_m : profile.ranges_m)
     profile.ray_msl_m.push_back(geometry.heightOn(slope, geometry.termsAt(range_m)));

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <vector>
 
-#include "base/units.h"
 #include "emfield/jamming.h"
 #include "emfield/products.h"
 #include "emfield/radar_receiver.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

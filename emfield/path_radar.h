@@ -1,10 +1,10 @@
 /// What a radar makes of a target at the end of a path: echo, jamming, detection.
 #pragma once
 
-#include "base/vec.h"
-#include "emfield/quantities.h"
 #include "emfield/terrain_fan.h"
-#include "scenario/snapshot.h"
+#include "emscape/base/vec.h"
+#include "emscape/emfield/quantities.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::emfield {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "emfield/path_budget.h"
+#include "emscape/emfield/path_budget.h"
 
 namespace emscape::emfield {
 

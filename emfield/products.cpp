@@ -1,8 +1,8 @@
 #include "emfield/products.h"
 
-#include "base/error.h"
-#include "base/units.h"
 #include "emfield/radar_receiver.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

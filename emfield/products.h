@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "base/fast_math.h"
-#include "base/host_device.h"
-#include "base/vec.h"
 #include "emfield/combine.h"
-#include "emfield/field_solver.h"
 #include "emfield/radar_product.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
+#include "emscape/emfield/field_solver.h"
 
 namespace emscape::emfield {
 

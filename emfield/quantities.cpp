@@ -1,7 +1,7 @@
-#include "emfield/quantities.h"
+#include "emscape/emfield/quantities.h"
 
-#include "base/error.h"
-#include "volume/dense_volume.h"
+#include "emscape/base/error.h"
+#include "emscape/volume/dense_volume.h"
 
 namespace emscape::emfield {
 

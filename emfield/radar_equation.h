@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
-#include "base/units.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 

@@ -3,9 +3,10 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
-#include "base/vec.h"
-#include "scenario/antenna.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
+#include "emscape/scenario/antenna.h"
+#include "scenario/antenna_pattern.h"
 
 namespace emscape::emfield {
 

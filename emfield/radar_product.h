@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "base/fast_math.h"
-#include "base/host_device.h"
-#include "base/vec.h"
 #include "emfield/combine.h"
 #include "emfield/detection.h"
 #include "emfield/radar_look.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
 
 namespace emscape::emfield {
 

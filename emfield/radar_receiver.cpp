@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.h"
-#include "scenario/snapshot.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::emfield {
 

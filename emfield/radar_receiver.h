@@ -4,8 +4,8 @@
 #include "emfield/detection.h"
 #include "emfield/radar_equation.h"
 #include "emfield/radar_look.h"
-#include "scenario/emitter.h"
-#include "scenario/scenario.h"
+#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/scenario.h"
 
 namespace emscape::emfield {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "base/parallel.h"
 #include "emfield/shadow_edge.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 namespace {

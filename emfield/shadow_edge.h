@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
 #include "emfield/fan_coordinates.h"
 #include "emfield/models/horizon.h"
 #include "emfield/terrain_fan.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/fast_geodesy.h"
-#include "base/geo_frame.h"
-#include "base/host_device.h"
+#include "emscape/base/geo_frame.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/parallel.h"
 #include "emfield/fan_chord.h"
+#include "emscape/base/parallel.h"
+#include "scenario/terrain_view.h"
 
 namespace emscape::emfield {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "base/host_device.h"
-#include "base/units.h"
 #include "emfield/fan_coordinates.h"
-#include "scenario/terrain.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/terrain.h"
 
 namespace emscape::emfield {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/parallel.h"
 #include "base/simd.h"
+#include "emscape/base/parallel.h"
 #include "render/adaptive_pass.h"
 
 namespace emscape::render {

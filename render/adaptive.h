@@ -11,9 +11,9 @@
 #include <functional>
 #include <vector>
 
+#include "emscape/render/image.h"
 #include "render/adaptive_pass.h"
 #include "render/adaptive_tolerance.h"
-#include "render/image.h"
 #include "render/reconstruction.h"
 #include "render/silhouette.h"
 

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include "base/host_device.h"
+#include "emscape/base/host_device.h"
+#include "emscape/render/image.h"
 #include "render/adaptive_predict.h"
-#include "render/image.h"
 
 namespace emscape::render {
 

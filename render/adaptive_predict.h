@@ -12,8 +12,8 @@
 #include <cmath>
 
 #include "base/device_math.h"
-#include "base/host_device.h"
-#include "render/image.h"
+#include "emscape/base/host_device.h"
+#include "render/rgba.h"
 
 namespace emscape::render {
 

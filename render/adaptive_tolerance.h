@@ -1,16 +1,14 @@
 /// How large an estimated error the pattern `adaptive` lets pass.
 #pragma once
 
+#include "emscape/render/pattern.h"
+
 namespace emscape::render {
 
-/// Estimated error (levels of 255) above which a pixel is cast. The first passes, whose errors spread, are
-/// held to a part of it.
-constexpr double kDefaultTolerance_levels = 0.6;
+/// Bounds of the tolerance (see kDefaultTolerance_levels). The first passes, whose errors spread, are held to
+/// a part of it.
 constexpr double kLeastTolerance_levels = 1.0 / 16;
 constexpr double kLargestTolerance_levels = 64;
-
-/// Part of the pixels whose rays meet the volume's box that a frame aims to cast at most: that of `quarter`.
-constexpr double kDefaultRayShare = 0.25;
 
 /// The tolerance of the next frame: that of the last one, moved such that what a frame costs (time, or rays)
 /// approaches a budget smoothly, at most by a factor of two a frame.

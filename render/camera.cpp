@@ -1,4 +1,4 @@
-#include "render/camera.h"
+#include "emscape/render/camera.h"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.h"
-#include "base/units.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::render {
 namespace {

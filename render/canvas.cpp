@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/error.h"
-#include "base/units.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::render {
 namespace {

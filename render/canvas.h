@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "render/image.h"
-#include "render/transfer_function.h"
+#include "emscape/render/image.h"
+#include "emscape/render/transfer_function.h"
 
 struct _cairo;
 struct _cairo_surface;

@@ -1,5 +1,6 @@
 #include "render/compositing.h"
 
+#include "emscape/render/render_settings.h"
 #include "render/names.h"
 
 namespace emscape::render {

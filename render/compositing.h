@@ -2,19 +2,13 @@
 #pragma once
 
 #include <cmath>
-#include <string>
 
 #include "base/device_math.h"
-#include "base/host_device.h"
-#include "render/image.h"
+#include "emscape/base/host_device.h"
+#include "render/rgba.h"
 #include "render/volume_view.h"
 
 namespace emscape::render {
-
-enum class CompositingMode { dvr, mida, mip, iso };
-const char* toString(CompositingMode mode);
-/// @throws Error (usage) that lists the names
-CompositingMode parseCompositingMode(const std::string& name);
 
 /// Opacity (of one reference step) after `steps` of them: 1 - (1 - a)^steps. @param opacity 0..1, steps > 0
 EMSCAPE_HD inline float opacityOver(float opacity, float steps) {

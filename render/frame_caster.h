@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "base/progress.h"
-#include "render/frame.h"
-#include "render/image.h"
+#include "emscape/base/progress.h"
+#include "emscape/render/frame.h"
+#include "emscape/render/image.h"
+#include "emscape/volume/dense_volume.h"
+#include "emscape/volume/device_volume.h"
 #include "render/scene.h"
-#include "volume/dense_volume.h"
-#include "volume/device_volume.h"
 
 namespace emscape::render {
 

@@ -1,9 +1,9 @@
-#include "render/frame_controller.h"
+#include "emscape/render/frame_controller.h"
 
 #include <algorithm>
 #include <limits>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::render {
 namespace {

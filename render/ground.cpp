@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::render {
 namespace {

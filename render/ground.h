@@ -7,12 +7,12 @@
 
 #include <vector>
 
-#include "base/host_device.h"
-#include "base/vec.h"
-#include "render/camera.h"
-#include "render/height_field.h"
-#include "render/image.h"
-#include "volume/grid.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
+#include "emscape/render/camera.h"
+#include "emscape/render/height_field.h"
+#include "emscape/volume/grid.h"
+#include "render/rgba.h"
 
 namespace emscape::render {
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "render/image.h"
+#include "render/rgba.h"
 
 namespace emscape::render {
 

@@ -1,5 +1,3 @@
-#include "render/image.h"
-
 #include <png.h>
 
 #include <algorithm>
@@ -8,8 +6,9 @@
 #include <cstdlib>
 #include <limits>
 
-#include "base/error.h"
 #include "base/whole_file.h"
+#include "emscape/base/error.h"
+#include "render/rgba.h"
 
 namespace emscape::render {
 namespace {

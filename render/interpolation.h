@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
-#include "base/host_device.h"
-#include "render/image.h"
+#include "emscape/base/host_device.h"
 #include "render/reconstruction.h"
+#include "render/rgba.h"
 
 namespace emscape::render {
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "base/error.h"
-#include "volume/statistics.h"
+#include "emscape/base/error.h"
+#include "emscape/volume/statistics.h"
 
 namespace emscape::render {
 

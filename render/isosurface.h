@@ -1,11 +1,10 @@
 /// Where a ray meets the surface of one value. Single source for host and device.
 #pragma once
 
-#include "base/host_device.h"
-#include "base/vec.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
 #include "render/ray_pieces.h"
 #include "render/volume_view.h"
-#include "volume/dense_volume.h"
 
 namespace emscape::render {
 
@@ -103,10 +102,5 @@ EMSCAPE_HD inline Vec3f entryNormal(const VolumeView& volume, const Vec3f& start
   if (y <= z) return {0, direction.y > 0.0F ? -1.0F : 1.0F, 0};
   return {0, 0, direction.z > 0.0F ? -1.0F : 1.0F};
 }
-
-/// Checks that an isosurface can show something of a volume or of the series that it belongs to.
-/// @throws Error (bad_input) that says what the values are: for indices, and for a value that is neither
-/// among the volume's own nor in the range of its series
-void checkIsoValue(double value, const volume::DenseVolume& volume);
 
 }  // namespace emscape::render

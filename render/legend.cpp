@@ -1,4 +1,4 @@
-#include "render/legend.h"
+#include "emscape/render/legend.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "render/overlay_parts.h"
 
 namespace emscape::render {

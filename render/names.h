@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::render {
 

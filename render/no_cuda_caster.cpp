@@ -1,5 +1,5 @@
 /// Frames cast by a GPU, in a build without CUDA: there are none.
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "render/frame_caster.h"
 
 namespace emscape::render {

@@ -1,11 +1,11 @@
-#include "render/overlay.h"
+#include "emscape/render/overlay.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 #include "render/names.h"
 #include "render/overlay_parts.h"
 

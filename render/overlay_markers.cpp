@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 #include "render/overlay_parts.h"
 
 namespace emscape::render {

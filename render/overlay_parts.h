@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "emscape/render/overlay.h"
 #include "render/canvas.h"
-#include "render/overlay.h"
 
 namespace emscape::render {
 

@@ -1,4 +1,4 @@
-#include "render/pattern_choice.h"
+#include "emscape/render/pattern_choice.h"
 
 #include <fmt/format.h>
 

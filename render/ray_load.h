@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "render/camera.h"
+#include "emscape/render/camera.h"
+#include "emscape/volume/grid.h"
 #include "render/reconstruction.h"
-#include "volume/grid.h"
 
 namespace emscape::render {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "base/device_math.h"
-#include "base/host_device.h"
-#include "base/vec.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
 #include "render/volume_view.h"
 
 namespace emscape::render {

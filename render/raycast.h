@@ -9,13 +9,13 @@
 #pragma once
 
 #include "base/device_math.h"
-#include "base/host_device.h"
-#include "base/vec.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
 #include "render/compositing.h"
 #include "render/ground.h"
-#include "render/image.h"
 #include "render/isosurface.h"
 #include "render/ray_pieces.h"
+#include "render/rgba.h"
 #include "render/shading.h"
 #include "render/volume_view.h"
 

@@ -6,9 +6,9 @@
 #include <atomic>
 #include <limits>
 
-#include "base/error.h"
-#include "base/parallel.h"
 #include "base/simd.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::render {
 namespace {

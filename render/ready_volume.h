@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "emscape/volume/dense_volume.h"
 #include "render/volume_view.h"
 #include "volume/bricks.h"
-#include "volume/dense_volume.h"
 
 namespace emscape::render {
 

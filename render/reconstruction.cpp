@@ -1,7 +1,7 @@
 #include "render/reconstruction.h"
 
-#include "base/parallel.h"
 #include "base/simd.h"
+#include "emscape/base/parallel.h"
 #include "render/interpolation.h"
 #include "render/names.h"
 

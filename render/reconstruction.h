@@ -2,33 +2,18 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
-#include "base/host_device.h"
-#include "render/image.h"
+#include "emscape/base/host_device.h"
+#include "emscape/render/image.h"
+#include "emscape/render/pattern.h"
 
 namespace emscape::render {
-
-/// Source pixels: all; x even; (x + y) even; x and y even; those that cannot be predicted (adaptive.h).
-enum class Pattern { full, columns, checkerboard, quarter, adaptive };
-const char* toString(Pattern pattern);
-/// @throws Error (usage) that lists the names
-Pattern parsePattern(const std::string& name);
-/// Every pattern, that with the most rays first; adaptive, whose rays depend on the picture, is the last.
-const std::vector<Pattern>& allPatterns();
 
 /// A pixel of a list to be cast.
 struct Pixel {
   std::uint16_t x = 0, y = 0;
 };
-
-/// How missing pixels are interpolated: in premultiplied float, or in 8-bit levels as the paper does (for its
-/// tables).
-enum class Interpolation { float32, bits8 };
-const char* toString(Interpolation interpolation);
-/// "float" or "8bit". @throws Error (usage)
-Interpolation parseInterpolation(const std::string& name);
 
 /// Pixels (first_x + i * step_x, first_y + j * step_y), 0 <= i < columns, 0 <= j < rows: a dense launch casts
 /// one.

@@ -1,9 +1,9 @@
-#include "render/renderer.h"
+#include "emscape/render/renderer.h"
 
 #include <mutex>
 #include <utility>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "render/frame_caster.h"
 #include "render/scene.h"
 
@@ -55,6 +55,14 @@ void Renderer::setVolume(std::shared_ptr<const volume::DeviceVolume> volume) {
   if (!volume) throw Error(ErrorCode::other, "Renderer: no volume is given");
   const volume::DeviceVolume& set = *volume;
   impl_->setVolume(std::move(volume), set.grid(), set.info.categorical);
+}
+
+void Renderer::setVolume(const volume::Volume& volume) {
+  if (volume.isOnDevice()) {
+    setVolume(volume.device());
+  } else {
+    setVolume(volume.dense());
+  }
 }
 
 std::size_t Renderer::volumeBytes() const {

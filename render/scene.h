@@ -4,14 +4,14 @@
 #include <memory>
 #include <optional>
 
-#include "render/camera.h"
+#include "emscape/render/camera.h"
+#include "emscape/render/height_field.h"
+#include "emscape/render/render_settings.h"
+#include "emscape/render/transfer_function.h"
+#include "emscape/volume/dense_volume.h"
 #include "render/ground.h"
-#include "render/height_field.h"
 #include "render/raycast.h"
-#include "render/render_settings.h"
-#include "render/transfer_function.h"
 #include "render/transfer_table.h"
-#include "volume/dense_volume.h"
 
 namespace emscape::render {
 

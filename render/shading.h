@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
-#include "base/vec.h"
-#include "render/image.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
+#include "render/rgba.h"
 #include "render/volume_view.h"
 
 namespace emscape::render {

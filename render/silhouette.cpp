@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::render {
 namespace {

@@ -1,7 +1,8 @@
 /// What SkipView says of a brick, from the range of its values: single source for host and device.
 #pragma once
 
-#include "base/host_device.h"
+#include "emscape/base/host_device.h"
+#include "emscape/render/render_settings.h"
 #include "render/compositing.h"
 #include "render/volume_view.h"
 #include "volume/bricks.h"

@@ -7,8 +7,8 @@
 #include <set>
 #include <sstream>
 
-#include "base/error.h"
-#include "render/transfer_function.h"
+#include "emscape/base/error.h"
+#include "emscape/render/transfer_function.h"
 
 namespace emscape::render {
 namespace {

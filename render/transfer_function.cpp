@@ -1,4 +1,4 @@
-#include "render/transfer_function.h"
+#include "emscape/render/transfer_function.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::render {
 namespace {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::render {
 namespace {

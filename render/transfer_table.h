@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "emscape/render/render_settings.h"
+#include "emscape/render/transfer_function.h"
 #include "render/compositing.h"
 #include "render/skip_rule.h"
-#include "render/transfer_function.h"
 #include "volume/bricks.h"
 
 namespace emscape::render {

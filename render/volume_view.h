@@ -5,8 +5,8 @@
 #include <cstdint>
 
 #include "base/device_math.h"
-#include "base/host_device.h"
-#include "base/vec.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
 #include "volume/bricks.h"
 #include "volume/sparse_block.h"
 

@@ -1,9 +1,9 @@
-#include "scenario/antenna.h"
+#include "emscape/scenario/antenna.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 

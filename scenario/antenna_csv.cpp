@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/antenna_shapes.h"
 #include "scenario/antenna_cut.h"
-#include "scenario/antenna_shapes.h"
 #include "scenario/antenna_tables.h"
 #include "scenario/antenna_text.h"
 

@@ -20,10 +20,10 @@
 #include <limits>
 #include <optional>
 
-#include "base/log.h"
-#include "base/units.h"
+#include "emscape/base/log.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/antenna_shapes.h"
 #include "scenario/antenna_cut.h"
-#include "scenario/antenna_shapes.h"
 #include "scenario/antenna_tables.h"
 #include "scenario/antenna_text.h"
 

@@ -1,4 +1,4 @@
-#include "scenario/antenna_shapes.h"
+#include "emscape/scenario/antenna_shapes.h"
 
 #include <fmt/format.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
-#include "base/units.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 #include "scenario/antenna_tables.h"
 
 namespace emscape::scenario {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/error.h"
-#include "base/units.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 namespace {

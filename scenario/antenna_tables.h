@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenario/antenna.h"
+#include "emscape/scenario/antenna.h"
 
 namespace emscape::scenario {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::scenario {
 

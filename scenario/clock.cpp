@@ -1,11 +1,11 @@
-#include "scenario/clock.h"
+#include "emscape/scenario/clock.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <cstdlib>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::scenario {
 

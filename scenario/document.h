@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scenario/problem.h"
+#include "emscape/scenario/problem.h"
 
 namespace emscape::scenario {
 

@@ -1,9 +1,9 @@
-#include "scenario/emitter.h"
+#include "emscape/scenario/emitter.h"
 
 #include <algorithm>
 #include <complex>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 

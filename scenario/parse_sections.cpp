@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "scenario/antenna_shapes.h"
+#include "emscape/scenario/antenna_shapes.h"
 #include "scenario/schema_check.h"
 
 namespace emscape::scenario {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "scenario/emitter.h"
-#include "scenario/platform.h"
-#include "scenario/problem.h"
+#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/platform.h"
+#include "emscape/scenario/problem.h"
 #include "scenario/section.h"
 #include "scenario/text_file.h"
 

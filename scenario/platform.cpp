@@ -1,9 +1,9 @@
-#include "scenario/platform.h"
+#include "emscape/scenario/platform.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 

@@ -1,4 +1,4 @@
-#include "scenario/problem.h"
+#include "emscape/scenario/problem.h"
 
 #include <algorithm>
 #include <tuple>

@@ -1,4 +1,4 @@
-#include "scenario/propagation.h"
+#include "emscape/scenario/propagation.h"
 
 namespace emscape::scenario {
 namespace {

@@ -1,4 +1,4 @@
-#include "scenario/scan.h"
+#include "emscape/scenario/scan.h"
 
 #include <algorithm>
 #include <cmath>

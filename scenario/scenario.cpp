@@ -1,9 +1,9 @@
-#include "scenario/scenario.h"
+#include "emscape/scenario/scenario.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 

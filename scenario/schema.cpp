@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "scenario/scenario.h"
+#include "emscape/scenario/scenario.h"
 
 namespace emscape::scenario {
 

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <set>
 
-#include "scenario/clock.h"
+#include "emscape/scenario/clock.h"
 #include "scenario/text_file.h"
 
 namespace emscape::scenario {

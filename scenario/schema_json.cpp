@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scenario/scenario_yaml.h"
+#include "emscape/scenario/scenario_file.h"
 #include "scenario/schema.h"
 
 namespace emscape::scenario {

@@ -1,12 +1,12 @@
-#include "scenario/snapshot.h"
+#include "emscape/scenario/snapshot.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/geoid.h"
-#include "base/units.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 

@@ -1,14 +1,15 @@
-#include "scenario/terrain.h"
+#include "emscape/scenario/terrain.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "base/geoid.h"
-#include "base/log.h"
-#include "base/parallel.h"
-#include "base/units.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/log.h"
+#include "emscape/base/parallel.h"
+#include "emscape/base/units.h"
 #include "scenario/terrain_place.h"
+#include "scenario/terrain_view.h"
 
 namespace emscape::scenario {
 namespace {

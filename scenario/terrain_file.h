@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
-#include "scenario/terrain.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/terrain.h"
 #include "scenario/terrain_posts.h"
 
 namespace emscape::scenario {

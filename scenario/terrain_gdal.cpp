@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 #include "scenario/terrain_file.h"
 
 namespace emscape::scenario {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <string>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::scenario {
 

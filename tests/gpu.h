@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "base/device.h"
+#include "emscape/base/device.h"
 
 /// At the start of a test's body.
 #define EMSCAPE_NEEDS_GPU()                                             \

@@ -4,8 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::volume {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include "base/host_device.h"
-#include "base/vec.h"
-#include "volume/dense_volume.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
+#include "emscape/volume/dense_volume.h"
 
 namespace emscape::volume {
 

@@ -1,9 +1,18 @@
-#include "volume/dense_volume.h"
+#include "emscape/volume/dense_volume.h"
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace emscape::volume {
+
+bool operator==(const VolumeInfo& a, const VolumeInfo& b) {
+  const auto fields = [](const VolumeInfo& info) {
+    return std::tie(info.quantity, info.unit, info.time_s, info.time_utc, info.floor, info.range_min,
+                    info.range_max, info.categorical, info.extra);
+  };
+  return fields(a) == fields(b);
+}
 namespace {
 
 std::string dimsText(const Dims& dims) {

@@ -1,4 +1,4 @@
-#include "volume/device_volume.h"
+#include "emscape/volume/device_volume.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "volume/file.h"
+#include "emscape/volume/file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -6,10 +6,10 @@
 #include <set>
 #include <tuple>
 
-#include "volume/nvdb.h"
-#include "volume/raw.h"
-#include "volume/vdb.h"
-#include "volume/vti.h"
+#include "emscape/volume/nvdb.h"
+#include "emscape/volume/raw.h"
+#include "emscape/volume/vdb.h"
+#include "emscape/volume/vti.h"
 
 namespace emscape::volume {
 namespace fs = std::filesystem;

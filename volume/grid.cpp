@@ -1,4 +1,4 @@
-#include "volume/grid.h"
+#include "emscape/volume/grid.h"
 
 namespace emscape::volume {
 

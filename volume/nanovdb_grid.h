@@ -1,7 +1,7 @@
 /// Dense volumes as NanoVDB grids. Internal to the module.
 #pragma once
 
-#include "volume/dense_volume.h"
+#include "emscape/volume/dense_volume.h"
 #include "volume/nanovdb_wrapper.h"
 
 namespace emscape::volume {

@@ -1,6 +1,6 @@
 /// Device volumes in a build without CUDA: there are none.
-#include "base/error.h"
-#include "volume/device_volume.h"
+#include "emscape/base/error.h"
+#include "emscape/volume/device_volume.h"
 
 namespace emscape::volume {
 

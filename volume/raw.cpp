@@ -1,12 +1,12 @@
-#include "volume/raw.h"
+#include "emscape/volume/raw.h"
 
 #include <fstream>
 #include <regex>
 #include <string>
 
 #include "base/whole_file.h"
+#include "emscape/volume/statistics.h"
 #include "volume/byte_reader.h"
-#include "volume/statistics.h"
 #include "volume/volume_json.h"
 
 namespace emscape::volume {

@@ -1,7 +1,7 @@
 /// When a sparse grid is too sparse to be made dense. Internal to the module.
 #pragma once
 
-#include "volume/dense_volume.h"
+#include "emscape/volume/dense_volume.h"
 
 namespace emscape::volume {
 

@@ -1,8 +1,8 @@
 /// The voxels of a sparse volume as a GPU samples them. Plain data.
 #pragma once
 
-#include "base/host_device.h"
-#include "base/vec.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
 
 namespace emscape::volume {
 

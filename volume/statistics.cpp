@@ -1,12 +1,12 @@
-#include "volume/statistics.h"
+#include "emscape/volume/statistics.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "base/error.h"
-#include "base/parallel.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::volume {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <memory>
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::volume {
 namespace {

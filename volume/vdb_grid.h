@@ -3,7 +3,7 @@
 
 #include <openvdb/openvdb.h>
 
-#include "volume/dense_volume.h"
+#include "emscape/volume/dense_volume.h"
 
 namespace emscape::volume {
 

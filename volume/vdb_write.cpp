@@ -1,7 +1,7 @@
 #include <openvdb/io/Archive.h>
 
 #include "base/whole_file.h"
-#include "volume/vdb.h"
+#include "emscape/volume/vdb.h"
 #include "volume/vdb_grid.h"
 
 namespace emscape::volume {

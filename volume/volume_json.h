@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "volume/dense_volume.h"
+#include "emscape/volume/dense_volume.h"
 
 namespace emscape::volume {
 

@@ -1,10 +1,10 @@
-#include "volume/voxel_type.h"
+#include "emscape/volume/voxel_type.h"
 
 #include <algorithm>
 #include <cstring>
 #include <iterator>
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::volume {
 namespace {

@@ -2,10 +2,10 @@
 #include <pugixml.hpp>
 #include <sstream>
 
-#include "base/parallel.h"
 #include "base/whole_file.h"
+#include "emscape/base/parallel.h"
+#include "emscape/volume/vti.h"
 #include "volume/volume_json.h"
-#include "volume/vti.h"
 
 namespace emscape::volume {
 namespace {

@@ -13,11 +13,11 @@
 #include "apps/emscape/inputs.h"
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/place.h"
-#include "base/error.h"
-#include "base/parallel.h"
 #include "base/stopwatch.h"
-#include "emfield/field_solver.h"
-#include "scenario/snapshot.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::app {
 namespace {

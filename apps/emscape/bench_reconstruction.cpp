@@ -11,7 +11,7 @@
 #include "apps/emscape/bench_scene.h"
 #include "apps/emscape/bench_statistics.h"
 #include "apps/emscape/interrupt.h"
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::app {
 namespace {

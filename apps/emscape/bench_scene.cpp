@@ -6,10 +6,10 @@
 #include <ctime>
 
 #include "apps/emscape/paper_transfer.h"
-#include "base/log.h"
-#include "base/parallel.h"
 #include "base/stopwatch.h"
-#include "base/units.h"
+#include "emscape/base/log.h"
+#include "emscape/base/parallel.h"
+#include "emscape/base/units.h"
 
 namespace emscape::app {
 namespace {
@@ -98,7 +98,7 @@ BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& gl
   name_ = source->name();
   volume_ = source->frame(0).volume;
   for (const std::string& warning : source->warnings()) logWarning(warning);
-  volume_.give([this](const auto& volume) { renderer_.setVolume(volume); });
+  renderer_.setVolume(volume_);
   renderer_.setTransferFunction(functionFor(volume_.info(), options.transfer));
   turnTo(0);
 }

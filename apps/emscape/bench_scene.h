@@ -7,8 +7,8 @@
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/frame_source.h"
+#include "emscape/render/renderer.h"
 #include "render/ray_load.h"
-#include "render/renderer.h"
 
 namespace emscape::app {
 
@@ -74,7 +74,7 @@ class BenchScene {
   const render::ImageSize size_;
   const render::CameraSpec camera_;
   std::string name_;
-  FieldVolume volume_;
+  volume::Volume volume_;
   render::Renderer renderer_;
 };
 

@@ -7,8 +7,8 @@
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
-#include "base/error.h"
-#include "emfield/check/reference_check.h"
+#include "emscape/base/error.h"
+#include "emscape/emfield/reference_check.h"
 
 namespace emscape::app {
 namespace {

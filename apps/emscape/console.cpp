@@ -9,8 +9,8 @@
 #include <mutex>
 #include <system_error>
 
-#include "base/error.h"
-#include "base/log.h"
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
 
 namespace emscape::app {
 namespace {

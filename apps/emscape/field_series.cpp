@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "apps/emscape/interrupt.h"
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::app {
 
@@ -42,8 +42,8 @@ scenario::Snapshot FieldSeries::update(int step) {
   return now;
 }
 
-std::vector<FieldVolume> FieldSeries::latest() const {
-  std::vector<FieldVolume> volumes;
+std::vector<volume::Volume> FieldSeries::latest() const {
+  std::vector<volume::Volume> volumes;
   const auto take = [&volumes](const auto& latest) {
     for (const auto& volume : latest) volumes.emplace_back(volume, volume->info);
   };
@@ -59,7 +59,7 @@ std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<
   std::vector<ValueRange> ranges(channels().size());
   for (int step = 0; step < count(); step += stride) {
     update(step);
-    const std::vector<FieldVolume> volumes = latest();
+    const std::vector<volume::Volume> volumes = latest();
     for (std::size_t c = 0; c < ranges.size(); ++c) {
       const volume::VolumeInfo& info = volumes[c].info();
       ranges[c].add({info.range_min, info.range_max});
@@ -69,9 +69,9 @@ std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<
   return ranges;
 }
 
-std::vector<FieldVolume> FieldSeries::compute(int step, const std::vector<ValueRange>& ranges) {
+std::vector<volume::Volume> FieldSeries::compute(int step, const std::vector<ValueRange>& ranges) {
   const scenario::Snapshot now = update(step);
-  std::vector<FieldVolume> volumes = latest();
+  std::vector<volume::Volume> volumes = latest();
   for (std::size_t c = 0; c < volumes.size(); ++c) {
     // The solver leaves a volume that did not change as it was, its time too.
     volume::VolumeInfo info = volumes[c].info();

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/emscape/field_volume.h"
 #include "apps/emscape/inputs.h"
-#include "emfield/field_solver.h"
-#include "scenario/snapshot.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/volume/volume.h"
 
 namespace emscape::app {
 
@@ -46,7 +46,7 @@ class FieldSeries {
 
   /// The channels' volumes at a step; info.range_* as given, one range a channel.
   /// @throws Interrupted
-  std::vector<FieldVolume> compute(int step, const std::vector<ValueRange>& ranges);
+  std::vector<volume::Volume> compute(int step, const std::vector<ValueRange>& ranges);
 
   /// Whether the last step that was computed differs from the one computed before it.
   bool changed() const { return changed_; }
@@ -57,7 +57,7 @@ class FieldSeries {
  private:
   scenario::Snapshot update(int step);
   /// The channels' volumes as the solver left them.
-  std::vector<FieldVolume> latest() const;
+  std::vector<volume::Volume> latest() const;
 
   LoadedScenario input_;
   std::vector<double> times_s_;

@@ -9,8 +9,8 @@
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/scene.h"
 #include "apps/emscape/volume_input.h"
-#include "base/error.h"
-#include "volume/file.h"
+#include "emscape/base/error.h"
+#include "emscape/volume/file.h"
 
 namespace emscape::app {
 namespace {
@@ -53,7 +53,7 @@ class ComputedFrames : public FrameSource {
   int count() const override { return series_.count(); }
   double time_s(int index) const override { return series_.time_s(index); }
   Frame frame(int index) override {
-    const FieldVolume volume = series_.compute(index, ranges_)[channel_];
+    const volume::Volume volume = series_.compute(index, ranges_)[channel_];
     return {volume, markersOf(series_.snapshot(index), series_.input().terrain.get(), volume.grid()),
             series_.changed()};
   }

@@ -8,17 +8,17 @@
 
 #include "apps/emscape/console.h"
 #include "apps/emscape/field_series.h"
-#include "apps/emscape/field_volume.h"
 #include "apps/emscape/place.h"
-#include "render/height_field.h"
-#include "render/legend.h"
-#include "render/overlay.h"
+#include "emscape/render/height_field.h"
+#include "emscape/render/legend.h"
+#include "emscape/render/overlay.h"
+#include "emscape/volume/volume.h"
 
 namespace emscape::app {
 
 /// One instant.
 struct Frame {
-  FieldVolume volume;
+  volume::Volume volume;
   std::vector<render::Marker> markers;
   bool changed = true;  ///< false: the volume's values are those of the frame asked for before
 };

@@ -9,11 +9,11 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/inputs.h"
 #include "apps/emscape/volume_input.h"
-#include "emfield/field_solver.h"
-#include "scenario/antenna_shapes.h"
-#include "scenario/scenario_yaml.h"
-#include "volume/file.h"
-#include "volume/statistics.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/scenario/antenna_shapes.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/volume/file.h"
+#include "emscape/volume/statistics.h"
 
 namespace emscape::app {
 namespace {

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <set>
 
-#include "base/error.h"
-#include "scenario/scenario_yaml.h"
-#include "volume/file.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/volume/file.h"
 
 namespace emscape::app {
 

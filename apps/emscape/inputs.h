@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "scenario/scenario.h"
-#include "scenario/terrain.h"
+#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/terrain.h"
 
 namespace emscape::app {
 

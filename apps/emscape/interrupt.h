@@ -1,7 +1,7 @@
 /// Stopping in an orderly way on SIGINT and SIGTERM.
 #pragma once
 
-#include "base/progress.h"
+#include "emscape/base/progress.h"
 
 namespace emscape::app {
 

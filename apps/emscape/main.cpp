@@ -9,9 +9,9 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/version.h"
-#include "base/device.h"
-#include "base/error.h"
-#include "base/parallel.h"
+#include "emscape/base/device.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::app {
 namespace {

@@ -7,7 +7,6 @@
 #include <memory>
 
 #include "apps/emscape/interrupt.h"
-#include "base/units.h"
 #include "bench/itm_cases.h"
 #include "emfield/models/diffraction_sweep.h"
 #include "emfield/models/gases.h"
@@ -15,6 +14,7 @@
 #include "emfield/models/p528.h"
 #include "emfield/models/rain.h"
 #include "emfield/models/two_ray.h"
+#include "emscape/base/units.h"
 
 namespace emscape::app {
 namespace {

@@ -15,7 +15,7 @@ Painter::Painter(const Look& look, const FrameSource& source, const Place& place
 }
 
 void Painter::setFrame(const Frame& frame) {
-  frame.volume.give([this](const auto& volume) { renderer_.setVolume(volume); });
+  renderer_.setVolume(frame.volume);
   annotations_.time = fmt::format("t = {:g} s", frame.volume.info().time_s);
   annotations_.time_utc = frame.volume.info().time_utc;
   if (look_.show_emitters) annotations_.markers = frame.markers;
@@ -55,10 +55,10 @@ render::Image8 Painter::picture(const std::string& note) {
                          [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
 }
 
-render::TransferFunction Painter::functionFor(const FieldVolume& volume) const {
+render::TransferFunction Painter::functionFor(const volume::Volume& volume) const {
   if (!look_.transfer.empty()) return render::readTransferFunction(look_.transfer, volume.info());
   return look_.colors_span_range ? render::defaultTransferFunction(volume.info())
-                                 : render::defaultTransferFunction(volume.copy());
+                                 : render::defaultTransferFunction(*volume.host());
 }
 
 void Painter::placeCamera(const render::CameraSpec& spec) {
@@ -66,7 +66,7 @@ void Painter::placeCamera(const render::CameraSpec& spec) {
                                          render::overlayMargins(look_.size, annotations_)));
 }
 
-void Painter::fitTo(const FieldVolume& volume) {
+void Painter::fitTo(const volume::Volume& volume) {
   const LoadedScenario* scene = source_.scene();
   const render::TransferFunction function = functionFor(volume);
   renderer_.setTransferFunction(function);
@@ -74,7 +74,7 @@ void Painter::fitTo(const FieldVolume& volume) {
     renderer_.setHeightField(heightFieldOf(*scene->terrain, volume.grid()));
   }
   const bool shows_surface = look_.settings.mode == render::CompositingMode::iso;
-  if (shows_surface) render::checkIsoValue(renderer_.isoValue(), volume.copy());
+  if (shows_surface) render::checkIsoValue(renderer_.isoValue(), *volume.host());
   annotations_.georeferenced = volume.grid().georeferenced;
   annotations_.legend = render::legendOf(volume.info(), function);
   if (shows_surface) annotations_.legend->iso_value = renderer_.isoValue();

@@ -4,11 +4,11 @@
 #include <string>
 
 #include "apps/emscape/frame_source.h"
-#include "base/progress.h"
-#include "render/camera.h"
-#include "render/image.h"
-#include "render/overlay.h"
-#include "render/renderer.h"
+#include "emscape/base/progress.h"
+#include "emscape/render/camera.h"
+#include "emscape/render/image.h"
+#include "emscape/render/overlay.h"
+#include "emscape/render/renderer.h"
 
 namespace emscape::app {
 
@@ -47,8 +47,8 @@ class Painter {
   render::Image8 picture(const std::string& note);
 
  private:
-  void fitTo(const FieldVolume& volume);
-  render::TransferFunction functionFor(const FieldVolume& volume) const;
+  void fitTo(const volume::Volume& volume);
+  render::TransferFunction functionFor(const volume::Volume& volume) const;
   void placeCamera(const render::CameraSpec& spec);
 
   const Look& look_;

@@ -4,8 +4,8 @@
 
 #include "apps/emscape/file_names.h"
 #include "apps/emscape/video.h"
-#include "base/error.h"
-#include "volume/file.h"
+#include "emscape/base/error.h"
+#include "emscape/volume/file.h"
 
 namespace emscape::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "render/image.h"
+#include "emscape/render/image.h"
 
 namespace emscape::app {
 

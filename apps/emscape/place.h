@@ -4,10 +4,10 @@
 #include <string>
 
 #include "apps/emscape/command.h"
-#include "base/backend.h"
-#include "base/log.h"
-#include "emfield/field_solver.h"
-#include "render/renderer.h"
+#include "emscape/base/backend.h"
+#include "emscape/base/log.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/render/renderer.h"
 
 namespace emscape::app {
 

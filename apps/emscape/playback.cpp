@@ -7,8 +7,8 @@
 #include <cstring>
 
 #include "apps/emscape/interrupt.h"
-#include "base/error.h"
 #include "base/stopwatch.h"
+#include "emscape/base/error.h"
 
 namespace emscape::app {
 namespace {

@@ -9,8 +9,8 @@
 #include "apps/emscape/frame_source.h"
 #include "apps/emscape/painter.h"
 #include "apps/emscape/playback_report.h"
-#include "base/progress.h"
-#include "render/frame_controller.h"
+#include "emscape/base/progress.h"
+#include "emscape/render/frame_controller.h"
 
 namespace emscape::app {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/emscape/console.h"
-#include "render/frame_controller.h"
+#include "emscape/render/frame_controller.h"
 
 namespace emscape::app {
 

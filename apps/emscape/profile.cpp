@@ -10,12 +10,12 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/profile_plot.h"
 #include "apps/emscape/profile_report.h"
-#include "base/error.h"
-#include "base/log.h"
-#include "emfield/field_solver.h"
-#include "emfield/path_budget.h"
-#include "scenario/scenario_yaml.h"
-#include "scenario/snapshot.h"
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/path_budget.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::app {
 namespace {
@@ -99,10 +99,8 @@ ProfileReport makeReport(const ProfileOptions& options) {
                         : nullptr;
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), options.time_s);
   const emfield::PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};
-  const emfield::FanResolution resolution =
-      emfield::fanResolution(emfield::gridOf(scenario->region), terrain.get());
   const auto budgetBy = [&](PropagationModel model) {
-    return emfield::pathBudget(snapshot, emitter, point, model, terrain.get(), resolution);
+    return emfield::pathBudget(snapshot, emitter, point, model, terrain.get());
   };
   ProfileReport report{
       options.scenario, snapshot.time_utc, budgetBy(scenario->emitters[emitter].propagation), {}};

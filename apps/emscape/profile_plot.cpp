@@ -7,10 +7,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "base/units.h"
 #include "base/whole_file.h"
+#include "emscape/base/units.h"
+#include "emscape/render/legend.h"
 #include "render/canvas.h"
-#include "render/legend.h"
 
 namespace emscape::app {
 namespace {

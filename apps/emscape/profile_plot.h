@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "emfield/path_budget.h"
-#include "render/image.h"
+#include "emscape/emfield/path_budget.h"
+#include "emscape/render/image.h"
 
 namespace emscape::app {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::app {
 namespace {
@@ -37,7 +37,7 @@ Json geometryJson(const PathBudget& budget) {
           {"straight_elevation_deg", radToDeg(geometry.straight_elevation_rad)},
           {"launch_elevation_deg", radToDeg(geometry.launch_elevation_rad)},
           {"k_factor", budget.k_factor},
-          {"effective_earth_radius_m", budget.profile.station.effective_earth_radius_m},
+          {"effective_earth_radius_m", budget.profile.effective_earth_radius_m},
           {"smooth_horizon_m", geometry.horizon_range_m},
           {"far_field_m", geometry.far_field_m},
           {"off_axis_deg", radToDeg(budget.pointing.off_axis_rad)},
@@ -94,7 +94,7 @@ void printGeometry(const PathBudget& budget) {
   printRow(
       "effective earth",
       fmt::format("k = {:.4g}, radius {:.0f} km; a smooth one cuts off beyond {:.1f} km", budget.k_factor,
-                  budget.profile.station.effective_earth_radius_m / 1000, geometry.horizon_range_m / 1000));
+                  budget.profile.effective_earth_radius_m / 1000, geometry.horizon_range_m / 1000));
 }
 
 void printObstacles(const PathBudget& budget) {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/emscape/console.h"
-#include "emfield/path_budget.h"
+#include "emscape/emfield/path_budget.h"
 
 namespace emscape::app {
 

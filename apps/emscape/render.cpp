@@ -16,9 +16,9 @@
 #include "apps/emscape/picture_sink.h"
 #include "apps/emscape/playback.h"
 #include "apps/emscape/playback_report.h"
-#include "base/error.h"
-#include "base/log.h"
 #include "base/stopwatch.h"
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
 #include "render/reconstruction.h"
 
 namespace emscape::app {

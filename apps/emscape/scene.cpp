@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/geo_frame.h"
-#include "base/geoid.h"
-#include "base/parallel.h"
+#include "emscape/base/geo_frame.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::app {
 namespace {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "apps/emscape/inputs.h"
-#include "render/height_field.h"
-#include "render/legend.h"
-#include "render/overlay.h"
-#include "scenario/snapshot.h"
-#include "volume/grid.h"
+#include "emscape/render/height_field.h"
+#include "emscape/render/legend.h"
+#include "emscape/render/overlay.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/volume/grid.h"
 
 namespace emscape::app {
 

@@ -3,8 +3,8 @@
 #include <regex>
 
 #include "apps/emscape/file_names.h"
-#include "volume/file.h"
-#include "volume/vti.h"
+#include "emscape/volume/file.h"
+#include "emscape/volume/vti.h"
 
 namespace emscape::app {
 namespace {
@@ -30,11 +30,11 @@ SeriesFiles::SeriesFiles(fs::path folder, const std::string& name, const std::ve
       formats_(formats.begin(), formats.end()),
       times_s_(std::move(times_s)) {}
 
-void SeriesFiles::write(int step, const std::vector<FieldVolume>& channels) const {
-  std::vector<volume::DenseVolume> copies;
-  for (const FieldVolume& channel : channels) copies.push_back(channel.copy());
+void SeriesFiles::write(int step, const std::vector<volume::Volume>& channels) const {
+  std::vector<std::shared_ptr<const volume::DenseVolume>> on_host;
+  for (const volume::Volume& channel : channels) on_host.push_back(channel.host());
   std::vector<const volume::DenseVolume*> volumes;
-  for (const volume::DenseVolume& copy : copies) volumes.push_back(&copy);
+  for (const auto& volume : on_host) volumes.push_back(volume.get());
   for (const volume::FileFormat& format : volume::fileFormats()) {
     if (formats_.count(format.name) == 0) continue;
     const fs::path file = volume::seriesFile(folder_, name_, step + 1, format.name);

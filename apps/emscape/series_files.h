@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/emscape/field_volume.h"
+#include "emscape/volume/volume.h"
 
 namespace emscape::app {
 
@@ -22,7 +22,7 @@ class SeriesFiles {
 
   /// Writes a step in every format; one thread at a time.
   /// @throws Error (other, device); then no file of the format that failed is there
-  void write(int step, const std::vector<FieldVolume>& channels) const;
+  void write(int step, const std::vector<volume::Volume>& channels) const;
 
   /// Removes the files of any series of this name, and series.json, from the folder.
   void removeOld() const;

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "base/error.h"
 #include "base/whole_file.h"
+#include "emscape/base/error.h"
 
 namespace emscape::app {
 namespace {

@@ -16,10 +16,10 @@
 #include "apps/emscape/series_files.h"
 #include "apps/emscape/series_state.h"
 #include "apps/emscape/version.h"
-#include "base/log.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
-#include "emfield/quantities.h"
+#include "emscape/base/log.h"
+#include "emscape/emfield/quantities.h"
 
 namespace emscape::app {
 namespace {

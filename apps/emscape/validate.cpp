@@ -8,10 +8,10 @@
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
-#include "base/geo_frame.h"
-#include "emfield/field_solver.h"
-#include "scenario/scenario_yaml.h"
-#include "scenario/snapshot.h"
+#include "emscape/base/geo_frame.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::app {
 namespace {

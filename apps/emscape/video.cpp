@@ -12,8 +12,8 @@
 #include <cstring>
 #include <vector>
 
-#include "base/error.h"
 #include "base/whole_file.h"
+#include "emscape/base/error.h"
 
 extern char** environ;  // NOLINT: POSIX names it so
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-#include "render/image.h"
+#include "emscape/render/image.h"
 
 namespace emscape::app {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/error.h"
-#include "volume/file.h"
+#include "emscape/base/error.h"
+#include "emscape/volume/file.h"
 
 namespace emscape::app {
 

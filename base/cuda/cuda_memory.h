@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::cuda {
 

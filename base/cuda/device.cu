@@ -1,6 +1,6 @@
 #include <cuda_runtime_api.h>
 
-#include "base/device.h"
+#include "emscape/base/device.h"
 
 namespace emscape {
 namespace {

@@ -1,9 +1,9 @@
 /// Attenuation by gases and rain.
-#include "base/units.h"
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
 #include "emfield/models/gases.h"
 #include "emfield/models/rain.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 

@@ -1,11 +1,11 @@
 /// Detection statistics, the radar equation and free-space conversions.
 #include <cmath>
 
-#include "base/error.h"
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
 #include "emfield/detection.h"
 #include "emfield/radar_equation.h"
+#include "emscape/base/error.h"
 
 namespace emscape::emfield {
 namespace {

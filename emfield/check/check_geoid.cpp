@@ -1,7 +1,7 @@
 /// Geoid undulation at published points.
-#include "base/geoid.h"
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
+#include "emscape/base/geoid.h"
 
 namespace emscape::emfield {
 

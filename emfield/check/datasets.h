@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "emfield/check/reference_check.h"
+#include "emscape/emfield/reference_check.h"
 
 namespace emscape::emfield {
 

@@ -1,4 +1,4 @@
-#include "emfield/check/reference_check.h"
+#include "emscape/emfield/reference_check.h"
 
 #include <fmt/core.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <set>
 
-#include "base/error.h"
 #include "emfield/check/datasets.h"
+#include "emscape/base/error.h"
 
 namespace emscape::emfield {
 namespace fs = std::filesystem;

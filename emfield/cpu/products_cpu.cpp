@@ -2,9 +2,9 @@
 #include <limits>
 #include <vector>
 
-#include "base/parallel.h"
 #include "base/simd.h"
 #include "emfield/products.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 namespace {

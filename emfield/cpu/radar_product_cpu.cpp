@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/parallel.h"
 #include "base/simd.h"
 #include "emfield/cpu/row.h"
 #include "emfield/radar_product.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/parallel.h"
 #include "emfield/column_geometry.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield::cuda {
 namespace {

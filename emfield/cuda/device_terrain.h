@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "base/cuda/cuda_memory.h"
-#include "scenario/terrain.h"
+#include "emscape/scenario/terrain.h"
+#include "scenario/terrain_view.h"
 
 namespace emscape::emfield::cuda {
 

@@ -2,11 +2,11 @@
 
 #include <map>
 
-#include "base/device.h"
-#include "base/error.h"
 #include "emfield/cuda/combine_kernels.h"
 #include "emfield/cuda/device_geometry.h"
 #include "emfield/field_engine.h"
+#include "emscape/base/device.h"
+#include "emscape/base/error.h"
 
 namespace emscape::emfield {
 namespace {

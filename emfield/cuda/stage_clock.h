@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/cuda/cuda_memory.h"
-#include "emfield/field_solver.h"
+#include "emscape/emfield/field_solver.h"
 
 namespace emscape::emfield::cuda {
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "base/parallel.h"
-#include "base/units.h"
 #include "emfield/models/gases.h"
 #include "emfield/models/rain.h"
+#include "emscape/base/parallel.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "base/host_device.h"
-#include "scenario/scenario.h"
+#include "emscape/base/host_device.h"
+#include "emscape/scenario/scenario.h"
 
 namespace emscape::emfield {
 

@@ -1,8 +1,8 @@
 /// Excess of the model `diffraction` over columns.
 #pragma once
 
-#include "base/host_device.h"
 #include "emfield/excess/excess_column.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

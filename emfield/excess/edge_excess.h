@@ -1,10 +1,10 @@
 /// Excess of the model `diffraction` by its options: the single largest edge, or Deygout's three.
 #pragma once
 
-#include "base/host_device.h"
 #include "emfield/excess/excess_column.h"
 #include "emfield/excess/height_bisection.h"
 #include "emfield/models/diffraction_edges.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "base/fast_math.h"
-#include "base/host_device.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -4,10 +4,10 @@
 
 #include <cstddef>
 
-#include "base/host_device.h"
 #include "emfield/models/diffraction.h"
 #include "emfield/models/diffraction_sweep.h"
 #include "emfield/terrain_fan.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::emfield {
 namespace {

@@ -23,7 +23,7 @@
 #include "emfield/excess/smooth_excess.h"
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
-#include "scenario/scenario.h"
+#include "emscape/scenario/scenario.h"
 
 namespace emscape::emfield {
 

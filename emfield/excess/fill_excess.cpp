@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 namespace {

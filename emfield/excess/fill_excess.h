@@ -4,12 +4,12 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
 #include "emfield/excess/excess_code.h"
 #include "emfield/excess/excess_column.h"
 #include "emfield/excess/excess_model.h"
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -1,10 +1,10 @@
 /// Excess of the model `itm`: where it holds, and `diffraction` elsewhere.
 #pragma once
 
-#include "base/host_device.h"
 #include "emfield/excess/diffraction_excess.h"
 #include "emfield/excess/height_bisection.h"
 #include "emfield/models/itm.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "base/parallel.h"
 #include "emfield/models/p528.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 namespace {

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
-#include "base/host_device.h"
 #include "emfield/excess/air_loss.h"
 #include "emfield/excess/excess_column.h"
-#include "scenario/scenario.h"
+#include "emscape/base/host_device.h"
+#include "emscape/scenario/scenario.h"
 
 namespace emscape::emfield {
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
 #include "emfield/excess/excess_column.h"
 #include "emfield/models/two_ray.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

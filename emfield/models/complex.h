@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

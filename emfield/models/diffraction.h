@@ -11,11 +11,11 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
-#include "base/units.h"
 #include "emfield/models/diffraction_knife_edge.h"
 #include "emfield/models/diffraction_spherical_earth.h"
 #include "emfield/models/model_limits.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 

@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
 #include "emfield/models/diffraction.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
 #include "emfield/models/diffraction_knife_edge.h"
 #include "emfield/models/ground_constants.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -17,9 +17,9 @@
 #include <cmath>
 #include <vector>
 
-#include "base/host_device.h"
 #include "emfield/models/diffraction.h"
 #include "emfield/models/diffraction_smooth_earth.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

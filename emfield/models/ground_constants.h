@@ -1,8 +1,8 @@
 /// Electrical constants of grounds and waters, and of the sea by ITU-R P.527.
 #pragma once
 
-#include "base/host_device.h"
-#include "scenario/propagation.h"
+#include "emscape/base/host_device.h"
+#include "emscape/scenario/propagation.h"
 
 namespace emscape::emfield {
 

@@ -11,14 +11,14 @@
 #include <string>
 #include <vector>
 
-#include "base/host_device.h"
-#include "base/units.h"
 #include "emfield/models/itm_path.h"
 #include "emfield/models/itm_profile.h"
 #include "emfield/models/itm_reference.h"
 #include "emfield/models/itm_variability.h"
 #include "emfield/models/model_limits.h"
-#include "scenario/propagation.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/propagation.h"
 
 namespace emscape::emfield {
 

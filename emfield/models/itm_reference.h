@@ -7,10 +7,10 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
-#include "base/units.h"
 #include "emfield/models/complex.h"
 #include "emfield/models/itm_path.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <string_view>
 
-#include "base/host_device.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
-#include "base/units.h"
 #include "emfield/models/p528_variability.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/units.h"
 #include "emfield/models/gases.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

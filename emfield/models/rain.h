@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
 #include "emfield/models/model_limits.h"
+#include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
 

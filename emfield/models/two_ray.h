@@ -15,12 +15,12 @@
 
 #include <cmath>
 
-#include "base/host_device.h"
-#include "base/units.h"
 #include "emfield/models/complex.h"
 #include "emfield/models/diffraction_spherical_earth.h"
 #include "emfield/models/model_limits.h"
-#include "scenario/propagation.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/propagation.h"
 
 namespace emscape::emfield {
 

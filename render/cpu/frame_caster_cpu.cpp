@@ -1,9 +1,9 @@
 /// Frames cast by the CPU.
 #include <utility>
 
-#include "base/error.h"
-#include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 #include "render/adaptive.h"
 #include "render/cpu/raycast_cpu.h"
 #include "render/frame_caster.h"

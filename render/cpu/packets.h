@@ -4,6 +4,7 @@
 /// A lane's result does not depend on its neighbours, so a pixel is the same in whichever packet it is cast.
 #pragma once
 
+#include "emscape/render/render_settings.h"
 #include "render/raycast.h"
 #include "render/reconstruction.h"
 

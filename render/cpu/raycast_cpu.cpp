@@ -4,8 +4,8 @@
 #include <array>
 #include <atomic>
 
-#include "base/parallel.h"
 #include "base/simd.h"
+#include "emscape/base/parallel.h"
 #include "render/cpu/packets.h"
 
 namespace emscape::render {

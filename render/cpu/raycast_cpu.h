@@ -3,7 +3,8 @@
 
 #include <vector>
 
-#include "base/progress.h"
+#include "emscape/base/progress.h"
+#include "emscape/render/render_settings.h"
 #include "render/ground_layer.h"
 #include "render/raycast.h"
 #include "render/reconstruction.h"

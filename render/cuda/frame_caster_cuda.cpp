@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "base/cuda/cuda_memory.h"
-#include "base/device.h"
+#include "emscape/base/device.h"
 #include "render/cuda/device_scene.h"
 #include "render/cuda/kept_orders.h"
 #include "render/cuda/kernels.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/cuda/cuda_memory.h"
-#include "base/progress.h"
+#include "emscape/base/progress.h"
 
 namespace emscape::render::cuda {
 

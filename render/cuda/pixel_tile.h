@@ -1,8 +1,8 @@
 /// How threads share out pixels. For .cu files.
 #pragma once
 
-#include "render/image.h"
 #include "render/reconstruction.h"
+#include "render/rgba.h"
 
 namespace emscape::render::cuda {
 

@@ -1,8 +1,8 @@
 /// Samples of a volume in a GPU's texture memory, for RaycastTask.
 #pragma once
 
-#include "base/host_device.h"
-#include "base/vec.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/vec.h"
 #include "render/volume_view.h"
 
 namespace emscape::render::cuda {

@@ -1,4 +1,4 @@
-#include "base/backend.h"
+#include "emscape/base/backend.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape {
 namespace {

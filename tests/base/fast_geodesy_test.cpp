@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape {
 namespace {

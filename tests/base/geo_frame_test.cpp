@@ -1,4 +1,4 @@
-#include "base/geo_frame.h"
+#include "emscape/base/geo_frame.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "base/error.h"
-#include "base/geoid.h"
-#include "base/units.h"
+#include "emscape/base/error.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/units.h"
 
 namespace emscape {
 namespace {

@@ -1,4 +1,4 @@
-#include "base/geoid.h"
+#include "emscape/base/geoid.h"
 
 #include <gtest/gtest.h>
 

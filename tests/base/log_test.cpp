@@ -1,4 +1,4 @@
-#include "base/log.h"
+#include "emscape/base/log.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape {
 namespace {

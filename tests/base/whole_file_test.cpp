@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "tests/file_size_limit.h"
 
 namespace emscape {

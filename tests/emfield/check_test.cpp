@@ -9,7 +9,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "emfield/check/reference_check.h"
 #include "emfield/check/reference_table.h"
 #include "emfield/models/diffraction.h"
 #include "emfield/models/gases.h"
@@ -18,6 +17,7 @@
 #include "emfield/models/p528.h"
 #include "emfield/models/rain.h"
 #include "emfield/models/two_ray.h"
+#include "emscape/emfield/reference_check.h"
 #include "tests/reference_dir.h"
 
 namespace emscape::emfield {

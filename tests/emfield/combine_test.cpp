@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "emfield/field_solver.h"
+#include "emscape/emfield/field_solver.h"
 #include "tests/emfield/test_scenario.h"
 
 namespace emscape::emfield {

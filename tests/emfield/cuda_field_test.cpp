@@ -7,9 +7,9 @@
 #include <cmath>
 #include <random>
 
-#include "base/device.h"
-#include "base/error.h"
-#include "emfield/field_solver.h"
+#include "emscape/base/device.h"
+#include "emscape/base/error.h"
+#include "emscape/emfield/field_solver.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"

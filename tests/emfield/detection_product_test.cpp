@@ -5,7 +5,7 @@
 
 #include <random>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "tests/emfield/radar_duel.h"
 
 namespace emscape::emfield {

@@ -6,12 +6,12 @@
 
 #include <cmath>
 
-#include "base/error.h"
-#include "base/units.h"
 #include "emfield/models/gases.h"
 #include "emfield/models/rain.h"
 #include "emfield/radar_equation.h"
-#include "scenario/emitter.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/emitter.h"
 
 namespace emscape::emfield {
 namespace {

@@ -8,13 +8,13 @@
 #include <map>
 #include <random>
 
-#include "base/error.h"
 #include "emfield/model_check.h"
 #include "emfield/models/diffraction_edges.h"
 #include "emfield/models/gases.h"
 #include "emfield/models/p528.h"
 #include "emfield/models/rain.h"
-#include "scenario/scenario_yaml.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/scenario_file.h"
 #include "tests/emfield/excess_paths.h"
 
 namespace emscape::emfield {

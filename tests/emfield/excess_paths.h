@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "base/units.h"
 #include "emfield/excess/excess_model.h"
 #include "emfield/terrain_fan.h"
+#include "emscape/base/units.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"
 

@@ -6,10 +6,11 @@
 #include <cmath>
 #include <random>
 
-#include "base/error.h"
 #include "emfield/emitter_geometry.h"
 #include "emfield/excess/excess_code.h"
 #include "emfield/models/diffraction.h"
+#include "emscape/base/error.h"
+#include "scenario/terrain_view.h"
 #include "tests/emfield/excess_paths.h"
 
 namespace emscape::emfield {

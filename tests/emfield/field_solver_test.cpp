@@ -1,16 +1,16 @@
 // What the solver computes anew, what it keeps, and what it says of it.
 
-#include "emfield/field_solver.h"
+#include "emscape/emfield/field_solver.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/error.h"
-#include "base/parallel.h"
-#include "base/units.h"
-#include "scenario/scenario_yaml.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/scenario_file.h"
 #include "tests/emfield/test_scenario.h"
 
 namespace emscape::emfield {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/units.h"
-#include "emfield/field_solver.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/field_solver.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/reference_dir.h"
 

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "base/units.h"
 #include "emfield/models/gases_equivalent_height.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

@@ -6,8 +6,9 @@
 #include <memory>
 #include <vector>
 
-#include "base/units.h"
-#include "scenario/terrain.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/terrain.h"
+#include "scenario/terrain_view.h"
 
 namespace emscape::emfield::testing {
 

@@ -6,13 +6,13 @@
 #include <functional>
 #include <vector>
 
-#include "base/units.h"
 #include "emfield/models/diffraction_edges.h"
 #include "emfield/models/gases.h"
 #include "emfield/models/itm.h"
 #include "emfield/models/p528.h"
 #include "emfield/models/two_ray.h"
-#include "emfield/path_profile.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/path_profile.h"
 #include "tests/emfield/random_profile.h"
 
 namespace emscape::emfield {

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
-#include "base/units.h"
 #include "emfield/models/gases.h"
 #include "emfield/models/p528_variability.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "base/geoid.h"
-#include "base/units.h"
-#include "emfield/path_budget.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/path_budget.h"
 #include "tests/emfield/test_scenario.h"
 
 namespace emscape::emfield {

@@ -1,4 +1,4 @@
-#include "emfield/quantities.h"
+#include "emscape/emfield/quantities.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <set>
 
-#include "base/error.h"
-#include "emfield/field_solver.h"
-#include "scenario/scenario_yaml.h"
+#include "emscape/base/error.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/scenario/scenario_file.h"
 #include "scenario/schema.h"
 #include "tests/emfield/test_scenario.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <memory>
 
-#include "base/units.h"
 #include "emfield/radar_receiver.h"
+#include "emscape/base/units.h"
 #include "tests/emfield/test_scenario.h"
 
 namespace emscape::emfield::testing {

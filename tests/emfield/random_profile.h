@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "base/geo_frame.h"
 #include "emfield/models/diffraction.h"
-#include "scenario/terrain.h"
+#include "emscape/base/geo_frame.h"
+#include "emscape/scenario/terrain.h"
 #include "tests/reference_dir.h"
 
 namespace emscape::emfield::testing {

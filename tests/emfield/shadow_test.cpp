@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "base/geoid.h"
-#include "base/units.h"
-#include "emfield/field_solver.h"
-#include "scenario/terrain.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/scenario/terrain.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/reference_dir.h"
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
-#include "emfield/field_solver.h"
-#include "scenario/antenna_shapes.h"
-#include "scenario/scenario.h"
-#include "scenario/snapshot.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/scenario/antenna_shapes.h"
+#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::emfield::testing {
 

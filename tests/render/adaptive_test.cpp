@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
+#include "emscape/render/renderer.h"
 #include "render/adaptive_predict.h"
-#include "render/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

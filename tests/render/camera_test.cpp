@@ -1,10 +1,10 @@
-#include "render/camera.h"
+#include "emscape/render/camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "base/error.h"
-#include "base/units.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::render {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::render {
 namespace {

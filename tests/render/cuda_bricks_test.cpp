@@ -1,10 +1,10 @@
 /// Bricks that can be skipped, and whether the GPU looks for them.
 #include <gtest/gtest.h>
 
+#include "emscape/volume/device_volume.h"
 #include "render/cuda/device_scene.h"
 #include "render/ready_volume.h"
 #include "tests/render/cuda_scenes.h"
-#include "volume/device_volume.h"
 
 namespace emscape::render {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "render/reconstruction.h"
 #include "tests/render/cuda_scenes.h"
 

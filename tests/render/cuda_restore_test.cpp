@@ -4,7 +4,7 @@
 #include <atomic>
 #include <thread>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "tests/render/cuda_scenes.h"
 
 namespace emscape::render {

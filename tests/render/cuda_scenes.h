@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "render/renderer.h"
+#include "emscape/render/renderer.h"
 #include "tests/gpu.h"
 #include "tests/render/random_scene.h"
 

@@ -1,4 +1,4 @@
-#include "render/frame_controller.h"
+#include "emscape/render/frame_controller.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::render {
 namespace {

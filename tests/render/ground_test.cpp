@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
+#include "emscape/render/renderer.h"
 #include "render/raycast.h"
-#include "render/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

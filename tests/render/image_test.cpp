@@ -1,4 +1,4 @@
-#include "render/image.h"
+#include "emscape/render/image.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <fstream>
 #include <limits>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::render {
 namespace {

@@ -7,10 +7,10 @@
 #include <limits>
 #include <random>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
+#include "emscape/render/renderer.h"
 #include "render/raycast.h"
 #include "render/ready_volume.h"
-#include "render/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

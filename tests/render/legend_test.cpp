@@ -1,4 +1,4 @@
-#include "render/legend.h"
+#include "emscape/render/legend.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

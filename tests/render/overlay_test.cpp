@@ -1,12 +1,12 @@
-#include "render/overlay.h"
+#include "emscape/render/overlay.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "base/error.h"
-#include "render/renderer.h"
+#include "emscape/base/error.h"
+#include "emscape/render/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "render/renderer.h"
+#include "emscape/render/renderer.h"
 #include "tests/render/random_scene.h"
 
 namespace emscape::render {

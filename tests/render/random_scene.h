@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "render/renderer.h"
+#include "emscape/render/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render::testing {

@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "render/renderer.h"
+#include "emscape/render/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

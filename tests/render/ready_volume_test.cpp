@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "render/renderer.h"
+#include "emscape/render/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

@@ -1,11 +1,11 @@
-#include "render/renderer.h"
+#include "emscape/render/renderer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "tests/render/random_scene.h"
 
 namespace emscape::render {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "render/height_field.h"
-#include "render/transfer_function.h"
-#include "volume/dense_volume.h"
+#include "emscape/render/height_field.h"
+#include "emscape/render/transfer_function.h"
+#include "emscape/volume/dense_volume.h"
 
 namespace emscape::render::testing {
 

@@ -1,11 +1,11 @@
-#include "render/transfer_function.h"
+#include "emscape/render/transfer_function.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "render/transfer_table.h"
 #include "tests/render/scenes.h"
 

@@ -4,7 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "scenario/antenna_shapes.h"
+#include "emscape/scenario/antenna_shapes.h"
+#include "scenario/antenna_pattern.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/scenario/antenna_files.h"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "base/units.h"
-#include "base/vec.h"
+#include "emscape/base/units.h"
+#include "emscape/base/vec.h"
 
 namespace emscape::scenario {
 

@@ -9,7 +9,7 @@
 #include <functional>
 #include <string>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::scenario {
 

@@ -4,8 +4,9 @@
 #include <limits>
 #include <string>
 
-#include "base/log.h"
-#include "scenario/antenna_shapes.h"
+#include "emscape/base/log.h"
+#include "emscape/scenario/antenna_shapes.h"
+#include "scenario/antenna_pattern.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/scenario/antenna_files.h"
 

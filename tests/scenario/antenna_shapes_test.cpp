@@ -1,4 +1,4 @@
-#include "scenario/antenna_shapes.h"
+#include "emscape/scenario/antenna_shapes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,9 @@
 #include <limits>
 #include <string>
 
-#include "base/error.h"
-#include "base/units.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
+#include "scenario/antenna_pattern.h"
 #include "tests/scenario/antenna_directions.h"
 
 namespace emscape::scenario {

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "scenario/scenario_yaml.h"
+#include "emscape/scenario/scenario_file.h"
 #include "tests/scenario/scenario_files.h"
 
 namespace emscape::scenario {

@@ -1,8 +1,8 @@
-#include "scenario/clock.h"
+#include "emscape/scenario/clock.h"
 
 #include <gtest/gtest.h>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 
 namespace emscape::scenario {
 namespace {

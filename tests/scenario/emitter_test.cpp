@@ -1,10 +1,10 @@
-#include "scenario/emitter.h"
+#include "emscape/scenario/emitter.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 namespace {

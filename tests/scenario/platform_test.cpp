@@ -1,10 +1,10 @@
-#include "scenario/platform.h"
+#include "emscape/scenario/platform.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/units.h"
+#include "emscape/base/units.h"
 
 namespace emscape::scenario {
 namespace {

@@ -1,13 +1,14 @@
-#include "scenario/snapshot.h"
+#include "emscape/scenario/snapshot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <thread>
 
-#include "base/geoid.h"
-#include "base/units.h"
-#include "scenario/antenna_shapes.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/antenna_shapes.h"
+#include "scenario/terrain_view.h"
 
 namespace emscape::scenario {
 namespace {

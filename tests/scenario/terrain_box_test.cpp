@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "scenario/scenario.h"
+#include "emscape/scenario/scenario.h"
 
 namespace emscape::scenario {
 namespace {

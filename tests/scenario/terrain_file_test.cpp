@@ -8,8 +8,9 @@
 #include <fstream>
 #include <sstream>
 
-#include "base/units.h"
-#include "scenario/terrain.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/terrain.h"
+#include "scenario/terrain_view.h"
 #include "tests/scenario/dem_file.h"
 
 namespace emscape::scenario {

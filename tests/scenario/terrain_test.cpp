@@ -1,5 +1,5 @@
 /// Heights of mosaics: where posts lie, what is void, which of several files decides.
-#include "scenario/terrain.h"
+#include "emscape/scenario/terrain.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,9 @@
 #include <fstream>
 #include <random>
 
-#include "base/geoid.h"
-#include "base/units.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/units.h"
+#include "scenario/terrain_view.h"
 #include "tests/reference_dir.h"
 #include "tests/scenario/dem_file.h"
 

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 #include "tests/volume/sample_volumes.h"
 
 namespace emscape::volume {

@@ -1,11 +1,11 @@
-#include "volume/device_volume.h"
+#include "emscape/volume/device_volume.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/error.h"
+#include "emscape/base/error.h"
 #include "tests/gpu.h"
 
 namespace emscape::volume {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "emscape/volume/device_volume.h"
 #include "tests/gpu.h"
 #include "tests/volume/sample_volumes.h"
-#include "volume/device_volume.h"
 #include "volume/sparse_grid.h"
 
 namespace emscape::volume {

@@ -1,8 +1,8 @@
-#include "volume/raw.h"
+#include "emscape/volume/raw.h"
 
+#include "emscape/volume/statistics.h"
 #include "tests/reference_dir.h"
 #include "tests/volume/sample_volumes.h"
-#include "volume/statistics.h"
 
 namespace emscape::volume {
 namespace {

@@ -13,9 +13,9 @@
 #include <string>
 #include <vector>
 
-#include "base/error.h"
 #include "base/whole_file.h"
-#include "volume/dense_volume.h"
+#include "emscape/base/error.h"
+#include "emscape/volume/dense_volume.h"
 
 namespace emscape::volume::test {
 

@@ -1,6 +1,6 @@
-#include "volume/statistics.h"
+#include "emscape/volume/statistics.h"
 
-#include "base/parallel.h"
+#include "emscape/base/parallel.h"
 #include "tests/volume/sample_volumes.h"
 
 namespace emscape::volume {

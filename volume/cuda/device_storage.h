@@ -7,8 +7,8 @@
 #include <mutex>
 
 #include "base/cuda/cuda_memory.h"
+#include "emscape/volume/device_volume.h"
 #include "volume/bricks.h"
-#include "volume/device_volume.h"
 #include "volume/sparse_block.h"
 
 #if defined(__CUDACC__)

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <string>
 
+#include "emscape/volume/device_volume.h"
 #include "volume/cuda/device_storage.h"
-#include "volume/device_volume.h"
 #include "volume/nanovdb_grid.h"
 
 namespace emscape::volume {

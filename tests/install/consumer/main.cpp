@@ -1,10 +1,10 @@
 // The smallest program that computes a field with an installed Emscape.
 #include <cstdio>
 
-#include "emfield/field_solver.h"
-#include "render/image.h"
-#include "scenario/scenario_yaml.h"
-#include "scenario/snapshot.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/render/image.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
 
 int main(int, char** arguments) {
   const auto scenario = emscape::scenario::loadScenario(arguments[1]);

@@ -1,0 +1,77 @@
+/// The budget of one path: from the transmitter's power to what arrives at a point, term by term.
+///
+/// It answers "why is there no coverage here?" and gives what a voxel of the field at that point holds for
+/// this emitter, by the same functions.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/emfield/path_excess.h"
+#include "emscape/emfield/path_profile.h"
+#include "emscape/scenario/snapshot.h"
+
+namespace emscape::emfield {
+
+/// How the path lies.
+struct PathGeometry {
+  double slant_range_m = 0;
+  double straight_elevation_rad = 0;  ///< of the straight line, at the emitter
+  double launch_elevation_rad = 0;    ///< of the refracted ray's start
+  double begin_ground_msl_m = 0, end_ground_msl_m = 0;
+  double horizon_range_m = 0;  ///< to where a smooth earth at mean sea level cuts off the end's height
+  double far_field_m = 0;      ///< 2 D^2 / lambda
+};
+
+/// Where the point lies in the antenna's pattern.
+struct PathPointing {
+  double off_axis_rad = 0;  ///< between the ray's start and the beam's axis
+  double azimuth_rad = 0;   ///< in the antenna's frame, clockwise from its boresight
+  double elevation_rad = 0;
+  double pattern_db = 0;  ///< gain relative to the pattern's maximum, <= 0
+};
+
+/// One line of the budget.
+struct BudgetTerm {
+  enum class Kind { part, sum };
+  std::string key;    ///< stable, for programs
+  std::string label;  ///< for people
+  double value = 0;
+  std::string unit;
+  std::string note;  ///< where the value comes from; may be empty
+  Kind kind = Kind::part;
+};
+
+struct PathBudget {
+  std::string emitter;
+  double time_s = 0;
+  bool active = true;
+  double frequency_hz = 0;
+  double k_factor = 0;
+  PathProfile profile;
+  PathGeometry geometry;
+  PathPointing pointing;
+  std::vector<PathObstacle> obstacles;
+  scenario::PropagationModel model = scenario::PropagationModel::free_space;
+  PathExcess excess;
+  std::vector<BudgetTerm> terms;
+  std::vector<std::string> warnings;
+  std::string verdict;  ///< one sentence
+
+  /// Null if the budget has no such term.
+  const BudgetTerm* find(const std::string& key) const;
+};
+
+/// @param emitter  index into the snapshot
+/// @param point    where the budget ends
+/// @param terrain  null: a smooth earth at mean sea level
+/// @throws Error (bad_input) as readPathProfile and pathExcess do
+PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
+                      scenario::PropagationModel model, const scenario::Terrain* terrain);
+/// The same with profiles of another resolution than that of the scenario's own grid.
+PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
+                      scenario::PropagationModel model, const scenario::Terrain* terrain,
+                      const FanResolution& resolution);
+
+}  // namespace emscape::emfield

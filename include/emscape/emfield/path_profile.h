@@ -1,0 +1,71 @@
+/// The terrain under one path, the ray over it, and what stands in the ray's way.
+#pragma once
+
+#include <vector>
+
+#include "emscape/base/geo_frame.h"
+#include "emscape/scenario/terrain.h"
+
+namespace emscape::emfield {
+
+struct FanResolution;  // emfield/terrain_fan.h
+
+/// One end of a path.
+struct PathEnd {
+  GeodeticPosition position;
+  double height_msl_m = 0;
+};
+
+/// A path from a station: the vertical plane that holds both ends, on the effective earth, on which the ray
+/// is straight. Arrays run from the station (range 0) to below the far end.
+struct PathProfile {
+  double k_factor = 0;                  ///< effective earth radius over earth radius
+  double effective_earth_radius_m = 0;  ///< at the station
+  PathEnd begin, end;
+  double azimuth_rad = 0;  ///< at the station, clockwise from north
+  double range_m = 0;      ///< along the ground, > 0
+  std::vector<double> ranges_m;
+  std::vector<float> ground_msl_m;
+  std::vector<double> ray_msl_m;  ///< height of the ray between the ends
+  bool has_terrain = false;       ///< false: a smooth earth at mean sea level
+
+  int count() const { return static_cast<int>(ranges_m.size()); }
+  /// Of the ray over the ground, negative where the ground stands above it.
+  double clearance_m(int i) const { return ray_msl_m[i] - static_cast<double>(ground_msl_m[i]); }
+  /// How far the effective earth bulges over the chord between the ends.
+  double bulge_m(int i) const {
+    return ranges_m[i] * (range_m - ranges_m[i]) / (2 * effective_earth_radius_m);
+  }
+  /// Radius of the first Fresnel zone.
+  double fresnelRadius_m(int i, double wavelength_m) const;
+};
+
+/// Reads the terrain as the field does: at the ranges of a fan, and at the path's end.
+/// @param terrain  null: a smooth earth at mean sea level
+/// @throws Error (bad_input) that names the first place where the terrain is missing, and for ends that lie
+/// above one another (nearer than 1 m along the ground) or more than a quarter of the earth apart
+PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
+                            const scenario::Terrain* terrain, const FanResolution& resolution);
+
+/// A place where the ground enters the ray's first Fresnel zone, or comes nearest to it.
+struct PathObstacle {
+  int post = 0;  ///< of the profile
+  double range_m = 0;
+  double ground_msl_m = 0;
+  double clearance_m = 0;  ///< negative: the ground stands above the ray
+  double fresnel_radius_m = 0;
+  double nu = 0;                ///< P.526-15 eq. (26)
+  double knife_edge_db = 0;     ///< J(nu): what it would cost alone, as a sharp edge
+  bool is_earth_bulge = false;  ///< stands above the ray only because the earth curves
+  bool decides = false;         ///< the largest nu of all
+
+  double clearanceInFresnelRadii() const { return clearance_m / fresnel_radius_m; }
+};
+
+/// The separate obstacles that leave less than 0.6 Fresnel radii, from the station outwards, no more than the
+/// eight largest; where there is none, the one place that comes nearest. Two crests are separate if the
+/// ground between them falls away from the ray by half a Fresnel radius, or by a third of what the lesser one
+/// obstructs. Empty without a post between the ends.
+std::vector<PathObstacle> pathObstacles(const PathProfile& profile, double wavelength_m);
+
+}  // namespace emscape::emfield

@@ -1,0 +1,57 @@
+/// The finished picture: what was cast, on a background, with box, axes, markers, legend, time and compass.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/render/camera.h"
+#include "emscape/render/image.h"
+#include "emscape/render/legend.h"
+
+namespace emscape::render {
+
+/// How a marker looks.
+enum class MarkerKind { radar, transmitter, jammer, receiver, platform };
+
+/// Something with a place and a name.
+struct Marker {
+  Vec3d position_m;  ///< frame metres
+  std::string label;
+  MarkerKind kind = MarkerKind::platform;
+  bool active = true;              ///< false: drawn hollow
+  std::optional<Vec3d> beam;       ///< unit vector east, north, up of the beam's axis (not exaggerated)
+  std::optional<double> ground_m;  ///< height of the ground below it (frame z): where the stem ends
+};
+
+enum class Theme { dark, light };
+/// "dark" or "light". @throws Error (usage)
+Theme parseTheme(const std::string& name);
+
+/// What is written on and around a picture. Empty texts are left out.
+struct Annotations {
+  std::string title;     ///< the scenario
+  std::string subtitle;  ///< for example the quantity, or what is combined
+  std::string time;      ///< "t = 12.5 s"
+  std::string time_utc;
+  std::string note;  ///< small, at the bottom: rays, step
+  std::vector<Marker> markers;
+  std::optional<Legend> legend;
+  bool georeferenced = true;  ///< compass, axes in km and altitude; otherwise axes in the grid's unit
+  bool axes = true;
+  Theme theme = Theme::dark;
+};
+
+/// Space that annotations take from a picture: give it to makeCamera() so that the box does not lie below
+/// them.
+FrameMargins overlayMargins(ImageSize size, const Annotations& annotations);
+
+/// Whether the ground hides a position (frame metres); empty: nothing is hidden.
+using HiddenTest = std::function<bool(const Vec3d& frame_m)>;
+
+/// Draws the finished, opaque picture.
+Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
+               const HiddenTest& hidden = {});
+
+}  // namespace emscape::render

@@ -1,0 +1,29 @@
+/// How a volume is shown.
+#pragma once
+
+#include <limits>
+#include <string>
+
+namespace emscape::render {
+
+/// How the samples of a ray become a pixel.
+enum class CompositingMode { dvr, mida, mip, iso };
+const char* toString(CompositingMode mode);
+/// @throws Error (usage) that lists the names
+CompositingMode parseCompositingMode(const std::string& name);
+
+struct RenderSettings {
+  CompositingMode mode = CompositingMode::dvr;
+  double step_voxels = 1;  ///< between samples, in voxels along the ray; 0.05..10
+  double mida_gamma = 0;   ///< -1 (DVR) .. 0 (MIDA) .. 1 (MIP)
+  bool exact = false;      ///< true: no early termination
+  bool shading = false;    ///< light on the fog of DVR and MIDA; isosurfaces always have it
+  /// Value of the isosurface; NaN: the middle of the transfer function's interval
+  double iso_value = std::numeric_limits<double>::quiet_NaN();
+  double iso_opacity = 1;  ///< 0..1
+  bool skip_empty = true;  ///< skip bricks that cannot change the picture; the picture is the same either way
+  bool plain = false;      ///< the reference form of the ray caster; slow, for comparison
+  double vertical_exaggeration = 0;  ///< 0: niceVerticalExaggeration()
+};
+
+}  // namespace emscape::render

@@ -1,0 +1,55 @@
+/// What carries emitters: a fixed site or a track.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/base/error.h"
+#include "emscape/base/geo_frame.h"
+
+namespace emscape::scenario {
+
+/// A position as given in a file: exactly one of the heights is set.
+struct SitePosition {
+  double latitude_deg = 0;
+  double longitude_deg = 0;
+  std::optional<double> height_msl_m;
+  std::optional<double> height_agl_m;
+  std::optional<double> height_ellipsoid_m;
+};
+
+/// Degrees: heading clockwise from true north, pitch nose up, roll right wing down.
+struct Attitude {
+  double heading_deg = 0;
+  double pitch_deg = 0;
+  double roll_deg = 0;
+};
+
+/// One row of a track file. Attitude is optional there: heading is then taken along the track, pitch and roll
+/// are 0.
+struct TrackPoint {
+  double t_s = 0;
+  SitePosition position;
+  std::optional<double> heading_deg;
+  std::optional<double> pitch_deg;
+  std::optional<double> roll_deg;
+};
+
+struct Platform {
+  std::string name;
+  /// One point: a fixed site. More: strictly increasing t_s; held at the ends outside the track's time.
+  std::vector<TrackPoint> track;
+  Attitude attitude;       ///< of a fixed site
+  std::string track_file;  ///< empty for a fixed site
+  FilePlace place;         ///< where the scenario describes it
+};
+
+/// Where a platform is and how it lies at t_s: the position along the geodesic between the points before and
+/// after, height (above the datum that the track gives) and attitude linear in time, heading over the shorter
+/// arc. Heading, where the track gives none, is the course; a platform that stands still keeps the last
+/// course it had.
+/// @return a point with all of heading, pitch and roll set (heading 0..360)
+TrackPoint pointAt(const Platform& platform, double t_s);
+
+}  // namespace emscape::scenario

@@ -1,0 +1,86 @@
+/// A scenario as it is written in a file: what is on the battlefield, where and when.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/base/geo_frame.h"
+#include "emscape/scenario/clock.h"
+#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/platform.h"
+#include "emscape/scenario/propagation.h"
+#include "emscape/scenario/terrain.h"
+
+namespace emscape::scenario {
+
+/// The box that the field fills. altitude: x, y centred on the origin, z from the origin's height above mean
+/// sea level upwards. enu: the same, z from the tangent point upwards.
+struct Region {
+  FrameOrigin origin;
+  Vec3d size_m;
+  Dims dims;
+};
+
+struct Atmosphere {
+  double k_factor = 4.0 / 3.0;  ///< effective earth radius over earth radius
+  double pressure_hpa = 1013.25;
+  double temperature_k = 288.15;
+  double vapour_g_m3 = 7.5;
+  double rain_mm_h = 0;
+  std::optional<double> rain_height_m;  ///< above mean sea level, up to where it rains; none: by latitude
+  GasLosses gases = GasLosses::automatic;
+  double sea_level_refractivity = 301;  ///< N-units, for itm, which takes the rays' curvature from it
+  RadioClimate climate = RadioClimate::continental_temperate;
+};
+
+/// A named frequency interval, for combine by band.
+struct Band {
+  std::string name;
+  double begin_hz = 0;
+  double end_hz = 0;
+};
+
+enum class CombineMode { sum, max, per_emitter, per_band };
+const char* toString(CombineMode mode);
+
+/// Where a radar's beam is for the probability of detection and the signal-to-noise ratio.
+enum class RadarLook {
+  scan,   ///< where its scan has it at the time
+  target  ///< on each voxel in turn, as nearly as its scan lets it
+};
+const char* toString(RadarLook look);
+
+struct OutputSpec {
+  std::vector<std::string> quantities{"power_density_dbwm2"};  ///< names of the quantity table
+  CombineMode combine = CombineMode::sum;
+  RadarLook radar_look = RadarLook::scan;
+  double floor = -120;                 ///< lowest value kept, in each quantity's unit
+  double count_threshold_dbwm2 = -90;  ///< emitter_count: emitters above this power density
+};
+
+struct Scenario {
+  std::string name;
+  std::string file;  ///< where it was read
+  /// FNV-1a (64 bits, hex) of the bytes of the file and of the track and antenna files it names; of elevation
+  /// files, only of the name and the size.
+  std::string hash;
+  Clock clock;
+  Region region;
+  std::optional<TerrainSpec> terrain;
+  Atmosphere atmosphere;
+  Ground ground;
+  std::vector<Platform> platforms;
+  std::vector<Emitter> emitters;
+  std::vector<ReceiverProfile> receivers;  ///< the first is used for received_power_dbm
+  std::vector<Band> bands;
+  OutputSpec output;
+};
+
+/// Where terrain is needed: the region, every platform's way and the ground between them, with a margin of 2
+/// km. A box that holds a pole spans all longitudes.
+GeoBox terrainBox(const Scenario& scenario);
+
+}  // namespace emscape::scenario

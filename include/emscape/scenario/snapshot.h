@@ -1,0 +1,55 @@
+/// Everything on the battlefield at one instant: what emfield computes from.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/scenario.h"
+
+namespace emscape::scenario {
+
+/// Where a platform is.
+struct PlatformState {
+  GeodeticPosition position;
+  double height_msl_m = 0;
+  Attitude attitude;
+};
+
+/// Orientation of a beam: unit vectors of the antenna's frame in the local east-north-up axes at the emitter.
+struct BeamPose {
+  Vec3d forward, right, up;
+  double steer_u = 0;  ///< direction cosines (right, up) to which a phased array is steered
+  double steer_v = 0;
+};
+
+struct EmitterState {
+  bool active = true;
+  GeodeticPosition position;
+  double height_msl_m = 0;
+  BeamPose beam;
+  /// The frame in which the beam can be turned onto a target: the platform's axes, turned to the centre of a
+  /// sector or raster scan in azimuth; of an array that is steered its boresight.
+  BeamPose mount;
+};
+
+/// States are in the order of Scenario::platforms and Scenario::emitters.
+struct Snapshot {
+  double time_s = 0;
+  std::string time_utc;
+  std::shared_ptr<const Scenario> scenario;
+  std::vector<PlatformState> platforms;
+  std::vector<EmitterState> emitters;
+};
+
+/// Whether an emitter looks about without turning: a phased array that dwells or stands.
+bool isSteered(const Emitter& emitter);
+
+/// The scenario at t_s seconds since its epoch. Pure. Thread-safe.
+/// @param terrain  for heights above ground; may be null if no platform uses them
+/// @throws Error (bad_input) if a height above ground is asked for where the terrain is missing, or a
+/// platform lies below ground
+Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s);
+
+}  // namespace emscape::scenario

@@ -1,0 +1,67 @@
+/// A scalar field on a grid, in memory.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "emscape/base/error.h"
+#include "emscape/volume/grid.h"
+
+namespace emscape::volume {
+
+/// What the values mean. Every file that holds a volume holds these too, as `emscape:*` where it has
+/// metadata.
+struct VolumeInfo {
+  std::string
+      quantity;       ///< name with its unit as suffix, for example power_density_dbwm2; names the .vdb grid
+  std::string unit;   ///< for a colour bar, for example dBW/m2; empty for counts
+  double time_s = 0;  ///< since the scenario's epoch
+  std::string time_utc;  ///< ISO 8601, empty if there is no epoch
+  float floor = 0;       ///< value of voxels that hold no field; the background of sparse grids
+  float range_min = 0;   ///< value range of the whole series, floor and masked voxels left out
+  float range_max = 0;
+  bool categorical = false;  ///< indices (dominant_emitter): nearest sampling, int grid in .vdb
+  std::map<std::string, std::string> extra;  ///< further metadata by key: scenario hash, version, warnings
+};
+
+bool operator==(const VolumeInfo& a, const VolumeInfo& b);
+
+/// Key of VolumeInfo::extra that says what the values' scale is, where colours should know: one of these.
+constexpr const char* kScaleKey = "scale";
+constexpr const char* kProbabilityScale = "probability";  ///< 0..1
+constexpr const char* kRatioBelowScale = "ratio, below";  ///< dB about 0; what lies below 0 is looked for
+constexpr const char* kRatioAboveScale = "ratio, above";  ///< dB about 0; what lies above 0 is looked for
+
+/// Values in dense order. Voxels below ground or without a known field are masked: they hold `info.floor`,
+/// are inactive in .vdb and are never drawn.
+struct DenseVolume {
+  Grid grid;
+  VolumeInfo info;
+  std::vector<float> values;  ///< grid.dims.count() values
+  /// For each column (i, j), i fastest: the lowest k that holds a field; dims.z where none does. Empty: no
+  /// voxel is masked.
+  std::vector<std::uint16_t> first_valid_k;
+
+  bool isMasked(int i, int j, int k) const {
+    return !first_valid_k.empty() && k < first_valid_k[static_cast<std::size_t>(j) * grid.dims.x + i];
+  }
+};
+
+constexpr int kMaxVoxelsPerAxis = 65535;     ///< first_valid_k counts in 16 bits
+constexpr long long kMaxVoxels = 1LL << 32;  ///< 16 GiB of values
+
+/// @throws Error (bad_input) at `place` unless each of the dims and their product is within the limits above
+void checkDims(const Dims& dims, const FilePlace& place);
+
+/// Checks that a volume has a name, as many values as voxels and a mask, if any, of as many columns.
+/// @throws Error (bad_input) at `place`, which is the file that it comes from or goes to
+void checkVolume(const DenseVolume& volume, const FilePlace& place);
+
+/// The values of a categorical volume as whole numbers; NaN becomes the floor.
+/// @throws Error (bad_input) at `place` for values that are not whole or beyond 2^24, above which floats skip
+/// some
+std::vector<std::int32_t> toIndices(const DenseVolume& volume, const FilePlace& place);
+
+}  // namespace emscape::volume

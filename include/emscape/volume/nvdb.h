@@ -1,0 +1,27 @@
+/// Volumes as NanoVDB grids, as GPUs read them, with a sidecar.
+///
+/// PATH holds one grid a quantity, the same as in a .vdb file (vdb.h), uncompressed. NanoVDB has no room for
+/// metadata: they stand in the sidecar PATH.json, {"volumes": [...]}, each with its grid, info and mask.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "emscape/volume/dense_volume.h"
+
+namespace emscape::volume {
+
+/// Writes PATH and PATH.json, both or neither. @throws Error
+void writeNvdb(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes);
+
+/// Reads a grid: with its sidecar exactly what was written; without one, or a grid that it does not name,
+/// over the box of the active voxels. Float, double, int32 and int64 grids without compression can be read.
+/// @param grid_name  empty: the first grid
+/// @throws Error (bad_input), which lists the file's grids where it has none of that name
+DenseVolume readNvdb(const std::filesystem::path& path, const std::string& grid_name = "");
+
+/// What each grid holds, without values and mask.
+std::vector<DenseVolume> describeNvdb(const std::filesystem::path& path);
+
+}  // namespace emscape::volume

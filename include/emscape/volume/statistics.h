@@ -1,0 +1,42 @@
+/// What the values of a volume look like.
+#pragma once
+
+#include <vector>
+
+#include "emscape/volume/dense_volume.h"
+
+namespace emscape::volume {
+
+/// Counts over all voxels; the figures are those of the valid ones: neither masked nor NaN.
+struct Statistics {
+  long long voxels = 0;
+  long long valid = 0;
+  long long masked = 0;
+  long long nan = 0;       ///< of those not masked
+  long long at_floor = 0;  ///< of the valid ones: those that hold no field
+  float min = 0;           ///< over the valid voxels; 0 without any
+  float max = 0;
+  double mean = 0;
+};
+
+/// Computed in parallel; the same to the last bit for any number of threads.
+Statistics statisticsOf(const DenseVolume& volume);
+
+/// Counts of valid voxels in equal bins.
+struct Histogram {
+  float lower = 0;  ///< lower edge of the first bin
+  float upper = 0;  ///< upper edge of the last bin, which includes it
+  std::vector<long long> counts;
+  long long below = 0;  ///< less than lower
+  long long above = 0;  ///< greater than upper
+};
+
+/// @param bins 1..65536, @param lower, @param upper finite, lower < upper
+/// @throws Error (bad_input) outside these
+Histogram histogramOf(const DenseVolume& volume, int bins, float lower, float upper);
+
+/// Sets info.range_min and range_max to the least and greatest valid finite value that is not the floor; to
+/// the floor both where there is none.
+void setRangeFromValues(DenseVolume& volume);
+
+}  // namespace emscape::volume

@@ -1,0 +1,250 @@
+#include "emscape/scenario/scenario_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "emscape/base/log.h"
+#include "scenario/parse_sections.h"
+#include "scenario/schema_check.h"
+
+namespace emscape::scenario {
+
+namespace {
+
+constexpr std::size_t kLargestScenario = std::size_t{4} << 20;
+constexpr double kMostVoxels = 2147483648.0;
+constexpr double kMostSteps = 1e7;
+
+Clock parseClock(const Section& root, ParseContext& context) {
+  const Clock clock{root.text("epoch"), root.number("duration_s"), root.number("step_s")};
+  if (clock.duration_s >= clock.step_s * kMostSteps) {
+    context.problems.addError(root.placeOf("step_s"),
+                              fmt::format("steps of {} s over {} s are more than the allowed {}",
+                                          clock.step_s, clock.duration_s, kMostSteps));
+  }
+  return clock;
+}
+
+Region parseRegion(const Section& section, ParseContext& context) {
+  const Section origin = section.section("origin");
+  Region region;
+  region.origin = {section.choice<FrameKind>("frame"), origin.number("latitude_deg"),
+                   origin.number("longitude_deg"), origin.number("height_msl_m")};
+  std::vector<double> size_m = section.numbers("size_m"), dims = section.numbers("dims");
+  if (dims.size() == 3 && dims[0] * dims[1] * dims[2] > kMostVoxels) {
+    context.problems.addError(section.placeOf("dims"),
+                              fmt::format("'dims' are {} voxels in all, outside the allowed 8 to {}",
+                                          dims[0] * dims[1] * dims[2], kMostVoxels));
+  }
+  if (!section.sound()) return region;
+  region.size_m = {size_m[0], size_m[1], size_m[2]};
+  region.dims = {static_cast<int>(dims[0]), static_cast<int>(dims[1]), static_cast<int>(dims[2])};
+  return region;
+}
+
+TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
+  TerrainSpec terrain;
+  terrain.vertical_datum = section.choice<VerticalDatum>("vertical_datum");
+  const std::vector<std::string> names = section.texts("files");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty()) continue;
+    const FilePlace place = section.placeOf("files", i);
+    const std::string file = context.resolve(names[i]);
+    std::error_code failure;
+    const std::uintmax_t size = std::filesystem::file_size(file, failure);
+    if (failure || !std::ifstream(file)) {
+      context.problems.addError(
+          place, fmt::format("elevation file {}: {}", file, failure ? failure.message() : "cannot be read"));
+      continue;
+    }
+    context.hash.add(fmt::format("{}:{}", names[i], size));
+    terrain.files.push_back(file);
+    terrain.places.push_back(place);
+  }
+  return terrain;
+}
+
+Atmosphere parseAtmosphere(const Section& section) {
+  Atmosphere atmosphere;
+  atmosphere.k_factor = section.number("k_factor");
+  atmosphere.pressure_hpa = section.number("pressure_hpa");
+  atmosphere.temperature_k = section.number("temperature_k");
+  atmosphere.vapour_g_m3 = section.number("vapour_g_m3");
+  atmosphere.rain_mm_h = section.number("rain_mm_h");
+  atmosphere.rain_height_m = section.optionalNumber("rain_height_m");
+  atmosphere.gases = section.choice<GasLosses>("gases");
+  atmosphere.sea_level_refractivity = section.number("sea_level_refractivity");
+  atmosphere.climate = section.choice<RadioClimate>("climate");
+  return atmosphere;
+}
+
+Ground parseGround(const Section& section) {
+  Ground ground;
+  ground.kind = section.choice<GroundKind>("kind");
+  ground.relative_permittivity = section.optionalNumber("relative_permittivity");
+  ground.conductivity_s_m = section.optionalNumber("conductivity_s_m");
+  ground.roughness_m = section.number("roughness_m");
+  ground.surface_msl_m = section.optionalNumber("surface_msl_m");
+  ground.place = section.place();
+  return ground;
+}
+
+ReceiverProfile parseReceiverProfile(const Section& section) {
+  ReceiverProfile receiver;
+  receiver.name = section.text("name");
+  receiver.gain_dbi = section.number("gain_dbi");
+  receiver.losses_db = section.number("losses_db");
+  if (section.has("polarization")) receiver.polarization = section.choice<Polarization>("polarization");
+  receiver.cross_polar_isolation_db = section.number("cross_polar_isolation_db");
+  receiver.center_frequency_hz = section.optionalNumber("center_frequency_hz").value_or(0);
+  receiver.bandwidth_hz = section.optionalNumber("bandwidth_hz").value_or(0);
+  return receiver;
+}
+
+Band parseBand(const Section& section, ParseContext& context) {
+  const Band band{section.text("name"), section.number("begin_hz"), section.number("end_hz")};
+  if (band.begin_hz >= band.end_hz) {
+    context.problems.addError(
+        section.placeOf("end_hz"),
+        fmt::format("'end_hz' is {}, not above 'begin_hz', {} Hz", band.end_hz, band.begin_hz));
+  }
+  return band;
+}
+
+/// What the output asks for must be there.
+OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseContext& context) {
+  const OutputSpec output{section.texts("quantities"), section.choice<CombineMode>("combine"),
+                          section.choice<RadarLook>("radar_look"), section.number("floor"),
+                          section.number("count_threshold_dbwm2")};
+  const auto hasKind = [&](EmitterKind kind) {
+    return std::any_of(scenario.emitters.begin(), scenario.emitters.end(),
+                       [kind](const Emitter& emitter) { return emitter.kind == kind; });
+  };
+  const auto need = [&](bool met, const FilePlace& place, const std::string& what,
+                        const std::string& needed) {
+    if (!met)
+      context.problems.addError(place, fmt::format("{} needs {}; the scenario has none", what, needed));
+  };
+  for (std::size_t i = 0; i < output.quantities.size(); ++i) {
+    const std::string& quantity = output.quantities[i];
+    const FilePlace place = section.placeOf("quantities", i);
+    if (quantity == "received_power_dbm") need(!scenario.receivers.empty(), place, quantity, "a receiver");
+    const bool is_of_jamming = quantity == "jammer_to_signal_db" || quantity == "burn_through_margin_db";
+    if (quantity == "snr_db" || quantity == "detection_probability" || is_of_jamming) {
+      need(hasKind(EmitterKind::radar), place, quantity, "an emitter of kind radar");
+    }
+    if (is_of_jamming) {
+      need(hasKind(EmitterKind::jammer), place, quantity, "an emitter of kind jammer");
+    }
+  }
+  if (output.combine == CombineMode::per_band) {
+    need(!scenario.bands.empty(), section.placeOf("combine"), "combine per_band", "bands");
+  }
+  return output;
+}
+
+void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  for (std::size_t i = 0; i < sections.size() && !scenario.bands.empty(); ++i) {
+    const double frequency_hz = scenario.emitters[i].frequency_hz;
+    const bool in_band = std::any_of(scenario.bands.begin(), scenario.bands.end(), [&](const Band& band) {
+      return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
+    });
+    if (in_band) continue;
+    context.problems.addWarning(sections[i].placeOf("frequency_hz"),
+                                fmt::format("emitter '{}' ({} Hz) lies in none of the bands",
+                                            scenario.emitters[i].name, frequency_hz));
+  }
+}
+
+/// Jammers that are in no radar's band, where the output asks what jamming does.
+void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<std::string>& quantities = scenario.output.quantities;
+  const bool counts = std::any_of(quantities.begin(), quantities.end(), [](const std::string& quantity) {
+    return quantity == "detection_probability" || quantity == "jammer_to_signal_db" ||
+           quantity == "burn_through_margin_db";
+  });
+  const std::vector<Section> sections = root.sections("emitters");
+  for (std::size_t i = 0; i < sections.size() && counts; ++i) {
+    const Emitter& jammer = scenario.emitters[i];
+    if (jammer.kind != EmitterKind::jammer) continue;
+    const bool jams =
+        std::any_of(scenario.emitters.begin(), scenario.emitters.end(), [&jammer](const Emitter& radar) {
+          return radar.kind == EmitterKind::radar &&
+                 std::abs(radar.frequency_hz - jammer.frequency_hz) <=
+                     (radar.receiver.bandwidth_hz + jammer.bandwidth_hz) / 2;
+        });
+    if (jams) continue;
+    context.problems.addWarning(
+        sections[i].placeOf("frequency_hz"),
+        fmt::format("jammer '{}' ({} Hz, {} Hz wide) lies outside the band of every radar: it jams none",
+                    jammer.name, jammer.frequency_hz, jammer.bandwidth_hz));
+  }
+}
+
+Scenario parseRoot(const Section& root, ParseContext& context) {
+  Scenario scenario;
+  scenario.name = root.text("name");
+  scenario.file = context.file;
+  scenario.clock = parseClock(root, context);
+  scenario.region = parseRegion(root.section("region"), context);
+  if (root.has("terrain")) scenario.terrain = parseTerrain(root.section("terrain"), context);
+  scenario.atmosphere = parseAtmosphere(root.section("atmosphere"));
+  scenario.ground = parseGround(root.section("ground"));
+  for (const Section& item : root.sections("platforms"))
+    scenario.platforms.push_back(parsePlatform(item, context));
+  for (const Section& item : root.sections("emitters")) {
+    scenario.emitters.push_back(parseEmitter(item, scenario.platforms, context));
+  }
+  for (const Section& item : root.sections("receivers"))
+    scenario.receivers.push_back(parseReceiverProfile(item));
+  for (const Section& item : root.sections("bands")) scenario.bands.push_back(parseBand(item, context));
+  scenario.output = parseOutput(root.section("output"), scenario, context);
+  if (!context.problems.hasErrors()) {
+    warnOfEmittersWithoutBand(scenario, root, context);
+    warnOfIdleJammers(scenario, root, context);
+  }
+  scenario.hash = context.hash.hex();
+  return scenario;
+}
+
+}  // namespace
+
+ParseResult parseScenario(const std::string& file) {
+  ParseContext context;
+  context.file = file;
+  std::shared_ptr<const Scenario> scenario;
+  try {
+    const std::string text = checkedUtf8(file, readWholeFile(file, kLargestScenario));
+    context.hash.add(text);
+    if (const DocumentNodePtr document = readDocument(file, text, context.problems)) {
+      checkObject(file, *document, scenarioSpec(), context.problems);
+      const Section root(context.file, document.get(), scenarioSpec());
+      scenario = std::make_shared<const Scenario>(parseRoot(root, context));
+    }
+  } catch (const Error& error) {
+    context.problems.addError(error.place(), error.message());
+  }
+  return {context.problems.hasErrors() ? nullptr : scenario, context.problems.inOrder()};
+}
+
+std::shared_ptr<const Scenario> loadScenario(const std::string& file) {
+  const ParseResult result = parseScenario(file);
+  std::string all;
+  for (const Problem& problem : result.problems) {
+    const std::string line = toString(problem.place) + ": " + problem.message;
+    if (problem.severity == Severity::warning) {
+      logWarning(line);
+    } else {
+      all += (all.empty() ? "" : "\n") + line;
+    }
+  }
+  if (!result.scenario) throw Error(ErrorCode::bad_input, all);
+  return result.scenario;
+}
+
+}  // namespace emscape::scenario

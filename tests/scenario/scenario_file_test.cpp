@@ -1,0 +1,311 @@
+#include "emscape/scenario/scenario_file.h"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "emscape/base/units.h"
+#include "scenario/schema.h"
+#include "tests/scenario/scenario_files.h"
+
+namespace emscape::scenario {
+namespace {
+
+using test::replaced;
+
+class ScenarioYaml : public ::testing::Test {
+ protected:
+  ScenarioYaml() {
+    for (const char* name : {"track.csv", "sector.msi"}) {
+      std::filesystem::copy_file(test::testData() / name, folder_.path() / name);
+    }
+  }
+  std::shared_ptr<const Scenario> load(const std::string& text, const std::string& name = "scenario.yaml") {
+    return loadScenario(folder_.write(name, text));
+  }
+  const std::string valid_ = test::readText(test::testData() / "valid.yaml");
+  test::ScratchFolder folder_;
+};
+
+TEST_F(ScenarioYaml, ReadsEverySection) {
+  const auto scenario = load(valid_);
+  EXPECT_EQ(scenario->name, "valid");
+  EXPECT_EQ(scenario->clock.epoch_utc, "2026-06-01T06:00:00Z");
+  EXPECT_EQ(scenario->clock.duration_s, 120);
+  EXPECT_EQ(scenario->clock.step_s, 0.5);
+  EXPECT_EQ(scenario->region.origin.kind, FrameKind::altitude);
+  EXPECT_EQ(scenario->region.origin.longitude_deg, -84.25);
+  EXPECT_EQ(scenario->region.origin.height_msl_m, 100);
+  EXPECT_EQ(scenario->region.size_m, (Vec3d{30000, 20000, 6000}));
+  EXPECT_EQ(scenario->region.dims, (Dims{30, 20, 10}));
+  EXPECT_FALSE(scenario->terrain);
+  EXPECT_EQ(scenario->atmosphere.k_factor, 1.3333);
+  EXPECT_EQ(scenario->atmosphere.rain_mm_h, 2);
+  EXPECT_EQ(scenario->atmosphere.pressure_hpa, 1013.25);
+
+  ASSERT_EQ(scenario->platforms.size(), 2u);
+  EXPECT_EQ(scenario->platforms[0].attitude.roll_deg, -2);
+  EXPECT_EQ(scenario->platforms[0].track.at(0).position.height_agl_m, 12);
+  ASSERT_EQ(scenario->platforms[1].track.size(), 3u);
+  EXPECT_EQ(scenario->platforms[1].track[1].t_s, 60);
+  EXPECT_EQ(scenario->platforms[1].track[1].position.height_msl_m, 950);
+  EXPECT_FALSE(scenario->platforms[1].track[1].heading_deg);
+
+  ASSERT_EQ(scenario->emitters.size(), 4u);
+  const Emitter& radar = scenario->emitters[0];
+  EXPECT_EQ(radar.kind, EmitterKind::radar);
+  EXPECT_EQ(radar.frequency_hz, 3e9);
+  EXPECT_EQ(radar.power_w, 2e5);
+  EXPECT_EQ(radar.polarization, Polarization::horizontal);
+  EXPECT_EQ(radar.propagation, PropagationModel::diffraction);
+  EXPECT_EQ(radar.antenna->gain_dbi, 34);
+  EXPECT_EQ(radar.scan.kind, ScanKind::rotate);
+  EXPECT_EQ(radar.scan.rate_rpm, 12);
+  EXPECT_EQ(radar.losses_db, 3);
+  EXPECT_EQ(radar.receiver.losses_db, 0) << "those of transmission do not count again";
+  EXPECT_EQ(radar.receiver.target_rcs_m2, 5);
+  ASSERT_EQ(radar.active_s.size(), 2u);
+  EXPECT_EQ(radar.active_s[1].begin_s, 90);
+  EXPECT_EQ(radar.place.line, 20);
+  ASSERT_EQ(scenario->emitters[1].scan.dwells.size(), 2u);
+  EXPECT_EQ(scenario->emitters[1].scan.dwells[1].duration_s, 0.2);
+  EXPECT_EQ(scenario->emitters[3].platform, 1);
+  EXPECT_EQ(scenario->emitters[3].scan.bars, 3);
+  EXPECT_EQ(scenario->emitters[3].polarization, Polarization::circular_right);
+
+  EXPECT_EQ(scenario->receivers.at(0).polarization, Polarization::vertical);
+  EXPECT_EQ(scenario->bands.at(1).end_hz, 4e9);
+  EXPECT_EQ(scenario->output.combine, CombineMode::per_band);
+  EXPECT_EQ(scenario->output.quantities.at(2), "snr_db");
+}
+
+TEST_F(ScenarioYaml, ReadsWhatModelsAreTold) {
+  const std::string model = "    propagation: free_space\n";
+  ASSERT_NE(valid_.find(model), std::string::npos);
+  auto scenario = load(valid_);
+  EXPECT_EQ(scenario->emitters[1].propagation, PropagationModel::diffraction) << "by default";
+  EXPECT_EQ(scenario->emitters[1].diffraction.method, DiffractionMethod::delta_bullington);
+  EXPECT_EQ(scenario->atmosphere.gases, GasLosses::automatic);
+  EXPECT_EQ(scenario->ground.kind, GroundKind::average_ground);
+  EXPECT_FALSE(scenario->ground.surface_msl_m);
+
+  const std::string text = replaced(valid_, "atmosphere: {k_factor: 1.3333, rain_mm_h: 2}",
+                                    "atmosphere: {rain_mm_h: 2, rain_height_m: 3100, gases: never, "
+                                    "climate: desert, sea_level_refractivity: 280}\n"
+                                    "ground: {kind: sea, roughness_m: 0.3, surface_msl_m: 2}");
+  scenario = load(replaced(text, model,
+                           "    propagation: itm\n"
+                           "    itm: {form: area, time_percent: 95, service: broadcast, irregularity_m: 30}\n"
+                           "    diffraction: {method: deygout}\n"));
+  EXPECT_EQ(scenario->atmosphere.rain_height_m, 3100);
+  EXPECT_EQ(scenario->atmosphere.gases, GasLosses::never);
+  EXPECT_EQ(scenario->atmosphere.climate, RadioClimate::desert);
+  EXPECT_EQ(scenario->atmosphere.sea_level_refractivity, 280);
+  EXPECT_EQ(scenario->ground.kind, GroundKind::sea);
+  EXPECT_EQ(scenario->ground.roughness_m, 0.3);
+  EXPECT_EQ(scenario->ground.surface_msl_m, 2);
+  const Emitter& jammer = scenario->emitters[3];
+  EXPECT_EQ(jammer.propagation, PropagationModel::itm);
+  EXPECT_EQ(jammer.itm.form, ItmForm::area);
+  EXPECT_EQ(jammer.itm.time_percent, 95);
+  EXPECT_EQ(jammer.itm.service, ItmService::broadcast);
+  EXPECT_EQ(jammer.itm.irregularity_m, 30);
+  EXPECT_EQ(jammer.diffraction.method, DiffractionMethod::deygout);
+  EXPECT_GT(jammer.itm.place.line, jammer.place.line);
+
+  scenario = load(replaced(valid_, model,
+                           "    propagation: two_ray\n"
+                           "    two_ray: {sum: envelope, roughness_model: ament}\n"));
+  EXPECT_EQ(scenario->emitters[3].two_ray.sum, TwoRaySum::envelope);
+  EXPECT_EQ(scenario->emitters[3].two_ray.roughness_model, RoughnessModel::ament);
+}
+
+TEST_F(ScenarioYaml, GivesNoProblemForAValidScenario) {
+  EXPECT_TRUE(parseScenario(folder_.write("scenario.yaml", valid_)).problems.empty());
+}
+
+TEST_F(ScenarioYaml, DerivesGainFromBeamwidthsAndAperture) {
+  const auto scenario = load(valid_);
+  EXPECT_NEAR(scenario->emitters[3].antenna->gain_dbi, 10 * std::log10(26000.0 / (60 * 30)), 1e-9);
+  // 4 pi A / lambda^2 of 32 x 16 elements half a wavelength apart is pi times their number.
+  EXPECT_NEAR(scenario->emitters[1].antenna->gain_dbi, 10 * std::log10(kPi * 32 * 16), 1e-9);
+  EXPECT_NEAR(scenario->emitters[2].antenna->gain_dbi, 12 + kDipoleGain_dbi, 1e-9) << "dBd of the file";
+}
+
+const char* const kSmallest = R"(schema_version: 1
+name: smallest
+region: {origin: {latitude_deg: 0, longitude_deg: 180}, size_m: [1, 1, 1], dims: [2, 2, 2]}
+platforms: [{name: p, position: {latitude_deg: 0, longitude_deg: 0, height_msl_m: 0}}]
+emitters: [{name: e, platform: p, kind: radar, frequency_hz: 1e9, power_w: 1, antenna: {pattern: isotropic},
+            receiver: {noise_figure_db: 0, bandwidth_hz: 1e6}}]
+)";
+
+TEST_F(ScenarioYaml, DefaultsOfTheTableAreThoseOfTheTypes) {
+  const auto scenario = load(kSmallest);
+  EXPECT_EQ(scenario->clock.epoch_utc, "");
+  EXPECT_EQ(scenario->clock.duration_s, Clock{}.duration_s);
+  EXPECT_EQ(scenario->clock.step_s, Clock{}.step_s);
+  EXPECT_EQ(scenario->atmosphere.k_factor, Atmosphere{}.k_factor);
+  EXPECT_EQ(scenario->atmosphere.vapour_g_m3, Atmosphere{}.vapour_g_m3);
+  EXPECT_EQ(scenario->region.origin.height_msl_m, FrameOrigin{}.height_msl_m);
+  EXPECT_EQ(scenario->region.origin.kind, FrameOrigin{}.kind);
+  const Emitter& emitter = scenario->emitters[0];
+  EXPECT_EQ(emitter.polarization, Emitter{}.polarization);
+  EXPECT_EQ(emitter.propagation, Emitter{}.propagation);
+  EXPECT_EQ(emitter.scan.kind, ScanKind::fixed);
+  EXPECT_EQ(emitter.scan.bars, 1);
+  EXPECT_TRUE(emitter.active_s.empty());
+  EXPECT_EQ(emitter.receiver.pulses, RadarReceiver{}.pulses);
+  EXPECT_EQ(emitter.receiver.pfa, RadarReceiver{}.pfa);
+  EXPECT_EQ(emitter.receiver.swerling, RadarReceiver{}.swerling);
+  EXPECT_EQ(emitter.receiver.target_rcs_m2, RadarReceiver{}.target_rcs_m2);
+  EXPECT_EQ(emitter.receiver.antenna_temperature_k, RadarReceiver{}.antenna_temperature_k);
+  EXPECT_EQ(emitter.receiver.losses_db, RadarReceiver{}.losses_db);
+  EXPECT_EQ(emitter.receiver.processing_gain_db, RadarReceiver{}.processing_gain_db);
+  EXPECT_EQ(emitter.receiver.polarization, RadarReceiver{}.polarization);
+  EXPECT_EQ(emitter.receiver.cross_polar_isolation_db, RadarReceiver{}.cross_polar_isolation_db);
+  EXPECT_EQ(emitter.receiver.detection, RadarReceiver{}.detection);
+  EXPECT_EQ(emitter.receiver.required_signal_to_jammer_db, RadarReceiver{}.required_signal_to_jammer_db);
+  EXPECT_EQ(scenario->output.radar_look, OutputSpec{}.radar_look);
+  EXPECT_EQ(scenario->output.quantities, OutputSpec{}.quantities);
+  EXPECT_EQ(scenario->output.combine, OutputSpec{}.combine);
+  EXPECT_EQ(scenario->output.floor, OutputSpec{}.floor);
+  EXPECT_EQ(scenario->output.count_threshold_dbwm2, OutputSpec{}.count_threshold_dbwm2);
+}
+
+TEST_F(ScenarioYaml, ReadsJsonIndentedWithTabs) {
+  const auto scenario = load(R"({
+	"schema_version": 1, "name": "json \u00e9",
+	"region": {"origin": {"latitude_deg": 0, "longitude_deg": -1.5e1}, "size_m": [1, 1, 1], "dims": [2, 2, 2]},
+	"platforms": [
+		{"name": "p", "position": {"latitude_deg": 0, "longitude_deg": 0, "height_msl_m": 0}}
+	],
+	"emitters": [{"name": "e", "platform": "p", "kind": "jammer", "frequency_hz": 1E+9, "power_w": 1,
+		"antenna": {"pattern": "isotropic"}}]
+}
+)",
+                             "scenario.json");
+  EXPECT_EQ(scenario->name, "json \xC3\xA9");
+  EXPECT_EQ(scenario->region.origin.longitude_deg, -15);
+  EXPECT_EQ(scenario->emitters[0].frequency_hz, 1e9);
+}
+
+TEST_F(ScenarioYaml, AliasesStandForTheirAnchors) {
+  std::string text = replaced(valid_, "antenna: {pattern: gaussian", "antenna: &horn {pattern: gaussian");
+  text = replaced(text, "receivers:", R"(  - name: second
+    platform: helicopter
+    kind: transmitter
+    frequency_hz: 3.1e9
+    power_w: 1
+    antenna: *horn
+receivers:)");
+  EXPECT_EQ(load(text)->emitters.back().antenna->beamwidth_az_deg, 60);
+}
+
+TEST_F(ScenarioYaml, WindowsLineEndsAndByteOrderMarkChangeNothing) {
+  std::string text = "\xEF\xBB\xBF";
+  for (const char c : valid_) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_EQ(load(text)->emitters[0].place.column, 5);
+}
+
+TEST_F(ScenarioYaml, HashFollowsTheScenarioAndEveryNamedFile) {
+  const std::string before = load(valid_)->hash;
+  EXPECT_THAT(before, ::testing::MatchesRegex("[0-9a-f]{16}"));
+  EXPECT_EQ(load(valid_)->hash, before);
+  EXPECT_NE(load(valid_ + "# remark\n")->hash, before);
+  folder_.write("track.csv", replaced(test::readText(test::testData() / "track.csv"), "950", "951"));
+  const std::string other_track = load(valid_)->hash;
+  EXPECT_NE(other_track, before);
+  folder_.write("sector.msi", replaced(test::readText(test::testData() / "sector.msi"), "12.00", "13.00"));
+  EXPECT_NE(load(valid_)->hash, other_track);
+}
+
+TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
+  const std::string text = replaced(valid_, "begin_hz: 8.0e9", "begin_hz: 9.5e9");
+  const ParseResult result = parseScenario(folder_.write("scenario.yaml", text));
+  ASSERT_TRUE(result.scenario);
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].severity, Severity::warning);
+  EXPECT_EQ(result.problems[0].message, "emitter 'array radar' (9000000000 Hz) lies in none of the bands");
+  EXPECT_EQ(result.problems[0].place.line, 39);
+}
+
+TEST_F(ScenarioYaml, WarnsOfAJammerOutsideEveryRadarsBand) {
+  const std::string asking = replaced(valid_, "received_power_dbm, snr_db]", "jammer_to_signal_db]");
+  EXPECT_TRUE(parseScenario(folder_.write("scenario.yaml", asking)).problems.empty());
+  const std::string text = replaced(asking, "frequency_hz: 3.0e9\n    bandwidth_hz: 20.0e6",
+                                    "frequency_hz: 3.1e9\n    bandwidth_hz: 20.0e6");
+  const ParseResult result = parseScenario(folder_.write("scenario.yaml", text));
+  ASSERT_NE(result.scenario, nullptr);
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].severity, Severity::warning);
+  EXPECT_EQ(result.problems[0].message,
+            "jammer 'jammer' (3100000000 Hz, 20000000 Hz wide) lies outside the band of every radar: it jams "
+            "none");
+}
+
+TEST_F(ScenarioYaml, TrackMayHaveBlankLinesRemarksAndAttitude) {
+  folder_.write(
+      "track.csv",
+      "# remark\n\nheading_deg , t_s, latitude_deg,longitude_deg,height_agl_m,roll_deg,pitch_deg\r\n"
+      "350,0,1,2,30,4,-5\r\n\n10,+1.5e0,1,2,30,4,-5");
+  const auto scenario = load(valid_);
+  const TrackPoint& point = scenario->platforms[1].track.at(1);
+  EXPECT_EQ(point.t_s, 1.5);
+  EXPECT_EQ(point.heading_deg, 10);
+  EXPECT_EQ(point.roll_deg, 4);
+  EXPECT_EQ(point.pitch_deg, -5);
+  EXPECT_EQ(point.position.height_agl_m, 30);
+  EXPECT_FALSE(point.position.height_msl_m);
+}
+
+TEST(ScenarioSchema, ShippedFileIsWhatTheTableSays) {
+  const auto shipped =
+      std::filesystem::path(EMSCAPE_SOURCE_DIR) / "scenarios/schema/emscape-scenario.schema.json";
+  EXPECT_TRUE(test::readText(shipped) == scenarioJsonSchema())
+      << "write what scenarioJsonSchema() gives to " << shipped;
+}
+
+TEST(ScenarioSchema, EveryReferenceHasItsDefinition) {
+  const auto schema = nlohmann::json::parse(scenarioJsonSchema());
+  const std::function<void(const nlohmann::json&)> visit = [&](const nlohmann::json& node) {
+    if (node.is_object() && node.contains("$ref")) {
+      EXPECT_TRUE(schema.contains(nlohmann::json::json_pointer(node["$ref"].get<std::string>().substr(1))))
+          << node;
+    }
+    for (const auto& child : node) {
+      if (child.is_structured()) visit(child);
+    }
+  };
+  visit(schema);
+}
+
+/// Visits every row of the table.
+void forEachKey(const ObjectSpec& spec, const std::function<void(const KeySpec&)>& visit) {
+  for (const KeySpec& key : spec.keys) {
+    visit(key);
+    const ValueSpec* value = &key.value;
+    while (value->item) value = value->item.get();
+    if (value->object != nullptr) forEachKey(*value->object, visit);
+  }
+}
+
+TEST(ScenarioSchema, EveryQuantityWithAUnitEndsInIt) {
+  for (const ObjectSpec* spec : {&scenarioSpec(), &trackRowSpec()}) {
+    forEachKey(*spec, [](const KeySpec& key) {
+      if (unitOf(key.value).empty()) return;
+      EXPECT_NE(stemOf(key), key.name) << key.name << " " << unitOf(key.value);
+    });
+  }
+}
+
+TEST(ScenarioSchema, EveryDefaultIsWithinItsRange) {
+  forEachKey(scenarioSpec(), [](const KeySpec& key) {
+    if (!key.default_value.is_number()) return;
+    EXPECT_GE(key.default_value.get<double>(), key.value.minimum) << key.name;
+    EXPECT_LE(key.default_value.get<double>(), key.value.maximum) << key.name;
+  });
+}
+
+}  // namespace
+}  // namespace emscape::scenario
