@@ -8,6 +8,7 @@
 #include "emscape/base/parallel.h"
 #include "render/names.h"
 #include "render/overlay_parts.h"
+#include "render/rgba.h"
 
 namespace emscape::render {
 namespace {

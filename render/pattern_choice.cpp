@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "render/adaptive_tolerance.h"
+
 namespace emscape::render {
 
 const std::vector<Rung>& patternLadder() {

@@ -9,6 +9,12 @@ Volume::Volume(std::shared_ptr<const DenseVolume> volume) : info_(volume->info),
 Volume::Volume(std::shared_ptr<const DeviceVolume> volume)
     : info_(volume->info), device_(std::move(volume)) {}
 
+Volume::Volume(std::shared_ptr<const DenseVolume> volume, VolumeInfo info)
+    : info_(std::move(info)), host_(std::move(volume)) {}
+
+Volume::Volume(std::shared_ptr<const DeviceVolume> volume, VolumeInfo info)
+    : info_(std::move(info)), device_(std::move(volume)) {}
+
 Volume::Volume(DenseVolume volume) : Volume(std::make_shared<const DenseVolume>(std::move(volume))) {}
 
 std::shared_ptr<const DenseVolume> Volume::host() const {

@@ -73,7 +73,7 @@ class ProfilePlot {
  private:
   double wavelength() const { return wavelength_m(budget_.frequency_hz); }
   double bulgeAt(double range_m) const {
-    return range_m * (profile_.range_m - range_m) / (2 * profile_.station.effective_earth_radius_m);
+    return range_m * (profile_.range_m - range_m) / (2 * profile_.effective_earth_radius_m);
   }
   /// Of a height above mean sea level over a range.
   Point2 at(double range_m, double height_msl_m) const {

@@ -18,6 +18,9 @@ class Volume {
   /// @param volume  not null
   Volume(std::shared_ptr<const DenseVolume> volume);
   Volume(std::shared_ptr<const DeviceVolume> volume);
+  /// @param info  in place of the volume's own
+  Volume(std::shared_ptr<const DenseVolume> volume, VolumeInfo info);
+  Volume(std::shared_ptr<const DeviceVolume> volume, VolumeInfo info);
   explicit Volume(DenseVolume volume);
 
   bool isEmpty() const { return !host_ && !device_; }
