@@ -7,8 +7,11 @@ set(EMSCAPE_DEPENDENCIES TBB GDAL GeographicLib OpenVDB pugixml yaml-cpp nlohman
 # emscape_find_dependencies(COMMAND ...): find_package REQUIRED or find_dependency, for each of them.
 macro(emscape_find_dependencies command)
   set(_emscape_shared_libs "${BUILD_SHARED_LIBS}")
+  set(_emscape_log_level "${CMAKE_MESSAGE_LOG_LEVEL}")
+  set(CMAKE_MESSAGE_LOG_LEVEL WARNING)  # Debian's find modules print what concerns nobody
   foreach(_emscape_package IN LISTS EMSCAPE_DEPENDENCIES)
     cmake_language(CALL ${command} ${_emscape_package} ${ARGN})
   endforeach()
+  set(CMAKE_MESSAGE_LOG_LEVEL "${_emscape_log_level}")
   set(BUILD_SHARED_LIBS "${_emscape_shared_libs}")  # Debian's FindOpenVDB sets it
 endmacro()

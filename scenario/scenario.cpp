@@ -121,4 +121,8 @@ GeoBox terrainBox(const Scenario& scenario) {
   return builder.box();
 }
 
+TerrainPtr loadTerrain(const Scenario& scenario) {
+  return scenario.terrain ? Terrain::load(*scenario.terrain, terrainBox(scenario)) : nullptr;
+}
+
 }  // namespace emscape::scenario

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
+#include "emscape/render/render_settings.h"
 
 namespace emscape::render {
 namespace {

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "emscape/base/error.h"
+#include "render/reconstruction.h"
 #include "tests/render/cuda_scenes.h"
 
 namespace emscape::render {

@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "emscape/base/error.h"
+#include "render/rgba.h"
 
 namespace emscape::render {
 namespace {

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "emscape/base/error.h"
+#include "render/reconstruction.h"
 #include "tests/render/random_scene.h"
 
 namespace emscape::render {

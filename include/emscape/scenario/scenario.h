@@ -83,4 +83,8 @@ struct Scenario {
 /// km. A box that holds a pole spans all longitudes.
 GeoBox terrainBox(const Scenario& scenario);
 
+/// The terrain that a scenario names, within terrainBox(); null if it names none.
+/// @throws Error (bad_input) naming the file
+TerrainPtr loadTerrain(const Scenario& scenario);
+
 }  // namespace emscape::scenario
