@@ -1,0 +1,3 @@
+/// All of the library's public headers.
+#pragma once
+
