@@ -7,8 +7,9 @@
 #include <filesystem>
 #include <limits>
 
+#include "base/whole_file.h"
+#include "document/schema_check.h"
 #include "emscape/scenario/antenna_shapes.h"
-#include "scenario/schema_check.h"
 
 namespace emscape::scenario {
 
@@ -168,7 +169,7 @@ std::optional<std::string> ParseContext::readNamed(const Section& section, const
   const std::string name = section.text(key);
   if (name.empty()) return std::nullopt;
   try {
-    std::string bytes = readWholeFile(resolve(name), kLargestNamedFile);
+    std::string bytes = readWholeText(resolve(name), kLargestNamedFile);
     hash.add(bytes);
     return bytes;
   } catch (const Error& error) {
@@ -230,7 +231,7 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
     std::vector<std::string> names;
     for (const Platform& platform : platforms) names.push_back(platform.name);
     context.problems.addError(section.placeOf("platform"), fmt::format("there is no platform '{}'{}", carrier,
-                                                                       didYouMean(carrier, names)));
+                                                                       document::didYouMean(carrier, names)));
   }
   emitter.kind = section.choice<EmitterKind>("kind");
   emitter.frequency_hz = section.number("frequency_hz");

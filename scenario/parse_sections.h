@@ -5,19 +5,23 @@
 #include <string>
 #include <vector>
 
+#include "document/section.h"
+#include "document/text_file.h"
+#include "emscape/document/problem.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/platform.h"
-#include "emscape/scenario/problem.h"
-#include "scenario/section.h"
-#include "scenario/text_file.h"
+#include "scenario/schema.h"
 
 namespace emscape::scenario {
+
+using document::ProblemList;
+using document::Section;
 
 /// What the parsers of one file share.
 struct ParseContext {
   std::string file;
   ProblemList problems;
-  ContentHash hash;
+  document::ContentHash hash;
 
   /// A name in the scenario as seen from the working folder: relative names count from the scenario's folder.
   std::string resolve(const std::string& name) const;

@@ -7,9 +7,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/whole_file.h"
+#include "document/schema_check.h"
 #include "emscape/base/log.h"
 #include "scenario/parse_sections.h"
-#include "scenario/schema_check.h"
 
 namespace emscape::scenario {
 
@@ -219,17 +220,24 @@ ParseResult parseScenario(const std::string& file) {
   context.file = file;
   std::shared_ptr<const Scenario> scenario;
   try {
-    const std::string text = checkedUtf8(file, readWholeFile(file, kLargestScenario));
+    const std::string text = document::checkedUtf8(file, readWholeText(file, kLargestScenario));
     context.hash.add(text);
-    if (const DocumentNodePtr document = readDocument(file, text, context.problems)) {
-      checkObject(file, *document, scenarioSpec(), context.problems);
-      const Section root(context.file, document.get(), scenarioSpec());
+    if (const document::DocumentNodePtr root_node = document::readDocument(file, text, context.problems)) {
+      document::checkObject(file, *root_node, scenarioSpec(), context.problems);
+      const Section root(context.file, root_node.get(), scenarioSpec());
       scenario = std::make_shared<const Scenario>(parseRoot(root, context));
     }
   } catch (const Error& error) {
     context.problems.addError(error.place(), error.message());
   }
   return {context.problems.hasErrors() ? nullptr : scenario, context.problems.inOrder()};
+}
+
+std::string scenarioJsonSchema() {
+  return document::jsonSchema(
+      scenarioSpec(), "Emscape scenario",
+      "Made from the table that the parser checks by. The parser also refuses what a schema cannot say: "
+      "repeated names, platforms that do not exist, files that cannot be read.");
 }
 
 std::shared_ptr<const Scenario> loadScenario(const std::string& file) {

@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "emscape/scenario/problem.h"
+#include "emscape/document/problem.h"
 #include "emscape/scenario/scenario.h"
 
 namespace emscape::scenario {
+
+using document::Problem;
+using document::Severity;
 
 /// A scenario, or all that is wrong with it.
 struct ParseResult {

@@ -10,7 +10,7 @@
 
 namespace emscape::scenario {
 
-struct TerrainView;  // scenario/terrain_view.h
+struct TerrainView;  // scenario/terrain/view.h
 
 /// Datum of the heights in the elevation files.
 enum class VerticalDatum { egm96, ellipsoid };

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "scenario/document.h"
-#include "scenario/schema.h"
+#include "document/document.h"
+#include "document/schema.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 
 /// Tells every fault of an object: unknown and duplicate keys, missing ones, wrong types, values out of
 /// range.
@@ -34,4 +34,4 @@ std::string unknownKeyMessage(const std::string& key, const ObjectSpec& spec, co
 std::string didYouMean(const std::string& word, const std::vector<std::string>& names,
                        std::string* closest = nullptr);
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

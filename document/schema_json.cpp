@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
-#include "emscape/scenario/scenario_file.h"
-#include "scenario/schema.h"
+#include "document/schema.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 
 namespace {
 
@@ -18,19 +18,17 @@ Json number(double value) {
 
 class SchemaWriter {
  public:
-  Json write() {
+  Json write(const ObjectSpec& root, const std::string& title, const std::string& description) {
     Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
-                   {"title", "Emscape scenario"},
-                   {"description",
-                    "Made from the table that the parser checks by. The parser also refuses what a schema "
-                    "cannot say: repeated names, platforms that do not exist, files that cannot be read."}};
-    schema.update(object(scenarioSpec()));
+                   {"title", title},
+                   {"description", description}};
+    schema.update(object(root));
     schema["$defs"] = definitions_;
     return schema;
   }
 
  private:
-  Json value(const ValueSpec& spec) {
+  Json valueOf(const ValueSpec& spec) {
     switch (spec.type) {
       case ValueType::number:
       case ValueType::integer:
@@ -50,7 +48,7 @@ class SchemaWriter {
         break;
     }
     Json list = {{"type", "array"},
-                 {"items", value(*spec.item)},
+                 {"items", valueOf(*spec.item)},
                  {"minItems", spec.fewest_items},
                  {"maxItems", spec.most_items}};
     if (spec.items_differ) list["uniqueItems"] = true;
@@ -67,12 +65,12 @@ class SchemaWriter {
   }
 
   Json key(const KeySpec& row) {
-    Json json = value(row.value);
+    Json json = valueOf(row.value);
     if (!row.description.empty()) json["description"] = row.description;
-    if (!row.default_value.is_null()) {
-      json["default"] =
-          row.default_value.is_number() ? number(row.default_value.get<double>()) : Json(row.default_value);
-    }
+    if (const double* value = std::get_if<double>(&row.default_value)) json["default"] = number(*value);
+    if (const auto* text = std::get_if<std::string>(&row.default_value)) json["default"] = *text;
+    if (const auto* texts = std::get_if<std::vector<std::string>>(&row.default_value))
+      json["default"] = *texts;
     return json;
   }
 
@@ -129,8 +127,8 @@ class SchemaWriter {
 
 }  // namespace
 
-std::string scenarioJsonSchema() {
-  return SchemaWriter().write().dump(2) + "\n";
+std::string jsonSchema(const ObjectSpec& root, const std::string& title, const std::string& description) {
+  return SchemaWriter().write(root, title, description).dump(2) + "\n";
 }
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

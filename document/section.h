@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "scenario/document.h"
-#include "scenario/schema.h"
+#include "document/document.h"
+#include "document/schema.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 
 /// One object of the file. Reading a value that is not given gives the table's default. Where there is none,
 /// and where the value is faulty, which checkObject() has told already, numbers are NaN, so that no
@@ -61,4 +61,4 @@ class Section {
   std::string variant_;  ///< the discriminator's value; empty: none or faulty
 };
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

@@ -1,4 +1,4 @@
-/// Reads text files that people wrote: whole, of bounded size, and UTF-8.
+/// Text files that people write: UTF-8, and whether one has changed.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,7 @@
 
 #include "emscape/base/error.h"
 
-namespace emscape::scenario {
-
-/// The bytes of a regular file.
-/// @throws Error (bad_input) if there is none, if it cannot be read or if it is larger than limit_bytes
-std::string readWholeFile(const std::string& file, std::size_t limit_bytes);
+namespace emscape::document {
 
 /// Takes a byte order mark off and checks that the rest is UTF-8 text without control characters.
 /// @throws Error (bad_input) with the place of the first byte that is not
@@ -32,4 +28,4 @@ class ContentHash {
   std::uint64_t state_ = 14695981039346656037ull;
 };
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

@@ -1,13 +1,13 @@
-#include "scenario/section.h"
+#include "document/section.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
-#include "scenario/schema_check.h"
+#include "document/schema_check.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 
 namespace {
 
@@ -43,8 +43,7 @@ Section::Section(const std::string& file, const DocumentNode* node, const Object
 const KeySpec& Section::row(const std::string& key) const {
   const KeySpec* found = spec_->find(key, variant_.empty() ? nullptr : &variant_);
   if (found == nullptr) found = spec_->find(key, nullptr);  // a key of another variant: not given here
-  if (found == nullptr)
-    throw std::logic_error("the scenario table has no key '" + key + "' in " + spec_->name);
+  if (found == nullptr) throw std::logic_error("the table has no key '" + key + "' in " + spec_->name);
   return *found;
 }
 
@@ -68,8 +67,8 @@ bool Section::sound() const {
 
 double Section::number(const std::string& key) const {
   if (const DocumentNode* node = find(key)) return numberIn(*node, row(key).value);
-  const auto& fallback = row(key).default_value;
-  return fallback.is_number() ? fallback.get<double>() : kFaulty;
+  const double* fallback = std::get_if<double>(&row(key).default_value);
+  return fallback != nullptr ? *fallback : kFaulty;
 }
 
 std::optional<double> Section::optionalNumber(const std::string& key) const {
@@ -84,8 +83,8 @@ int Section::integer(const std::string& key) const {
 
 std::string Section::text(const std::string& key) const {
   if (const DocumentNode* node = find(key)) return node->text;
-  const auto& fallback = row(key).default_value;
-  return fallback.is_string() ? fallback.get<std::string>() : "";
+  const std::string* fallback = std::get_if<std::string>(&row(key).default_value);
+  return fallback != nullptr ? *fallback : "";
 }
 
 int Section::choiceIndex(const std::string& key) const {
@@ -116,8 +115,8 @@ std::vector<std::string> Section::texts(const std::string& key) const {
   std::vector<std::string> all;
   if (const DocumentNode* list = find(key)) {
     for (const DocumentNodePtr& item : list->items) all.push_back(item->text);
-  } else if (row(key).default_value.is_array()) {
-    all = row(key).default_value.get<std::vector<std::string>>();
+  } else if (const auto* fallback = std::get_if<std::vector<std::string>>(&row(key).default_value)) {
+    all = *fallback;
   }
   return all;
 }
@@ -144,4 +143,4 @@ FilePlace Section::placeOf(const std::string& key, std::size_t item) const {
   return list == nullptr || item >= list->items.size() ? placeOf(key) : placeAt(list->items[item]->position);
 }
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

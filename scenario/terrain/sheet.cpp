@@ -1,4 +1,4 @@
-#include "scenario/terrain_sheet.h"
+#include "scenario/terrain/sheet.h"
 
 #include <algorithm>
 #include <cmath>

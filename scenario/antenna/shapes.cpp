@@ -1,5 +1,3 @@
-#include "emscape/scenario/antenna_shapes.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,8 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "scenario/antenna_tables.h"
+#include "emscape/scenario/antenna_shapes.h"
+#include "scenario/antenna/tables.h"
 
 namespace emscape::scenario {
 namespace {

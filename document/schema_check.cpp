@@ -1,4 +1,4 @@
-#include "scenario/schema_check.h"
+#include "document/schema_check.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 #include <numeric>
 #include <set>
 
-#include "emscape/scenario/clock.h"
-#include "scenario/text_file.h"
+#include "document/text_file.h"
+#include "emscape/base/utc.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 
 namespace {
 
@@ -367,4 +367,4 @@ std::string unknownKeyMessage(const std::string& key, const ObjectSpec& spec, co
   return fmt::format("unknown key {} of the {}; it can have {}", quoted(key), spec.name, joined(names));
 }
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "scenario/terrain_file.h"
-#include "scenario/terrain_posts.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/file.h"
+#include "scenario/terrain/posts.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::scenario {
 

@@ -1,4 +1,4 @@
-#include "scenario/document.h"
+#include "document/document.h"
 
 #include <fmt/format.h>
 #include <yaml-cpp/anchor.h>
@@ -11,9 +11,9 @@
 #include <sstream>
 #include <string_view>
 
-#include "scenario/text_file.h"
+#include "document/text_file.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 
 namespace {
 
@@ -39,7 +39,7 @@ class PositionFinder {
   TextPosition operator()(const YAML::Mark& mark) {
     if (mark.is_null()) return {};
     const std::size_t line = static_cast<std::size_t>(mark.line);
-    if (line >= line_begins_.size()) return {mark.line + 1, 1};
+    if (line >= line_begins_.size()) return {mark.line + 1, 1, text_.size()};
     const std::size_t byte =
         std::min(line_begins_[line] + static_cast<std::size_t>(mark.column), text_.size());
     if (line != line_ || byte < byte_) {
@@ -49,7 +49,7 @@ class PositionFinder {
     }
     column_ += static_cast<int>(characterCount(text_.substr(byte_, byte - byte_)));
     byte_ = byte;
-    return {mark.line + 1, column_};
+    return {mark.line + 1, column_, byte};
   }
 
  private:
@@ -127,12 +127,13 @@ class TreeBuilder : public YAML::EventHandler {
     auto node = std::make_shared<DocumentNode>();
     node->kind = kind;
     node->position = positions_(mark);
-    if (anchor != YAML::NullAnchor) anchors_[anchor] = node;
+    node->anchored = anchor != YAML::NullAnchor;
+    if (node->anchored) anchors_[anchor] = node;
     return node;
   }
 
   void refuseTag(const TextPosition& position, const std::string& tag) {
-    problems_.addError(placeOf(position), fmt::format("tag '{}' is not allowed in a scenario", tag));
+    problems_.addError(placeOf(position), fmt::format("tag '{}' is not allowed", tag));
   }
 
   void open(NodeKind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
@@ -235,13 +236,13 @@ DocumentNodePtr readDocument(const std::string& file, const std::string& text, P
   try {
     YAML::Parser parser(stream);
     if (!parser.HandleNextDocument(builder) || !builder.root() || builder.root()->kind == NodeKind::null) {
-      return fail({1, 1}, "the file is empty");
+      return fail({1, 1, 0}, "the file is empty");
     }
     const DocumentNodePtr root = builder.root();
     TreeBuilder second(file, text, problems);
     if (parser.HandleNextDocument(second)) {
-      return fail(second.root() ? second.root()->position : TextPosition{1, 1},
-                  "a second document begins here; a scenario is one document");
+      return fail(second.root() ? second.root()->position : TextPosition{1, 1, 0},
+                  "a second document begins here; the file must be one document");
     }
     return root;
   } catch (const FatalFault& fault) {
@@ -251,4 +252,4 @@ DocumentNodePtr readDocument(const std::string& file, const std::string& text, P
   }
 }
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

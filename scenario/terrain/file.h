@@ -8,7 +8,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/terrain.h"
-#include "scenario/terrain_posts.h"
+#include "scenario/terrain/posts.h"
 
 namespace emscape::scenario {
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "scenario/terrain_sheet.h"
+#include "scenario/terrain/sheet.h"
 
 namespace emscape::scenario {
 

@@ -1,4 +1,4 @@
-#include "scenario/antenna_cut.h"
+#include "scenario/antenna/cut.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "scenario/terrain_place.h"
+#include "scenario/terrain/place.h"
 
 #include <algorithm>
 #include <cmath>

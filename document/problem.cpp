@@ -1,10 +1,10 @@
-#include "emscape/scenario/problem.h"
+#include "emscape/document/problem.h"
 
 #include <algorithm>
 #include <tuple>
 #include <utility>
 
-namespace emscape::scenario {
+namespace emscape::document {
 
 namespace {
 
@@ -48,4 +48,4 @@ std::vector<Problem> ProblemList::inOrder() const {
   return problems;
 }
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

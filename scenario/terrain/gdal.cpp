@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "emscape/base/units.h"
-#include "scenario/terrain_file.h"
+#include "scenario/terrain/file.h"
 
 namespace emscape::scenario {
 namespace {

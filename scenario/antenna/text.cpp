@@ -1,10 +1,11 @@
-#include "scenario/antenna_text.h"
+#include "scenario/antenna/text.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 
-#include "scenario/text_file.h"
+#include "base/whole_file.h"
+#include "document/text_file.h"
 
 namespace emscape::scenario {
 namespace {
@@ -27,7 +28,7 @@ TextField restOf(const TextField& field, std::size_t offset) {
           field.column + static_cast<int>(first)};
 }
 
-AntennaText::AntennaText(const std::string& file) : file_(file), text_(readWholeFile(file, kLargestFile)) {
+AntennaText::AntennaText(const std::string& file) : file_(file), text_(readWholeText(file, kLargestFile)) {
   if (text_.compare(0, 3, "\xEF\xBB\xBF") == 0) text_.erase(0, 3);
   std::replace_if(text_.begin(), text_.end(), isForeign, '?');
   const std::string_view text = text_;

@@ -1,4 +1,4 @@
-#include "scenario/antenna_tables.h"
+#include "scenario/antenna/tables.h"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,8 @@
-#include "scenario/text_file.h"
+#include "document/text_file.h"
 
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <fstream>
-
-namespace emscape::scenario {
+namespace emscape::document {
 
 namespace {
 
@@ -36,24 +33,6 @@ bool isForbiddenControl(unsigned char c) {
 }
 
 }  // namespace
-
-std::string readWholeFile(const std::string& file, std::size_t limit_bytes) {
-  const FilePlace place{file, 0, 0};
-  std::error_code failure;
-  const auto status = std::filesystem::status(file, failure);
-  if (!std::filesystem::exists(status)) throw Error(ErrorCode::bad_input, place, "there is no such file");
-  if (!std::filesystem::is_regular_file(status)) throw Error(ErrorCode::bad_input, place, "is not a file");
-  const std::uintmax_t size = std::filesystem::file_size(file, failure);
-  if (size > limit_bytes && !failure) {
-    throw Error(ErrorCode::bad_input, place,
-                fmt::format("is {} bytes large, more than the allowed {}", size, limit_bytes));
-  }
-  std::ifstream stream(file, std::ios::binary);
-  std::string bytes(failure ? 0 : static_cast<std::size_t>(size), '\0');
-  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (failure || !stream) throw Error(ErrorCode::bad_input, place, "cannot be read");
-  return bytes;
-}
 
 std::string checkedUtf8(const std::string& file, std::string bytes) {
   if (bytes.compare(0, 3, "\xEF\xBB\xBF") == 0) bytes.erase(0, 3);
@@ -94,4 +73,4 @@ std::string ContentHash::hex() const {
   return fmt::format("{:016x}", state_);
 }
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

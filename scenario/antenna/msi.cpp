@@ -23,9 +23,9 @@
 #include "emscape/base/log.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/antenna_shapes.h"
-#include "scenario/antenna_cut.h"
-#include "scenario/antenna_tables.h"
-#include "scenario/antenna_text.h"
+#include "scenario/antenna/cut.h"
+#include "scenario/antenna/tables.h"
+#include "scenario/antenna/text.h"
 
 namespace emscape::scenario {
 namespace {

@@ -1,18 +1,20 @@
 /// A YAML or JSON text as a tree that keeps where everything stood.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "emscape/scenario/problem.h"
+#include "emscape/document/problem.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 
-/// Counted from 1; columns are characters.
+/// line and column count from 1; columns are characters.
 struct TextPosition {
   int line = 0;
   int column = 0;
+  std::size_t offset = 0;  ///< byte of the text
 };
 
 enum class NodeKind { null, scalar, sequence, map };
@@ -33,6 +35,7 @@ struct DocumentNode {
       position;  ///< of the value; of its key where the value is missing; of the anchor's value for an alias
   std::string text;                    ///< scalar
   bool quoted = false;                 ///< scalar: text, whatever it looks like
+  bool anchored = false;               ///< other values may be aliases of this one
   std::vector<DocumentNodePtr> items;  ///< sequence
   std::vector<MapEntry> entries;       ///< map, in the order of the file
   long long unfolded_count = 1;        ///< values in this node with every alias written out
@@ -45,4 +48,4 @@ struct DocumentNode {
 /// @return null if the text could not be read to its end or is empty
 DocumentNodePtr readDocument(const std::string& file, const std::string& text, ProblemList& problems);
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

@@ -1,4 +1,4 @@
-/// What is wrong in the files of a scenario.
+/// What is wrong in a document and the files it names.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 #include "emscape/base/error.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 
 enum class Severity { warning, error };
 
@@ -39,4 +39,4 @@ class ProblemList {
   std::vector<Entry> entries_;
 };
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

@@ -8,8 +8,8 @@
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
-#include "scenario/terrain_place.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/place.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::scenario {
 namespace {
