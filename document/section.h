@@ -42,6 +42,8 @@ class Section {
   std::vector<std::string> texts(const std::string& key) const;
   std::vector<std::vector<double>> numberLists(const std::string& key) const;
 
+  /// The object itself; null if it is not given.
+  const DocumentNode* node() const { return node_; }
   /// Where the object stands.
   FilePlace place() const;
   /// Where the key's value stands; where the object stands if it is not given.

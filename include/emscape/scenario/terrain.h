@@ -27,6 +27,14 @@ struct TerrainSpec {
   VerticalDatum vertical_datum = VerticalDatum::egm96;
 };
 
+/// The same files and datum, wherever the scenario names them.
+inline bool operator==(const TerrainSpec& a, const TerrainSpec& b) {
+  return a.files == b.files && a.vertical_datum == b.vertical_datum;
+}
+inline bool operator!=(const TerrainSpec& a, const TerrainSpec& b) {
+  return !(a == b);
+}
+
 /// What `emscape info` says of one elevation file.
 struct TerrainFileInfo {
   std::string file, format, crs;
