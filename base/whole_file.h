@@ -57,8 +57,12 @@ class FolderLock {
   int descriptor_ = -1;
 };
 
-/// All bytes of a file.
-/// @throws Error (bad_input) that names the path and the cause
-std::vector<std::uint8_t> readWhole(const std::filesystem::path& path);
+/// All bytes of a regular file.
+/// @throws Error (bad_input) that names the path and the cause: no such file, not a regular file, no
+/// permission, more than max_bytes
+std::vector<std::uint8_t> readWhole(const std::filesystem::path& path,
+                                    std::uintmax_t max_bytes = UINTMAX_MAX);
+/// The same bytes, for those who read text in them. The encoding is not checked.
+std::string readWholeText(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
 
 }  // namespace emscape

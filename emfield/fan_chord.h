@@ -8,7 +8,7 @@
 #include "emfield/station.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::emfield {
 

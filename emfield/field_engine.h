@@ -12,7 +12,7 @@
 #include "emfield/products.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/emfield/field_solver.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::emfield {
 

@@ -6,7 +6,7 @@
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "emscape/scenario/antenna.h"
-#include "scenario/antenna_pattern.h"
+#include "scenario/antenna/pattern.h"
 
 namespace emscape::emfield {
 

@@ -6,7 +6,7 @@
 
 #include "emfield/fan_chord.h"
 #include "emscape/base/parallel.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::emfield {
 namespace {

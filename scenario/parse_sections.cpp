@@ -7,8 +7,10 @@
 #include <filesystem>
 #include <limits>
 
+#include "base/whole_file.h"
+#include "document/schema_check.h"
+#include "document/text_edit.h"
 #include "emscape/scenario/antenna_shapes.h"
-#include "scenario/schema_check.h"
 
 namespace emscape::scenario {
 
@@ -164,18 +166,49 @@ std::string ParseContext::resolve(const std::string& name) const {
       .string();
 }
 
-std::optional<std::string> ParseContext::readNamed(const Section& section, const std::string& key) {
+bool ParseContext::addNamed(const Section& section, const std::string& key, std::string* bytes) {
   const std::string name = section.text(key);
-  if (name.empty()) return std::nullopt;
-  try {
-    std::string bytes = readWholeFile(resolve(name), kLargestNamedFile);
-    hash.add(bytes);
-    return bytes;
-  } catch (const Error& error) {
-    problems.addError(section.placeOf(key), fmt::format("'{}': {}: {}", key, resolve(name), error.message()));
-    return std::nullopt;
+  if (name.empty()) return false;
+  const std::string named = resolve(name);
+  std::string digest;
+  const bool known = before != nullptr && before->digests.count(named) != 0 &&
+                     (bytes == nullptr || before->tracks.count(named) != 0);
+  if (known) {
+    digest = before->digests.at(named);
+  } else {
+    try {
+      std::string content = readWholeText(named, kLargestNamedFile);
+      document::ContentHash of_file;
+      of_file.add(content);
+      digest = of_file.hex();
+      if (bytes != nullptr) *bytes = std::move(content);
+    } catch (const Error& error) {
+      problems.addError(section.placeOf(key), fmt::format("'{}': {}: {}", key, named, error.message()));
+      return false;
+    }
   }
+  hash.add(digest);
+  files.digests[named] = digest;
+  return true;
 }
+
+namespace {
+
+std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
+  const std::string file = context.resolve(track.text("file"));
+  std::string bytes;
+  if (!context.addNamed(track, "file", &bytes)) return {};
+  std::shared_ptr<const std::vector<TrackPoint>>& points = context.files.tracks[file];
+  if (context.before != nullptr && context.before->tracks.count(file) != 0) {
+    points = context.before->tracks.at(file);
+  } else {
+    points = std::make_shared<const std::vector<TrackPoint>>(
+        parseTrack(file, bytes, track.placeOf("file"), context.problems));
+  }
+  return *points;
+}
+
+}  // namespace
 
 Platform parsePlatform(const Section& section, ParseContext& context) {
   Platform platform;
@@ -183,10 +216,8 @@ Platform parsePlatform(const Section& section, ParseContext& context) {
   platform.place = section.place();
   if (section.has("track")) {
     const Section track = section.section("track");
-    if (const auto bytes = context.readNamed(track, "file")) {
-      platform.track_file = context.resolve(track.text("file"));
-      platform.track = parseTrack(platform.track_file, *bytes, track.placeOf("file"), context.problems);
-    }
+    platform.track = trackOf(track, context);
+    if (!platform.track.empty()) platform.track_file = context.resolve(track.text("file"));
     return platform;
   }
   const Section position = section.section("position"), attitude = section.section("attitude");
@@ -205,16 +236,21 @@ Platform parsePlatform(const Section& section, ParseContext& context) {
 AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
   bool readable = true;
   for (const char* key : {"file", "azimuth_file", "elevation_file"}) {
-    readable = (!section.has(key) || context.readNamed(section, key)) && readable;
+    readable = (!section.has(key) || context.addNamed(section, key)) && readable;
   }
   if (!readable || !section.sound()) return nullptr;
+  const std::string description = document::flowText(*section.node(), true);
+  AntennaPtr& antenna = context.files.antennas[description];
+  if (!antenna && context.before != nullptr && context.before->antennas.count(description) != 0) {
+    antenna = context.before->antennas.at(description);
+  }
   try {
-    return makeAntenna(section, context);
+    if (!antenna) antenna = makeAntenna(section, context);
   } catch (const Error& error) {
     const FilePlace place = error.place().file.empty() ? section.place() : error.place();
     context.problems.addErrorElsewhere(section.place(), place, error.message());
-    return nullptr;
   }
+  return antenna;
 }
 
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
@@ -230,7 +266,7 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
     std::vector<std::string> names;
     for (const Platform& platform : platforms) names.push_back(platform.name);
     context.problems.addError(section.placeOf("platform"), fmt::format("there is no platform '{}'{}", carrier,
-                                                                       didYouMean(carrier, names)));
+                                                                       document::didYouMean(carrier, names)));
   }
   emitter.kind = section.choice<EmitterKind>("kind");
   emitter.frequency_hz = section.number("frequency_hz");

@@ -5,24 +5,32 @@
 #include <string>
 #include <vector>
 
+#include "document/section.h"
+#include "document/text_file.h"
+#include "emscape/document/problem.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/platform.h"
-#include "emscape/scenario/problem.h"
-#include "scenario/section.h"
-#include "scenario/text_file.h"
+#include "scenario/schema.h"
+#include "scenario/source.h"
 
 namespace emscape::scenario {
+
+using document::ProblemList;
+using document::Section;
 
 /// What the parsers of one file share.
 struct ParseContext {
   std::string file;
   ProblemList problems;
-  ContentHash hash;
+  document::ContentHash hash;
+  const NamedFiles* before = nullptr;  ///< what an earlier reading found in the files; null: read them
+  NamedFiles files;                    ///< what this reading found
 
   /// A name in the scenario as seen from the working folder: relative names count from the scenario's folder.
   std::string resolve(const std::string& name) const;
-  /// The bytes of a file named in a section, added to the hash; none, and a problem, if it cannot be read.
-  std::optional<std::string> readNamed(const Section& section, const std::string& key);
+  /// Adds the content of a file named in a section to the hash; false, and a problem, if it cannot be read.
+  /// @param bytes  of a track; set to the content if the file was read now
+  bool addNamed(const Section& section, const std::string& key, std::string* bytes = nullptr);
 };
 
 /// Faults that checkObject() finds are told already: these tell only what it cannot see. Where a section is

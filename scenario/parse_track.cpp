@@ -6,8 +6,8 @@
 #include <functional>
 #include <string_view>
 
+#include "document/schema_check.h"
 #include "scenario/parse_sections.h"
-#include "scenario/schema_check.h"
 
 namespace emscape::scenario {
 
@@ -31,7 +31,7 @@ std::vector<Cell> split(std::string_view line) {
     const std::size_t last = cell.find_last_not_of(kBlanks);
     const std::size_t column_from = begin + (first < cell.size() ? first : 0);
     cells.push_back({std::string(first < cell.size() ? cell.substr(first, last - first + 1) : ""),
-                     static_cast<int>(characterCount(line.substr(0, column_from))) + 1});
+                     static_cast<int>(document::characterCount(line.substr(0, column_from))) + 1});
     begin = end + 1;
   }
   return cells;
@@ -84,7 +84,7 @@ class TrackReader {
       const KeySpec* key = spec.find(cell.text, nullptr);
       if (key == nullptr) {
         std::vector<std::string> meant;
-        fault(line, cell.column, unknownKeyMessage(cell.text, spec, nullptr, &meant));
+        fault(line, cell.column, document::unknownKeyMessage(cell.text, spec, nullptr, &meant));
         seen.insert(seen.end(), meant.begin(), meant.end());
       } else if (has(seen, cell.text)) {
         fault(line, cell.column, fmt::format("column '{}' stands here twice", cell.text));
@@ -120,11 +120,12 @@ class TrackReader {
     TrackPoint point;
     bool sound = true;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto value = numberOf(cells[i].text);
+      const auto value = document::numberOf(cells[i].text);
       const std::string quoted_name = "'" + columns_[i]->name + "'";
-      const std::string wrong = value ? rangeFault(quoted_name, cells[i].text, *value, columns_[i]->value)
-                                      : fmt::format("{} must be a number ({}), not '{}'", quoted_name,
-                                                    columns_[i]->value.unit, cells[i].text.substr(0, 40));
+      const std::string wrong =
+          value ? document::rangeFault(quoted_name, cells[i].text, *value, columns_[i]->value)
+                : fmt::format("{} must be a number ({}), not '{}'", quoted_name, columns_[i]->value.unit,
+                              cells[i].text.substr(0, 40));
       if (!wrong.empty()) {
         fault(line, cells[i].column, wrong);
         sound = false;
@@ -167,7 +168,7 @@ class TrackReader {
 std::vector<TrackPoint> parseTrack(const std::string& file, const std::string& bytes,
                                    const FilePlace& named_at, ProblemList& problems) {
   try {
-    return TrackReader(file, named_at, problems).read(checkedUtf8(file, bytes));
+    return TrackReader(file, named_at, problems).read(document::checkedUtf8(file, bytes));
   } catch (const Error& error) {
     problems.addErrorElsewhere(named_at, error.place(), error.message());
     return {};

@@ -7,15 +7,17 @@
 #include <filesystem>
 #include <fstream>
 
+#include "base/whole_file.h"
+#include "document/schema_check.h"
+#include "document/text_edit.h"
+#include "document/text_file.h"
 #include "emscape/base/log.h"
 #include "scenario/parse_sections.h"
-#include "scenario/schema_check.h"
 
 namespace emscape::scenario {
 
 namespace {
 
-constexpr std::size_t kLargestScenario = std::size_t{4} << 20;
 constexpr double kMostVoxels = 2147483648.0;
 constexpr double kMostSteps = 1e7;
 
@@ -46,14 +48,22 @@ Region parseRegion(const Section& section, ParseContext& context) {
   return region;
 }
 
+/// The files are opened, not read; those that an earlier reading found are believed.
 TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
   TerrainSpec terrain;
+  std::string digest;
+  const NamedFiles* before = context.before;
+  const bool known = before != nullptr && before->terrain_node &&
+                     document::sameValue(*before->terrain_node, *section.node());
   terrain.vertical_datum = section.choice<VerticalDatum>("vertical_datum");
   const std::vector<std::string> names = section.texts("files");
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i].empty()) continue;
     const FilePlace place = section.placeOf("files", i);
     const std::string file = context.resolve(names[i]);
+    terrain.files.push_back(file);
+    terrain.places.push_back(place);
+    if (known) continue;
     std::error_code failure;
     const std::uintmax_t size = std::filesystem::file_size(file, failure);
     if (failure || !std::ifstream(file)) {
@@ -61,10 +71,11 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
           place, fmt::format("elevation file {}: {}", file, failure ? failure.message() : "cannot be read"));
       continue;
     }
-    context.hash.add(fmt::format("{}:{}", names[i], size));
-    terrain.files.push_back(file);
-    terrain.places.push_back(place);
+    digest += fmt::format("{}:{}", names[i], size);
   }
+  context.files.terrain_node = std::make_shared<const document::DocumentNode>(*section.node());
+  context.files.terrain_digest = known ? before->terrain_digest : digest;
+  context.hash.add(context.files.terrain_digest);
   return terrain;
 }
 
@@ -214,36 +225,120 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
 
 }  // namespace
 
-ParseResult parseScenario(const std::string& file) {
+namespace {
+
+/// The places that a scenario holds, as places in its file.
+void mapPlaces(Scenario& scenario, const document::EditedText& text) {
+  const auto map = [&text](FilePlace& place) { place = text.originOf(place); };
+  map(scenario.ground.place);
+  for (Platform& platform : scenario.platforms) map(platform.place);
+  for (Emitter& emitter : scenario.emitters) {
+    map(emitter.place);
+    map(emitter.frequency_place);
+    map(emitter.itm.place);
+    map(emitter.p528.place);
+  }
+  if (!scenario.terrain) return;
+  for (FilePlace& place : scenario.terrain->places) map(place);
+}
+
+/// Reads the scenario from its edited text. @param before  null, or what an earlier reading found
+ParseResult readSource(ScenarioSource source, const NamedFiles* before, ParseContext& context) {
+  context.before = before;
+  std::shared_ptr<Scenario> scenario;
+  if (source.root) {
+    context.hash.add(source.text.text());
+    document::checkObject(context.file, *source.root, scenarioSpec(), context.problems);
+    const Section root(context.file, source.root.get(), scenarioSpec());
+    scenario = std::make_shared<Scenario>(parseRoot(root, context));
+  }
+  ParseResult result;
+  result.problems = context.problems.inOrder();
+  for (Problem& problem : result.problems) problem.place = source.text.originOf(problem.place);
+  if (!scenario || context.problems.hasErrors()) return result;
+  mapPlaces(*scenario, source.text);
+  source.files = std::move(context.files);
+  scenario->source = std::make_shared<const ScenarioSource>(std::move(source));
+  result.scenario = std::move(scenario);
+  return result;
+}
+
+void applyEdits(ScenarioSource& source, const std::vector<Edit>& edits, ParseContext& context) {
+  for (const Edit& edit : edits) {
+    try {
+      applyEdit(source, edit);
+    } catch (const Error& error) {
+      context.problems.addError(error.place(), error.message());
+    }
+  }
+}
+
+/// @throws Error (bad_input) that lists the errors of a result without a scenario
+void requireScenario(const ParseResult& result) {
+  if (result.scenario) return;
+  std::string all;
+  for (const Problem& problem : result.problems) {
+    if (problem.severity == Severity::warning) continue;
+    all += (all.empty() ? "" : "\n") + toString(problem.place) + ": " + problem.message;
+  }
+  throw Error(ErrorCode::bad_input, all);
+}
+
+}  // namespace
+
+ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits) {
   ParseContext context;
   context.file = file;
-  std::shared_ptr<const Scenario> scenario;
+  ScenarioSource source;
   try {
-    const std::string text = checkedUtf8(file, readWholeFile(file, kLargestScenario));
-    context.hash.add(text);
-    if (const DocumentNodePtr document = readDocument(file, text, context.problems)) {
-      checkObject(file, *document, scenarioSpec(), context.problems);
-      const Section root(context.file, document.get(), scenarioSpec());
-      scenario = std::make_shared<const Scenario>(parseRoot(root, context));
-    }
+    source.text = {file, document::checkedUtf8(file, readWholeText(file, kMaxScenarioBytes))};
+    source.root = document::readDocument(file, source.text.text(), context.problems);
   } catch (const Error& error) {
     context.problems.addError(error.place(), error.message());
   }
-  return {context.problems.hasErrors() ? nullptr : scenario, context.problems.inOrder()};
+  if (source.root) applyEdits(source, edits, context);
+  return readSource(std::move(source), nullptr, context);
 }
 
-std::shared_ptr<const Scenario> loadScenario(const std::string& file) {
-  const ParseResult result = parseScenario(file);
-  std::string all;
-  for (const Problem& problem : result.problems) {
-    const std::string line = toString(problem.place) + ": " + problem.message;
-    if (problem.severity == Severity::warning) {
-      logWarning(line);
-    } else {
-      all += (all.empty() ? "" : "\n") + line;
-    }
+ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits) {
+  if (!scenario.source) {
+    throw Error(ErrorCode::bad_input, "the scenario was not read from a file: there is no text to edit");
   }
-  if (!result.scenario) throw Error(ErrorCode::bad_input, all);
+  ParseContext context;
+  context.file = scenario.file;
+  ScenarioSource source{scenario.source->text, scenario.source->root, scenario.source->edits, {}};
+  applyEdits(source, edits, context);
+  return readSource(std::move(source), &scenario.source->files, context);
+}
+
+void Scenario::set(const std::string& path, const std::string& value) {
+  set({Edit{path, value}});
+}
+
+void Scenario::set(const std::vector<Edit>& edits) {
+  const ParseResult result = editScenario(*this, edits);
+  requireScenario(result);
+  Scenario edited = *result.scenario;
+  *this = std::move(edited);
+}
+
+std::vector<Edit> Scenario::edits() const {
+  return source ? source->edits : std::vector<Edit>{};
+}
+
+std::string scenarioJsonSchema() {
+  return document::jsonSchema(
+      scenarioSpec(), "Emscape scenario",
+      "Made from the table that the parser checks by. The parser also refuses what a schema cannot say: "
+      "repeated names, platforms that do not exist, files that cannot be read.");
+}
+
+std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits) {
+  const ParseResult result = parseScenario(file, edits);
+  for (const Problem& problem : result.problems) {
+    if (problem.severity == Severity::warning) logWarning(toString(problem.place) + ": " + problem.message);
+  }
+  requireScenario(result);
   return result.scenario;
 }
 

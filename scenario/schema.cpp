@@ -1,41 +1,23 @@
 #include "scenario/schema.h"
 
-#include <algorithm>
-#include <cctype>
-
 #include "emscape/scenario/scenario.h"
 
 namespace emscape::scenario {
 
 namespace {
 
-using nlohmann::json;
-
-ValueSpec number(const std::string& unit = "") {
-  ValueSpec spec;
-  spec.type = ValueType::number;
-  spec.unit = unit;
-  return spec;
-}
-
-ValueSpec simple(ValueType type) {
-  ValueSpec spec;
-  spec.type = type;
-  return spec;
-}
-
-ValueSpec textOf(ValueType type, int most_characters) {
-  ValueSpec spec = simple(type);
-  spec.fewest_items = 1;
-  spec.most_items = most_characters;
-  return spec;
-}
-
-ValueSpec choice(std::vector<std::string> choices) {
-  ValueSpec spec = simple(ValueType::choice);
-  spec.choices = std::move(choices);
-  return spec;
-}
+using document::DefaultValue;
+using document::ValueType;
+using document::spec::byDefault;
+using document::spec::choice;
+using document::spec::listOf;
+using document::spec::number;
+using document::spec::object;
+using document::spec::optional;
+using document::spec::required;
+using document::spec::simple;
+using document::spec::textOf;
+using document::spec::Variants;
 
 /// The names of an enumeration that counts from 0 to `last`.
 template <class Enum>
@@ -43,36 +25,6 @@ ValueSpec choiceUpTo(Enum last) {
   std::vector<std::string> names;
   for (int i = 0; i <= static_cast<int>(last); ++i) names.emplace_back(toString(static_cast<Enum>(i)));
   return choice(std::move(names));
-}
-
-ValueSpec object(const ObjectSpec& fields) {
-  ValueSpec spec = simple(ValueType::object);
-  spec.object = &fields;
-  return spec;
-}
-
-ValueSpec listOf(const ValueSpec& item, int fewest, int most) {
-  ValueSpec spec = simple(ValueType::list);
-  spec.item = std::make_shared<ValueSpec>(item);
-  spec.fewest_items = fewest;
-  spec.most_items = most;
-  return spec;
-}
-
-using Variants = std::vector<std::string>;
-
-KeySpec required(std::string name, ValueSpec value, std::string description, Variants only_for = {}) {
-  return {std::move(name), std::move(value), true, nullptr, std::move(description), std::move(only_for)};
-}
-
-KeySpec optional(std::string name, ValueSpec value, std::string description, Variants only_for = {}) {
-  return {std::move(name), std::move(value), false, nullptr, std::move(description), std::move(only_for)};
-}
-
-KeySpec byDefault(std::string name, ValueSpec value, json default_value, std::string description,
-                  Variants only_for = {}) {
-  return {std::move(name),          std::move(value),       false,
-          std::move(default_value), std::move(description), std::move(only_for)};
 }
 
 const ValueSpec kInteger = simple(ValueType::integer);
@@ -255,7 +207,7 @@ const ObjectSpec& positionSpec() {
   return spec;
 }
 
-KeySpec headingKey(json default_value) {
+KeySpec headingKey(DefaultValue default_value) {
   return byDefault("heading_deg", kAngle, std::move(default_value), "clockwise from true north");
 }
 KeySpec pitchKey() {
@@ -389,9 +341,10 @@ const ObjectSpec& radarReceiverSpec() {
           optional("polarization", choiceUpTo(Polarization::circular_left),
                    "for jamming; by default the emitter's. target_rcs_m2 is that between the two"),
           crossPolarKey(),
-          byDefault("pulses", kInteger.from(1).to(1e6), RadarReceiver{}.pulses, "integrated on a target"),
+          byDefault("pulses", kInteger.from(1).to(1e6), double(RadarReceiver{}.pulses),
+                    "integrated on a target"),
           byDefault("pfa", number().above(0).to(0.5), RadarReceiver{}.pfa, "probability of false alarm"),
-          byDefault("swerling", kInteger.from(0).to(4), RadarReceiver{}.swerling,
+          byDefault("swerling", kInteger.from(0).to(4), double(RadarReceiver{}.swerling),
                     "case of target fluctuation"),
           byDefault("detection", choiceUpTo(DetectionMethod::shnidman), toString(RadarReceiver{}.detection),
                     "how detection_probability is found: exact statistics or a formula; albersheim with "
@@ -490,39 +443,6 @@ const ObjectSpec& outputSpec() {
 
 }  // namespace
 
-ValueSpec ValueSpec::from(double lowest) const {
-  ValueSpec spec = *this;
-  spec.minimum = lowest;
-  return spec;
-}
-
-ValueSpec ValueSpec::above(double bound) const {
-  ValueSpec spec = from(bound);
-  spec.minimum_excluded = true;
-  return spec;
-}
-
-ValueSpec ValueSpec::to(double highest) const {
-  ValueSpec spec = *this;
-  spec.maximum = highest;
-  return spec;
-}
-
-ValueSpec ValueSpec::distinct() const {
-  ValueSpec spec = *this;
-  spec.items_differ = true;
-  return spec;
-}
-
-const KeySpec* ObjectSpec::find(const std::string& key, const std::string* variant) const {
-  for (const KeySpec& row : keys) {
-    const bool applies = row.only_for.empty() || variant == nullptr ||
-                         std::find(row.only_for.begin(), row.only_for.end(), *variant) != row.only_for.end();
-    if (row.name == key && applies) return &row;
-  }
-  return nullptr;
-}
-
 const char* toString(AntennaForm form) {
   static constexpr const char* kNames[] = {"isotropic",    "gaussian", "sinc", "cosecant2",
                                            "phased_array", "file",     "cuts"};
@@ -561,29 +481,9 @@ const ObjectSpec& trackRowSpec() {
       "track file",
       "",
       {required("t_s", number("s").from(-1e8).to(1e8), "since the epoch"), latitudeKey(), longitudeKey(),
-       heightMslKey(), heightAglKey(), headingKey(nullptr), pitchKey(), rollKey()},
+       heightMslKey(), heightAglKey(), headingKey({}), pitchKey(), rollKey()},
       {{"height_msl_m", "height_agl_m"}}};
   return spec;
-}
-
-const std::string& unitOf(const ValueSpec& value) {
-  return value.item ? unitOf(*value.item) : value.unit;
-}
-
-std::string stemOf(const KeySpec& key) {
-  const auto letters = [](const std::string& text) {
-    std::string kept;
-    for (const char c : text) {
-      if (c != '_' && c != '/') kept += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    }
-    return kept;
-  };
-  const std::string unit = letters(unitOf(key.value));
-  for (std::size_t bar = key.name.find('_'); !unit.empty() && bar != std::string::npos;
-       bar = key.name.find('_', bar + 1)) {
-    if (letters(key.name.substr(bar)) == unit) return key.name.substr(0, bar);
-  }
-  return key.name;
 }
 
 }  // namespace emscape::scenario

@@ -5,7 +5,7 @@
 
 #include "base/cuda/cuda_memory.h"
 #include "emscape/scenario/terrain.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::emfield::cuda {
 

@@ -8,7 +8,7 @@
 #include "emfield/combine.h"
 #include "emfield/shadow_edge.h"
 #include "emfield/terrain_fan.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::emfield::cuda {
 

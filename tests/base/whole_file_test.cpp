@@ -135,7 +135,7 @@ TEST_F(WholeFile, ReadingNamesTheCause) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    EXPECT_THAT(error.what(), HasSubstr("none: cannot read: No such file or directory"));
+    EXPECT_THAT(error.what(), HasSubstr("none: there is no such file"));
   }
   EXPECT_THROW(readWhole(folder_), Error);
 }

@@ -10,7 +10,7 @@
 #include "emfield/excess/excess_code.h"
 #include "emfield/models/diffraction.h"
 #include "emscape/base/error.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 #include "tests/emfield/excess_paths.h"
 
 namespace emscape::emfield {

@@ -8,7 +8,7 @@
 
 #include "emscape/base/units.h"
 #include "emscape/scenario/terrain.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::emfield::testing {
 

@@ -10,7 +10,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "scenario/antenna_pattern.h"
+#include "scenario/antenna/pattern.h"
 #include "tests/scenario/antenna_directions.h"
 
 namespace emscape::scenario {

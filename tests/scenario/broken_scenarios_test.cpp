@@ -205,7 +205,7 @@ TEST_F(DamagedScenario, LargerThanAllowedIsRefused) {
 TEST_F(DamagedScenario, ThatIsNotThereIsTold) {
   EXPECT_EQ(told(parseScenario("nowhere/none.yaml").problems), "nowhere/none.yaml: there is no such file\n");
   EXPECT_EQ(told(parseScenario(folder_.path().string()).problems),
-            folder_.path().string() + ": is not a file\n");
+            folder_.path().string() + ": cannot read: it is a folder\n");
 }
 
 TEST_F(DamagedScenario, TrackOfNothingButFaultsIsToldFiftyTimesAtMost) {

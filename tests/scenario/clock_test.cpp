@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "emscape/base/error.h"
+#include "emscape/base/utc.h"
 
 namespace emscape::scenario {
 namespace {

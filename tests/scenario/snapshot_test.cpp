@@ -8,7 +8,7 @@
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/antenna_shapes.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::scenario {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "emscape/base/units.h"
 #include "emscape/scenario/terrain.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 #include "tests/scenario/dem_file.h"
 
 namespace emscape::scenario {

@@ -11,7 +11,7 @@
 
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
-#include "scenario/terrain_view.h"
+#include "scenario/terrain/view.h"
 #include "tests/reference_dir.h"
 #include "tests/scenario/dem_file.h"
 

@@ -59,7 +59,7 @@ double gainFromArray_dbi(int columns, int rows, double spacing_wavelengths);
 /// MSI/Planet (.msi, .pln): horizontal and vertical cuts, attenuations below the maximum. GAIN is in dBd
 /// unless the file says dBi. Azimuth runs clockwise, the vertical angle downwards from the horizon ahead, so
 /// that a cut with tilt has its maximum at a positive angle; the cut holds the tilt already, TILT and
-/// ELECTRICAL_TILT only tell of it. How the cuts become a pattern in space: scenario/antenna_msi.cpp.
+/// ELECTRICAL_TILT only tell of it. How the cuts become a pattern in space: scenario/antenna/msi.cpp.
 /// @param gain_dbi  NaN: the file's own
 /// @throws Error (bad_input) with file, line and column
 AntennaPtr readMsi(const std::string& file, double gain_dbi);

@@ -1,8 +1,6 @@
 /// The scenario's time line.
 #pragma once
 
-#include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,10 +11,6 @@ struct Clock {
   double duration_s = 0;
   double step_s = 1;
 };
-
-/// Milliseconds from 1970-01-01T00:00:00Z to an ISO 8601 time "YYYY-MM-DDTHH:MM:SS[.fraction]Z"
-/// (years 1..9999, no leap seconds, the fraction cut to milliseconds); none if the text is no such time.
-std::optional<std::int64_t> parseUtc_ms(const std::string& text);
 
 /// Times from begin to end, both included if the step meets them; computed as begin + i * step, so that no
 /// error adds up.

@@ -9,6 +9,7 @@
 
 #include "emscape/base/geo_frame.h"
 #include "emscape/scenario/clock.h"
+#include "emscape/scenario/edit.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/platform.h"
 #include "emscape/scenario/propagation.h"
@@ -61,11 +62,15 @@ struct OutputSpec {
   double count_threshold_dbwm2 = -90;  ///< emitter_count: emitters above this power density
 };
 
+struct ScenarioSource;  // scenario/source.h
+
+/// Plain values; a copy is a scenario of its own. Reading it from several threads is safe, set() is a change
+/// like any other.
 struct Scenario {
   std::string name;
   std::string file;  ///< where it was read
-  /// FNV-1a (64 bits, hex) of the bytes of the file and of the track and antenna files it names; of elevation
-  /// files, only of the name and the size.
+  /// FNV-1a (64 bits, hex) of the text of the file with its edits and of the hashes of the track and antenna
+  /// files it names; of elevation files, only of the name and the size.
   std::string hash;
   Clock clock;
   Region region;
@@ -77,6 +82,21 @@ struct Scenario {
   std::vector<ReceiverProfile> receivers;  ///< the first is used for received_power_dbm
   std::vector<Band> bands;
   OutputSpec output;
+
+  /// Changes a value: edits the text of the scenario's file, in memory, and reads the scenario again from it,
+  /// so that the checks are those of a file. Files that it names are not read again: what they held when the
+  /// scenario was loaded holds; antennas that the edit does not touch stay the same objects. Members that
+  /// were changed by hand, and not by set(), are lost.
+  /// @throws Error (bad_input) that lists all faults as loadScenario() does, with the edit as the place of
+  /// what it brought; or if the scenario was not read from a file. The scenario is then unchanged.
+  void set(const std::string& path, const std::string& value);
+  /// Several edits in order, checked only when all are made: for values that depend on each other.
+  void set(const std::vector<Edit>& edits);
+  /// The edits since the file was read, in an order in which they can be made again; of several to one path,
+  /// the last.
+  std::vector<Edit> edits() const;
+
+  std::shared_ptr<const ScenarioSource> source;  ///< null if it was not read from a file
 };
 
 /// Where terrain is needed: the region, every platform's way and the ground between them, with a margin of 2

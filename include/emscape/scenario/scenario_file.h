@@ -5,10 +5,13 @@
 #include <string>
 #include <vector>
 
-#include "emscape/scenario/problem.h"
+#include "emscape/document/problem.h"
 #include "emscape/scenario/scenario.h"
 
 namespace emscape::scenario {
+
+using document::Problem;
+using document::Severity;
 
 /// A scenario, or all that is wrong with it.
 struct ParseResult {
@@ -18,10 +21,22 @@ struct ParseResult {
 
 /// Reads a scenario and every file it names (tracks, antennas; elevation files are opened, not read). Never
 /// throws for what is wrong in the files: everything found is in the result, each with file, line and column.
-ParseResult parseScenario(const std::string& file);
+/// @param edits  made before the check; the place of a fault that one brought is the edit, as "PATH=VALUE"
+ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {});
 
 /// The same, or one Error (bad_input) that lists all problems, one a line. Warnings go to the log.
-std::shared_ptr<const Scenario> loadScenario(const std::string& file);
+std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits = {});
+
+/// A scenario with further edits: what Scenario::set() does, for who wants the warnings too or no exception.
+/// The scenario itself is not changed.
+/// @throws Error (bad_input) if the scenario was not read from a file
+ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits);
+
+/// Writes the text of a scenario with its edits: comments, order and everything that was not edited stay.
+/// Files that it names relative to its folder are named relative to the new one.
+/// @throws Error (bad_input) if the scenario was not read from a file, or a name cannot be changed in the
+/// text; (other) if the file cannot be written
+void saveScenario(const Scenario& scenario, const std::string& file);
 
 /// The JSON Schema (draft 2020-12) of the format, made from the table that the parser reads by.
 std::string scenarioJsonSchema();

@@ -10,7 +10,7 @@
 
 namespace emscape::scenario {
 
-struct TerrainView;  // scenario/terrain_view.h
+struct TerrainView;  // scenario/terrain/view.h
 
 /// Datum of the heights in the elevation files.
 enum class VerticalDatum { egm96, ellipsoid };
@@ -26,6 +26,14 @@ struct TerrainSpec {
   std::vector<FilePlace> places;   ///< where the scenario names each file
   VerticalDatum vertical_datum = VerticalDatum::egm96;
 };
+
+/// The same files and datum, wherever the scenario names them.
+inline bool operator==(const TerrainSpec& a, const TerrainSpec& b) {
+  return a.files == b.files && a.vertical_datum == b.vertical_datum;
+}
+inline bool operator!=(const TerrainSpec& a, const TerrainSpec& b) {
+  return !(a == b);
+}
 
 /// What `emscape info` says of one elevation file.
 struct TerrainFileInfo {

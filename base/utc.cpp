@@ -1,0 +1,86 @@
+#include "emscape/base/utc.h"
+
+#include <fmt/format.h>
+
+namespace emscape {
+
+namespace {
+
+constexpr std::int64_t kMillisecondsPerDay = 86400000;
+
+/// Days from 1970-01-01 to a date of the proleptic Gregorian calendar; the year begins in March, so that the
+/// leap day is last.
+std::int64_t daysFromDate(std::int64_t year, int month, int day) {
+  if (month <= 2) --year;
+  const std::int64_t era = (year >= 0 ? year : year - 399) / 400;
+  const std::int64_t year_of_era = year - era * 400;
+  const std::int64_t day_of_year = (153 * (month > 2 ? month - 3 : month + 9) + 2) / 5 + day - 1;
+  return era * 146097 + year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year - 719468;
+}
+
+bool isLeapYear(int year) {
+  return year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
+}
+
+int daysInMonth(int year, int month) {
+  static constexpr int kDays[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+  return month == 2 && isLeapYear(year) ? 29 : kDays[month - 1];
+}
+
+/// The inverse of daysFromDate().
+std::string dateText(std::int64_t days) {
+  const std::int64_t shifted = days + 719468;
+  const std::int64_t era = (shifted >= 0 ? shifted : shifted - 146096) / 146097;
+  const std::int64_t day_of_era = shifted - era * 146097;
+  const std::int64_t year_of_era =
+      (day_of_era - day_of_era / 1460 + day_of_era / 36524 - day_of_era / 146096) / 365;
+  const std::int64_t day_of_year = day_of_era - (365 * year_of_era + year_of_era / 4 - year_of_era / 100);
+  const std::int64_t march_month = (5 * day_of_year + 2) / 153;
+  const std::int64_t day = day_of_year - (153 * march_month + 2) / 5 + 1;
+  const std::int64_t month = march_month < 10 ? march_month + 3 : march_month - 9;
+  return fmt::format("{:04}-{:02}-{:02}", year_of_era + era * 400 + (month <= 2), month, day);
+}
+
+}  // namespace
+
+std::optional<std::int64_t> parseUtc_ms(const std::string& text) {
+  static const std::string kForm = "dddd-dd-ddTdd:dd:dd";
+  const auto isDigit = [&](std::size_t i) { return text[i] >= '0' && text[i] <= '9'; };
+  if (text.size() < kForm.size() + 1 || text.back() != 'Z') return std::nullopt;
+  for (std::size_t i = 0; i < kForm.size(); ++i) {
+    if (kForm[i] == 'd' ? !isDigit(i) : text[i] != kForm[i]) return std::nullopt;
+  }
+  const auto field = [&](std::size_t begin, std::size_t length) {
+    return std::stoi(text.substr(begin, length));
+  };
+  const int year = field(0, 4), month = field(5, 2), day = field(8, 2);
+  const int hour = field(11, 2), minute = field(14, 2), second = field(17, 2);
+  if (year < 1 || month < 1 || month > 12 || day < 1 || day > daysInMonth(year, month) || hour > 23 ||
+      minute > 59 || second > 59) {
+    return std::nullopt;
+  }
+  int milliseconds = 0;
+  const std::size_t last = text.size() - 1;
+  if (last > kForm.size()) {
+    if (text[kForm.size()] != '.' || last == kForm.size() + 1) return std::nullopt;
+    int weight = 100;
+    for (std::size_t i = kForm.size() + 1; i < last; ++i, weight /= 10) {
+      if (!isDigit(i)) return std::nullopt;
+      milliseconds += weight * (text[i] - '0');
+    }
+  }
+  return daysFromDate(year, month, day) * kMillisecondsPerDay +
+         ((hour * 60LL + minute) * 60 + second) * 1000 + milliseconds;
+}
+
+std::string utcText(std::int64_t time_ms) {
+  std::int64_t days = time_ms / kMillisecondsPerDay, rest_ms = time_ms % kMillisecondsPerDay;
+  if (rest_ms < 0) {
+    rest_ms += kMillisecondsPerDay;
+    --days;
+  }
+  return fmt::format("{}T{:02}:{:02}:{:02}.{:03}Z", dateText(days), rest_ms / 3600000, rest_ms / 60000 % 60,
+                     rest_ms / 1000 % 60, rest_ms % 1000);
+}
+
+}  // namespace emscape

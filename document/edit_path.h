@@ -1,0 +1,32 @@
+/// Paths to values by name: emitters.search radar.antenna.gain_dbi.
+#pragma once
+
+#include <string>
+
+#include "document/schema.h"
+#include "document/text_edit.h"
+
+namespace emscape::document {
+
+/// Where a path leads.
+struct ResolvedPath {
+  NodePath steps;
+  std::string text;                 ///< the path with quotes where an edit's text needs them
+  std::string name;                 ///< of the key or item, for messages
+  const ValueSpec* spec = nullptr;  ///< of the value
+  bool required = false;            ///< a key that must be given
+  bool exists = false;              ///< a value stands there
+};
+
+/// Follows a path from the root. Steps are separated by points: keys; items of a list by their name, or by
+/// their index from 0 where they have none. Names are matched against those in the document, the longest
+/// first, so that they may hold points; a name in double quotes (\" and \\ within) is taken as it is. Keys
+/// need not exist in the document, items must.
+/// @throws Error (bad_input), without a place, for what the format or the document does not have, with what
+/// it does
+ResolvedPath resolvePath(const std::string& path, const DocumentNodePtr& root, const ObjectSpec& spec);
+
+/// The byte of the first '=' of "PATH=VALUE" that does not stand in a quoted name; npos if there is none.
+std::size_t endOfPath(const std::string& text);
+
+}  // namespace emscape::document

@@ -1,0 +1,91 @@
+#include "document/edited_text.h"
+
+#include <algorithm>
+
+#include "document/text_file.h"
+
+namespace emscape::document {
+
+namespace {
+
+/// The byte at a line and column (characters).
+std::size_t offsetOf(const std::string& text, int line, int column) {
+  std::size_t at = 0;
+  for (int i = 1; i < line; ++i) at = std::min(text.find('\n', at), text.size() - 1) + 1;
+  for (int i = 1; i < column && at < text.size(); ++i) {
+    ++at;
+    while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80) ++at;
+  }
+  return at;
+}
+
+FilePlace placeOf(const std::string& file, const std::string& text, std::size_t offset) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size()));
+  const int line = static_cast<int>(std::count(text.begin(), end, '\n')) + 1;
+  const std::size_t newline = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
+  const std::size_t begin = newline == std::string::npos ? 0 : newline + 1;
+  return {file, line,
+          static_cast<int>(characterCount(std::string_view(text).substr(begin, offset - begin))) + 1};
+}
+
+}  // namespace
+
+EditedText::EditedText(std::string file, std::string text)
+    : file_(std::move(file)), original_(text), text_(std::move(text)) {}
+
+void EditedText::apply(const Splice& splice, const std::string& label) {
+  text_.replace(splice.begin, splice.end - splice.begin, splice.text);
+  Change merged{splice.begin, splice.end, splice.begin, splice.end, label};
+  std::vector<Change> kept;
+  std::ptrdiff_t shift = 0;  // of the bytes before the splice, from text() to the file
+  bool met = false;
+  for (const Change& change : changes_) {
+    if (change.new_end < splice.begin || change.new_begin > splice.end) {
+      kept.push_back(change);
+      if (change.new_end < splice.begin) {
+        shift = static_cast<std::ptrdiff_t>(change.end) - static_cast<std::ptrdiff_t>(change.new_end);
+      }
+      continue;
+    }
+    // The part of the splice that lies outside the change belongs to the file.
+    const std::size_t before = change.new_begin > merged.new_begin ? change.new_begin - merged.new_begin : 0;
+    if (!met) merged.begin = change.begin - before;
+    merged.new_begin = std::min(merged.new_begin, change.new_begin);
+    merged.new_end = std::max(splice.end, change.new_end);
+    merged.end = change.end + (splice.end > change.new_end ? splice.end - change.new_end : 0);
+    met = true;
+  }
+  if (!met) {
+    merged.begin = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(splice.begin) + shift);
+    merged.end = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(splice.end) + shift);
+  }
+  const std::ptrdiff_t growth = static_cast<std::ptrdiff_t>(splice.text.size()) -
+                                static_cast<std::ptrdiff_t>(splice.end - splice.begin);
+  const auto grown = [growth](std::size_t at) {
+    return static_cast<std::size_t>(static_cast<std::ptrdiff_t>(at) + growth);
+  };
+  for (Change& change : kept) {
+    if (change.new_begin <= splice.end) continue;
+    change.new_begin = grown(change.new_begin);
+    change.new_end = grown(change.new_end);
+  }
+  merged.new_end = grown(merged.new_end);
+  const auto next = std::find_if(kept.begin(), kept.end(),
+                                 [&](const Change& change) { return change.new_begin > merged.new_begin; });
+  kept.insert(next, std::move(merged));
+  changes_ = std::move(kept);
+}
+
+FilePlace EditedText::originOf(const FilePlace& place) const {
+  if (changes_.empty() || place.file != file_ || place.line == 0) return place;
+  const std::size_t at = offsetOf(text_, place.line, place.column);
+  std::size_t origin = at;
+  for (const Change& change : changes_) {
+    if (at < change.new_begin) break;
+    if (at < change.new_end) return {change.label, 0, 0};
+    origin = change.end + (at - change.new_end);
+  }
+  return placeOf(file_, original_, origin);
+}
+
+}  // namespace emscape::document

@@ -1,0 +1,51 @@
+#include "emscape/document/problem.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+namespace emscape::document {
+
+namespace {
+
+constexpr std::size_t kMostProblems = 1000;
+
+}  // namespace
+
+void ProblemList::addError(const FilePlace& place, const std::string& message) {
+  add(place, {place, Severity::error, message});
+}
+
+void ProblemList::addWarning(const FilePlace& place, const std::string& message) {
+  add(place, {place, Severity::warning, message});
+}
+
+void ProblemList::addErrorElsewhere(const FilePlace& named_at, const FilePlace& place,
+                                    const std::string& message) {
+  add(named_at, {place, Severity::error, message});
+}
+
+void ProblemList::add(const FilePlace& order, Problem problem) {
+  if (entries_.size() > kMostProblems) return;
+  if (entries_.size() == kMostProblems) problem.message = "further faults are not told";
+  entries_.push_back({std::move(problem), order.line, order.column});
+}
+
+bool ProblemList::hasErrors() const {
+  return std::any_of(entries_.begin(), entries_.end(),
+                     [](const Entry& entry) { return entry.problem.severity == Severity::error; });
+}
+
+std::vector<Problem> ProblemList::inOrder() const {
+  std::vector<Entry> sorted = entries_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
+    const FilePlace &at = a.problem.place, &bt = b.problem.place;
+    return std::tie(a.line, a.column, at.file, at.line, at.column) <
+           std::tie(b.line, b.column, bt.file, bt.line, bt.column);
+  });
+  std::vector<Problem> problems;
+  for (Entry& entry : sorted) problems.push_back(std::move(entry.problem));
+  return problems;
+}
+
+}  // namespace emscape::document

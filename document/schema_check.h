@@ -1,0 +1,37 @@
+/// Checks a document against the table of the format.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "document/document.h"
+#include "document/schema.h"
+
+namespace emscape::document {
+
+/// Tells every fault of an object: unknown and duplicate keys, missing ones, wrong types, values out of
+/// range.
+/// @param file  for the problems' places
+/// @return whether there was none
+bool checkObject(const std::string& file, const DocumentNode& node, const ObjectSpec& spec,
+                 ProblemList& problems);
+
+/// The number that a scalar's text stands for (YAML 1.2 core schema, decimal); none if it is not one.
+/// Infinity and NaN are numbers here.
+std::optional<double> numberOf(const std::string& text);
+
+/// What is wrong with a number, as `'name' is 95, outside the allowed -90 to 90 deg`; empty if nothing is.
+std::string rangeFault(const std::string& name, const std::string& text, double value, const ValueSpec& spec);
+
+/// The message for a key that an object does not have: with the unit's suffix that is missing, or with what
+/// was probably meant.
+/// @param meant  set to the names that the message proposes
+std::string unknownKeyMessage(const std::string& key, const ObjectSpec& spec, const std::string* variant,
+                              std::vector<std::string>* meant = nullptr);
+
+/// ", did you mean 'x'?" with the closest of the names, or nothing where none is close.
+std::string didYouMean(const std::string& word, const std::vector<std::string>& names,
+                       std::string* closest = nullptr);
+
+}  // namespace emscape::document

@@ -1,0 +1,31 @@
+/// Text files that people write: UTF-8, and whether one has changed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "emscape/base/error.h"
+
+namespace emscape::document {
+
+/// Takes a byte order mark off and checks that the rest is UTF-8 text without control characters.
+/// @throws Error (bad_input) with the place of the first byte that is not
+std::string checkedUtf8(const std::string& file, std::string bytes);
+
+/// Characters (code points) of UTF-8 text.
+std::size_t characterCount(std::string_view text);
+
+/// FNV-1a, 64 bits, over all that was added: tells whether inputs changed; no protection against forgery.
+class ContentHash {
+ public:
+  void add(std::string_view bytes);
+  /// 16 hexadecimal digits.
+  std::string hex() const;
+
+ private:
+  std::uint64_t state_ = 14695981039346656037ull;
+};
+
+}  // namespace emscape::document

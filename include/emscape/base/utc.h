@@ -1,0 +1,17 @@
+/// UTC times as text.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace emscape {
+
+/// Milliseconds from 1970-01-01T00:00:00Z to an ISO 8601 time "YYYY-MM-DDTHH:MM:SS[.fraction]Z"
+/// (years 1..9999, no leap seconds, the fraction cut to milliseconds); none if the text is no such time.
+std::optional<std::int64_t> parseUtc_ms(const std::string& text);
+
+/// ISO 8601 text, with milliseconds, of a time in milliseconds from 1970-01-01T00:00:00Z.
+std::string utcText(std::int64_t time_ms);
+
+}  // namespace emscape

@@ -1,0 +1,42 @@
+/// What is wrong in a document and the files it names.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emscape/base/error.h"
+
+namespace emscape::document {
+
+enum class Severity { warning, error };
+
+struct Problem {
+  FilePlace place;
+  Severity severity = Severity::error;
+  std::string message;
+};
+
+/// Collects problems, so that all of them can be told at once. At most 1000 are kept, and one that says so.
+/// Those of another file stand in the order of the place where the scenario names that file.
+class ProblemList {
+ public:
+  void addError(const FilePlace& place, const std::string& message);
+  void addWarning(const FilePlace& place, const std::string& message);
+  /// A fault in a file that the scenario names at `named_at`.
+  void addErrorElsewhere(const FilePlace& named_at, const FilePlace& place, const std::string& message);
+
+  bool hasErrors() const;
+  /// In the order of the scenario file; problems of one place in the order in which they were found.
+  std::vector<Problem> inOrder() const;
+
+ private:
+  struct Entry {
+    Problem problem;
+    int line, column;  ///< in the scenario file
+  };
+  void add(const FilePlace& order, Problem problem);
+
+  std::vector<Entry> entries_;
+};
+
+}  // namespace emscape::document

@@ -1,0 +1,35 @@
+/// Changes to a scenario, as text.
+#pragma once
+
+#include <string>
+
+namespace emscape::scenario {
+
+/// One change: the value at `path` becomes `value`.
+///
+/// path: keys of the scenario format (docs/scenario-format.md) with points between them; items of a list by
+/// their name, or by their index from 0 where they have none: `emitters.search radar.antenna.gain_dbi`,
+/// `region.dims.2`, `terrain.files.0`. Names may hold blanks and points: the longest name in the scenario
+/// that fits is meant. A name in double quotes is taken as it is, with \" and \\ for a quote and a backslash:
+/// `emitters."a=b".power_w`.
+///
+/// value: YAML or JSON: a number, a text, a list, a set of keys. `null` removes an optional key, which then
+/// has its default, or an item of a list. Units are those of the key.
+struct Edit {
+  std::string path;
+  std::string value;
+};
+
+/// Reads "PATH=VALUE": the path ends at the first '=' that is not in a quoted name.
+/// @throws Error (usage) if there is no such '=' or no path before it
+Edit parseEdit(const std::string& text);
+
+/// "PATH=VALUE".
+std::string toString(const Edit& edit);
+
+bool operator==(const Edit& a, const Edit& b);
+inline bool operator!=(const Edit& a, const Edit& b) {
+  return !(a == b);
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "emscape/base/units.h"
+#include "emscape/scenario/antenna_shapes.h"
+#include "scenario/antenna/cut.h"
+#include "scenario/antenna/tables.h"
+#include "scenario/antenna/text.h"
+
+namespace emscape::scenario {
+namespace {
+
+struct ColumnSpec {
+  const char* name;
+  double lowest, highest;
+  const char* unit;
+};
+constexpr ColumnSpec kAzimuth{"azimuth_deg", -360, 360, "deg"};
+constexpr ColumnSpec kElevation{"elevation_deg", -90, 90, "deg"};
+constexpr ColumnSpec kAttenuation{"attenuation_db", 0, kMostAttenuation_db, "dB"};
+
+struct CsvRow {
+  std::array<double, 3> values{};  ///< in the order of the columns asked for, of which there are two or three
+  int line = 0;
+};
+
+/// The rows of a table with exactly the columns asked for, in any order.
+std::vector<CsvRow> readRows(const AntennaText& text, const std::vector<ColumnSpec>& columns) {
+  const auto fail = [&](const TextField& field, const std::string& message) {
+    throw Error(ErrorCode::bad_input, text.place(field), message);
+  };
+  std::string wanted;
+  for (const ColumnSpec& column : columns) wanted += (wanted.empty() ? "" : ",") + std::string(column.name);
+  if (text.lines().empty()) {
+    throw Error(ErrorCode::bad_input, {text.file(), 1, 1},
+                fmt::format("no header line; it should be {}", wanted));
+  }
+  const std::vector<TextField> header = cellsOf(text.lines().front());
+  std::vector<std::size_t> position(columns.size(), header.size());  // of each column in a line
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    const auto column = std::find_if(columns.begin(), columns.end(),
+                                     [&](const ColumnSpec& spec) { return header[i].text == spec.name; });
+    if (column == columns.end()) {
+      fail(header[i], fmt::format("unknown column '{}'; the header should be {}", header[i].text, wanted));
+    }
+    std::size_t& place = position[static_cast<std::size_t>(column - columns.begin())];
+    if (place < header.size()) fail(header[i], fmt::format("column '{}' stands here twice", header[i].text));
+    place = i;
+  }
+  if (header.size() < columns.size())
+    fail(header.front(), fmt::format("missing column; the header should be {}", wanted));
+
+  std::vector<CsvRow> rows;
+  rows.reserve(text.lines().size() - 1);
+  for (std::size_t n = 1; n < text.lines().size(); ++n) {
+    const TextField& line = text.lines()[n];
+    const std::vector<TextField> cells = cellsOf(line);
+    if (cells.size() != columns.size()) {
+      fail(line, fmt::format("{} values, but the header names {} columns", cells.size(), columns.size()));
+    }
+    CsvRow row;
+    row.line = line.line;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const TextField& cell = cells[position[i]];
+      const ColumnSpec& column = columns[i];
+      const std::optional<double> value = numberIn(cell.text);
+      if (!value) fail(cell, fmt::format("{} is '{}', not a number", column.name, cell.text));
+      if (*value < column.lowest || *value > column.highest) {
+        fail(cell, fmt::format("{} is {} {}; allowed are {} to {} {}", column.name, *value, column.unit,
+                               column.lowest, column.highest, column.unit));
+      }
+      row.values[i] = *value;
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+MeasuredCut readCut(const std::string& file, const ColumnSpec& angle, AxisKind kind) {
+  const AntennaText text(file);
+  std::vector<CutRow> rows;
+  double smallest_db = std::numeric_limits<double>::infinity();
+  for (const CsvRow& row : readRows(text, {angle, kAttenuation})) {
+    rows.push_back({row.values[0], row.values[1], row.line, 1});
+    smallest_db = std::min(smallest_db, row.values[1]);
+  }
+  MeasuredCut cut(kind, std::move(rows), {file, 0, 0}, "cut");
+  requireMaximum(smallest_db, {file, 0, 0}, "cut");
+  return cut;
+}
+
+ShapeTable tableOf(const MeasuredCut& cut, double half_span) {
+  return tabulate([cut](double angle_rad) { return cut.amplitudeAt(radToDeg(angle_rad)); }, half_span,
+                  cut.angles_deg());
+}
+
+/// The attenuations of rows (elevation, azimuth, attenuation), azimuth fastest.
+std::vector<double> inGridOrder(std::vector<CsvRow> rows, const MeasuredAxis& azimuth,
+                                const MeasuredAxis& elevation, const FilePlace& file) {
+  const auto pairOf = [](const CsvRow& row) { return std::make_pair(row.values[0], row.values[1]); };
+  std::stable_sort(rows.begin(), rows.end(),
+                   [&](const CsvRow& a, const CsvRow& b) { return pairOf(a) < pairOf(b); });
+  std::vector<double> attenuations_db;
+  const std::size_t columns = azimuth.angles_deg().size();
+  const std::size_t cells = columns * elevation.angles_deg().size();
+  std::size_t row = 0;
+  for (std::size_t cell = 0; cell < cells; ++cell) {
+    const auto pair =
+        std::make_pair(elevation.angles_deg()[cell / columns], azimuth.angles_deg()[cell % columns]);
+    if (row == rows.size() || pairOf(rows[row]) != pair) {
+      throw Error(
+          ErrorCode::bad_input, file,
+          fmt::format("the grid has no row for azimuth {} deg, elevation {} deg", pair.second, pair.first));
+    }
+    attenuations_db.push_back(rows[row].values[2]);
+    for (++row; row < rows.size() && pairOf(rows[row]) == pair; ++row) {
+      if (rows[row].values[2] == attenuations_db.back()) continue;
+      throw Error(
+          ErrorCode::bad_input, {file.file, rows[row].line, 1},
+          fmt::format(
+              "azimuth {} deg, elevation {} deg stands here a second time, with {} dB instead of {} dB",
+              pair.second, pair.first, rows[row].values[2], attenuations_db.back()));
+    }
+  }
+  return attenuations_db;
+}
+
+}  // namespace
+
+AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& elevation_file, double gain_dbi) {
+  requireGain(gain_dbi);
+  ShapeTable azimuth = tableOf(readCut(azimuth_file, kAzimuth, AxisKind::circle), kPi);
+  ShapeTable elevation = tableOf(readCut(elevation_file, kElevation, AxisKind::elevation), kPi / 2);
+  const double azimuth_deg = radToDeg(halfPowerWidth(azimuth.values, azimuth.half_span, true));
+  const double elevation_deg = radToDeg(halfPowerWidth(elevation.values, elevation.half_span, false));
+  return describedAntenna(std::make_shared<SeparableAntenna>(std::move(azimuth), std::move(elevation), 0.0),
+                          gain_dbi, azimuth_deg, elevation_deg, "measured cuts");
+}
+
+AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
+  requireGain(gain_dbi);
+  const FilePlace place{file, 0, 0};
+  const AntennaText text(file);
+  std::vector<CsvRow> rows = readRows(text, {kElevation, kAzimuth, kAttenuation});
+  std::vector<double> azimuths_deg, elevations_deg;
+  for (CsvRow& row : rows) {
+    elevations_deg.push_back(row.values[0] = MeasuredAxis::normalized(AxisKind::elevation, row.values[0]));
+    azimuths_deg.push_back(row.values[1] = MeasuredAxis::normalized(AxisKind::circle, row.values[1]));
+  }
+  const MeasuredAxis azimuth(AxisKind::circle, std::move(azimuths_deg), place, "grid's azimuths");
+  const MeasuredAxis elevation(AxisKind::elevation, std::move(elevations_deg), place, "grid's elevations");
+
+  const std::vector<double> attenuations_db = inGridOrder(std::move(rows), azimuth, elevation, place);
+  requireMaximum(*std::min_element(attenuations_db.begin(), attenuations_db.end()), place, "grid");
+  std::vector<double> measured(attenuations_db.size());
+  std::transform(attenuations_db.begin(), attenuations_db.end(), measured.begin(), amplitudeOfAttenuation);
+
+  const GridNodes nodes = gridNodes(azimuth.angles_deg(), elevation.angles_deg());
+  std::vector<AxisPlace> columns;
+  for (const double azimuth_deg : nodes.azimuths_deg) columns.push_back(azimuth.locate(azimuth_deg));
+  std::vector<float> amplitudes;
+  for (const double elevation_deg : nodes.elevations_deg) {
+    const AxisPlace e = elevation.locate(elevation_deg);
+    const double* below = &measured[e.below * azimuth.angles_deg().size()];
+    const double* above = &measured[e.above * azimuth.angles_deg().size()];
+    for (const AxisPlace& a : columns) {
+      const double at_below = below[a.below] + a.fraction * (below[a.above] - below[a.below]);
+      const double at_above = above[a.below] + a.fraction * (above[a.above] - above[a.below]);
+      amplitudes.push_back(static_cast<float>(at_below + e.fraction * (at_above - at_below)));
+    }
+  }
+  return makeGridAntenna(nodes, std::move(amplitudes), gain_dbi, "measured grid");
+}
+
+AntennaPtr readAntenna(const std::string& file, double gain_dbi) {
+  if (upperCase(std::filesystem::path(file).extension().string()) != ".CSV") return readMsi(file, gain_dbi);
+  if (std::isnan(gain_dbi)) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0},
+                "a CSV grid holds no gain; gain_dbi must be given beside the file");
+  }
+  return readCsvGrid(file, gain_dbi);
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,416 @@
+#include <cpl_conv.h>
+#include <gdal_alg.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include "emscape/base/units.h"
+#include "scenario/terrain/file.h"
+
+namespace emscape::scenario {
+namespace {
+
+/// Values that mean void in HGT and DTED whatever a file's header says.
+constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
+/// Nothing on earth is higher or deeper (m): such a height is a void that the file does not declare.
+constexpr float kHighestOnEarth_m = 20000.0f;
+/// Positions of another datum count as WGS84 if they are closer than this (posts).
+constexpr double kSameDatum_posts = 0.05;
+/// Georeferences are rounded in files: a lattice this close (posts) to whole fractions of a degree is meant
+/// to be one.
+constexpr double kSnap_posts = 0.01;
+/// Largest error of positions interpolated between transformed ones (posts).
+constexpr double kLineTolerance_posts = 0.01;
+constexpr long long kStripPosts = 1 << 21;
+
+/// Keeps GDAL from printing and remembers its first complaint.
+class GdalMessages {
+ public:
+  GdalMessages() { CPLPushErrorHandlerEx(&GdalMessages::take, this); }
+  ~GdalMessages() { CPLPopErrorHandler(); }
+  GdalMessages(const GdalMessages&) = delete;
+  GdalMessages& operator=(const GdalMessages&) = delete;
+
+  /// `problem`, with GDAL's reason if it gave one.
+  std::string explain(const std::string& problem) const {
+    return first_failure_.empty() ? problem : problem + " (" + first_failure_ + ")";
+  }
+
+ private:
+  static void CPL_STDCALL take(CPLErr severity, CPLErrorNum, const char* message) {
+    auto* self = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
+    if (severity >= CE_Failure && self->first_failure_.empty()) self->first_failure_ = message;
+  }
+
+  std::string first_failure_;
+};
+
+/// Metres of a band's unit; 0 if it is unknown.
+double metresOf(std::string unit) {
+  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  struct Unit {
+    const char* name;
+    double metres;
+  };
+  static constexpr double kUsSurveyFoot_m = 1200.0 / 3937.0;
+  static constexpr Unit kUnits[] = {{"", 1.0},
+                                    {"m", 1.0},
+                                    {"metre", 1.0},
+                                    {"metres", 1.0},
+                                    {"meter", 1.0},
+                                    {"meters", 1.0},
+                                    {"cm", 0.01},
+                                    {"centimetre", 0.01},
+                                    {"dm", 0.1},
+                                    {"decimetre", 0.1},
+                                    {"km", 1000.0},
+                                    {"kilometre", 1000.0},
+                                    {"ft", 0.3048},
+                                    {"foot", 0.3048},
+                                    {"feet", 0.3048},
+                                    {"international foot", 0.3048},
+                                    {"us-ft", kUsSurveyFoot_m},
+                                    {"ft-us", kUsSurveyFoot_m},
+                                    {"ftus", kUsSurveyFoot_m},
+                                    {"us ft", kUsSurveyFoot_m},
+                                    {"sft", kUsSurveyFoot_m},
+                                    {"us survey foot", kUsSurveyFoot_m},
+                                    {"us survey feet", kUsSurveyFoot_m},
+                                    {"u.s. survey foot", kUsSurveyFoot_m},
+                                    {"foot_us", kUsSurveyFoot_m}};
+  for (const Unit& known : kUnits) {
+    if (unit == known.name) return known.metres;
+  }
+  return 0.0;
+}
+
+/// Brings an axis of posts to whole fractions of a degree if that moves none of them by more than
+/// kSnap_posts.
+void snapToDegrees(double& first, double& step, int count) {
+  const double per_degree = std::round(1.0 / step);
+  if (per_degree < 1.0) return;
+  // Pixel-is-area posts lie on odd halves.
+  const double halves = std::round(first * 2.0 * per_degree);
+  const double last = first + (count - 1) * step;
+  const double snapped_first = halves / (2.0 * per_degree);
+  const double snapped_last = (halves + 2.0 * (count - 1)) / (2.0 * per_degree);
+  if (std::abs(snapped_first - first) > kSnap_posts * step ||
+      std::abs(snapped_last - last) > kSnap_posts * step) {
+    return;
+  }
+  first = snapped_first;
+  step = 1.0 / per_degree;
+}
+
+using TransformationPtr = std::unique_ptr<OGRCoordinateTransformation>;
+
+/// Points that could not be transformed become NaN.
+void transform(OGRCoordinateTransformation& transformation, std::vector<double>& x, std::vector<double>& y) {
+  const GdalMessages quiet;
+  std::vector<int> done(x.size());
+  transformation.Transform(static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!done[k] || !std::isfinite(x[k]) || !std::isfinite(y[k])) x[k] = y[k] = std::nan("");
+  }
+}
+
+}  // namespace
+
+struct TerrainFile::Impl {
+  std::string name;
+  FilePlace place;
+  std::vector<std::string> notes;
+  std::string format;
+  int columns = 0, rows = 0;
+  double scale = 1.0, offset = 0.0, unit_m = 1.0;
+
+  double pixel_to_crs[6] = {0, 1, 0, 0, 0, 1};
+  bool turned = false;  ///< rows or columns do not run along the CRS's axes: the plane is that of the pixels
+  bool north_first = true;  ///< order of the file's rows in the lattice's terms
+  PostLattice lattice;
+  bool is_area = true;
+  OGRSpatialReference crs;
+  bool geographic = false;
+  std::string plane_name;
+  TransformationPtr to_wgs84, from_wgs84;
+  std::unique_ptr<void, void (*)(void*)> reprojection{nullptr, GDALDestroyReprojectionTransformer};
+  std::unique_ptr<void, void (*)(void*)> line_transformer{nullptr, GDALDestroyApproxTransformer};
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw Error(ErrorCode::bad_input, place, "elevation file " + name + ": " + problem);
+  }
+
+  std::unique_ptr<GDALDataset> open() const;
+  void readHead();
+  void readBand(GDALRasterBand& band);
+  void placePosts(GDALDataset& dataset);
+  void placeOnEarth(const OGRSpatialReference* given);
+  bool liesOnWgs84() const;
+  void crsOfPlane(std::vector<double>& x, std::vector<double>& y) const;
+  void planeOfCrs(std::vector<double>& x, std::vector<double>& y) const;
+};
+
+std::unique_ptr<GDALDataset> TerrainFile::Impl::open() const {
+  GdalMessages messages;
+  std::unique_ptr<GDALDataset> dataset(
+      GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  if (!dataset) {
+    VSIStatBufL status;
+    const bool exists = VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
+    fail(exists ? messages.explain("not a raster that GDAL reads") : "no such file");
+  }
+  return dataset;
+}
+
+void TerrainFile::Impl::readHead() {
+  const GdalMessages quiet;  // before the dataset, which may complain when it is closed
+  GDALAllRegister();
+  const std::unique_ptr<GDALDataset> dataset = open();
+  if (dataset->GetRasterCount() == 0) {
+    fail("holds no raster band itself; name one of the data sets in it, as gdalinfo lists them");
+  }
+  const char* long_name = dataset->GetDriver()->GetMetadataItem(GDAL_DMD_LONGNAME);
+  format = long_name ? long_name : dataset->GetDriverName();
+  columns = dataset->GetRasterXSize();
+  rows = dataset->GetRasterYSize();
+  if (dataset->GetRasterCount() > 1) {
+    notes.push_back("has " + std::to_string(dataset->GetRasterCount()) +
+                    " bands: heights are taken from the first");
+  }
+  readBand(*dataset->GetRasterBand(1));
+  placePosts(*dataset);
+  placeOnEarth(dataset->GetSpatialRef());
+}
+
+void TerrainFile::Impl::readBand(GDALRasterBand& band) {
+  if (GDALDataTypeIsComplex(band.GetRasterDataType())) fail("holds complex numbers, not heights");
+  scale = band.GetScale();
+  offset = band.GetOffset();
+  const std::string unit = band.GetUnitType();
+  unit_m = metresOf(unit);
+  if (unit_m == 0.0) {
+    fail("heights are in '" + unit + "', a unit that is not known; known are m, ft and US survey ft");
+  }
+  if (unit_m != 1.0) notes.push_back("heights in '" + unit + "' are converted to metres");
+  if (scale != 1.0 || offset != 0.0) {
+    notes.push_back("heights are stored with scale " + std::to_string(scale) + " and offset " +
+                    std::to_string(offset));
+  }
+}
+
+void TerrainFile::Impl::placePosts(GDALDataset& dataset) {
+  double* g = pixel_to_crs;
+  if (dataset.GetGeoTransform(g) != CE_None) fail("has no georeference");
+  const double area = g[1] * g[5] - g[2] * g[4];
+  if (!std::isfinite(g[0] + g[3]) || !std::isfinite(area) || area == 0.0) {
+    fail("has a georeference of no extent");
+  }
+  const char* meaning = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
+  is_area = meaning == nullptr || !EQUAL(meaning, GDALMD_AOP_POINT);
+  turned = g[2] != 0.0 || g[4] != 0.0 || g[1] < 0.0;
+  if (turned) {
+    north_first = false;
+  } else {
+    north_first = g[5] < 0.0;
+    lattice.step_x = g[1];
+    lattice.step_y = std::abs(g[5]);
+    lattice.x0 = g[0] + 0.5 * g[1];
+    lattice.y0 = g[3] + (north_first ? rows - 0.5 : 0.5) * g[5];
+  }
+}
+
+void TerrainFile::Impl::placeOnEarth(const OGRSpatialReference* given) {
+  GdalMessages messages;
+  if (given == nullptr || given->IsEmpty()) {
+    fail("has no coordinate reference system (gdal_edit.py -a_srs EPSG:4326 sets latitudes and longitudes)");
+  }
+  crs = *given;
+  if (const char* datum = crs.GetAttrValue("VERT_CS")) {
+    notes.push_back(std::string("says that its heights are of '") + datum + "'");
+  }
+  crs.StripVertical();
+  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  OGRSpatialReference wgs84;
+  wgs84.SetWellKnownGeogCS("WGS84");
+  wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  to_wgs84.reset(OGRCreateCoordinateTransformation(&crs, &wgs84));
+  from_wgs84.reset(OGRCreateCoordinateTransformation(&wgs84, &crs));
+  reprojection.reset(GDALCreateReprojectionTransformerEx(OGRSpatialReference::ToHandle(&wgs84),
+                                                         OGRSpatialReference::ToHandle(&crs), nullptr));
+  if (!to_wgs84 || !from_wgs84 || !reprojection) {
+    fail(messages.explain(std::string("its coordinate reference system '") + crs.GetName() +
+                          "' cannot be brought to latitude and longitude"));
+  }
+  const double* g = pixel_to_crs;
+  const double post = turned ? std::min(std::hypot(g[1], g[4]), std::hypot(g[2], g[5]))
+                             : std::min(lattice.step_x, lattice.step_y);
+  line_transformer.reset(GDALCreateApproxTransformer(GDALReprojectionTransform, reprojection.get(),
+                                                     kLineTolerance_posts * post));
+
+  geographic = crs.IsGeographic() && !turned && liesOnWgs84();
+  if (geographic) {
+    snapToDegrees(lattice.x0, lattice.step_x, columns);
+    snapToDegrees(lattice.y0, lattice.step_y, rows);
+    plane_name = "WGS84";
+    return;
+  }
+  char* wkt = nullptr;
+  crs.exportToWkt(&wkt);
+  plane_name = turned ? name : std::string(wkt ? wkt : "");
+  CPLFree(wkt);
+  notes.push_back(std::string("posts in ") + crs.GetName() + (turned ? ", turned," : "") +
+                  " are brought to latitudes and longitudes of WGS84, bilinear");
+}
+
+/// The CRS's longitudes and latitudes differ from WGS84's by nothing that matters.
+bool TerrainFile::Impl::liesOnWgs84() const {
+  std::vector<double> x, y;
+  for (double part_y : {0.0, 0.5, 1.0}) {
+    for (double part_x : {0.0, 0.5, 1.0}) {
+      x.push_back(lattice.x(part_x * (columns - 1)));
+      y.push_back(lattice.y(part_y * (rows - 1)));
+    }
+  }
+  std::vector<double> longitude = x, latitude = y;
+  transform(*to_wgs84, longitude, latitude);
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!(std::abs(wrapLongitude_deg(longitude[k] - x[k])) <= kSameDatum_posts * lattice.step_x &&
+          std::abs(latitude[k] - y[k]) <= kSameDatum_posts * lattice.step_y)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+void TerrainFile::Impl::crsOfPlane(std::vector<double>& x, std::vector<double>& y) const {
+  if (!turned) return;
+  const double* g = pixel_to_crs;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double column = x[k] + 0.5, row = y[k] + 0.5;
+    x[k] = g[0] + column * g[1] + row * g[2];
+    y[k] = g[3] + column * g[4] + row * g[5];
+  }
+}
+
+void TerrainFile::Impl::planeOfCrs(std::vector<double>& x, std::vector<double>& y) const {
+  const double* g = pixel_to_crs;
+  if (crs.IsGeographic()) {
+    // The turn of longitude in which the file counts.
+    const double turn = 2.0 * kPi / crs.GetAngularUnits();
+    const double middle = g[0] + 0.5 * (columns * g[1] + rows * g[2]);
+    for (double& longitude : x) longitude = middle + std::remainder(longitude - middle, turn);
+  }
+  if (!turned) return;
+  const double area = g[1] * g[5] - g[2] * g[4];
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    const double east = x[k] - g[0], north = y[k] - g[3];
+    x[k] = (east * g[5] - north * g[2]) / area - 0.5;
+    y[k] = (north * g[1] - east * g[4]) / area - 0.5;
+  }
+}
+
+TerrainFile::TerrainFile(const std::string& file, const FilePlace& place) : impl_(std::make_unique<Impl>()) {
+  impl_->name = file;
+  impl_->place = place;
+  impl_->readHead();
+}
+TerrainFile::~TerrainFile() = default;
+
+const std::string& TerrainFile::name() const {
+  return impl_->name;
+}
+const std::string& TerrainFile::format() const {
+  return impl_->format;
+}
+std::string TerrainFile::crs() const {
+  const char* authority = impl_->crs.GetAuthorityName(nullptr);
+  const char* code = impl_->crs.GetAuthorityCode(nullptr);
+  std::string text = impl_->crs.GetName();
+  if (authority && code) text += std::string(" (") + authority + ":" + code + ")";
+  return text;
+}
+const std::vector<std::string>& TerrainFile::notes() const {
+  return impl_->notes;
+}
+const PostLattice& TerrainFile::lattice() const {
+  return impl_->lattice;
+}
+int TerrainFile::columns() const {
+  return impl_->columns;
+}
+int TerrainFile::rows() const {
+  return impl_->rows;
+}
+bool TerrainFile::isArea() const {
+  return impl_->is_area;
+}
+bool TerrainFile::isGeographic() const {
+  return impl_->geographic;
+}
+const std::string& TerrainFile::planeName() const {
+  return impl_->plane_name;
+}
+
+void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
+  const GdalMessages messages;  // before the dataset, which may complain when it is closed
+  const std::unique_ptr<GDALDataset> dataset = impl_->open();
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  GDALRasterBand* mask_band = (band.GetMaskFlags() & GMF_ALL_VALID) == 0 ? band.GetMaskBand() : nullptr;
+  const int columns = static_cast<int>(window.columns);
+  const int left = static_cast<int>(window.first_column);
+  const long long strip_rows = std::max(1LL, kStripPosts / std::max(1LL, window.columns));
+  std::vector<float> strip;
+  std::vector<GByte> mask;
+  for (long long begin = 0; begin < window.rows; begin += strip_rows) {
+    const int rows = static_cast<int>(std::min(strip_rows, window.rows - begin));
+    const long long south = window.first_row + begin;
+    const int top = static_cast<int>(impl_->north_first ? impl_->rows - south - rows : south);
+    strip.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    mask.assign(strip.size(), 255);
+    if (band.RasterIO(GF_Read, left, top, columns, rows, strip.data(), columns, rows, GDT_Float32, 0, 0,
+                      nullptr) != CE_None ||
+        (mask_band != nullptr && mask_band->RasterIO(GF_Read, left, top, columns, rows, mask.data(), columns,
+                                                     rows, GDT_Byte, 0, 0, nullptr) != CE_None)) {
+      impl_->fail(messages.explain("rows " + std::to_string(top) + " to " + std::to_string(top + rows - 1) +
+                                   " cannot be read"));
+    }
+    for (std::size_t k = 0; k < strip.size(); ++k) {
+      const bool declared_void = mask[k] == 0 || strip[k] == kVoidValues[0] || strip[k] == kVoidValues[1];
+      const double height_m = (strip[k] * impl_->scale + impl_->offset) * impl_->unit_m;
+      const bool known = !declared_void && std::abs(height_m) <= kHighestOnEarth_m;
+      strip[k] = known ? static_cast<float>(height_m) : std::numeric_limits<float>::quiet_NaN();
+    }
+    for (int row = 0; row < rows; ++row) {
+      const int row_of_file = impl_->north_first ? rows - 1 - row : row;
+      take(begin + row, strip.data() + static_cast<std::ptrdiff_t>(row_of_file) * columns);
+    }
+  }
+}
+
+void TerrainFile::toGeographic(std::vector<double>& x, std::vector<double>& y) const {
+  impl_->crsOfPlane(x, y);
+  transform(*impl_->to_wgs84, x, y);
+}
+
+void TerrainFile::toPlane(std::vector<double>& x, std::vector<double>& y) const {
+  transform(*impl_->from_wgs84, x, y);
+  impl_->planeOfCrs(x, y);
+}
+
+void TerrainFile::lineToPlane(std::vector<double>& x, std::vector<double>& y) const {
+  const GdalMessages quiet;
+  std::vector<double> z(x.size(), 0.0);
+  std::vector<int> done(x.size());
+  GDALApproxTransform(impl_->line_transformer.get(), FALSE, static_cast<int>(x.size()), x.data(), y.data(),
+                      z.data(), done.data());
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    if (!done[k]) x[k] = y[k] = std::nan("");
+  }
+  impl_->planeOfCrs(x, y);
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,280 @@
+#include "scenario/terrain/sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "emscape/base/units.h"
+
+namespace emscape::scenario {
+namespace {
+
+/// Two posts are the same if they are this close (posts).
+constexpr double kSamePost_posts = 0.01;
+constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
+
+/// A piece on the lattice of its group, half open: columns begin..end of that lattice.
+struct PlacedPiece {
+  const TerrainPiece* piece;
+  long long column_begin, column_end, row_begin, row_end;
+};
+
+/// Pieces that touch each other, and the window about them.
+struct Patch {
+  std::vector<PlacedPiece> pieces;  ///< in the order in which the files were named
+  long long column_begin, column_end, row_begin, row_end;
+};
+
+struct LatticeGroup {
+  PostLattice lattice;
+  std::string plane;
+  std::vector<PlacedPiece> pieces;
+};
+
+/// The first and last of `count` posts from `first` fall on whole posts of the other lattice, as far apart.
+bool coincide(double first, double last, int count) {
+  return std::abs(first - std::round(first)) < kSamePost_posts &&
+         std::abs(last - std::round(last)) < kSamePost_posts &&
+         std::llround(last) - std::llround(first) == count - 1;
+}
+
+bool fits(const TerrainPiece& piece, const LatticeGroup& group) {
+  const int columns = piece.file->columns(), rows = piece.file->rows();
+  const PostLattice& own = piece.lattice;
+  return piece.file->planeName() == group.plane &&
+         coincide(group.lattice.column(own.x(0)), group.lattice.column(own.x(columns - 1)), columns) &&
+         coincide(group.lattice.row(own.y(0)), group.lattice.row(own.y(rows - 1)), rows);
+}
+
+std::vector<LatticeGroup> groupByLattice(const std::vector<TerrainPiece>& pieces) {
+  std::vector<LatticeGroup> groups;
+  for (const TerrainPiece& piece : pieces) {
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const LatticeGroup& candidate) { return fits(piece, candidate); });
+    if (group == groups.end()) {
+      groups.push_back({piece.lattice, piece.file->planeName(), {}});
+      group = groups.end() - 1;
+    }
+    const PostWindow& window = piece.window;
+    const long long column =
+        std::llround(group->lattice.column(piece.lattice.x(static_cast<double>(window.first_column))));
+    const long long row =
+        std::llround(group->lattice.row(piece.lattice.y(static_cast<double>(window.first_row))));
+    group->pieces.push_back({&piece, column, column + window.columns, row, row + window.rows});
+  }
+  return groups;
+}
+
+bool touch(const Patch& a, const Patch& b) {
+  return a.column_begin <= b.column_end && b.column_begin <= a.column_end && a.row_begin <= b.row_end &&
+         b.row_begin <= a.row_end;
+}
+
+/// Tiles far apart must not become one sheet of nothing.
+std::vector<Patch> joinTouching(const std::vector<PlacedPiece>& pieces) {
+  std::vector<Patch> patches;
+  for (const PlacedPiece& piece : pieces) {
+    Patch joined{{piece}, piece.column_begin, piece.column_end, piece.row_begin, piece.row_end};
+    for (std::size_t k = 0; k < patches.size();) {
+      if (!touch(joined, patches[k])) {
+        ++k;
+        continue;
+      }
+      const Patch other = std::move(patches[k]);
+      patches.erase(patches.begin() + static_cast<std::ptrdiff_t>(k));
+      joined.pieces.insert(joined.pieces.end(), other.pieces.begin(), other.pieces.end());
+      joined.column_begin = std::min(joined.column_begin, other.column_begin);
+      joined.column_end = std::max(joined.column_end, other.column_end);
+      joined.row_begin = std::min(joined.row_begin, other.row_begin);
+      joined.row_end = std::max(joined.row_end, other.row_end);
+      k = 0;  // having grown, it may touch those that it did not touch before
+    }
+    patches.push_back(std::move(joined));
+  }
+  for (Patch& patch : patches) {
+    std::sort(patch.pieces.begin(), patch.pieces.end(),
+              [](const PlacedPiece& a, const PlacedPiece& b) { return a.piece < b.piece; });
+  }
+  return patches;
+}
+
+/// Distances (m) between neighbouring posts in the middle of a sheet.
+void measureSpacing(TerrainSheet& sheet) {
+  const int column = sheet.columns / 2, row = sheet.rows / 2;
+  std::vector<double> x{sheet.lattice.x(column), sheet.lattice.x(column - 1), sheet.lattice.x(column)};
+  std::vector<double> y{sheet.lattice.y(row), sheet.lattice.y(row), sheet.lattice.y(row - 1)};
+  sheet.file->toGeographic(x, y);
+  const double across_m = geodesicInverse(y[0], x[0], y[1], x[1]).distance_m;
+  const double along_m = geodesicInverse(y[0], x[0], y[2], x[2]).distance_m;
+  sheet.spacing_m = std::sqrt(across_m * along_m);
+  if (!(sheet.spacing_m > 0.0)) {
+    throw Error(ErrorCode::bad_input,
+                "elevation file " + sheet.file->name() + ": its posts lie nowhere on the earth");
+  }
+  sheet.finest_m = std::max(std::min(across_m, along_m), 0.5 * std::max(across_m, along_m));
+}
+
+TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
+  PostLattice own = lattice;
+  own.x0 = lattice.x(static_cast<double>(patch.column_begin - 1));
+  own.y0 = lattice.y(static_cast<double>(patch.row_begin - 1));
+  TerrainSheet sheet(patch.pieces.front().piece->file, own, patch.column_end - patch.column_begin + 2,
+                     patch.row_end - patch.row_begin + 2);
+  for (const PlacedPiece& placed : patch.pieces) {
+    const TerrainFile& file = *placed.piece->file;
+    sheet.is_area = sheet.is_area || file.isArea();
+    const int first_column = static_cast<int>(placed.column_begin - patch.column_begin) + 1;
+    const int first_row = static_cast<int>(placed.row_begin - patch.row_begin) + 1;
+    file.read(placed.piece->window, [&](long long row, const float* heights_m) {
+      std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));
+      for (long long column = 0; column < placed.piece->window.columns; ++column, ++post) {
+        if (sheet.kinds[post] == PostKind::known) continue;
+        sheet.kinds[post] = std::isnan(heights_m[column]) ? PostKind::empty : PostKind::known;
+        sheet.heights_m[post] = heights_m[column];
+      }
+    });
+  }
+  measureSpacing(sheet);
+  return sheet;
+}
+
+/// Visits the absent posts of a sheet that have a neighbour of a file.
+template <class Visit>
+void visitRim(const TerrainSheet& sheet, const Visit& visit) {
+  for (int row = 0; row < sheet.rows; ++row) {
+    for (int column = 0; column < sheet.columns; ++column) {
+      if (sheet.kind(column, row) != PostKind::absent) continue;
+      bool beside_file = false;
+      for (int j = std::max(row - 1, 0); j <= std::min(row + 1, sheet.rows - 1); ++j) {
+        for (int i = std::max(column - 1, 0); i <= std::min(column + 1, sheet.columns - 1); ++i) {
+          beside_file = beside_file || sheet.kind(i, j) != PostKind::absent;
+        }
+      }
+      if (beside_file) visit(column, row);
+    }
+  }
+}
+
+struct RimPost {
+  int column, row;
+  float height_m;
+};
+
+/// Heights that the other sheets have for the rim of sheet `k`.
+std::vector<RimPost> rimFromOthers(const std::vector<TerrainSheet>& sheets, std::size_t k) {
+  std::vector<TerrainRaster> others;
+  for (std::size_t other = 0; other < sheets.size(); ++other) {
+    if (other != k) others.push_back(sheets[other].raster());
+  }
+  std::vector<RimPost> rim;
+  if (others.empty()) return rim;
+  const TerrainView view{others.data(), static_cast<int>(others.size())};
+  const PostLattice& lattice = sheets[k].lattice;
+  visitRim(sheets[k], [&](int column, int row) {
+    const float height_m = view.heightAt(degToRad(lattice.y(row)), degToRad(lattice.x(column)));
+    if (!std::isnan(height_m)) rim.push_back({column, row, height_m});
+  });
+  return rim;
+}
+
+/// Opens the sheet's limits to the ring where that is filled.
+void fillRim(TerrainSheet& sheet, const std::vector<RimPost>& rim) {
+  for (const RimPost& post : rim) {
+    sheet.heights_m[sheet.index(post.column, post.row)] = post.height_m;
+    sheet.kinds[sheet.index(post.column, post.row)] = PostKind::known;
+    sheet.first_column = std::min<double>(sheet.first_column, post.column);
+    sheet.last_column = std::max<double>(sheet.last_column, post.column);
+    sheet.first_row = std::min<double>(sheet.first_row, post.row);
+    sheet.last_row = std::max<double>(sheet.last_row, post.row);
+  }
+}
+
+/// Lets the outermost heights reach half a post further.
+void holdOuterHeights(TerrainSheet& sheet) {
+  const auto hold = [&](int column, int row) {
+    const std::size_t ring = sheet.index(column, row);
+    if (sheet.kinds[ring] != PostKind::absent) return;
+    const std::size_t inner =
+        sheet.index(std::clamp(column, 1, sheet.columns - 2), std::clamp(row, 1, sheet.rows - 2));
+    if (sheet.kinds[inner] != PostKind::known) return;
+    sheet.kinds[ring] = PostKind::known;
+    sheet.heights_m[ring] = sheet.heights_m[inner];
+  };
+  for (int column = 0; column < sheet.columns; ++column) {
+    hold(column, 0);
+    hold(column, sheet.rows - 1);
+  }
+  for (int row = 0; row < sheet.rows; ++row) {
+    hold(0, row);
+    hold(sheet.columns - 1, row);
+  }
+  sheet.first_column = std::min(sheet.first_column, 0.5);
+  sheet.last_column = std::max(sheet.last_column, sheet.columns - 1.5);
+  sheet.first_row = std::min(sheet.first_row, 0.5);
+  sheet.last_row = std::max(sheet.last_row, sheet.rows - 1.5);
+}
+
+}  // namespace
+
+TerrainSheet::TerrainSheet(const TerrainFilePtr& of_file, const PostLattice& of_lattice,
+                           long long with_columns, long long with_rows)
+    : file(of_file), lattice(of_lattice) {
+  if (with_columns > kMostSheetPosts / with_rows) {
+    throw Error(ErrorCode::bad_input,
+                "elevation file " + file->name() + ": the region takes " + std::to_string(with_columns) +
+                    " x " + std::to_string(with_rows) + " posts of its spacing, more than " +
+                    std::to_string(kMostSheetPosts) + "; use a coarser file or a smaller region");
+  }
+  columns = static_cast<int>(with_columns);
+  rows = static_cast<int>(with_rows);
+  first_column = first_row = 1;
+  last_column = columns - 2;
+  last_row = rows - 2;
+  const std::size_t posts = static_cast<std::size_t>(with_columns * with_rows);
+  heights_m.assign(posts, kNoHeight);
+  kinds.assign(posts, PostKind::absent);
+}
+
+TerrainRaster TerrainSheet::raster() const {
+  TerrainRaster raster;
+  raster.heights_msl_m = heights_m.data();
+  raster.columns = columns;
+  raster.rows = rows;
+  raster.south_rad = degToRad(lattice.y0);
+  raster.west_rad = degToRad(lattice.x0);
+  raster.posts_per_rad_lat = radToDeg(1.0) / lattice.step_y;
+  raster.posts_per_rad_lon = radToDeg(1.0) / lattice.step_x;
+  raster.first_column = first_column;
+  raster.last_column = last_column;
+  raster.first_row = first_row;
+  raster.last_row = last_row;
+  return raster;
+}
+
+bool TerrainSheet::besideVoid(double column, double row) const {
+  const int i = std::min(static_cast<int>(column), columns - 2);
+  const int j = std::min(static_cast<int>(row), rows - 2);
+  return kind(i, j) == PostKind::empty || kind(i + 1, j) == PostKind::empty ||
+         kind(i, j + 1) == PostKind::empty || kind(i + 1, j + 1) == PostKind::empty;
+}
+
+std::vector<TerrainSheet> readSheets(const std::vector<TerrainPiece>& pieces) {
+  std::vector<TerrainSheet> sheets;
+  for (const LatticeGroup& group : groupByLattice(pieces)) {
+    for (const Patch& patch : joinTouching(group.pieces)) sheets.push_back(readPatch(patch, group.lattice));
+  }
+  return sheets;
+}
+
+void closeSeams(std::vector<TerrainSheet>& sheets) {
+  // All rims before any is filled, so that no sheet hands on what it has from another.
+  std::vector<std::vector<RimPost>> rims;
+  for (std::size_t k = 0; k < sheets.size(); ++k) rims.push_back(rimFromOthers(sheets, k));
+  for (std::size_t k = 0; k < sheets.size(); ++k) {
+    fillRim(sheets[k], rims[k]);
+    if (sheets[k].is_area) holdOuterHeights(sheets[k]);
+  }
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,218 @@
+#include "emscape/scenario/terrain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "emscape/base/geoid.h"
+#include "emscape/base/log.h"
+#include "emscape/base/parallel.h"
+#include "emscape/base/units.h"
+#include "scenario/terrain/place.h"
+#include "scenario/terrain/view.h"
+
+namespace emscape::scenario {
+namespace {
+
+/// Points a side at which the box is asked whether a file covers it; its edges are among them.
+constexpr int kCoverageProbes = 257;
+
+const GeoBox& checked(const GeoBox& box) {
+  const bool sane = box.south_deg >= -90.0 && box.south_deg <= box.north_deg && box.north_deg <= 90.0 &&
+                    std::abs(box.west_deg) <= 360.0 && box.west_deg <= box.east_deg &&
+                    box.east_deg - box.west_deg <= 360.0;
+  if (!sane) {
+    throw Error(ErrorCode::bad_input,
+                "terrain box: latitudes " + std::to_string(box.south_deg) + " to " +
+                    std::to_string(box.north_deg) + ", longitudes " + std::to_string(box.west_deg) + " to " +
+                    std::to_string(box.east_deg) +
+                    " degrees; latitudes must rise within -90..90, longitudes by 0..360");
+  }
+  return box;
+}
+
+/// Heights above the ellipsoid become heights above mean sea level.
+void subtractGeoid(TerrainSheet& sheet) {
+  parallelFor(sheet.rows, 16, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      for (int column = 0; column < sheet.columns; ++column) {
+        if (sheet.kind(column, row) != PostKind::known) continue;
+        sheet.heights_m[sheet.index(column, row)] -=
+            static_cast<float>(geoidUndulation_m(sheet.lattice.y(row), sheet.lattice.x(column)));
+      }
+    }
+  });
+}
+
+/// Sheets of longitudes and latitudes, the finest first, that go on into each other.
+std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& box) {
+  std::vector<TerrainPiece> pieces;
+  for (std::size_t k = 0; k < spec.files.size(); ++k) {
+    const FilePlace place = k < spec.places.size() ? spec.places[k] : FilePlace{};
+    const auto file = std::make_shared<const TerrainFile>(spec.files[k], place);
+    for (const std::string& note : file->notes()) logInfo("elevation file " + file->name() + ": " + note);
+    for (TerrainPiece& piece : piecesWithin(file, box)) pieces.push_back(std::move(piece));
+  }
+  std::vector<TerrainSheet> sheets;
+  for (TerrainSheet& sheet : readSheets(pieces)) {
+    if (sheet.file->isGeographic()) {
+      sheets.push_back(std::move(sheet));
+    } else {
+      for (TerrainSheet& brought : toGeographicSheets(std::move(sheet), box))
+        sheets.push_back(std::move(brought));
+    }
+  }
+  std::stable_sort(sheets.begin(), sheets.end(),
+                   [](const TerrainSheet& a, const TerrainSheet& b) { return a.spacing_m < b.spacing_m; });
+  if (spec.vertical_datum == VerticalDatum::ellipsoid) {
+    for (TerrainSheet& sheet : sheets) subtractGeoid(sheet);
+  }
+  closeSeams(sheets);
+  return sheets;
+}
+
+class TerrainMosaic : public Terrain {
+ public:
+  TerrainMosaic(const TerrainSpec& spec, const GeoBox& box) : box_(checked(box)) {
+    std::vector<TerrainSheet> sheets = sheetsWithin(spec, box);
+    for (const TerrainSheet& sheet : sheets) rasters_.push_back(sheet.raster());
+    survey(sheets);
+    // The heights do not move in memory: the rasters go on pointing at them.
+    for (TerrainSheet& sheet : sheets) heights_m_.push_back(std::move(sheet.heights_m));
+  }
+
+  double heightMsl_m(double latitude_deg, double longitude_deg) const override {
+    return view().heightAt(degToRad(latitude_deg), degToRad(longitude_deg));
+  }
+  TerrainView view() const override { return {rasters_.data(), static_cast<int>(rasters_.size())}; }
+  double postSpacing_m() const override { return post_spacing_m_; }
+  long long voidPosts() const override { return void_posts_; }
+  double uncoveredFraction() const override { return uncovered_fraction_; }
+  GeoBox box() const override { return box_; }
+  GeoBox coverage() const override { return coverage_; }
+  double lowest_m() const override { return lowest_m_; }
+  double highest_m() const override { return highest_m_; }
+
+ private:
+  void survey(const std::vector<TerrainSheet>& sheets);
+  void surveyPosts(const TerrainSheet& sheet);
+  bool covered(const std::vector<TerrainSheet>& sheets, double latitude_deg, double longitude_deg) const;
+
+  GeoBox box_;
+  std::vector<std::vector<float>> heights_m_;
+  std::vector<TerrainRaster> rasters_;
+  double post_spacing_m_ = std::numeric_limits<double>::quiet_NaN();
+  long long void_posts_ = 0;
+  double uncovered_fraction_ = 1.0;
+  GeoBox coverage_;
+  double lowest_m_ = std::numeric_limits<double>::quiet_NaN();
+  double highest_m_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+void TerrainMosaic::survey(const std::vector<TerrainSheet>& sheets) {
+  for (std::size_t k = 0; k < sheets.size(); ++k) {
+    const TerrainSheet& sheet = sheets[k];
+    post_spacing_m_ = std::fmin(post_spacing_m_, sheet.finest_m);
+    const GeoBox part{std::max(sheet.lattice.y(sheet.first_row), box_.south_deg),
+                      std::min(sheet.lattice.y(sheet.last_row), box_.north_deg),
+                      std::max(sheet.lattice.x(sheet.first_column), box_.west_deg),
+                      std::min(sheet.lattice.x(sheet.last_column), box_.east_deg)};
+    coverage_ = k == 0 ? part
+                       : GeoBox{std::min(coverage_.south_deg, part.south_deg),
+                                std::max(coverage_.north_deg, part.north_deg),
+                                std::min(coverage_.west_deg, part.west_deg),
+                                std::max(coverage_.east_deg, part.east_deg)};
+    surveyPosts(sheet);
+  }
+  long long uncovered = 0;
+  for (int j = 0; j < kCoverageProbes; ++j) {
+    const double latitude_deg =
+        box_.south_deg + (box_.north_deg - box_.south_deg) * j / (kCoverageProbes - 1);
+    for (int i = 0; i < kCoverageProbes; ++i) {
+      const double longitude_deg =
+          box_.west_deg + (box_.east_deg - box_.west_deg) * i / (kCoverageProbes - 1);
+      if (!covered(sheets, latitude_deg, longitude_deg)) ++uncovered;
+    }
+  }
+  uncovered_fraction_ = static_cast<double>(uncovered) / (kCoverageProbes * kCoverageProbes);
+}
+
+void TerrainMosaic::surveyPosts(const TerrainSheet& sheet) {
+  const double slack_x = TerrainRaster::kSlack * sheet.lattice.step_x;
+  const double slack_y = TerrainRaster::kSlack * sheet.lattice.step_y;
+  for (int row = 0; row < sheet.rows; ++row) {
+    const double latitude_deg = sheet.lattice.y(row);
+    if (latitude_deg < box_.south_deg - slack_y || latitude_deg > box_.north_deg + slack_y) continue;
+    for (int column = 0; column < sheet.columns; ++column) {
+      const double longitude_deg = sheet.lattice.x(column);
+      if (longitude_deg < box_.west_deg - slack_x || longitude_deg > box_.east_deg + slack_x) continue;
+      const PostKind kind = sheet.kind(column, row);
+      if (kind == PostKind::known) {
+        const double height_m = sheet.heights_m[sheet.index(column, row)];
+        lowest_m_ = std::fmin(lowest_m_, height_m);
+        highest_m_ = std::fmax(highest_m_, height_m);
+      } else if (kind == PostKind::empty && std::isnan(heightMsl_m(latitude_deg, longitude_deg))) {
+        ++void_posts_;
+      }
+    }
+  }
+}
+
+/// A file has posts about the point, be they void.
+bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double latitude_deg,
+                            double longitude_deg) const {
+  if (!std::isnan(heightMsl_m(latitude_deg, longitude_deg))) return true;
+  for (std::size_t k = 0; k < sheets.size(); ++k) {
+    double column = 0, row = 0;
+    if (rasters_[k].locate(degToRad(latitude_deg), degToRad(longitude_deg), column, row) &&
+        sheets[k].besideVoid(column, row)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
+  file.read({0, 0, file.columns(), file.rows()}, [&](long long, const float* heights_m) {
+    for (int column = 0; column < file.columns(); ++column) {
+      if (std::isnan(heights_m[column])) {
+        ++info.void_posts;
+      } else {
+        info.lowest_m = std::fmin(info.lowest_m, heights_m[column]);
+        info.highest_m = std::fmax(info.highest_m, heights_m[column]);
+      }
+    }
+  });
+}
+
+}  // namespace
+
+std::shared_ptr<const Terrain> Terrain::load(const TerrainSpec& spec, const GeoBox& box) {
+  return std::make_shared<const TerrainMosaic>(spec, box);
+}
+
+TerrainFileInfo Terrain::describe(const std::string& name, bool read_heights) {
+  const TerrainFile file(name, FilePlace{});
+  TerrainFileInfo info;
+  info.file = name;
+  info.format = file.format();
+  info.crs = file.crs();
+  info.box = geographicBoxOf(file);
+  info.columns = file.columns();
+  info.rows = file.rows();
+  info.pixel_is_area = file.isArea();
+  info.notes = file.notes();
+  const double column = 0.5 * (file.columns() - 1), row = 0.5 * (file.rows() - 1);
+  const PostLattice& lattice = file.lattice();
+  std::vector<double> x{lattice.x(column - 0.5), lattice.x(column + 0.5), lattice.x(column),
+                        lattice.x(column)};
+  std::vector<double> y{lattice.y(row), lattice.y(row), lattice.y(row - 0.5), lattice.y(row + 0.5)};
+  file.toGeographic(x, y);
+  info.post_spacing_lon_deg = std::abs(wrapLongitude_deg(x[1] - x[0]));
+  info.post_spacing_lat_deg = std::abs(y[3] - y[2]);
+  info.lowest_m = info.highest_m = std::numeric_limits<double>::quiet_NaN();
+  if (read_heights) surveyHeights(file, info);
+  return info;
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,52 @@
+#include "document/document.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace emscape::document {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string faultOf(const std::string& text) {
+  ProblemList problems;
+  readDocument("a.yaml", text, problems);
+  const std::vector<Problem> all = problems.inOrder();
+  return all.empty() ? "" : toString(all.front().place) + ": " + all.front().message;
+}
+
+TEST(Document, KeepsWhereKeysAndValuesStand) {
+  ProblemList problems;
+  const std::string text = "# \xC3\xA9\nfirst: 1\nsecond: [a, \"b\"]\n";
+  const DocumentNodePtr root = readDocument("a.yaml", text, problems);
+  ASSERT_TRUE(root);
+  ASSERT_EQ(root->entries.size(), 2u);
+  EXPECT_EQ(root->entries[1].key, "second");
+  EXPECT_EQ(root->entries[1].position.line, 3);
+  EXPECT_EQ(text.substr(root->entries[1].position.offset, 6), "second");
+  const DocumentNode& item = *root->entries[1].value->items[1];
+  EXPECT_EQ(item.position.column, 13);
+  EXPECT_EQ(text[item.position.offset], '"');
+  EXPECT_TRUE(item.quoted);
+}
+
+TEST(Document, TellsAnchorsApart) {
+  ProblemList problems;
+  const DocumentNodePtr root = readDocument("a.yaml", "a: &x 1\nb: *x\nc: 2\n", problems);
+  ASSERT_TRUE(root);
+  EXPECT_TRUE(root->entries[0].value->anchored);
+  EXPECT_EQ(root->entries[0].value, root->entries[1].value);
+  EXPECT_FALSE(root->entries[2].value->anchored);
+}
+
+TEST(Document, RefusalsSayWhere) {
+  EXPECT_EQ(faultOf(""), "a.yaml:1:1: the file is empty");
+  EXPECT_EQ(faultOf("a:\n\tb: 1\n"), "a.yaml:2:1: tab as indentation; use spaces");
+  EXPECT_EQ(faultOf("a: !!int 3\n"), "a.yaml:1:4: tag 'tag:yaml.org,2002:int' is not allowed");
+  EXPECT_THAT(faultOf("a: 1\n---\nb: 2\n"), HasSubstr("a second document begins here"));
+  EXPECT_THAT(faultOf("a: [1, 2\n"), HasSubstr("not valid YAML"));
+  EXPECT_THAT(faultOf("a: *none\n"), HasSubstr("a.yaml:1:"));
+}
+
+}  // namespace
+}  // namespace emscape::document
