@@ -38,7 +38,7 @@ bool isForbiddenControl(unsigned char c) {
 }  // namespace
 
 std::string readWholeFile(const std::string& file, std::size_t limit_bytes) {
-  const FilePlace place{file, 0, 0};
+  const SourceLocation place{file, 0, 0};
   std::error_code failure;
   const auto status = std::filesystem::status(file, failure);
   if (!std::filesystem::exists(status)) throw Error(ErrorCode::bad_input, place, "there is no such file");

@@ -11,6 +11,7 @@
 #include "emfield/models/itm.h"
 #include "emfield/models/p528.h"
 #include "emfield/models/two_ray.h"
+#include "emfield/terrain_fan.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_profile.h"
 #include "tests/emfield/random_profile.h"
@@ -114,7 +115,7 @@ TerrainProfile viewOf(const PathProfile& profile) {
 DiffractionModel<double> diffractionAt(double frequency_hz, const PathProfile& profile) {
   DiffractionParameters parameters;
   parameters.frequency_hz = frequency_hz;
-  parameters.effective_earth_radius_m = profile.station.effective_earth_radius_m;
+  parameters.effective_earth_radius_m = profile.effective_earth_radius_m;
   return diffractionModel<double>(parameters);
 }
 

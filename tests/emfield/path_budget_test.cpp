@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "emfield/station.h"
+#include "emfield/terrain_fan.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/random_profile.h"
@@ -154,7 +156,7 @@ TEST(PathBudget, PartsAddUpToTheSums) {
 /// A wall of 100 m across flat ground, half way of 20 km; both ends at 50 m.
 PathProfile overAWall(double wall_m) {
   PathProfile profile;
-  profile.station = makeStation({44, -71, 50}, 50, 1e6);  // flat
+  profile.effective_earth_radius_m = makeStation({44, -71, 50}, 50, 1e6).effective_earth_radius_m;  // flat
   profile.begin.height_msl_m = profile.end.height_msl_m = 50;
   profile.range_m = 20e3;
   for (int i = 0; i <= 200; ++i) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "emfield/terrain_fan.h"
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_budget.h"
