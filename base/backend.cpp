@@ -20,16 +20,16 @@ Backend parseBackend(const std::string& name) {
   throw Error(ErrorCode::usage, "backend '" + name + "' must be auto, cpu or cuda");
 }
 
-BackendChoice resolveBackend(Backend wish, const Device& device) {
-  if (wish == Backend::cpu) return {};
-  const bool open = wish == Backend::automatic;
+ResolvedBackend resolveBackend(Backend requested, const Device& device) {
+  if (requested == Backend::cpu) return {};
+  const bool open = requested == Backend::automatic;
   if (device.usable) return {Backend::cuda, device.name, open ? "running on the GPU: " + device.name : ""};
   if (open) return {Backend::cpu, "cpu", "running on the CPU: " + device.why_not};
   throw Error(ErrorCode::device, "backend cuda: " + device.why_not);
 }
 
-BackendChoice resolveBackend(Backend wish) {
-  return resolveBackend(wish, wish == Backend::cpu ? Device{} : findDevice());
+ResolvedBackend resolveBackend(Backend requested) {
+  return resolveBackend(requested, requested == Backend::cpu ? Device{} : findDevice());
 }
 
 }  // namespace emscape

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,10 @@ constexpr int kRows = 180 * kPostsPerDegree + 1;
 /// over the pole.
 constexpr int kPad = 2;
 constexpr int kStride = kColumns + 2 * kPad;
+
+std::mutex settings_mutex;
+std::string chosen_file;  ///< of setGeoidFile()
+bool is_read = false;     ///< the grid was read: chosen_file no longer counts
 
 /// Folders where PROJ keeps its grids, the environment's first.
 std::vector<std::string> gridFolders() {
@@ -46,19 +51,30 @@ class GeoidGrid {
   GeoidGrid() : posts_(static_cast<std::size_t>(kStride) * (kRows + 2 * kPad)) {
     CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
     GDALAllRegister();
+    const std::lock_guard<std::mutex> lock(settings_mutex);
+    if (!chosen_file.empty()) {
+      load(chosen_file);
+      return;
+    }
     std::string searched;
     for (const std::string& folder : gridFolders()) {
       const std::string file = folder + "/" + kGridName;
       VSIStatBufL status;
       if (VSIStatL(file.c_str(), &status) == 0) {
-        read(file);
-        pad();
+        load(file);
         return;
       }
       searched += (searched.empty() ? "" : ", ") + folder;
     }
     throw Error(ErrorCode::bad_input, std::string("the EGM96 geoid grid ") + kGridName +
                                           " was not found (Debian package proj-data); searched: " + searched);
+  }
+
+  /// @pre settings_mutex is locked
+  void load(const std::string& file) {
+    read(file);
+    pad();
+    is_read = true;
   }
 
   double undulation_m(double latitude_deg, double longitude_deg) const {
@@ -100,7 +116,7 @@ class GeoidGrid {
     if (!dataset || dataset->GetRasterXSize() != kColumns || dataset->GetRasterYSize() != kRows ||
         dataset->GetGeoTransform(transform) != CE_None) {
       throw Error(
-          ErrorCode::bad_input, FilePlace{file},
+          ErrorCode::bad_input, SourceLocation{file},
           "not the global 15-minute geoid grid (1440 x 721 posts) " + std::string(CPLGetLastErrorMsg()));
     }
     std::vector<float> line(kColumns);
@@ -109,7 +125,7 @@ class GeoidGrid {
     for (int row = 0; row < kRows; ++row) {
       if (dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, kRows - 1 - row, kColumns, 1, line.data(), kColumns,
                                               1, GDT_Float32, 0, 0, nullptr) != CE_None) {
-        throw Error(ErrorCode::bad_input, FilePlace{file}, CPLGetLastErrorMsg());
+        throw Error(ErrorCode::bad_input, SourceLocation{file}, CPLGetLastErrorMsg());
       }
       for (int column = 0; column < kColumns; ++column) {
         posts_[index(row, ((first + column) % kColumns + kColumns) % kColumns)] =
@@ -142,6 +158,12 @@ class GeoidGrid {
 double geoidUndulation_m(double latitude_deg, double longitude_deg) {
   static const GeoidGrid grid;
   return grid.undulation_m(latitude_deg, longitude_deg);
+}
+
+void setGeoidFile(const std::string& file) {
+  const std::lock_guard<std::mutex> lock(settings_mutex);
+  if (is_read) throw Error(ErrorCode::usage, "geoid file '" + file + "': the geoid grid was read before");
+  chosen_file = file;
 }
 
 }  // namespace emscape

@@ -3,6 +3,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -15,11 +16,13 @@
 namespace emscape {
 namespace {
 
+std::mutex thread_limit_mutex;
 std::unique_ptr<tbb::global_control> thread_limit;
 
 }  // namespace
 
 void setThreadLimit(int threads) {
+  const std::lock_guard<std::mutex> lock(thread_limit_mutex);
   thread_limit.reset();
   if (threads > 0) {
     thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
@@ -28,7 +31,9 @@ void setThreadLimit(int threads) {
 }
 
 int threadCount() {
-  return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  const auto allowed =
+      static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+  return std::min(allowed, tbb::this_task_arena::max_concurrency());
 }
 
 #if defined(__SANITIZE_THREAD__)

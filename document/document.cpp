@@ -193,7 +193,9 @@ class TreeBuilder : public YAML::EventHandler {
     }
   }
 
-  FilePlace placeOf(const TextPosition& position) const { return {file_, position.line, position.column}; }
+  SourceLocation placeOf(const TextPosition& position) const {
+    return {file_, position.line, position.column};
+  }
 
   const std::string& file_;
   PositionFinder positions_;

@@ -129,16 +129,16 @@ std::vector<std::vector<double>> Section::numberLists(const std::string& key) co
   return all;
 }
 
-FilePlace Section::place() const {
+SourceLocation Section::place() const {
   return placeAt(node_ == nullptr ? TextPosition{} : node_->position);
 }
 
-FilePlace Section::placeOf(const std::string& key) const {
+SourceLocation Section::placeOf(const std::string& key) const {
   const DocumentNode* node = find(key);
   return node == nullptr ? place() : placeAt(node->position);
 }
 
-FilePlace Section::placeOf(const std::string& key, std::size_t item) const {
+SourceLocation Section::placeOf(const std::string& key, std::size_t item) const {
   const DocumentNode* list = find(key);
   return list == nullptr || item >= list->items.size() ? placeOf(key) : placeAt(list->items[item]->position);
 }

@@ -45,17 +45,19 @@ class Section {
   /// The object itself; null if it is not given.
   const DocumentNode* node() const { return node_; }
   /// Where the object stands.
-  FilePlace place() const;
+  SourceLocation place() const;
   /// Where the key's value stands; where the object stands if it is not given.
-  FilePlace placeOf(const std::string& key) const;
+  SourceLocation placeOf(const std::string& key) const;
   /// Where an item of the key's list stands.
-  FilePlace placeOf(const std::string& key, std::size_t item) const;
+  SourceLocation placeOf(const std::string& key, std::size_t item) const;
 
  private:
   const KeySpec& row(const std::string& key) const;
   const DocumentNode* find(const std::string& key) const;
   int choiceIndex(const std::string& key) const;
-  FilePlace placeAt(const TextPosition& position) const { return {*file_, position.line, position.column}; }
+  SourceLocation placeAt(const TextPosition& position) const {
+    return {*file_, position.line, position.column};
+  }
 
   const std::string* file_;
   const DocumentNode* node_;

@@ -39,8 +39,9 @@ struct ColumnGeometryView {
 constexpr int kColumnNumbers = 9;
 
 /// @param numbers  kColumnNumbers x columns, as columnGeometry() fills them
-inline ColumnGeometryView columnGeometryView(const float* numbers, std::size_t columns,
-                                             const float* shadow_edge_m, const ExcessCode* excess) {
+EMSCAPE_HD inline ColumnGeometryView columnGeometryView(const float* numbers, std::size_t columns,
+                                                        const float* shadow_edge_m,
+                                                        const ExcessCode* excess) {
   const auto array = [&](std::size_t n) { return numbers + n * columns; };
   return {array(0), array(1), array(2), array(3),      array(4), array(5),
           array(6), array(7), array(8), shadow_edge_m, excess};

@@ -232,7 +232,8 @@ double shnidmanProbability(const Detector& detector, double snr_db) {
   return probabilityOf(low);
 }
 
-DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method) {
+DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method)
+    : detector_(detector), method_(method) {
   const double threshold = detectionThreshold(detector);
   const auto probabilityAt = [&](double snr_db) {
     switch (method) {

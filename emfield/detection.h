@@ -35,6 +35,10 @@ struct Detector {
   int pulses = 1;                         ///< N, added up; 1..kMostPulses
   double false_alarm_probability = 1e-6;  ///< per decision; kLeastFalseAlarm..0.5
 };
+inline bool operator==(const Detector& a, const Detector& b) {
+  return a.swerling == b.swerling && a.pulses == b.pulses &&
+         a.false_alarm_probability == b.false_alarm_probability;
+}
 
 constexpr int kMostPulses = 1000000;
 constexpr double kLeastFalseAlarm = 1e-15;
@@ -113,11 +117,17 @@ class DetectionCurve {
   explicit DetectionCurve(const Detector& detector,
                           scenario::DetectionMethod method = scenario::DetectionMethod::exact);
 
+  bool isOf(const Detector& detector, scenario::DetectionMethod method) const {
+    return detector == detector_ && method == method_;
+  }
+
   DetectionCurveView view() const {
     return {knots_.data(), int(knots_.size()), first_snr_db_, steps_per_db_};
   }
 
  private:
+  Detector detector_;
+  scenario::DetectionMethod method_;
   std::vector<DetectionCurveView::Knot> knots_;
   float first_snr_db_ = 0, steps_per_db_ = 0;
 };

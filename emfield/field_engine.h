@@ -1,31 +1,30 @@
 /// The stages of the field on one backend: where their arrays live, and what runs over them.
 ///
 /// FieldSolver decides what is computed anew and what is kept; an engine computes it. Emitters, channels and
-/// slots go by index.
+/// slots are numbered by index.
 #pragma once
 
 #include <memory>
 #include <vector>
 
 #include "emfield/combine.h"
+#include "emfield/field_plan.h"
 #include "emfield/grid_columns.h"
 #include "emfield/products.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/emfield/field_solver.h"
+#include "emscape/volume/volume.h"
 #include "scenario/terrain/view.h"
 
 namespace emscape::emfield {
 
-/// What stays the same over all updates of a field.
-struct FieldSetup {
-  std::shared_ptr<const scenario::Scenario> scenario;
+/// What a field is computed from. The base, FieldPlan, changes when the scenario is edited; the rest stays
+/// the same as long as the engine lives.
+struct FieldSetup : FieldPlan {
   scenario::TerrainPtr terrain;  ///< null: none
   volume::Grid grid;
   GridColumns columns;
   FanResolution resolution;
-  std::vector<Channel> channels;
-  std::vector<ChannelRecipe> recipes;  ///< one a channel
-  std::vector<double> far_field_m;     ///< of each emitter: 2 D^2 / lambda
 };
 
 /// Stages 1 and 2 for one emitter, into a slot.
@@ -74,14 +73,14 @@ class FieldEngine {
   /// Which channels have sums of resting emitters from now on; a pass into them fills them.
   virtual void setResting(const std::vector<bool>& channels) = 0;
   virtual void combine(const CombinePass& pass) = 0;
-  /// Makes new volumes of some channels; earlier ones that a caller keeps are left alone.
-  virtual void makeVolumes(const std::vector<VolumeRequest>& requests) = 0;
+  /// Makes new volumes of some channels where the engine computes; it reuses the memory of earlier ones that
+  /// nobody holds any more.
+  /// @return one per request, in their order
+  virtual std::vector<volume::Volume> makeVolumes(const std::vector<VolumeRequest>& requests) = 0;
 
-  /// The latest volume of each channel, in host memory.
-  virtual const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() = 0;
-
-  /// The same in the memory of a GPU; empty for an engine that has none there.
-  virtual const std::vector<std::shared_ptr<const volume::DeviceVolume>>& deviceVolumes() const = 0;
+  /// The FieldPlan of the setup has changed. Slots stay valid.
+  /// @param channels_changed  the sums of all channels are lost
+  virtual void planChanged(bool channels_changed) = 0;
 
   /// Sets the stages' times to 0.
   virtual void resetTimes() = 0;
@@ -111,10 +110,9 @@ std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
                             volume::VoxelPrecision precision);
 
 /// Value range of a volume in which nothing is above the floor: the floor.
-inline void setRange(volume::VolumeInfo& info, const ValueRange& range) {
-  const bool is_empty = !(range.lowest <= range.highest);
-  info.range_min = is_empty ? info.floor : range.lowest;
-  info.range_max = is_empty ? info.floor : range.highest;
+inline void setRange(volume::VolumeInfo& info, const volume::ValueRange& range) {
+  info.range_min = range.empty() ? info.floor : range.min;
+  info.range_max = range.empty() ? info.floor : range.max;
 }
 
 /// Voxels of a column nearer to the emitter than a distance.

@@ -6,31 +6,25 @@
 
 #include "emfield/excess/excess_model.h"
 #include "emfield/field_solver_impl.h"
-#include "emfield/model_check.h"
+#include "emscape/base/backend.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
-#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {
 
-using scenario::Emitter;
-using scenario::EmitterState;
-
-bool samePose(const scenario::BeamPose& a, const scenario::BeamPose& b) {
-  return a.forward == b.forward && a.right == b.right && a.up == b.up && a.steer_u == b.steer_u &&
-         a.steer_v == b.steer_v;
+/// Whether two regions have the same grid.
+bool sameRegion(const scenario::Region& a, const scenario::Region& b) {
+  const auto& [origin, size_m, dims] = a;
+  const auto& [kind, latitude_deg, longitude_deg, height_msl_m] = origin;
+  return kind == b.origin.kind && latitude_deg == b.origin.latitude_deg &&
+         longitude_deg == b.origin.longitude_deg && height_msl_m == b.origin.height_msl_m &&
+         size_m == b.size_m && dims == b.dims;
 }
 
-/// What decides whether an emitter's beam is the same as at the last update.
-bool sameBeam(const EmitterState& a, const EmitterState& b) {
-  if (a.active != b.active) return false;
-  if (!a.active) return true;
-  return samePose(a.beam, b.beam) && samePose(a.mount, b.mount);
-}
-
-double distance_m(const GeodeticPosition& a, const GeodeticPosition& b) {
-  return length(toEcef(a) - toEcef(b));
+bool sameTerrainFiles(const scenario::Scenario& a, const scenario::Scenario& b) {
+  if (!a.terrain || !b.terrain) return !a.terrain && !b.terrain;
+  return a.terrain->files == b.terrain->files && a.terrain->vertical_datum == b.terrain->vertical_datum;
 }
 
 }  // namespace
@@ -50,48 +44,44 @@ volume::Grid gridOf(const scenario::Region& region) {
 FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
                         FieldOptions options_in)
     : options(std::move(options_in)) {
-  setup.scenario = std::move(scenario);
+  static_cast<FieldPlan&>(setup) = makePlan(std::move(scenario), options.quantities, nullptr);
   setup.terrain = std::move(terrain);
-  for (const std::string& warning : checkModels(*setup.scenario)) warn(warning);
   setup.grid = gridOf(setup.scenario->region);
-  setup.channels = channelsOf(*setup.scenario, options.quantities);
-  for (const Channel& channel : setup.channels) setup.recipes.push_back(recipeOf(channel, *setup.scenario));
   setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
   checkHoles();
   setup.resolution = fanResolution(setup.grid, setup.terrain.get());
-  for (const Emitter& emitter : setup.scenario->emitters) {
-    const double wavelength = wavelength_m(emitter.frequency_hz);
-    const double dimension_m = emitter.antenna->apertureDimension_m(wavelength);
-    setup.far_field_m.push_back(2 * dimension_m * dimension_m / wavelength);
-  }
   emitters.resize(setup.scenario->emitters.size());
   masks.resize(setup.channels.size());
-  const std::size_t slot_bytes = chooseCached();
-  engine = openOnBackend(
+  volumes.resize(setup.channels.size());
+  std::size_t slot_bytes = 0;
+  const std::vector<bool> cached = chooseCached(setup, &slot_bytes);
+  for (std::size_t e = 0; e < emitters.size(); ++e) emitters[e].is_cached = cached[e];
+  engine = withBackendFallback(
       options.backend,
-      [&](const BackendChoice& choice) {
-        backend = choice.backend;
+      [&](const ResolvedBackend& resolved) {
+        backend = resolved.backend;
         return makeEngine(slot_bytes);
       },
       logInfo);
 }
 
 /// Chooses the emitters that are cached.
-/// @return what the slots take (bytes)
-std::size_t FieldSolver::Impl::chooseCached() {
+/// @param slot_bytes  receives what the slots take; may be null
+std::vector<bool> FieldSolver::Impl::chooseCached(const FieldPlan& plan, std::size_t* slot_bytes) const {
+  std::vector<bool> cached;
   std::size_t cached_bytes = 0, largest_uncached = 0;
-  for (std::size_t e = 0; e < emitters.size(); ++e) {
-    const std::size_t bytes =
-        EmitterGeometry::bytesOf(*setup.scenario, setup.scenario->emitters[e], setup.columns.columns.size(),
-                                 static_cast<int>(setup.columns.t_m.size()));
-    emitters[e].is_cached = options.cache_bytes == 0 || cached_bytes + bytes <= options.cache_bytes;
-    if (emitters[e].is_cached) {
+  for (const scenario::Emitter& emitter : plan.scenario->emitters) {
+    const std::size_t bytes = EmitterGeometry::bytesOf(*plan.scenario, emitter, setup.columns.columns.size(),
+                                                       static_cast<int>(setup.columns.t_m.size()));
+    cached.push_back(options.cache_bytes == 0 || cached_bytes + bytes <= options.cache_bytes);
+    if (cached.back()) {
       cached_bytes += bytes;
     } else {
       largest_uncached = std::max(largest_uncached, bytes);
     }
   }
-  return cached_bytes + largest_uncached;
+  if (slot_bytes != nullptr) *slot_bytes = cached_bytes + largest_uncached;
+  return cached;
 }
 
 std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine(std::size_t slot_bytes) const {
@@ -127,31 +117,29 @@ void FieldSolver::Impl::checkHoles() const {
       ErrorCode::bad_input, {setup.scenario->file},
       fmt::format(
           "terrain is missing below {} of {} columns of the region, first at {}; the files cover latitude "
-          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts (--allow-missing-terrain draws "
-          "holes)",
+          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts",
           columns.hole_columns, columns.columns.size(), placeOf(columns.first_hole), box.south_deg,
-          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts()));
+          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts()),
+      Hint::allow_missing_terrain);
 }
 
-FieldChanged FieldSolver::Impl::findChanges(const scenario::Snapshot& snapshot) {
-  FieldChanged changed;
-  changed.grid = is_first;
-  for (std::size_t e = 0; e < emitters.size(); ++e) {
-    const EmitterState& now = snapshot.emitters[e];
-    EmitterCache& cache = emitters[e];
-    const bool has_moved = now.active && (!cache.has_geometry || distance_m(now.position, cache.computed_at) >
-                                                                     options.move_tolerance_m);
-    if (has_moved) {
-      changed.moved.push_back(static_cast<int>(e));
-    } else if (is_first || !sameBeam(now, cache.state)) {
-      changed.turned.push_back(static_cast<int>(e));
-    }
-    cache.mount_changed =
-        is_first || has_moved || now.active != cache.state.active || !samePose(now.mount, cache.state.mount);
-    cache.state = now;
+/// Whether an edited scenario can be computed with what does not belong to the plan: the grid, the slots of
+/// the emitters and who is cached.
+bool FieldSolver::Impl::canKeep(const FieldPlan& plan, const scenario::TerrainPtr& terrain) const {
+  const auto sameName = [](const scenario::Emitter& a, const scenario::Emitter& b) {
+    return a.name == b.name;
+  };
+  const std::vector<scenario::Emitter>& old = setup.scenario->emitters;
+  const std::vector<scenario::Emitter>& edited = plan.scenario->emitters;
+  if (terrain != setup.terrain || !sameRegion(setup.scenario->region, plan.scenario->region) ||
+      !std::equal(old.begin(), old.end(), edited.begin(), edited.end(), sameName)) {
+    return false;
   }
-  changed.any = is_first || !changed.moved.empty() || !changed.turned.empty();
-  return changed;
+  const std::vector<bool> cached = chooseCached(plan, nullptr);
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    if (cached[e] != emitters[e].is_cached) return false;
+  }
+  return true;
 }
 
 FieldSolver::FieldSolver(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
@@ -169,54 +157,35 @@ const std::vector<Channel>& FieldSolver::channels() const {
 const std::vector<float>& FieldSolver::groundHeights_m() const {
   return impl_->setup.columns.ground_msl_m;
 }
-const std::vector<std::shared_ptr<const volume::DeviceVolume>>& FieldSolver::deviceVolumes() const {
-  return impl_->engine->deviceVolumes();
-}
 Backend FieldSolver::backend() const {
   return impl_->backend;
 }
 StageTimes FieldSolver::stageTimes() const {
   return impl_->engine->times();
 }
-const std::vector<std::shared_ptr<const volume::DenseVolume>>& FieldSolver::volumes() const {
-  return impl_->engine->volumes();
+const std::vector<volume::Volume>& FieldSolver::volumes() const {
+  return impl_->volumes;
 }
 
 FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
-  Impl& impl = *impl_;
-  impl.engine->resetTimes();
-  const FieldChanged changed = impl.findChanges(snapshot);
-  if (!changed.any) return changed;
+  const scenario::Scenario& old = *impl_->setup.scenario;
+  if (!sameTerrainFiles(old, *snapshot.scenario)) {
+    throw Error(
+        ErrorCode::bad_input, {snapshot.scenario->file},
+        "the edited scenario names other elevation files: they must be loaded and given to the update");
+  }
+  return update(snapshot, impl_->setup.terrain);
+}
 
-  std::vector<bool> emitter_changed(impl.emitters.size(), impl.is_first);
-  for (const std::vector<int>* list : {&changed.moved, &changed.turned}) {
-    for (int e : *list) emitter_changed[e] = true;
+FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot, scenario::TerrainPtr terrain) {
+  if (snapshot.scenario == impl_->setup.scenario && terrain == impl_->setup.terrain) {
+    return impl_->update(snapshot, std::nullopt);
   }
-  impl.findJamming(snapshot, emitter_changed);
-  std::vector<int> recomputed, chosen;
-  for (int e : changed.moved) {
-    if (impl.emitters[e].is_cached) recomputed.push_back(e);
-  }
-  impl.computeGeometry(recomputed, false);
-
-  const std::vector<Channel>& channels = impl.setup.channels;
-  std::vector<bool> channel_changed(channels.size(), impl.is_first);
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    channel_changed[c] =
-        channel_changed[c] || impl.isAffected(channels[c], impl.setup.recipes[c], emitter_changed);
-  }
-  impl.chooseResting(emitter_changed);
-  for (std::size_t e = 0; e < impl.emitters.size(); ++e) {
-    if (!impl.resting[e]) chosen.push_back(static_cast<int>(e));
-  }
-  impl.combine(chosen, channel_changed, false);
-
-  std::vector<VolumeRequest> requests;
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    if (channel_changed[c]) requests.push_back(impl.volumeRequest(static_cast<int>(c), snapshot));
-  }
-  impl.engine->makeVolumes(requests);
-  impl.is_first = false;
+  FieldPlan plan = makePlan(snapshot.scenario, impl_->options.quantities, &impl_->setup);
+  if (impl_->canKeep(plan, terrain)) return impl_->update(snapshot, std::move(plan));
+  auto fresh = std::make_unique<Impl>(snapshot.scenario, std::move(terrain), impl_->options);
+  const FieldChanged changed = fresh->update(snapshot, std::nullopt);
+  impl_ = std::move(fresh);
   return changed;
 }
 
@@ -236,8 +205,15 @@ MemoryUse FieldSolver::memoryUse() const {
 }
 
 std::vector<std::string> FieldSolver::warnings() const {
+  WarningCounts all;
+  for (const std::string& warning : impl_->setup.warnings) ++all[warning];
+  for (const EmitterCache& cache : impl_->emitters) {
+    for (const WarningCounts* counts : {&cache.warnings, &cache.jamming_warnings}) {
+      for (const auto& [warning, count] : *counts) all[warning] += count;
+    }
+  }
   std::vector<std::string> lines;
-  for (const auto& [warning, count] : impl_->warning_counts) {
+  for (const auto& [warning, count] : all) {
     lines.push_back(count > 1 ? fmt::format("{} ({} times)", warning, count) : warning);
   }
   return lines;

@@ -8,12 +8,20 @@
 
 namespace emscape::emfield {
 
-/// Jamming at the radars of channels where it counts. A radar whose jammers changed has changed.
-void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, std::vector<bool>& emitter_changed) {
+/// Jamming at the radars of channels where it counts: where a radar or one of its jammers changed, and after
+/// an edit everywhere, as paths depend on much of a scenario.
+void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Changes& changes) {
+  std::vector<bool> jammer_changed(emitters.size(), changes.all || changes.is_edited);
+  for (const std::vector<int>* list : {&changes.report.moved, &changes.report.turned}) {
+    for (int e : *list) jammer_changed[e] = true;
+  }
+  if (changes.is_edited) {
+    for (EmitterCache& cache : emitters) cache.jamming_warnings.clear();
+  }
   std::vector<bool> done(emitters.size());
   for (const Channel& channel : setup.channels) {
-    const bool jammed_anew = std::any_of(channel.jammers.begin(), channel.jammers.end(),
-                                         [&](int j) { return emitter_changed[j]; });
+    const bool jammed_anew =
+        std::any_of(channel.jammers.begin(), channel.jammers.end(), [&](int j) { return jammer_changed[j]; });
     for (int e : channel.emitters) {
       EmitterCache& cache = emitters[e];
       if (channel.jammers.empty() || done[e] || !cache.state.active) continue;
@@ -21,22 +29,10 @@ void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, std::vec
       std::string warning;
       cache.jammers = jammersInSight(snapshot, e, channel.jammers, setup.terrain.get(), setup.resolution,
                                      options.allow_missing_terrain ? &warning : nullptr);
-      if (!warning.empty()) warn(warning);
-      cache.mount_changed = emitter_changed[e] = done[e] = true;
+      if (!warning.empty()) ++cache.jamming_warnings[warning];
+      done[e] = true;
     }
   }
-}
-
-/// Whether a channel holds other values now. Where radars look at targets, it does not matter where their
-/// scans have the beams.
-bool FieldSolver::Impl::isAffected(const Channel& channel, const ChannelRecipe& recipe,
-                                   const std::vector<bool>& emitter_changed) const {
-  for (std::size_t i = 0; i < channel.emitters.size(); ++i) {
-    const int e = channel.emitters[i];
-    const bool looks_at_targets = !recipe.radars.empty() && recipe.radars[i].look.kind != LookKind::held;
-    if (looks_at_targets ? emitters[e].mount_changed : emitter_changed[e]) return true;
-  }
-  return false;
 }
 
 /// An emitter's parts in channels that take radars' echoes.

@@ -29,8 +29,7 @@ void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool int
 void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
   const Emitter& emitter = setup.scenario->emitters[e];
   EmitterCache& cache = emitters[e];
-  cache.computed_at = cache.state.position;
-  cache.has_geometry = true;
+  cache.geometry = geometryInputs(setup, e, cache.state);
   cache.findings = std::move(found);
   const GeometryFindings& findings = cache.findings;
   if (findings.unknown_columns > 0) {
@@ -38,100 +37,115 @@ void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
       const auto first = std::find(findings.unknown.begin(), findings.unknown.end(), true);
       throw Error(
           ErrorCode::bad_input, {setup.scenario->file},
-          fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain "
-                      "(--allow-missing-terrain draws holes)",
+          fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
                       emitter.name, placeOf(static_cast<std::size_t>(first - findings.unknown.begin())),
-                      findings.unknown_columns - 1));
+                      findings.unknown_columns - 1),
+          Hint::allow_missing_terrain);
     }
-    warn(fmt::format("emitter '{}': columns seen across missing terrain hold no field", emitter.name));
+    ++cache.warnings[fmt::format("emitter '{}': columns seen across missing terrain hold no field",
+                                 emitter.name)];
   }
   const Station station =
       makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere.k_factor);
   for (const std::string& warning :
        pathWarnings(*setup.scenario, emitter, cache.state, pathExtent(station, setup.columns),
                     setup.terrain.get(), findings.remarks)) {
-    warn(warning);
+    ++cache.warnings[warning];
   }
   if (findings.near_voxels > 0) {
-    warn(
-        fmt::format("emitter '{}': voxels nearer than its far field (2 D^2 / lambda = {:.0f} m) hold the far "
-                    "field's formula",
-                    emitter.name, setup.far_field_m[e]));
+    ++cache.warnings[fmt::format(
+        "emitter '{}': voxels nearer than its far field (2 D^2 / lambda = {:.0f} m) hold the far "
+        "field's formula",
+        emitter.name, setup.far_field_m[e])];
   }
 }
 
-/// Emitters that do not change are summed once. The set is chosen anew when one of them changed, or when the
-/// emitters combined in vain since the last choice would have paid for a new one.
+/// Emitters that do not change are summed once: those that come before the first that changed in the plan's
+/// order, so that every sum is added up in that order. The resting sum is made anew when the emitters
+/// combined in vain since it was last made would have paid for it.
 void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
-  const int count = static_cast<int>(emitters.size());
-  const int changed_count = static_cast<int>(std::count(changed.begin(), changed.end(), true));
-  const int resting_count = static_cast<int>(std::count(resting.begin(), resting.end(), true));
-  bool is_valid = !is_first;
-  for (int e = 0; e < count && is_valid; ++e) is_valid = !(changed[e] && resting[e]);
-  wasted += count - resting_count - changed_count;
-  if (is_valid && wasted < count - changed_count) return;
-  if (is_valid && resting_count == count - changed_count) return;
+  const std::vector<int>& order = setup.order;
+  const auto first_changed = static_cast<int>(
+      std::find_if(order.begin(), order.end(), [&](int e) { return changed[e]; }) - order.begin());
+  int chosen = resting;
+  if (resting > first_changed) {
+    chosen = 0;
+  } else {
+    wasted += first_changed - resting;
+    if (resting < first_changed && wasted >= first_changed) chosen = first_changed;
+  }
+  if (chosen == resting) return;
 
   wasted = 0;
-  resting = changed;
-  resting.flip();
+  resting = chosen;
   std::vector<bool> has_resting;
   for (const Channel& channel : setup.channels) {
-    has_resting.push_back(
-        std::any_of(channel.emitters.begin(), channel.emitters.end(), [&](int e) { return resting[e]; }));
+    has_resting.push_back(std::any_of(order.begin(), order.begin() + resting, [&](int e) {
+      return std::find(channel.emitters.begin(), channel.emitters.end(), e) != channel.emitters.end();
+    }));
   }
   engine->setResting(has_resting);
-  std::vector<int> chosen;
-  for (int e = 0; e < count; ++e) {
-    if (resting[e]) chosen.push_back(e);
-  }
-  if (!chosen.empty()) combine(chosen, has_resting, true);
+  if (resting > 0) combine(0, resting, has_resting, true);
 }
 
-CombineEmitter FieldSolver::Impl::combineEmitter(int e) const {
+/// An emitter's part in the channels.
+CombineInputs FieldSolver::Impl::combineInputs(int e) const {
   const Emitter& emitter = setup.scenario->emitters[e];
   const EmitterState& state = emitters[e].state;
-  CombineEmitter result;
-  result.emitter_index = e;
-  result.beam.forward = vecCast<float>(state.beam.forward);
-  result.beam.right = vecCast<float>(state.beam.right);
-  result.beam.up = vecCast<float>(state.beam.up);
-  result.beam.steer_u = static_cast<float>(state.beam.steer_u);
-  result.beam.steer_v = static_cast<float>(state.beam.steer_v);
+  CombineInputs inputs;
+  inputs.antenna = emitter.antenna;
+  inputs.member.slot = e;
+  inputs.member.radars = radarShares(e);
+  CombineEmitter& part = inputs.member.emitter;
+  part.emitter_index = e;
+  part.beam.forward = vecCast<float>(state.beam.forward);
+  part.beam.right = vecCast<float>(state.beam.right);
+  part.beam.up = vecCast<float>(state.beam.up);
+  part.beam.steer_u = static_cast<float>(state.beam.steer_u);
+  part.beam.steer_v = static_cast<float>(state.beam.steer_v);
   const double eirp_w = emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db);
-  result.beam.eirp_over_4pi_w = static_cast<float>(eirp_w / (4 * kPi));
+  part.beam.eirp_over_4pi_w = static_cast<float>(eirp_w / (4 * kPi));
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     const auto& members = setup.channels[c].emitters;
     const auto place = std::find(members.begin(), members.end(), e);
     if (place == members.end() || !setup.recipes[c].radars.empty()) continue;
-    result.shares.push_back({static_cast<int>(c), setup.recipes[c].weights[place - members.begin()]});
+    part.shares.push_back({static_cast<int>(c), setup.recipes[c].weights[place - members.begin()]});
   }
-  return result;
+  return inputs;
 }
 
-/// Combines the chosen emitters: those that are cached in one pass over the grid, each of the others in a
-/// pass of its own.
-void FieldSolver::Impl::combine(const std::vector<int>& chosen, const std::vector<bool>& channel_chosen,
+/// Combines the active emitters begin..end - 1 of the plan's order: cached ones in one pass over the grid, as
+/// many as follow each other, each of the others in a pass of its own.
+void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& channel_chosen,
                                 bool into_resting) {
   CombinePass pass;
   pass.channels = channel_chosen;
   pass.into_resting = into_resting;
-  std::vector<int> uncached;
-  for (int e : chosen) {
-    if (!emitters[e].state.active) continue;
-    if (emitters[e].is_cached) {
-      pass.members.push_back({e, combineEmitter(e), radarShares(e)});
-    } else {
-      uncached.push_back(e);
+  const auto isChosen = [&](const auto& share) { return channel_chosen[share.channel]; };
+  const auto enters = [&](const CombinePass::Member& member) {
+    return std::any_of(member.emitter.shares.begin(), member.emitter.shares.end(), isChosen) ||
+           std::any_of(member.radars.begin(), member.radars.end(), isChosen);
+  };
+  const auto run = [&] {
+    engine->combine(pass);
+    pass.keep = true;
+    pass.members.clear();
+  };
+  for (int n = begin; n < end; ++n) {
+    const int e = setup.order[static_cast<std::size_t>(n)];
+    const EmitterCache& cache = emitters[e];
+    if (!cache.combined || !enters(cache.combined->member)) continue;
+    if (!cache.is_cached) {
+      if (!pass.members.empty()) run();
+      computeGeometry({e}, true);
+    }
+    pass.members.push_back(cache.combined->member);
+    if (!cache.is_cached) {
+      pass.members.back().slot = static_cast<int>(emitters.size());
+      run();
     }
   }
-  engine->combine(pass);
-  pass.keep = true;
-  for (int e : uncached) {
-    computeGeometry({e}, true);
-    pass.members = {{static_cast<int>(emitters.size()), combineEmitter(e), radarShares(e)}};
-    engine->combine(pass);
-  }
+  if (!pass.keep || !pass.members.empty()) run();
 }
 
 /// First valid layers of a channel's columns: those above ground, but for columns that are unknown to one of
@@ -151,6 +165,30 @@ const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& chann
     }
   }
   return own.empty() ? above_ground : own;
+}
+
+/// Makes the volumes of channels that changed. After an edit the others take the name, time and metadata of
+/// the edited scenario.
+void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes) {
+  if (changes.report.channels) {
+    volumes.assign(setup.channels.size(), {});
+    masks.assign(setup.channels.size(), {});
+  }
+  std::vector<VolumeRequest> requests;
+  for (std::size_t c = 0; c < volumes.size(); ++c) {
+    if (!changes.products[c] && !changes.is_edited) continue;
+    VolumeRequest request = volumeRequest(static_cast<int>(c), snapshot);
+    if (changes.products[c]) {
+      volumes[c] = {};  // so that its memory can be used again
+      requests.push_back(std::move(request));
+    } else {
+      request.info.range_min = volumes[c].info().range_min;
+      request.info.range_max = volumes[c].info().range_max;
+      volumes[c].setInfo(std::move(request.info));
+    }
+  }
+  std::vector<volume::Volume> made = engine->makeVolumes(requests);
+  for (std::size_t r = 0; r < requests.size(); ++r) volumes[requests[r].channel] = std::move(made[r]);
 }
 
 VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& snapshot) {

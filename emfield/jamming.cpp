@@ -66,7 +66,9 @@ std::vector<JammerInSight> jammersInSight(const scenario::Snapshot& snapshot, in
       } catch (const Error& error) {
         const std::string message = fmt::format("jammer '{}' to radar '{}': {}", scenario.emitters[j].name,
                                                 scenario.emitters[radar].name, error.message());
-        if (warning == nullptr) throw Error(ErrorCode::bad_input, {scenario.file}, message);
+        if (warning == nullptr) {
+          throw Error(ErrorCode::bad_input, {scenario.file}, message, Hint::allow_missing_terrain);
+        }
         *warning = message + "; counted as a free path";
         jammer.power_density_wm2 = alone();
       }
@@ -82,8 +84,10 @@ RadarShare radarShare(const scenario::Scenario& scenario, int radar, const Emitt
   RadarShare share;
   share.task = task;
   const scenario::BeamPose& frame = task.look.kind == LookKind::held ? state.beam : state.mount;
-  share.task.look.steer_u = static_cast<float>(state.beam.steer_u);
-  share.task.look.steer_v = static_cast<float>(state.beam.steer_v);
+  if (task.look.kind != LookKind::steered) {  // that one is steered onto the target
+    share.task.look.steer_u = static_cast<float>(state.beam.steer_u);
+    share.task.look.steer_v = static_cast<float>(state.beam.steer_v);
+  }
   share.forward = vecCast<float>(frame.forward);
   share.right = vecCast<float>(frame.right);
   share.up = vecCast<float>(frame.up);

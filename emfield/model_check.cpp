@@ -27,7 +27,7 @@ class Checker {
  public:
   explicit Checker(const Emitter& emitter) : emitter_(emitter) {}
 
-  void check(const ModelLimit& limit, double value_si, const FilePlace& place) {
+  void check(const ModelLimit& limit, double value_si, const SourceLocation& place) {
     if (limit.holds(value_si)) return;
     const std::string message = inModel(emitter_, outsideMessage(limit, value_si));
     if (limit.beyond == Beyond::refused) throw Error(ErrorCode::bad_input, place, message);
@@ -61,7 +61,7 @@ void checkItm(const Scenario& scenario, const Emitter& emitter, Checker& checker
 
 std::vector<std::string> checkModel(const Scenario& scenario, const Emitter& emitter) {
   Checker checker(emitter);
-  const FilePlace& frequency_place = emitter.frequency_place;
+  const SourceLocation& frequency_place = emitter.frequency_place;
   switch (emitter.propagation) {
     case PropagationModel::free_space:
     case PropagationModel::horizon:

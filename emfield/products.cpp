@@ -36,9 +36,20 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Out
   return task;
 }
 
+std::shared_ptr<const DetectionCurve> curveOf(
+    const scenario::RadarReceiver& receiver,
+    const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
+  const Detector detector = detectorOf(receiver);
+  for (const auto& curve : known_curves) {
+    if (curve->isOf(detector, receiver.detection)) return curve;
+  }
+  return std::make_shared<const DetectionCurve>(detector, receiver.detection);
+}
+
 }  // namespace
 
-ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario) {
+ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario,
+                       const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
   ChannelRecipe recipe;
   recipe.product.floor = static_cast<float>(scenario.output.floor);
   if (scenario.output.combine == scenario::CombineMode::max) recipe.reduction = Reduction::maximum;
@@ -96,8 +107,7 @@ ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenari
     const Emitter& radar = scenario.emitters[e];
     recipe.radars.push_back(radarTask(channel.quantity, radar, scenario.output));
     if (channel.quantity != Quantity::detection_probability) continue;
-    recipe.curves.push_back(
-        std::make_shared<const DetectionCurve>(detectorOf(radar.receiver), radar.receiver.detection));
+    recipe.curves.push_back(curveOf(radar.receiver, known_curves));
     recipe.radars.back().curve = recipe.curves.back()->view();
   }
   return recipe;

@@ -12,6 +12,7 @@
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "emscape/emfield/field_solver.h"
+#include "emscape/volume/value_range.h"
 
 namespace emscape::emfield {
 
@@ -43,8 +44,10 @@ struct ChannelRecipe {
   std::vector<std::shared_ptr<const DetectionCurve>> curves;
 };
 
+/// @param known_curves  taken where one is that of a radar's detector
 /// @throws Error (bad_input) if the scenario lacks what the quantity needs (a receiver, a radar)
-ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario);
+ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario,
+                       const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves = {});
 
 /// Values of one channel.
 struct ProductTask {
@@ -55,11 +58,7 @@ struct ProductTask {
   float* values = nullptr;
 };
 
-/// Smallest and largest value of the valid voxels above the floor; lowest > highest where there are none.
-struct ValueRange {
-  float lowest = 0, highest = 0;
-};
-
-ValueRange productCpu(const ProductTask& task);
+/// @return the range of the valid voxels above the floor
+volume::ValueRange productCpu(const ProductTask& task);
 
 }  // namespace emscape::emfield

@@ -3,7 +3,9 @@
 #include <mutex>
 #include <utility>
 
+#include "emscape/base/backend.h"
 #include "emscape/base/error.h"
+#include "emscape/base/log.h"
 #include "render/frame_caster.h"
 #include "render/scene.h"
 
@@ -14,13 +16,6 @@ struct Renderer::Impl {
   std::unique_ptr<FrameCaster> caster;
   Scene scene;
   std::mutex volume_mutex;  ///< whoever sets the volume, and whoever draws it
-
-  template <class Volume>
-  void setVolume(std::shared_ptr<const Volume> volume, const volume::Grid& grid, bool categorical) {
-    const std::lock_guard<std::mutex> lock(volume_mutex);
-    caster->setVolume(std::move(volume));
-    scene.setVolume(grid, categorical);
-  }
 
   FrameReport draw(const FramePlan& plan, ImageSize size, const StopFlag* stop) {
     scene.prepare();
@@ -33,11 +28,13 @@ struct Renderer::Impl {
 };
 
 Renderer::Renderer(const RendererOptions& options) : impl_(std::make_unique<Impl>()) {
-  if (options.backend == Backend::automatic) {
-    throw Error(ErrorCode::other, "Renderer: which backend is to be decided before");
-  }
-  impl_->backend = options.backend;
-  impl_->caster = options.backend == Backend::cuda ? makeCudaCaster(options.precision) : makeCpuCaster();
+  impl_->caster = withBackendFallback(
+      options.backend,
+      [&](const ResolvedBackend& resolved) {
+        impl_->backend = resolved.backend;
+        return resolved.backend == Backend::cuda ? makeCudaCaster(options.precision) : makeCpuCaster();
+      },
+      logInfo);
 }
 Renderer::~Renderer() = default;
 
@@ -45,24 +42,15 @@ Backend Renderer::backend() const {
   return impl_->backend;
 }
 
-void Renderer::setVolume(std::shared_ptr<const volume::DenseVolume> volume) {
-  if (!volume) throw Error(ErrorCode::other, "Renderer: no volume is given");
-  const volume::DenseVolume& set = *volume;
-  impl_->setVolume(std::move(volume), set.grid, set.info.categorical);
-}
-
-void Renderer::setVolume(std::shared_ptr<const volume::DeviceVolume> volume) {
-  if (!volume) throw Error(ErrorCode::other, "Renderer: no volume is given");
-  const volume::DeviceVolume& set = *volume;
-  impl_->setVolume(std::move(volume), set.grid(), set.info.categorical);
-}
-
 void Renderer::setVolume(const volume::Volume& volume) {
+  if (volume.isEmpty()) throw Error(ErrorCode::other, "Renderer: no volume is given");
+  const std::lock_guard<std::mutex> lock(impl_->volume_mutex);
   if (volume.isOnDevice()) {
-    setVolume(volume.device());
+    impl_->caster->setVolume(volume.device());
   } else {
-    setVolume(volume.dense());
+    impl_->caster->setVolume(volume.dense());
   }
+  impl_->scene.setVolume(volume.grid(), volume.info().categorical);
 }
 
 std::size_t Renderer::volumeBytes() const {

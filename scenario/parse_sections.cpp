@@ -247,7 +247,7 @@ AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
   try {
     if (!antenna) antenna = makeAntenna(section, context);
   } catch (const Error& error) {
-    const FilePlace place = error.place().file.empty() ? section.place() : error.place();
+    const SourceLocation place = error.place().file.empty() ? section.place() : error.place();
     context.problems.addErrorElsewhere(section.place(), place, error.message());
   }
   return antenna;

@@ -43,6 +43,6 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
 /// count). Every fault is told with its line and column, at most 50 of one file.
 /// @param named_at  where the scenario names the file
 std::vector<TrackPoint> parseTrack(const std::string& file, const std::string& bytes,
-                                   const FilePlace& named_at, ProblemList& problems);
+                                   const SourceLocation& named_at, ProblemList& problems);
 
 }  // namespace emscape::scenario

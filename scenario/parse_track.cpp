@@ -39,7 +39,7 @@ std::vector<Cell> split(std::string_view line) {
 
 class TrackReader {
  public:
-  TrackReader(const std::string& file, const FilePlace& named_at, ProblemList& problems)
+  TrackReader(const std::string& file, const SourceLocation& named_at, ProblemList& problems)
       : file_(file), named_at_(named_at), problems_(problems) {}
 
   std::vector<TrackPoint> read(const std::string& text) {
@@ -156,7 +156,7 @@ class TrackReader {
   }
 
   const std::string& file_;
-  const FilePlace& named_at_;
+  const SourceLocation& named_at_;
   ProblemList& problems_;
   std::vector<const KeySpec*> columns_;
   std::vector<TrackPoint> points_;
@@ -166,7 +166,7 @@ class TrackReader {
 }  // namespace
 
 std::vector<TrackPoint> parseTrack(const std::string& file, const std::string& bytes,
-                                   const FilePlace& named_at, ProblemList& problems) {
+                                   const SourceLocation& named_at, ProblemList& problems) {
   try {
     return TrackReader(file, named_at, problems).read(document::checkedUtf8(file, bytes));
   } catch (const Error& error) {

@@ -59,7 +59,7 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
   const std::vector<std::string> names = section.texts("files");
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i].empty()) continue;
-    const FilePlace place = section.placeOf("files", i);
+    const SourceLocation place = section.placeOf("files", i);
     const std::string file = context.resolve(names[i]);
     terrain.files.push_back(file);
     terrain.places.push_back(place);
@@ -135,14 +135,14 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
     return std::any_of(scenario.emitters.begin(), scenario.emitters.end(),
                        [kind](const Emitter& emitter) { return emitter.kind == kind; });
   };
-  const auto need = [&](bool met, const FilePlace& place, const std::string& what,
+  const auto need = [&](bool met, const SourceLocation& place, const std::string& what,
                         const std::string& needed) {
     if (!met)
       context.problems.addError(place, fmt::format("{} needs {}; the scenario has none", what, needed));
   };
   for (std::size_t i = 0; i < output.quantities.size(); ++i) {
     const std::string& quantity = output.quantities[i];
-    const FilePlace place = section.placeOf("quantities", i);
+    const SourceLocation place = section.placeOf("quantities", i);
     if (quantity == "received_power_dbm") need(!scenario.receivers.empty(), place, quantity, "a receiver");
     const bool is_of_jamming = quantity == "jammer_to_signal_db" || quantity == "burn_through_margin_db";
     if (quantity == "snr_db" || quantity == "detection_probability" || is_of_jamming) {

@@ -7,16 +7,9 @@
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "emscape/volume/dense_volume.h"
+#include "emscape/volume/value_range.h"
 
 namespace emscape::volume {
-
-/// Least and greatest value; empty (min > max) where a block holds nothing to show.
-struct ValueRange {
-  float min = 0;
-  float max = 0;
-
-  EMSCAPE_HD bool empty() const { return min > max; }
-};
 
 /// Voxels along a brick's edge, unless others are asked for.
 constexpr int kBrickEdge = 8;

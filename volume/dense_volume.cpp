@@ -21,7 +21,7 @@ std::string dimsText(const Dims& dims) {
 
 }  // namespace
 
-void checkDims(const Dims& dims, const FilePlace& place) {
+void checkDims(const Dims& dims, const SourceLocation& place) {
   // Each factor fits 16 bits, so the product cannot overflow.
   const auto allowed = [](int count) { return count >= 1 && count <= kMaxVoxelsPerAxis; };
   if (!allowed(dims.x) || !allowed(dims.y) || !allowed(dims.z)) {
@@ -35,7 +35,7 @@ void checkDims(const Dims& dims, const FilePlace& place) {
   }
 }
 
-void checkVolume(const DenseVolume& volume, const FilePlace& place) {
+void checkVolume(const DenseVolume& volume, const SourceLocation& place) {
   const Dims& dims = volume.grid.dims;
   const std::string who = "volume " + volume.info.quantity + ": ";
   const auto fail = [&](const std::string& what) { throw Error(ErrorCode::bad_input, place, who + what); };
@@ -56,7 +56,7 @@ void checkVolume(const DenseVolume& volume, const FilePlace& place) {
   }
 }
 
-std::vector<std::int32_t> toIndices(const DenseVolume& volume, const FilePlace& place) {
+std::vector<std::int32_t> toIndices(const DenseVolume& volume, const SourceLocation& place) {
   constexpr float kGreatest = 1 << 24;
   const auto toIndex = [&](float value) {
     if (!(std::abs(value) <= kGreatest) || value != std::floor(value)) {

@@ -9,7 +9,7 @@
 
 namespace emscape::volume {
 
-nano::Handle toNano(const DenseVolume& volume, const FilePlace& place) {
+nano::Handle toNano(const DenseVolume& volume, const SourceLocation& place) {
   const openvdb::GridBase::Ptr grid = toOpenVdb(volume, place);
   if (volume.info.categorical) {
     return nanovdb::OpenToNanoVDB<std::int32_t, std::int32_t>()(

@@ -9,7 +9,7 @@ namespace emscape::volume {
 /// voxels the active ones must fill at least one in kSparsest, else the file is more likely damaged than
 /// sparse.
 /// @throws Error (bad_input) at `place`
-inline void checkSparseness(const Dims& dims, std::uint64_t active, const FilePlace& place) {
+inline void checkSparseness(const Dims& dims, std::uint64_t active, const SourceLocation& place) {
   constexpr long long kAlwaysDense = 1LL << 27;
   constexpr std::uint64_t kSparsest = 1000;
   checkDims(dims, place);

@@ -140,7 +140,7 @@ void initializeOpenVdb() {
   openvdb::initialize();
 }
 
-openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const FilePlace& place) {
+openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const SourceLocation& place) {
   initializeOpenVdb();
   openvdb::GridBase::Ptr grid;
   if (volume.info.categorical) {

@@ -12,6 +12,6 @@ void initializeOpenVdb();
 
 /// A FloatGrid, or an Int32Grid for a categorical volume, with metadata as in vdb.h.
 /// @throws Error (bad_input) at `place` for categorical values that are no indices
-openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const FilePlace& place);
+openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const SourceLocation& place);
 
 }  // namespace emscape::volume

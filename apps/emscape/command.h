@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/error.h"
+
 namespace emscape::app {
 
 /// Options that every subcommand takes, before or after its name.
@@ -22,6 +24,10 @@ inline CLI::Option* addListOption(CLI::App& command, const std::string& name,
                                   std::vector<std::string>& values, const std::string& description) {
   return command.add_option(name, values, description)->delimiter(',')->allow_extra_args(false);
 }
+
+/// What the program offers its user after an error, in parentheses and with a blank before; empty for
+/// Hint::none.
+std::string optionText(Hint hint);
 
 /// Runs the subcommand that was chosen; returns the exit status.
 using Action = std::function<int()>;

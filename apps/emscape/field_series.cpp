@@ -9,11 +9,6 @@
 
 namespace emscape::app {
 
-void ValueRange::add(const ValueRange& other) {
-  if (other.empty() || std::isnan(other.min) || std::isnan(other.max)) return;
-  *this = empty() ? other : ValueRange{std::min(min, other.min), std::max(max, other.max)};
-}
-
 ValueRange parseRange(const std::string& text) {
   const std::size_t colon = text.find(':');
   ValueRange range;
@@ -42,24 +37,11 @@ scenario::Snapshot FieldSeries::update(int step) {
   return now;
 }
 
-std::vector<volume::Volume> FieldSeries::latest() const {
-  std::vector<volume::Volume> volumes;
-  const auto take = [&volumes](const auto& latest) {
-    for (const auto& volume : latest) volumes.emplace_back(volume, volume->info);
-  };
-  if (solver_.deviceVolumes().empty()) {
-    take(solver_.volumes());
-  } else {
-    take(solver_.deviceVolumes());
-  }
-  return volumes;
-}
-
 std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<void(int)>& done) {
   std::vector<ValueRange> ranges(channels().size());
   for (int step = 0; step < count(); step += stride) {
     update(step);
-    const std::vector<volume::Volume> volumes = latest();
+    const std::vector<volume::Volume>& volumes = solver_.volumes();
     for (std::size_t c = 0; c < ranges.size(); ++c) {
       const volume::VolumeInfo& info = volumes[c].info();
       ranges[c].add({info.range_min, info.range_max});
@@ -71,7 +53,7 @@ std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<
 
 std::vector<volume::Volume> FieldSeries::compute(int step, const std::vector<ValueRange>& ranges) {
   const scenario::Snapshot now = update(step);
-  std::vector<volume::Volume> volumes = latest();
+  std::vector<volume::Volume> volumes = solver_.volumes();
   for (std::size_t c = 0; c < volumes.size(); ++c) {
     // The solver leaves a volume that did not change as it was, its time too.
     volume::VolumeInfo info = volumes[c].info();

@@ -13,14 +13,7 @@
 
 namespace emscape::app {
 
-/// Smallest and largest value of a channel over a series; empty if min > max.
-struct ValueRange {
-  float min = 0;
-  float max = -1;
-
-  bool empty() const { return min > max; }
-  void add(const ValueRange& other);
-};
+using volume::ValueRange;
 
 /// Parses "MIN:MAX", MIN < MAX. @throws Error (usage)
 ValueRange parseRange(const std::string& text);
@@ -56,8 +49,6 @@ class FieldSeries {
 
  private:
   scenario::Snapshot update(int step);
-  /// The channels' volumes as the solver left them.
-  std::vector<volume::Volume> latest() const;
 
   LoadedScenario input_;
   std::vector<double> times_s_;

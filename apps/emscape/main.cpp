@@ -37,6 +37,20 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
   app.add_flag("--quiet,-q", global.quiet, "Neither progress nor messages, only warnings and errors");
 }
 
+}  // namespace
+
+std::string optionText(Hint hint) {
+  switch (hint) {
+    case Hint::none:
+      break;
+    case Hint::allow_missing_terrain:
+      return " (--allow-missing-terrain draws holes)";
+  }
+  return "";
+}
+
+namespace {
+
 int fail(ErrorCode code, const std::string& message) {
   printMessage("emscape: error: {}\n", message);
   return static_cast<int>(code);
@@ -51,7 +65,7 @@ int run(const Action& action) {
     printMessage("emscape: stopped by signal {}; finished files stay\n", interrupted.signal);
     return 128 + interrupted.signal;
   } catch (const Error& error) {
-    return fail(error.code(), error.what());
+    return fail(error.code(), error.what() + optionText(error.hint()));
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::other, "out of memory; use fewer voxels (region.dims), channels or --cache-mib");
   } catch (const std::exception& error) {

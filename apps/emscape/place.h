@@ -13,7 +13,7 @@ namespace emscape::app {
 
 /// A processor, and how volumes are kept there.
 struct Place {
-  BackendChoice choice;
+  ResolvedBackend choice;
   std::string device_volume = "float";  ///< see addDeviceVolumeOption()
 
   bool onGpu() const { return choice.backend == Backend::cuda; }
@@ -26,13 +26,13 @@ struct Place {
 /// --device-volume float|half|sparse
 void addDeviceVolumeOption(CLI::App& command, std::string& device_volume);
 
-/// Opens what works where --backend says, and tells where that is; see openOnBackend().
+/// Opens what works where --backend says, and tells where that is; see withBackendFallback().
 /// @param open  (Place) -> what is to be returned
 template <class Open>
 auto openAtPlace(const GlobalOptions& global, const std::string& device_volume, const Open& open) {
-  return openOnBackend(
+  return withBackendFallback(
       parseBackend(global.backend),
-      [&](const BackendChoice& choice) {
+      [&](const ResolvedBackend& choice) {
         return open(Place{choice, device_volume});
       },
       [](const std::string& line) { logInfo(line); });

@@ -21,8 +21,9 @@ using scenario::Severity;
 
 /// Where a problem without a place of its own is put: at the top of the scenario.
 Problem problemOf(const Error& error, const std::string& scenario_file) {
-  const FilePlace place = error.place().file.empty() ? FilePlace{scenario_file, 0, 0} : error.place();
-  return {place, Severity::error, error.message()};
+  const SourceLocation place =
+      error.place().file.empty() ? SourceLocation{scenario_file, 0, 0} : error.place();
+  return {place, Severity::error, error.message() + optionText(error.hint())};
 }
 
 /// Columns of the region whose centre has no known ground.
@@ -40,8 +41,8 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
     }
   }
   if (missing == 0) return;
-  const FilePlace place =
-      scenario.terrain->places.empty() ? FilePlace{scenario.file, 0, 0} : scenario.terrain->places.front();
+  const SourceLocation place = scenario.terrain->places.empty() ? SourceLocation{scenario.file, 0, 0}
+                                                                : scenario.terrain->places.front();
   problems.push_back(
       {place, Severity::error,
        fmt::format("the elevation files leave {} of the region's {} columns without a height, the first at "

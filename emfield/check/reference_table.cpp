@@ -45,7 +45,7 @@ std::vector<Line> readLines(const std::filesystem::path& file) {
   return lines;
 }
 
-double parseNumber(const std::string& cell, const FilePlace& place, std::string_view what) {
+double parseNumber(const std::string& cell, const SourceLocation& place, std::string_view what) {
   double value = 0;
   const char* end = cell.data() + cell.size();
   const auto [stop, error] = std::from_chars(cell.data(), end, value);
@@ -103,14 +103,14 @@ const std::string& ReferenceTable::text(int row, std::string_view column) const 
   return rows_.at(static_cast<std::size_t>(row)).cells[static_cast<std::size_t>(name - names_.begin())];
 }
 
-FilePlace ReferenceTable::place(int row) const {
+SourceLocation ReferenceTable::place(int row) const {
   return {file_, rows_.at(static_cast<std::size_t>(row)).line, 0};
 }
 
 std::vector<ReferenceProfile> readReferenceProfiles(const std::filesystem::path& file) {
   std::vector<ReferenceProfile> profiles;
   for (const Line& line : readLines(file)) {
-    const FilePlace place{file.string(), line.number, 0};
+    const SourceLocation place{file.string(), line.number, 0};
     const double intervals = parseNumber(line.cells[0], place, "n_intervals");
     if (!(intervals >= 1) || line.cells.size() != intervals + 3) {
       throw Error(ErrorCode::bad_input, place,

@@ -29,7 +29,7 @@ class ReferenceTable {
   /// The cell is not empty.
   bool has(int row, std::string_view column) const { return !text(row, column).empty(); }
   /// Of a row, for messages.
-  FilePlace place(int row) const;
+  SourceLocation place(int row) const;
 
  private:
   struct Row {

@@ -18,15 +18,8 @@ struct ChannelBuffers {
 class CpuEngine : public FieldEngine {
  public:
   CpuEngine(const FieldSetup& setup, int slots)
-      : setup_(setup),
-        voxels_(static_cast<std::size_t>(setup.grid.dims.count())),
-        slots_(slots),
-        buffers_(setup.channels.size()),
-        volumes_(setup.channels.size()) {
-    for (std::size_t c = 0; c < buffers_.size(); ++c) {
-      buffers_[c].value.resize(voxels_);
-      if (hasLargest(c)) buffers_[c].largest.resize(voxels_);
-    }
+      : setup_(setup), voxels_(static_cast<std::size_t>(setup.grid.dims.count())), slots_(slots) {
+    planChanged(true);
     const Dims& dims = setup.grid.dims;
     const std::vector<std::uint16_t>& valid = setup.columns.first_valid_k;
     for (int j = 0; j < dims.y && !valid.empty(); ++j) {
@@ -38,11 +31,8 @@ class CpuEngine : public FieldEngine {
   std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) override;
   void setResting(const std::vector<bool>& channels) override;
   void combine(const CombinePass& pass) override;
-  void makeVolumes(const std::vector<VolumeRequest>& requests) override;
-  const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() override { return volumes_; }
-  const std::vector<std::shared_ptr<const volume::DeviceVolume>>& deviceVolumes() const override {
-    return device_volumes_;
-  }
+  std::vector<volume::Volume> makeVolumes(const std::vector<VolumeRequest>& requests) override;
+  void planChanged(bool channels_changed) final;
   void resetTimes() override { times_ = {}; }
   StageTimes times() override { return times_; }
   void addMemory(MemoryUse& use) const override;
@@ -58,8 +48,6 @@ class CpuEngine : public FieldEngine {
   std::vector<int> first_row_k_;
   std::vector<EmitterGeometry> slots_;
   std::vector<ChannelBuffers> buffers_;
-  std::vector<std::shared_ptr<const volume::DenseVolume>> volumes_;
-  std::vector<std::shared_ptr<const volume::DeviceVolume>> device_volumes_;  ///< none
   StageTimes times_;
 };
 
@@ -90,6 +78,15 @@ std::vector<GeometryFindings> CpuEngine::computeGeometry(const std::vector<Geome
     all.push_back(std::move(found));
   }
   return all;
+}
+
+void CpuEngine::planChanged(bool channels_changed) {
+  if (!channels_changed) return;
+  buffers_ = std::vector<ChannelBuffers>(setup_.channels.size());
+  for (std::size_t c = 0; c < buffers_.size(); ++c) {
+    buffers_[c].value.resize(voxels_);
+    if (hasLargest(c)) buffers_[c].largest.resize(voxels_);
+  }
 }
 
 void CpuEngine::setResting(const std::vector<bool>& channels) {
@@ -148,11 +145,11 @@ std::shared_ptr<volume::DenseVolume> CpuEngine::freeVolume(ChannelBuffers& buffe
   return buffers.pool.back();
 }
 
-void CpuEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
+std::vector<volume::Volume> CpuEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
+  std::vector<volume::Volume> made;
   Stopwatch watch;
   for (const VolumeRequest& request : requests) {
     ChannelBuffers& buffers = buffers_[request.channel];
-    volumes_[request.channel].reset();
     const std::shared_ptr<volume::DenseVolume> volume = freeVolume(buffers);
     volume->first_valid_k = *request.first_valid_k;
     ProductTask task;
@@ -163,9 +160,10 @@ void CpuEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
     task.values = volume->values.data();
     volume->info = request.info;
     setRange(volume->info, productCpu(task));
-    volumes_[request.channel] = volume;
+    made.emplace_back(volume);
   }
   times_.product_ms += watch.lap_ms();
+  return made;
 }
 
 void CpuEngine::addMemory(MemoryUse& use) const {

@@ -9,8 +9,8 @@
 namespace emscape::emfield {
 namespace {
 
-constexpr ValueRange kNothing{std::numeric_limits<float>::infinity(),
-                              -std::numeric_limits<float>::infinity()};
+constexpr volume::ValueRange kNothing{std::numeric_limits<float>::infinity(),
+                                      -std::numeric_limits<float>::infinity()};
 
 // Simple loops, one thing each: so g++ makes full-width SIMD code of them.
 
@@ -28,11 +28,11 @@ EMSCAPE_SIMD_CLONES void maskRow(const std::uint16_t* first_valid_k, int k, floa
   for (int i = 0; i < count; ++i) values[i] = k >= static_cast<int>(first_valid_k[i]) ? values[i] : floor;
 }
 
-EMSCAPE_SIMD_CLONES void widenRange(const float* values, int count, float floor, ValueRange& range) {
-  float lowest = range.lowest, highest = range.highest;
+EMSCAPE_SIMD_CLONES void widenRange(const float* values, int count, float floor, volume::ValueRange& range) {
+  float lowest = range.min, highest = range.max;
 #pragma omp simd reduction(min : lowest) reduction(max : highest)
   for (int i = 0; i < count; ++i) {
-    const float for_lowest = values[i] > floor ? values[i] : kNothing.lowest;
+    const float for_lowest = values[i] > floor ? values[i] : kNothing.min;
     lowest = for_lowest < lowest ? for_lowest : lowest;
     highest = values[i] > highest ? values[i] : highest;
   }
@@ -40,13 +40,13 @@ EMSCAPE_SIMD_CLONES void widenRange(const float* values, int count, float floor,
 }
 
 /// All rows at one y.
-ValueRange fillRows(const ProductTask& task, int j) {
+volume::ValueRange fillRows(const ProductTask& task, int j) {
   const int count = task.dims.x;
   const std::uint16_t* first_valid_k =
       task.first_valid_k == nullptr ? nullptr : task.first_valid_k + static_cast<std::size_t>(j) * count;
   const int all_valid_k =
       first_valid_k == nullptr ? 0 : *std::max_element(first_valid_k, first_valid_k + count);
-  ValueRange range = kNothing;
+  volume::ValueRange range = kNothing;
   for (int k = 0; k < task.dims.z; ++k) {
     const std::size_t first = (static_cast<std::size_t>(k) * task.dims.y + j) * count;
     const float* accumulator = task.accumulator + first;
@@ -59,21 +59,18 @@ ValueRange fillRows(const ProductTask& task, int j) {
     if (k < all_valid_k) maskRow(first_valid_k, k, task.product.floor, count, values);
     widenRange(values, count, task.product.floor, range);
   }
-  return range.highest > task.product.floor ? range : kNothing;
+  return range.max > task.product.floor ? range : kNothing;
 }
 
 }  // namespace
 
-ValueRange productCpu(const ProductTask& task) {
-  std::vector<ValueRange> ranges(task.dims.y, kNothing);
+volume::ValueRange productCpu(const ProductTask& task) {
+  std::vector<volume::ValueRange> ranges(task.dims.y, kNothing);
   parallelFor(task.dims.y, 1, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) ranges[j] = fillRows(task, j);
   });
-  ValueRange total = kNothing;
-  for (const ValueRange& range : ranges) {
-    total.lowest = std::min(total.lowest, range.lowest);
-    total.highest = std::max(total.highest, range.highest);
-  }
+  volume::ValueRange total = kNothing;
+  for (const volume::ValueRange& range : ranges) total.add(range);
   return total;
 }
 

@@ -253,7 +253,7 @@ void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaSt
   }
 }
 
-ValueRange DeviceRange::range(float floor) const {
+volume::ValueRange DeviceRange::range(float floor) const {
   const auto valueOf = [](unsigned order) {
     return fast_math_detail::floatOf((order & 0x80000000u) != 0 ? order & 0x7fffffffu : ~order);
   };

@@ -24,8 +24,8 @@ void addRadar(const RadarPass& pass, const std::uint16_t* first_valid_k, cudaStr
 struct DeviceRange {
   unsigned lowest = ~0u, highest = 0;
 
-  /// @return lowest > highest where nothing is above the floor
-  ValueRange range(float floor) const;
+  /// @return empty where nothing is above the floor
+  volume::ValueRange range(float floor) const;
 };
 
 /// One channel's values into a volume.

@@ -62,11 +62,8 @@ class CudaEngine : public FieldEngine {
   }
   void setResting(const std::vector<bool>& channels) override;
   void combine(const CombinePass& pass) override;
-  void makeVolumes(const std::vector<VolumeRequest>& requests) override;
-  const std::vector<std::shared_ptr<const volume::DenseVolume>>& volumes() override;
-  const std::vector<std::shared_ptr<const DeviceVolume>>& deviceVolumes() const override {
-    return device_volumes_;
-  }
+  std::vector<volume::Volume> makeVolumes(const std::vector<VolumeRequest>& requests) override;
+  void planChanged(bool channels_changed) final;
   void resetTimes() override { clock_.reset(); }
   StageTimes times() override { return clock_.times(); }
   void addMemory(MemoryUse& use) const override;
@@ -82,30 +79,36 @@ class CudaEngine : public FieldEngine {
   emscape::cuda::Stream stream_;
   cuda::StageClock clock_;
   cuda::DeviceGeometry geometry_;
-  std::map<const scenario::Antenna*, DevicePattern> patterns_;
+  std::map<scenario::AntennaPtr, DevicePattern> patterns_;   ///< of the emitters' antennas
   std::map<std::pair<int, int>, RadarTables> radar_tables_;  ///< of a channel and an emitter
   std::vector<ChannelBuffers> buffers_;
   Buffer<cuda::DeviceRange> ranges_;
-  std::vector<std::shared_ptr<const DeviceVolume>> device_volumes_;
-  std::vector<std::shared_ptr<const volume::DenseVolume>> volumes_;  ///< of those, as far as asked for
-  std::vector<std::shared_ptr<const DeviceVolume>> downloaded_;      ///< what they are copies of
 };
 
 CudaEngine::CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecision precision)
     : setup_(setup),
       voxels_(static_cast<std::size_t>(setup.grid.dims.count())),
       precision_(precision),
-      geometry_(setup, slots),
-      buffers_(setup.channels.size()),
-      ranges_(setup.channels.size()),
-      device_volumes_(setup.channels.size()),
-      volumes_(setup.channels.size()),
-      downloaded_(setup.channels.size()) {
-  for (const scenario::Emitter& emitter : setup.scenario->emitters) {
-    if (patterns_.count(emitter.antenna.get()) == 0) {
-      patterns_.emplace(emitter.antenna.get(), DevicePattern(emitter.antenna->view()));
+      geometry_(setup, slots) {
+  planChanged(true);
+}
+
+void CudaEngine::planChanged(bool channels_changed) {
+  std::map<scenario::AntennaPtr, DevicePattern> patterns;
+  for (const scenario::Emitter& emitter : setup_.scenario->emitters) {
+    if (patterns.count(emitter.antenna) != 0) continue;
+    auto known = patterns_.extract(emitter.antenna);
+    if (known.empty()) {
+      patterns.emplace(emitter.antenna, DevicePattern(emitter.antenna->view()));
+    } else {
+      patterns.insert(std::move(known));
     }
   }
+  patterns_ = std::move(patterns);
+  radar_tables_.clear();
+  if (!channels_changed) return;
+  buffers_ = std::vector<ChannelBuffers>(setup_.channels.size());
+  ranges_ = Buffer<cuda::DeviceRange>(setup_.channels.size());
   for (std::size_t c = 0; c < buffers_.size(); ++c) {
     buffers_[c].value.resize(voxels_);
     if (hasLargest(c)) buffers_[c].largest.resize(voxels_);
@@ -138,7 +141,7 @@ void CudaEngine::combine(const CombinePass& pass) {
     task.emitters.push_back(member.emitter);
     EmitterBeam& beam = task.emitters.back().beam;
     beam.geometry = geometry_.view(member.slot);
-    beam.pattern = patterns_.at(setup_.scenario->emitters[member.emitter.emitter_index].antenna.get()).view();
+    beam.pattern = patterns_.at(setup_.scenario->emitters[member.emitter.emitter_index].antenna).view();
   }
   clock_.begin(stream_);
   cuda::combine(task, geometry_.firstValidK(), stream_);
@@ -161,7 +164,8 @@ void CudaEngine::combine(const CombinePass& pass) {
   clock_.end(&StageTimes::combine_ms, stream_);
 }
 
-void CudaEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
+std::vector<volume::Volume> CudaEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
+  if (requests.empty()) return {};
   std::vector<std::shared_ptr<DeviceVolume>> made;
   clock_.begin(stream_);
   const std::vector<cuda::DeviceRange> empty(requests.size());
@@ -169,8 +173,6 @@ void CudaEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
   for (std::size_t r = 0; r < requests.size(); ++r) {
     const VolumeRequest& request = requests[r];
     ChannelBuffers& buffers = buffers_[request.channel];
-    device_volumes_[request.channel].reset();
-    downloaded_[request.channel].reset();
     const std::shared_ptr<DeviceVolume> volume = buffers.ring.next(setup_.grid, precision_);
     volume->info = request.info;
     volume->setMask(*request.first_valid_k);
@@ -189,17 +191,8 @@ void CudaEngine::makeVolumes(const std::vector<VolumeRequest>& requests) {
   ranges_.download(ranges.data(), stream_);
   for (std::size_t r = 0; r < requests.size(); ++r) {
     setRange(made[r]->info, ranges[r].range(requests[r].info.floor));
-    device_volumes_[requests[r].channel] = made[r];
   }
-}
-
-const std::vector<std::shared_ptr<const volume::DenseVolume>>& CudaEngine::volumes() {
-  for (std::size_t c = 0; c < device_volumes_.size(); ++c) {
-    if (device_volumes_[c] == nullptr || device_volumes_[c] == downloaded_[c]) continue;
-    volumes_[c] = std::make_shared<volume::DenseVolume>(device_volumes_[c]->download());
-    downloaded_[c] = device_volumes_[c];
-  }
-  return volumes_;
+  return {made.begin(), made.end()};
 }
 
 void CudaEngine::addMemory(MemoryUse& use) const {

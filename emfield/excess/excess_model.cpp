@@ -26,6 +26,41 @@ LinearPolarization linearPolarization(Polarization polarization) {
                                                   : LinearPolarization::vertical;
 }
 
+ItmClimate itmClimate(scenario::RadioClimate climate) {
+  switch (climate) {
+    case scenario::RadioClimate::equatorial:
+      return ItmClimate::equatorial;
+    case scenario::RadioClimate::continental_subtropical:
+      return ItmClimate::continental_subtropical;
+    case scenario::RadioClimate::maritime_subtropical:
+      return ItmClimate::maritime_subtropical;
+    case scenario::RadioClimate::desert:
+      return ItmClimate::desert;
+    case scenario::RadioClimate::continental_temperate:
+      return ItmClimate::continental_temperate;
+    case scenario::RadioClimate::maritime_temperate_over_land:
+      return ItmClimate::maritime_temperate_over_land;
+    case scenario::RadioClimate::maritime_temperate_over_sea:
+      return ItmClimate::maritime_temperate_over_sea;
+  }
+  throw Error(ErrorCode::other, "itm: unknown climate");
+}
+
+/// ITM's mode of variability (mdvar, 0..3).
+int itmVariability(scenario::ItmService service) {
+  switch (service) {
+    case scenario::ItmService::single_message:
+      return 0;
+    case scenario::ItmService::individual:
+      return 1;
+    case scenario::ItmService::mobile:
+      return 2;
+    case scenario::ItmService::broadcast:
+      return 3;
+  }
+  throw Error(ErrorCode::other, "itm: unknown service");
+}
+
 DiffractionExcess diffractionExcess(const Scenario& scenario, const Emitter& emitter,
                                     const Station& station) {
   DiffractionParameters parameters;
@@ -88,10 +123,10 @@ ItmLink<float> itmLink(const Scenario& scenario, const Emitter& emitter) {
   link.relative_permittivity = static_cast<float>(ground.relative_permittivity);
   link.conductivity_s_m = static_cast<float>(ground.conductivity_s_per_m);
   link.sea_level_refractivity = static_cast<float>(scenario.atmosphere.sea_level_refractivity);
-  link.climate = static_cast<ItmClimate>(static_cast<int>(scenario.atmosphere.climate) + 1);
+  link.climate = itmClimate(scenario.atmosphere.climate);
   // Where the terrain is known the place does not vary: 10 more.
-  link.variability_mode = static_cast<int>(emitter.itm.service) +
-                          (emitter.itm.form == scenario::ItmForm::point_to_point ? 10 : 0);
+  link.variability_mode =
+      itmVariability(emitter.itm.service) + (emitter.itm.form == scenario::ItmForm::point_to_point ? 10 : 0);
   return link;
 }
 

@@ -102,7 +102,7 @@ ShapeTable tableOf(const MeasuredCut& cut, double half_span) {
 
 /// The attenuations of rows (elevation, azimuth, attenuation), azimuth fastest.
 std::vector<double> inGridOrder(std::vector<CsvRow> rows, const MeasuredAxis& azimuth,
-                                const MeasuredAxis& elevation, const FilePlace& file) {
+                                const MeasuredAxis& elevation, const SourceLocation& file) {
   const auto pairOf = [](const CsvRow& row) { return std::make_pair(row.values[0], row.values[1]); };
   std::stable_sort(rows.begin(), rows.end(),
                    [&](const CsvRow& a, const CsvRow& b) { return pairOf(a) < pairOf(b); });
@@ -145,7 +145,7 @@ AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& eleva
 
 AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
   requireGain(gain_dbi);
-  const FilePlace place{file, 0, 0};
+  const SourceLocation place{file, 0, 0};
   const AntennaText text(file);
   std::vector<CsvRow> rows = readRows(text, {kElevation, kAzimuth, kAttenuation});
   std::vector<double> azimuths_deg, elevations_deg;

@@ -7,7 +7,7 @@
 
 namespace emscape::scenario {
 
-MeasuredAxis::MeasuredAxis(AxisKind kind, std::vector<double> angles_deg, const FilePlace& file,
+MeasuredAxis::MeasuredAxis(AxisKind kind, std::vector<double> angles_deg, const SourceLocation& file,
                            const char* what)
     : kind_(kind), angles_deg_(std::move(angles_deg)) {
   std::sort(angles_deg_.begin(), angles_deg_.end());
@@ -76,7 +76,8 @@ std::vector<CutRow> normalizedRows(AxisKind kind, std::vector<CutRow> rows) {
 
 }  // namespace
 
-MeasuredCut::MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const FilePlace& file, const char* what)
+MeasuredCut::MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const SourceLocation& file,
+                         const char* what)
     : axis_(kind, anglesOf(rows = normalizedRows(kind, std::move(rows))), file, what),
       amplitudes_(axis_.angles_deg().size(), -1.0) {
   for (const CutRow& row : rows) {
@@ -103,7 +104,7 @@ double amplitudeOfAttenuation(double attenuation_db) {
   return std::pow(10.0, -attenuation_db / 20);
 }
 
-void requireMaximum(double smallest_attenuation_db, const FilePlace& file, const char* what) {
+void requireMaximum(double smallest_attenuation_db, const SourceLocation& file, const char* what) {
   constexpr double kTolerance_db = 1;
   if (smallest_attenuation_db <= kTolerance_db) return;
   throw Error(

@@ -27,7 +27,7 @@ class MeasuredAxis {
   /// @param angles_deg  in any order and number, each as brought by normalized()
   /// @param file, what  name the axis in errors
   /// @throws Error (bad_input) naming the gap if they do not cover the axis
-  MeasuredAxis(AxisKind kind, std::vector<double> angles_deg, const FilePlace& file, const char* what);
+  MeasuredAxis(AxisKind kind, std::vector<double> angles_deg, const SourceLocation& file, const char* what);
 
   /// An angle as axes hold it: in the kind's range and rounded to 1e-6 degree, so that equal angles are equal
   /// numbers.
@@ -57,7 +57,7 @@ class MeasuredCut {
   /// @param rows  in any order
   /// @param file, what  name the cut in errors
   /// @throws Error (bad_input): an angle twice with different attenuations, or as MeasuredAxis
-  MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const FilePlace& file, const char* what);
+  MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const SourceLocation& file, const char* what);
 
   /// Amplitude (relative voltage, 0..1) at any angle of the axis.
   double amplitudeAt(double angle_deg) const;
@@ -78,6 +78,6 @@ double amplitudeOfAttenuation(double attenuation_db);
 
 /// @throws Error (bad_input) unless the smallest attenuation is within 1 dB of 0, as it is where values are
 /// relative to the maximum
-void requireMaximum(double smallest_attenuation_db, const FilePlace& file, const char* what);
+void requireMaximum(double smallest_attenuation_db, const SourceLocation& file, const char* what);
 
 }  // namespace emscape::scenario

@@ -153,7 +153,7 @@ constexpr double kTiltTolerance_deg = 2;
 AntennaPtr readMsi(const std::string& file, double gain_dbi) {
   const AntennaText text(file);
   MsiFile content = MsiReader(text).read();
-  const FilePlace place{file, 0, 0};
+  const SourceLocation place{file, 0, 0};
   if (content.horizontal.empty())
     throw Error(ErrorCode::bad_input, place, "no HORIZONTAL cut: not an MSI antenna file?");
   if (content.vertical.empty()) throw Error(ErrorCode::bad_input, place, "no VERTICAL cut");

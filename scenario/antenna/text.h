@@ -32,7 +32,7 @@ class AntennaText {
   /// those that begin with # are left out.
   const std::vector<TextField>& lines() const { return lines_; }
   /// The place of a field, for an Error.
-  FilePlace place(const TextField& field) const { return {file_, field.line, field.column}; }
+  SourceLocation place(const TextField& field) const { return {file_, field.line, field.column}; }
 
  private:
   std::string file_;

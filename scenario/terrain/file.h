@@ -20,7 +20,7 @@ class TerrainFile {
   /// Opens the file; reads no heights.
   /// @param place  where the scenario names it; may be empty
   /// @throws Error (bad_input): no such file, not a raster, no georeference, heights of an unknown unit
-  TerrainFile(const std::string& file, const FilePlace& place);
+  TerrainFile(const std::string& file, const SourceLocation& place);
   ~TerrainFile();
 
   const std::string& name() const;

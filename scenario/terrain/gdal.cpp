@@ -122,7 +122,7 @@ void transform(OGRCoordinateTransformation& transformation, std::vector<double>&
 
 struct TerrainFile::Impl {
   std::string name;
-  FilePlace place;
+  SourceLocation place;
   std::vector<std::string> notes;
   std::string format;
   int columns = 0, rows = 0;
@@ -313,7 +313,8 @@ void TerrainFile::Impl::planeOfCrs(std::vector<double>& x, std::vector<double>& 
   }
 }
 
-TerrainFile::TerrainFile(const std::string& file, const FilePlace& place) : impl_(std::make_unique<Impl>()) {
+TerrainFile::TerrainFile(const std::string& file, const SourceLocation& place)
+    : impl_(std::make_unique<Impl>()) {
   impl_->name = file;
   impl_->place = place;
   impl_->readHead();

@@ -48,7 +48,7 @@ void subtractGeoid(TerrainSheet& sheet) {
 std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& box) {
   std::vector<TerrainPiece> pieces;
   for (std::size_t k = 0; k < spec.files.size(); ++k) {
-    const FilePlace place = k < spec.places.size() ? spec.places[k] : FilePlace{};
+    const SourceLocation place = k < spec.places.size() ? spec.places[k] : SourceLocation{};
     const auto file = std::make_shared<const TerrainFile>(spec.files[k], place);
     for (const std::string& note : file->notes()) logInfo("elevation file " + file->name() + ": " + note);
     for (TerrainPiece& piece : piecesWithin(file, box)) pieces.push_back(std::move(piece));
@@ -192,7 +192,7 @@ std::shared_ptr<const Terrain> Terrain::load(const TerrainSpec& spec, const GeoB
 }
 
 TerrainFileInfo Terrain::describe(const std::string& name, bool read_heights) {
-  const TerrainFile file(name, FilePlace{});
+  const TerrainFile file(name, SourceLocation{});
   TerrainFileInfo info;
   info.file = name;
   info.format = file.format();

@@ -45,14 +45,14 @@ TEST(Backend, UnknownNameIsAUsageError) {
 }
 
 TEST(Backend, AutoTakesTheGpuThatAnswersAndSaysSo) {
-  const BackendChoice choice = resolveBackend(Backend::automatic, someGpu());
+  const ResolvedBackend choice = resolveBackend(Backend::automatic, someGpu());
   EXPECT_EQ(choice.backend, Backend::cuda);
   EXPECT_EQ(choice.device, "GPU of the test");
   EXPECT_EQ(choice.note, "running on the GPU: GPU of the test");
 }
 
 TEST(Backend, AutoFallsToTheCpuWithoutAGpuAndSaysWhy) {
-  const BackendChoice choice = resolveBackend(Backend::automatic, noGpu());
+  const ResolvedBackend choice = resolveBackend(Backend::automatic, noGpu());
   EXPECT_EQ(choice.backend, Backend::cpu);
   EXPECT_EQ(choice.device, "cpu");
   EXPECT_EQ(choice.note, "running on the CPU: no GPU answers");
@@ -76,7 +76,7 @@ TEST(Backend, DemandedCudaThatCannotBeHadIsADeviceError) {
 }
 
 TEST(Backend, TheMachinesOwnAnswerIsOneOfTheTwo) {
-  const BackendChoice choice = resolveBackend(Backend::automatic);
+  const ResolvedBackend choice = resolveBackend(Backend::automatic);
   EXPECT_NE(choice.backend, Backend::automatic);
   EXPECT_THAT(choice.note, HasSubstr("running on the "));
 }
@@ -84,24 +84,25 @@ TEST(Backend, TheMachinesOwnAnswerIsOneOfTheTwo) {
 TEST(Backend, WhatIsOpenedKnowsWhereItRunsAndTheUserIsToldOnce) {
   std::vector<std::string> told;
   const auto tell = [&told](const std::string& line) { told.push_back(line); };
-  const auto backendOf = [](const BackendChoice& choice) { return choice.backend; };
-  EXPECT_EQ(openOnBackend(Backend::cpu, backendOf, tell), Backend::cpu);
+  const auto backendOf = [](const ResolvedBackend& choice) { return choice.backend; };
+  EXPECT_EQ(withBackendFallback(Backend::cpu, backendOf, tell), Backend::cpu);
   EXPECT_TRUE(told.empty());
-  EXPECT_EQ(openOnBackend(Backend::automatic, backendOf, tell), resolveBackend(Backend::automatic).backend);
+  EXPECT_EQ(withBackendFallback(Backend::automatic, backendOf, tell),
+            resolveBackend(Backend::automatic).backend);
   EXPECT_EQ(told.size(), 1U);
 }
 
 TEST(Backend, CudaWhereAutoFindsTooLittleMemoryTheCpuIsTakenAndTheFiguresAreTold) {
   if (!findDevice().usable) GTEST_SKIP() << findDevice().why_not;
-  const auto open = [](const BackendChoice& choice) {
+  const auto open = [](const ResolvedBackend& choice) {
     if (choice.backend == Backend::cuda) throw Error(ErrorCode::device, "GPU: 2 MiB needed, 1 MiB free");
     return choice.device;
   };
   std::vector<std::string> told;
   const auto tell = [&told](const std::string& line) { told.push_back(line); };
-  EXPECT_EQ(openOnBackend(Backend::automatic, open, tell), "cpu");
+  EXPECT_EQ(withBackendFallback(Backend::automatic, open, tell), "cpu");
   EXPECT_EQ(told.back(), "running on the CPU: GPU: 2 MiB needed, 1 MiB free");
-  EXPECT_THROW(openOnBackend(Backend::cuda, open, tell), Error);
+  EXPECT_THROW(withBackendFallback(Backend::cuda, open, tell), Error);
 }
 
 }  // namespace

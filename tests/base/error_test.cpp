@@ -5,14 +5,14 @@
 namespace emscape {
 namespace {
 
-TEST(FilePlace, IsWrittenAsFileLineColumn) {
-  EXPECT_EQ(toString(FilePlace{"a.yaml", 3, 7}), "a.yaml:3:7");
+TEST(SourceLocation, IsWrittenAsFileLineColumn) {
+  EXPECT_EQ(toString(SourceLocation{"a.yaml", 3, 7}), "a.yaml:3:7");
 }
 
-TEST(FilePlace, LeavesOutWhatIsUnknown) {
-  EXPECT_EQ(toString(FilePlace{"a.yaml", 3, 0}), "a.yaml:3");
-  EXPECT_EQ(toString(FilePlace{"a.tif", 0, 0}), "a.tif");
-  EXPECT_EQ(toString(FilePlace{"a.tif", 0, 7}), "a.tif");
+TEST(SourceLocation, LeavesOutWhatIsUnknown) {
+  EXPECT_EQ(toString(SourceLocation{"a.yaml", 3, 0}), "a.yaml:3");
+  EXPECT_EQ(toString(SourceLocation{"a.tif", 0, 0}), "a.tif");
+  EXPECT_EQ(toString(SourceLocation{"a.tif", 0, 7}), "a.tif");
 }
 
 TEST(Error, StartsWithThePlace) {
@@ -26,7 +26,7 @@ TEST(Error, StartsWithThePlace) {
 TEST(Error, WithoutAPlaceIsTheMessageAlone) {
   const Error error(ErrorCode::usage, "no such subcommand");
   EXPECT_STREQ(error.what(), "no such subcommand");
-  EXPECT_STREQ(Error(ErrorCode::usage, FilePlace{}, "no such subcommand").what(), "no such subcommand");
+  EXPECT_STREQ(Error(ErrorCode::usage, SourceLocation{}, "no such subcommand").what(), "no such subcommand");
   EXPECT_TRUE(error.place().file.empty());
 }
 

@@ -132,7 +132,7 @@ class Pair {
     EXPECT_EQ(a.turned, b.turned);
     for (std::size_t c = 0; c < cpu_.channels().size(); ++c) {
       SCOPED_TRACE(cpu_.channels()[c].name);
-      difference_.look(*cpu_.volumes()[c], *gpu_.volumes()[c]);
+      difference_.look(*cpu_.volumes()[c].host(), *gpu_.volumes()[c].host());
     }
     EXPECT_EQ(cpu_.warnings(), gpu_.warnings());
   }
@@ -297,7 +297,7 @@ TEST_F(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
     scenario->region.size_m = {60e3, 60e3, 5000};
     Pair pair(scenario, terrain, options);
     expectSameField(pair, random, 2);
-    const auto& mask = pair.gpu().volumes().front()->first_valid_k;
+    const auto& mask = pair.gpu().volumes().front().host()->first_valid_k;
     EXPECT_GT(std::count(mask.begin(), mask.end(), 29), 20);
     options.backend = Backend::cuda;
     options.allow_missing_terrain = false;
@@ -321,15 +321,15 @@ TEST_F(CudaField, VolumesThatACallerKeepsAreLeftAlone) {
   scenario::Snapshot snapshot = pair.start();
   pair.update(snapshot);
   EXPECT_EQ(pair.gpu().backend(), Backend::cuda);
-  const auto kept = pair.gpu().deviceVolumes().front();
+  const auto kept = pair.gpu().volumes().front().device();
   const auto values = kept->download().values;
   for (int n = 0; n < 3; ++n) {
     for (scenario::EmitterState& emitter : snapshot.emitters) emitter.position.latitude_deg += 0.01;
     pair.update(snapshot);
-    EXPECT_NE(pair.gpu().deviceVolumes().front(), kept);
+    EXPECT_NE(pair.gpu().volumes().front().device(), kept);
   }
   EXPECT_EQ(kept->download().values, values);
-  EXPECT_NE(pair.gpu().volumes().front()->values, values);
+  EXPECT_NE(pair.gpu().volumes().front().host()->values, values);
 }
 
 TEST_F(CudaField, InHalfPrecisionLiesWithinItsSteps) {
@@ -343,7 +343,7 @@ TEST_F(CudaField, InHalfPrecisionLiesWithinItsSteps) {
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
   single.update(snapshot);
   half.update(snapshot);
-  const auto a = single.volumes().front(), b = half.volumes().front();
+  const auto a = single.volumes().front().host(), b = half.volumes().front().host();
   for (std::size_t v = 0; v < a->values.size(); ++v) {
     ASSERT_NEAR(a->values[v], b->values[v], std::abs(a->values[v]) / 2048);
   }

@@ -145,11 +145,11 @@ TEST(RadarChannels, AreComputedAnewOnlyWhereSomethingChanged) {
   solver.update(scenario::snapshotAt(scenario, nullptr, 0));
   const auto before = solver.volumes();
   solver.update(scenario::snapshotAt(scenario, nullptr, 1));
-  EXPECT_NE(solver.volumes()[0], before[0]) << "the beam turned";
-  EXPECT_EQ(solver.volumes()[1], before[1]) << "the look did not";
+  EXPECT_NE(solver.volumes()[0].dense(), before[0].dense()) << "the beam turned";
+  EXPECT_EQ(solver.volumes()[1].dense(), before[1].dense()) << "the look did not";
   solver.update(scenario::snapshotAt(scenario, nullptr, 4));
-  EXPECT_NE(solver.volumes()[1], before[1]) << "the jammer fell silent";
-  EXPECT_EQ(valueEast(*solver.volumes()[1], 20e3), -300);
+  EXPECT_NE(solver.volumes()[1].dense(), before[1].dense()) << "the jammer fell silent";
+  EXPECT_EQ(valueEast(*solver.volumes()[1].host(), 20e3), -300);
 }
 
 TEST(RadarChannels, UpdatesGiveWhatAFreshSolverComputes) {
@@ -177,10 +177,10 @@ TEST(RadarChannels, UpdatesGiveWhatAFreshSolverComputes) {
         const auto snapshot = scenario::snapshotAt(scenario, nullptr, t_s);
         FieldSolver fresh(scenario, nullptr, {});
         fresh.update(snapshot);
-        const auto& expected = fresh.volumes().front()->values;
+        const auto& expected = fresh.volumes().front().host()->values;
         for (FieldSolver* updated : {&solver, &uncached}) {
           updated->update(snapshot);
-          const auto& values = updated->volumes().front()->values;
+          const auto& values = updated->volumes().front().host()->values;
           for (std::size_t v = 0; v < values.size(); ++v) ASSERT_NEAR(values[v], expected[v], 1e-4);
         }
       }

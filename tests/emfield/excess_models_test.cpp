@@ -434,8 +434,8 @@ TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
         loaded->terrain ? scenario::Terrain::load(*loaded->terrain, scenario::terrainBox(*loaded)) : nullptr;
     FieldSolver solver(loaded, terrain, {});
     solver.update(scenario::snapshotAt(loaded, terrain.get(), 0));
-    EXPECT_GT(solver.volumes().front()->info.range_max, -60);
-    EXPECT_LT(solver.volumes().front()->info.range_min, -70);
+    EXPECT_GT(solver.volumes().front().host()->info.range_max, -60);
+    EXPECT_LT(solver.volumes().front().host()->info.range_min, -70);
     ++count;
   }
   EXPECT_EQ(count, 8);

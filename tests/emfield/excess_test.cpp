@@ -211,7 +211,7 @@ TEST(Excess, MissingTerrainIsAnErrorOrAHoleAndNeverSeaLevel) {
     options.allow_missing_terrain = true;
     FieldSolver solver(scenario, terrain, options);
     solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
-    const auto volume = solver.volumes().front();
+    const auto volume = solver.volumes().front().host();
     ASSERT_FALSE(volume->first_valid_k.empty());
     EXPECT_EQ(volume->first_valid_k[10], 32) << "beyond the hole nothing is known";
     EXPECT_LT(volume->first_valid_k[20 * 20 + 10], 32) << "on the emitter's side all is";

@@ -125,7 +125,7 @@ TEST(JammerToSignal, CountsAPathAcrossMissingTerrainAsFreeWhereThatIsAllowed) {
   scenario->emitters[1].propagation = scenario::PropagationModel::horizon;
   FieldSolver solver(scenario, terrain, options);
   solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
-  EXPECT_NEAR(valueAt(*solver.volumes()[0], 2, 3, 3), free, 0.02);
+  EXPECT_NEAR(valueAt(*solver.volumes()[0].host(), 2, 3, 3), free, 0.02);
   EXPECT_THAT(solver.warnings(),
               ::testing::Contains(::testing::AllOf(::testing::HasSubstr("jammer 'jammer' to radar 'radar': "),
                                                    ::testing::HasSubstr("counted as a free path"))));

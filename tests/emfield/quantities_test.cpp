@@ -50,11 +50,11 @@ TEST(Quantities, OfTheJammingScenarioShowWhatTheRidgeHides) {
   FieldSolver solver(scenario, terrain, {});
   const auto covered = [&](double t_s) {
     solver.update(scenario::snapshotAt(scenario, terrain.get(), t_s));
-    const std::vector<float>& values = solver.volumes()[0]->values;
+    const std::vector<float>& values = solver.volumes()[0].host()->values;
     return std::count_if(values.begin(), values.end(), [](float pd) { return pd > 0.5f; });
   };
   const auto unjammed = [&] {
-    return solver.volumes()[1]->info.range_max == solver.volumes()[1]->info.floor;
+    return solver.volumes()[1].host()->info.range_max == solver.volumes()[1].host()->info.floor;
   };
   const auto hidden = covered(0);
   EXPECT_TRUE(unjammed()) << "the ridge hides the jammer";

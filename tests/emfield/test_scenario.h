@@ -61,7 +61,7 @@ inline std::shared_ptr<const volume::DenseVolume> solve(const std::shared_ptr<sc
                                                         const FieldOptions& options = {}) {
   FieldSolver solver(scenario, terrain, options);
   solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
-  return solver.volumes().front();
+  return solver.volumes().front().host();
 }
 
 inline float valueAt(const volume::DenseVolume& volume, int i, int j, int k) {

@@ -86,7 +86,7 @@ TEST(Renderer, ShowsTheVolumeThatWasSetLast) {
 TEST(Renderer, RefusesWhatItCannotDraw) {
   Renderer renderer;
   EXPECT_THROW(renderer.sceneBox(), Error);
-  EXPECT_THROW(renderer.setVolume(std::shared_ptr<const volume::DenseVolume>()), Error);
+  EXPECT_THROW(renderer.setVolume(volume::Volume()), Error);
   auto volume = makeEmeVolume({4, 4, 4});
   volume->values.pop_back();
   EXPECT_THROW(renderer.setVolume(volume), Error);

@@ -58,7 +58,7 @@ TEST_P(BrokenScenario, IsToldWithItsPlaces) {
   ASSERT_FALSE(expectations.empty());
   ASSERT_EQ(result.problems.size(), expectations.size()) << told(result.problems);
   for (std::size_t i = 0; i < expectations.size(); ++i) {
-    FilePlace place = result.problems[i].place;
+    SourceLocation place = result.problems[i].place;
     place.file = std::filesystem::path(place.file).filename().string();
     EXPECT_EQ(toString(place), expectations[i].place) << told(result.problems);
     EXPECT_NE(result.problems[i].message.find(expectations[i].fragment), std::string::npos)

@@ -42,7 +42,7 @@ class TerrainFileTest : public testing::Test {
   }
 
   /// The message of loading a file over a box; nothing may be printed meanwhile.
-  std::string problemOf(const std::string& file, const FilePlace& place = {}) const {
+  std::string problemOf(const std::string& file, const SourceLocation& place = {}) const {
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
     std::string message;

@@ -1,4 +1,4 @@
-/// Which processor does the work: what was asked for, and what that comes to on this machine.
+/// Which processor does the work: what was requested, and what that resolves to on this machine.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace emscape {
 
 enum class Backend {
-  automatic,  ///< a wish: the GPU if there is one that can, else the CPU
+  automatic,  ///< the GPU if there is one that can, else the CPU
   cpu,
   cuda
 };
@@ -19,37 +19,37 @@ const char* toString(Backend backend);
 /// @throws Error (usage) for any other name
 Backend parseBackend(const std::string& name);
 
-/// A wish come true.
-struct BackendChoice {
+/// The backend that a request resolves to on this machine.
+struct ResolvedBackend {
   Backend backend = Backend::cpu;  ///< cpu or cuda
   std::string device = "cpu";      ///< for reports: "cpu", or the name of the GPU
-  std::string note;                ///< where the wish left it open: in a line, what was taken and why
+  std::string note;                ///< automatic was requested: one line, what was taken and why
 };
 
 /// @param device  what findDevice() found
-/// @throws Error (device) if cuda is asked for and the device cannot be used
-BackendChoice resolveBackend(Backend wish, const Device& device);
+/// @throws Error (device) if cuda is requested and the device cannot be used
+ResolvedBackend resolveBackend(Backend requested, const Device& device);
 
-/// Asks findDevice(), unless the CPU is asked for.
-BackendChoice resolveBackend(Backend wish);
+/// Calls findDevice(), unless the CPU is requested.
+ResolvedBackend resolveBackend(Backend requested);
 
-/// Opens what is to compute where a wish says. Where that is left open and the GPU fails, for want of memory
-/// or otherwise, the same is opened on the CPU.
-/// @param open  (BackendChoice) -> what is to be returned
-/// @param tell  (std::string): is given a line for the user; not called where the choice was the user's
+/// Constructs something on the requested backend. With Backend::automatic, where the GPU fails for lack of
+/// memory or otherwise, constructs the same on the CPU.
+/// @param open  (ResolvedBackend) -> the result
+/// @param tell  (std::string): receives one line for the user; called for Backend::automatic only
 /// @throws as resolveBackend() and `open`
 template <class Open, class Tell>
-auto openOnBackend(Backend wish, const Open& open, const Tell& tell) {
-  const BackendChoice choice = resolveBackend(wish);
-  if (!choice.note.empty()) tell(choice.note);
-  if (wish != Backend::automatic || choice.backend == Backend::cpu) return open(choice);
+auto withBackendFallback(Backend requested, const Open& open, const Tell& tell) {
+  const ResolvedBackend resolved = resolveBackend(requested);
+  if (!resolved.note.empty()) tell(resolved.note);
+  if (requested != Backend::automatic || resolved.backend == Backend::cpu) return open(resolved);
   try {
-    return open(choice);
+    return open(resolved);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::device) throw;
     tell(std::string("running on the CPU: ") + error.what());
   }
-  return open(BackendChoice{});
+  return open(ResolvedBackend{});
 }
 
 }  // namespace emscape

@@ -1,4 +1,4 @@
-/// The one exception of the project and the place in a file that it points to.
+/// The one exception of the project and the location in a file that it points to.
 #pragma once
 
 #include <stdexcept>
@@ -9,32 +9,40 @@ namespace emscape {
 /// What went wrong, as the process's exit status tells it.
 enum class ErrorCode { other = 1, usage = 2, bad_input = 3, device = 4, check_failed = 5 };
 
-/// A place in a text file. line and column count from 1; 0 means unknown.
-struct FilePlace {
+/// A location in a text file. line and column count from 1; 0 means unknown.
+struct SourceLocation {
   std::string file;
   int line = 0;
   int column = 0;
 };
 
 /// "file:line:column", without the parts that are unknown.
-std::string toString(const FilePlace& place);
+std::string toString(const SourceLocation& place);
+
+/// What a program can offer its user after an error; each program says it in the words of its own options.
+enum class Hint {
+  none,
+  allow_missing_terrain  ///< FieldOptions::allow_missing_terrain computes the field with holes
+};
 
 /// Thrown where input comes in. The message names the value, the allowed range and its unit; what() starts
-/// with the place where there is one.
+/// with the location where there is one.
 class Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& message);
-  Error(ErrorCode code, const FilePlace& place, const std::string& message);
+  Error(ErrorCode code, const SourceLocation& place, const std::string& message, Hint hint = Hint::none);
 
   ErrorCode code() const { return code_; }
-  const FilePlace& place() const { return place_; }
-  /// The message without the place.
+  const SourceLocation& place() const { return place_; }
+  /// The message without the location.
   const std::string& message() const { return message_; }
+  Hint hint() const { return hint_; }
 
  private:
   ErrorCode code_;
-  FilePlace place_;
+  SourceLocation place_;
   std::string message_;
+  Hint hint_ = Hint::none;
 };
 
 }  // namespace emscape

@@ -5,10 +5,13 @@
 
 namespace emscape {
 
-/// Limits the threads of all later loops; 0 means one per core. Call it once, from the program's start.
+/// Limits the threads of oneTBB in the whole process; 0 lifts this limit. It is one tbb::global_control among
+/// those of the program: the lowest limit holds, so that it never raises a limit that a host program has set.
+/// A host that limits threads by itself need not call it: loops also run within the caller's tbb::task_arena.
+/// Safe to call from any thread.
 void setThreadLimit(int threads);
 
-/// Threads that loops use now, >= 1.
+/// Threads that a loop of the calling thread may use, >= 1.
 int threadCount();
 
 /// Runs body(begin, end) over disjoint pieces that cover [0, count), and returns when all are done. A loop of

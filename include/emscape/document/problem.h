@@ -11,7 +11,7 @@ namespace emscape::document {
 enum class Severity { warning, error };
 
 struct Problem {
-  FilePlace place;
+  SourceLocation place;
   Severity severity = Severity::error;
   std::string message;
 };
@@ -20,10 +20,11 @@ struct Problem {
 /// Those of another file stand in the order of the place where the scenario names that file.
 class ProblemList {
  public:
-  void addError(const FilePlace& place, const std::string& message);
-  void addWarning(const FilePlace& place, const std::string& message);
+  void addError(const SourceLocation& place, const std::string& message);
+  void addWarning(const SourceLocation& place, const std::string& message);
   /// A fault in a file that the scenario names at `named_at`.
-  void addErrorElsewhere(const FilePlace& named_at, const FilePlace& place, const std::string& message);
+  void addErrorElsewhere(const SourceLocation& named_at, const SourceLocation& place,
+                         const std::string& message);
 
   bool hasErrors() const;
   /// In the order of the scenario file; problems of one place in the order in which they were found.
@@ -34,7 +35,7 @@ class ProblemList {
     Problem problem;
     int line, column;  ///< in the scenario file
   };
-  void add(const FilePlace& order, Problem problem);
+  void add(const SourceLocation& order, Problem problem);
 
   std::vector<Entry> entries_;
 };

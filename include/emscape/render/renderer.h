@@ -17,7 +17,7 @@ namespace emscape::render {
 
 /// Where pictures are cast.
 struct RendererOptions {
-  Backend backend = Backend::cpu;  ///< cpu or cuda; see resolveBackend() for wishes
+  Backend backend = Backend::cpu;  ///< automatic: the GPU if there is one that can, else the CPU
   /// How a GPU keeps volumes that come from the host's memory; sparse32: all volumes
   volume::VoxelPrecision precision = volume::VoxelPrecision::float32;
 };
@@ -30,20 +30,18 @@ struct RendererOptions {
 /// cast on a stream of its own, while the next volume may be written on another.
 class Renderer {
  public:
-  /// @throws Error (device) if a GPU is asked for and there is none
+  /// With Backend::automatic one line of the log says what was taken and why.
+  /// @throws Error (device) if cuda is requested and there is none
   explicit Renderer(const RendererOptions& options = {});
   ~Renderer();
 
+  /// cpu or cuda.
   Backend backend() const;
 
-  /// On the CPU the volume is read where it lies, not copied; it must not change until the next call. Cheap
-  /// where the grid stays the same. A GPU gets a copy.
-  /// @throws Error (device) if it does not fit
-  void setVolume(std::shared_ptr<const volume::DenseVolume> volume);
-  /// A GPU reads it where it lies; it waits for what is being written, and who writes next waits for it. The
-  /// CPU gets a copy.
-  void setVolume(std::shared_ptr<const volume::DeviceVolume> volume);
-  /// Either of the two, by where the volume's values are.
+  /// Values on the renderer's side (host memory for the CPU, GPU memory for the GPU) are read where they lie,
+  /// not copied; reads and writes of a GPU wait for each other. Values on the other side are copied. Cheap
+  /// where the grid stays the same.
+  /// @throws Error (other) for an empty handle, (device) if a copy does not fit
   void setVolume(const volume::Volume& volume);
   /// Memory of the GPU that the volume takes; 0 with the CPU.
   std::size_t volumeBytes() const;

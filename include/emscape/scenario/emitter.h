@@ -92,8 +92,8 @@ struct Emitter {
   P528Settings p528;
   RadarReceiver receiver;              ///< radars only
   std::vector<TimeInterval> active_s;  ///< empty: always
-  FilePlace place;                     ///< where the scenario describes it
-  FilePlace frequency_place;           ///< and its frequency
+  SourceLocation place;                ///< where the scenario describes it
+  SourceLocation frequency_place;      ///< and its frequency
 };
 
 }  // namespace emscape::scenario

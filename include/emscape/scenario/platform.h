@@ -42,7 +42,7 @@ struct Platform {
   std::vector<TrackPoint> track;
   Attitude attitude;       ///< of a fixed site
   std::string track_file;  ///< empty for a fixed site
-  FilePlace place;         ///< where the scenario describes it
+  SourceLocation place;    ///< where the scenario describes it
 };
 
 /// Where a platform is and how it lies at t_s: the position along the geodesic between the points before and

@@ -60,12 +60,12 @@ struct ItmSettings {
   double irregularity_m = 90;                        ///< of the terrain; area mode
   ItmSiting transmitter_siting = ItmSiting::random;  ///< area mode
   ItmSiting receiver_siting = ItmSiting::random;
-  FilePlace place;
+  SourceLocation place;
 };
 
 struct P528Settings {
   double time_percent = 50;  ///< the loss is not exceeded in so many percent of the time
-  FilePlace place;
+  SourceLocation place;
 };
 
 enum class GroundKind { sea, fresh_water, wet_ground, average_ground, dry_ground, concrete };
@@ -80,7 +80,7 @@ struct Ground {
   /// Height of the smooth surface that models without terrain stand on; none: of the ground below each
   /// emitter.
   std::optional<double> surface_msl_m;
-  FilePlace place;
+  SourceLocation place;
 };
 
 /// Which emitters' paths lose to oxygen and water vapour.

@@ -22,8 +22,8 @@ struct GeoBox {
 };
 
 struct TerrainSpec {
-  std::vector<std::string> files;  ///< as resolved: absolute or relative to the working folder
-  std::vector<FilePlace> places;   ///< where the scenario names each file
+  std::vector<std::string> files;      ///< as resolved: absolute or relative to the working folder
+  std::vector<SourceLocation> places;  ///< where the scenario names each file
   VerticalDatum vertical_datum = VerticalDatum::egm96;
 };
 

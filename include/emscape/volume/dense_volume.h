@@ -53,15 +53,15 @@ constexpr int kMaxVoxelsPerAxis = 65535;     ///< first_valid_k counts in 16 bit
 constexpr long long kMaxVoxels = 1LL << 32;  ///< 16 GiB of values
 
 /// @throws Error (bad_input) at `place` unless each of the dims and their product is within the limits above
-void checkDims(const Dims& dims, const FilePlace& place);
+void checkDims(const Dims& dims, const SourceLocation& place);
 
 /// Checks that a volume has a name, as many values as voxels and a mask, if any, of as many columns.
 /// @throws Error (bad_input) at `place`, which is the file that it comes from or goes to
-void checkVolume(const DenseVolume& volume, const FilePlace& place);
+void checkVolume(const DenseVolume& volume, const SourceLocation& place);
 
 /// The values of a categorical volume as whole numbers; NaN becomes the floor.
 /// @throws Error (bad_input) at `place` for values that are not whole or beyond 2^24, above which floats skip
 /// some
-std::vector<std::int32_t> toIndices(const DenseVolume& volume, const FilePlace& place);
+std::vector<std::int32_t> toIndices(const DenseVolume& volume, const SourceLocation& place);
 
 }  // namespace emscape::volume

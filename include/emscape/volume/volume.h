@@ -18,6 +18,8 @@ class Volume {
   /// @param volume  not null
   Volume(std::shared_ptr<const DenseVolume> volume);
   Volume(std::shared_ptr<const DeviceVolume> volume);
+  Volume(const std::shared_ptr<DenseVolume>& volume) : Volume(std::shared_ptr<const DenseVolume>(volume)) {}
+  Volume(const std::shared_ptr<DeviceVolume>& volume) : Volume(std::shared_ptr<const DeviceVolume>(volume)) {}
   /// @param info  in place of the volume's own
   Volume(std::shared_ptr<const DenseVolume> volume, VolumeInfo info);
   Volume(std::shared_ptr<const DeviceVolume> volume, VolumeInfo info);

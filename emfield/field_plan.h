@@ -1,0 +1,36 @@
+/// What a solver derives from a scenario alone: channels, how each is made, and the order of summation.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emfield/products.h"
+#include "emscape/emfield/field_solver.h"
+
+namespace emscape::emfield {
+
+struct FieldPlan {
+  std::shared_ptr<const scenario::Scenario> scenario;
+  std::vector<Channel> channels;
+  std::vector<ChannelRecipe> recipes;  ///< one per channel
+  std::vector<double> far_field_m;     ///< of each emitter: 2 D^2 / lambda
+  /// Indices of the emitters in the order in which every channel adds them up: those that never change over
+  /// time first, then those that change at single moments, then those that move or scan. The order is a
+  /// function of the scenario alone, so that sums of floats do not depend on earlier updates, and sums of the
+  /// emitters that come first serve many updates.
+  std::vector<int> order;
+  std::vector<std::string> warnings;  ///< of the models, on values of the scenario
+};
+
+/// @param quantities  names; empty: the scenario's
+/// @param previous    plan of an earlier scenario, whose detection curves are reused where they are the same;
+/// may be null
+/// @throws Error (bad_input) for what the field or its models cannot compute
+FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
+                   const std::vector<std::string>& quantities, const FieldPlan* previous);
+
+/// Whether two plans have the same channels, with sums of the same kinds.
+bool haveSameChannels(const FieldPlan& a, const FieldPlan& b);
+
+}  // namespace emscape::emfield

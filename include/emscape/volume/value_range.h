@@ -1,0 +1,22 @@
+/// A closed interval of values.
+#pragma once
+
+#include "emscape/base/host_device.h"
+
+namespace emscape::volume {
+
+/// Smallest and largest value; empty (min > max) where there is none.
+struct ValueRange {
+  float min = 0;
+  float max = -1;
+
+  EMSCAPE_HD bool empty() const { return min > max; }
+  /// Widens the range to hold another one; an empty one and one with NaN add nothing.
+  EMSCAPE_HD void add(const ValueRange& other) {
+    if (!(other.min <= other.max)) return;
+    min = empty() || other.min < min ? other.min : min;
+    max = empty() || other.max > max ? other.max : max;
+  }
+};
+
+}  // namespace emscape::volume

@@ -1,0 +1,590 @@
+// A solver that is given edited scenarios: it computes what the edit invalidates, and the result is that of a
+// new solver to the last bit.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "emscape/base/error.h"
+#include "tests/emfield/made_terrain.h"
+#include "tests/emfield/test_scenario.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using scenario::CombineMode;
+using scenario::Emitter;
+using scenario::EmitterKind;
+using scenario::PropagationModel;
+using scenario::Scenario;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr double kLatitude_deg = 45, kLongitude_deg = 7;
+
+using Random = std::mt19937;
+
+double between(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+int below(Random& random, std::size_t count) {
+  return std::uniform_int_distribution<int>(0, static_cast<int>(count) - 1)(random);
+}
+template <class T>
+T oneOf(Random& random, const std::vector<T>& values) {
+  return values[static_cast<std::size_t>(below(random, values.size()))];
+}
+
+GeodeticPosition somewhere(Random& random) {
+  return {kLatitude_deg + between(random, -0.06, 0.06), kLongitude_deg + between(random, -0.08, 0.08),
+          between(random, 1800, 3000)};
+}
+
+scenario::AntennaPtr someAntenna(Random& random) {
+  switch (below(random, 3)) {
+    case 0:
+      return scenario::makeIsotropic();
+    case 1:
+      return scenario::makeSinc(30, between(random, 2, 8), between(random, 2, 8), -40);
+    default:
+      return scenario::makeGaussian(between(random, 20, 35), between(random, 2, 20), 10, -35);
+  }
+}
+
+/// One kind of edit by the key that it changes. It may ask for what a solver refuses.
+struct Edit {
+  const char* key;
+  std::function<void(Scenario&, Emitter&, Random&)> apply;
+};
+
+const std::vector<Edit>& emitterEdits() {
+  using scenario::Polarization;
+  static const std::vector<Edit> edits{
+      {"power_w", [](Scenario&, Emitter& e, Random& r) { e.power_w = between(r, 1, 1e5); }},
+      {"losses_db", [](Scenario&, Emitter& e, Random& r) { e.losses_db = between(r, 0, 5); }},
+      {"frequency_hz",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.frequency_hz = oneOf(r, std::vector{4e8, 1.2e9, 3e9, 9e9});
+       }},
+      {"bandwidth_hz", [](Scenario&, Emitter& e, Random& r) { e.bandwidth_hz = between(r, 0, 3e7); }},
+      {"polarization",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.polarization = oneOf(r, std::vector{Polarization::horizontal, Polarization::vertical,
+                                               Polarization::slant_45, Polarization::circular_left});
+       }},
+      {"antenna", [](Scenario&, Emitter& e, Random& r) { e.antenna = someAntenna(r); }},
+      {"scan.kind",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.scan.kind = oneOf(r, std::vector{scenario::ScanKind::fixed, scenario::ScanKind::rotate,
+                                            scenario::ScanKind::sector});
+         e.scan.rate_rpm = 7;
+         e.scan.width_deg = 80;
+         e.scan.rate_deg_s = 20;
+       }},
+      {"scan.azimuth_deg", [](Scenario&, Emitter& e, Random& r) { e.scan.azimuth_deg = between(r, 0, 360); }},
+      {"scan.elevation_deg",
+       [](Scenario&, Emitter& e, Random& r) { e.scan.elevation_deg = between(r, -5, 20); }},
+      {"propagation",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.propagation = oneOf(r, std::vector{PropagationModel::free_space, PropagationModel::horizon,
+                                              PropagationModel::diffraction, PropagationModel::two_ray,
+                                              PropagationModel::itm, PropagationModel::p528});
+       }},
+      {"diffraction.method",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.diffraction.method = oneOf(
+             r, std::vector{scenario::DiffractionMethod::delta_bullington,
+                            scenario::DiffractionMethod::single_edge, scenario::DiffractionMethod::deygout});
+       }},
+      {"two_ray.sum",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.two_ray.sum = oneOf(r, std::vector{scenario::TwoRaySum::coherent, scenario::TwoRaySum::envelope});
+       }},
+      {"two_ray.roughness_model",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.two_ray.roughness_model =
+             oneOf(r, std::vector{scenario::RoughnessModel::ament, scenario::RoughnessModel::miller_brown});
+       }},
+      {"itm.form",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.itm.form = oneOf(r, std::vector{scenario::ItmForm::point_to_point, scenario::ItmForm::area});
+       }},
+      {"itm.time_percent", [](Scenario&, Emitter& e, Random& r) { e.itm.time_percent = between(r, 5, 95); }},
+      {"itm.location_percent",
+       [](Scenario&, Emitter& e, Random& r) { e.itm.location_percent = between(r, 5, 95); }},
+      {"itm.situation_percent",
+       [](Scenario&, Emitter& e, Random& r) { e.itm.situation_percent = between(r, 5, 95); }},
+      {"itm.service",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.itm.service = oneOf(r, std::vector{scenario::ItmService::single_message,
+                                              scenario::ItmService::mobile, scenario::ItmService::broadcast});
+       }},
+      {"itm.irregularity_m",
+       [](Scenario&, Emitter& e, Random& r) { e.itm.irregularity_m = between(r, 10, 300); }},
+      {"itm.siting",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.itm.transmitter_siting =
+             oneOf(r, std::vector{scenario::ItmSiting::random, scenario::ItmSiting::careful});
+         e.itm.receiver_siting =
+             oneOf(r, std::vector{scenario::ItmSiting::random, scenario::ItmSiting::very_careful});
+       }},
+      {"p528.time_percent",
+       [](Scenario&, Emitter& e, Random& r) { e.p528.time_percent = between(r, 0, 99); }},
+      {"receiver.noise_figure_db",
+       [](Scenario&, Emitter& e, Random& r) { e.receiver.noise_figure_db = between(r, 1, 9); }},
+      {"receiver.antenna_temperature_k",
+       [](Scenario&, Emitter& e, Random& r) { e.receiver.antenna_temperature_k = between(r, 50, 400); }},
+      {"receiver.bandwidth_hz",
+       [](Scenario&, Emitter& e, Random& r) { e.receiver.bandwidth_hz = between(r, 1e5, 1e7); }},
+      {"receiver.losses_db",
+       [](Scenario&, Emitter& e, Random& r) { e.receiver.losses_db = between(r, 0, 4); }},
+      {"receiver.processing_gain_db",
+       [](Scenario&, Emitter& e, Random& r) { e.receiver.processing_gain_db = between(r, 0, 30); }},
+      {"receiver.polarization",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.receiver.polarization =
+             oneOf(r, std::vector{Polarization::horizontal, Polarization::circular_right});
+       }},
+      {"receiver.cross_polar_isolation_db",
+       [](Scenario&, Emitter& e, Random& r) { e.receiver.cross_polar_isolation_db = between(r, 15, 40); }},
+      {"receiver.pulses", [](Scenario&, Emitter& e, Random& r) { e.receiver.pulses = 1 + below(r, 30); }},
+      {"receiver.pfa",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.receiver.pfa = oneOf(r, std::vector{1e-8, 1e-4});
+       }},
+      {"receiver.swerling", [](Scenario&, Emitter& e, Random& r) { e.receiver.swerling = below(r, 5); }},
+      {"receiver.detection",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.receiver.detection =
+             oneOf(r, std::vector{scenario::DetectionMethod::exact, scenario::DetectionMethod::shnidman});
+       }},
+      {"receiver.required_signal_to_jammer_db",
+       [](Scenario&, Emitter& e, Random& r) { e.receiver.required_signal_to_jammer_db = between(r, 3, 20); }},
+      {"receiver.target_rcs_m2",
+       [](Scenario&, Emitter& e, Random& r) { e.receiver.target_rcs_m2 = between(r, 0.1, 20); }},
+      {"active_s",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.active_s = below(r, 2) == 0 ? std::vector<scenario::TimeInterval>{}
+                                       : std::vector<scenario::TimeInterval>{{between(r, 0, 3), 9}};
+       }},
+      {"kind",
+       [](Scenario& s, Emitter& e, Random& r) {
+         if (&e == &s.emitters.front()) return;  // some quantities need a radar
+         e.kind = oneOf(r, std::vector{EmitterKind::radar, EmitterKind::transmitter, EmitterKind::jammer});
+       }},
+      {"position",
+       [](Scenario& s, Emitter& e, Random& r) {
+         auto& at = s.platforms[static_cast<std::size_t>(e.platform)].track.front().position;
+         const GeodeticPosition to = somewhere(r);
+         at.latitude_deg = to.latitude_deg;
+         at.longitude_deg = to.longitude_deg;
+         at.height_ellipsoid_m = to.height_ellipsoid_m;
+       }},
+      {"position, by a centimetre",
+       [](Scenario& s, Emitter& e, Random&) {
+         *s.platforms[static_cast<std::size_t>(e.platform)].track.front().position.height_ellipsoid_m += 0.01;
+       }},
+      {"heading_deg",
+       [](Scenario& s, Emitter& e, Random& r) {
+         s.platforms[static_cast<std::size_t>(e.platform)].attitude.heading_deg = between(r, 0, 360);
+       }},
+      {"name", [](Scenario&, Emitter& e, Random&) { e.name += "'"; }},
+  };
+  return edits;
+}
+
+const std::vector<Edit>& scenarioEdits() {
+  static const std::vector<Edit> edits{
+      {"atmosphere.k_factor",
+       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.k_factor = between(r, 1, 1.6); }},
+      {"atmosphere.pressure_hpa",
+       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.pressure_hpa = between(r, 950, 1040); }},
+      {"atmosphere.temperature_k",
+       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.temperature_k = between(r, 260, 310); }},
+      {"atmosphere.vapour_g_m3",
+       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.vapour_g_m3 = between(r, 0, 20); }},
+      {"atmosphere.rain_mm_h",
+       [](Scenario& s, Emitter&, Random& r) {
+         s.atmosphere.rain_mm_h = oneOf(r, std::vector{0., 5., 30.});
+       }},
+      {"atmosphere.rain_height_m",
+       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.rain_height_m = between(r, 500, 4000); }},
+      {"atmosphere.gases",
+       [](Scenario& s, Emitter&, Random& r) {
+         s.atmosphere.gases = oneOf(r, std::vector{scenario::GasLosses::automatic,
+                                                   scenario::GasLosses::always, scenario::GasLosses::never});
+       }},
+      {"atmosphere.sea_level_refractivity",
+       [](Scenario& s, Emitter&, Random& r) { s.atmosphere.sea_level_refractivity = between(r, 260, 380); }},
+      {"atmosphere.climate",
+       [](Scenario& s, Emitter&, Random& r) {
+         s.atmosphere.climate =
+             oneOf(r, std::vector{scenario::RadioClimate::desert, scenario::RadioClimate::equatorial});
+       }},
+      {"ground.kind",
+       [](Scenario& s, Emitter&, Random& r) {
+         s.ground.kind = oneOf(r, std::vector{scenario::GroundKind::sea, scenario::GroundKind::dry_ground});
+       }},
+      {"ground.relative_permittivity",
+       [](Scenario& s, Emitter&, Random& r) { s.ground.relative_permittivity = between(r, 4, 60); }},
+      {"ground.conductivity_s_m",
+       [](Scenario& s, Emitter&, Random& r) { s.ground.conductivity_s_m = between(r, 0.001, 4); }},
+      {"ground.roughness_m",
+       [](Scenario& s, Emitter&, Random& r) { s.ground.roughness_m = between(r, 0, 2); }},
+      {"ground.surface_msl_m",
+       [](Scenario& s, Emitter&, Random& r) { s.ground.surface_msl_m = between(r, 0, 900); }},
+      {"region.dims",
+       [](Scenario& s, Emitter&, Random& r) {
+         s.region.dims = {10 + below(r, 4), 9 + below(r, 4), 4 + below(r, 3)};
+       }},
+      {"region.size_m", [](Scenario& s, Emitter&, Random& r) { s.region.size_m.x = between(r, 12e3, 18e3); }},
+      {"region.origin",
+       [](Scenario& s, Emitter&, Random& r) { s.region.origin.height_msl_m = between(r, 0, 500); }},
+      {"receivers",
+       [](Scenario& s, Emitter&, Random& r) {
+         s.receivers.front().gain_dbi = between(r, 0, 9);
+         s.receivers.front().polarization = scenario::Polarization::vertical;
+         s.receivers.front().bandwidth_hz = between(r, 1e5, 1e8);
+       }},
+      {"bands", [](Scenario& s, Emitter&, Random& r) { s.bands.front().end_hz = between(r, 1e9, 5e9); }},
+      {"output.quantities",
+       [](Scenario& s, Emitter&, Random& r) {
+         s.output.quantities = oneOf(r, std::vector<std::vector<std::string>>{
+                                            {"power_density_dbwm2", "snr_db"},
+                                            {"detection_probability", "jammer_to_signal_db"},
+                                            {"received_power_dbm", "emitter_count", "dominant_emitter"},
+                                            {"burn_through_margin_db", "field_strength_dbuvm"}});
+       }},
+      {"output.combine",
+       [](Scenario& s, Emitter&, Random& r) {
+         s.output.combine = oneOf(r, std::vector{CombineMode::sum, CombineMode::max, CombineMode::per_emitter,
+                                                 CombineMode::per_band});
+       }},
+      {"output.radar_look",
+       [](Scenario& s, Emitter&, Random& r) {
+         s.output.radar_look = oneOf(r, std::vector{scenario::RadarLook::scan, scenario::RadarLook::target});
+       }},
+      {"output.floor", [](Scenario& s, Emitter&, Random& r) { s.output.floor = between(r, -200, -60); }},
+      {"output.count_threshold_dbwm2",
+       [](Scenario& s, Emitter&, Random& r) { s.output.count_threshold_dbwm2 = between(r, -90, -40); }},
+      {"name", [](Scenario& s, Emitter&, Random&) { s.hash = (s.name += "'"); }},
+      {"emitters: one more",
+       [](Scenario& s, Emitter&, Random& r) {
+         if (s.emitters.size() < 7) addEmitter(s, somewhere(r), plainEmitter("new", 0));
+         s.emitters.back().name += std::to_string(s.emitters.size());
+       }},
+      {"emitters: one less",
+       [](Scenario& s, Emitter&, Random&) {
+         if (s.emitters.size() > 3) s.emitters.pop_back();
+       }},
+      {"emitters: another order",
+       [](Scenario& s, Emitter&, Random&) { std::swap(s.emitters[1], s.emitters.back()); }},
+  };
+  return edits;
+}
+
+/// Edits values of a copy. @return the key that was edited
+std::string editValue(Scenario& scenario, Random& random) {
+  const auto& edits = below(random, 5) < 3 ? emitterEdits() : scenarioEdits();
+  const Edit& edit = edits[static_cast<std::size_t>(below(random, edits.size()))];
+  edit.apply(scenario, scenario.emitters[static_cast<std::size_t>(below(random, scenario.emitters.size()))],
+             random);
+  return edit.key;
+}
+
+/// Makes an edited scenario of another one. @return the edit in words
+using Editor = std::function<std::string(Scenario&, Random&)>;
+
+/// A radar that rotates, a jammer on a track, a radar that stands, and two transmitters, of one model or of
+/// all.
+std::shared_ptr<Scenario> battlefield(Random& random, FrameKind frame, std::vector<PropagationModel> models) {
+  auto scenario = emptyScenario(frame, kLatitude_deg, kLongitude_deg, {15e3, 14e3, 4000}, {12, 11, 5});
+  scenario->output.floor = -150;
+  const char* const names[] = {"radar", "jammer", "second radar", "radio", "beacon"};
+  for (std::size_t e = 0; e < std::size(names); ++e) {
+    Emitter emitter = plainEmitter(names[e], 0);
+    emitter.propagation = models[e % models.size()];
+    emitter.antenna = someAntenna(random);
+    if (e == 0 || e == 2) emitter.kind = EmitterKind::radar;
+    if (e == 1) emitter.kind = EmitterKind::jammer;
+    if (e == 0) emitter.scan.kind = scenario::ScanKind::rotate;
+    emitter.scan.rate_rpm = 5;
+    addEmitter(*scenario, somewhere(random), emitter);
+  }
+  scenario::TrackPoint end = scenario->platforms[1].track.front();
+  end.t_s = 10;
+  end.position.longitude_deg += 0.03;
+  scenario->platforms[1].track.push_back(end);
+  scenario->receivers.push_back({"receiver", 3, 1});
+  scenario->bands = {{"low", 1e8, 2e9}, {"high", 2e9, 2e10}};
+  return scenario;
+}
+
+std::string withoutCount(const std::string& warning) {
+  return warning.substr(0, warning.find(" ("));
+}
+
+void expectEqualSolvers(const FieldSolver& updated, const FieldSolver& fresh) {
+  ASSERT_EQ(updated.channels().size(), fresh.channels().size());
+  ASSERT_EQ(updated.volumes().size(), fresh.volumes().size());
+  EXPECT_EQ(updated.groundHeights_m().size(), fresh.groundHeights_m().size());
+  for (std::size_t c = 0; c < fresh.channels().size(); ++c) {
+    SCOPED_TRACE(fresh.channels()[c].name);
+    EXPECT_EQ(updated.channels()[c].name, fresh.channels()[c].name);
+    const auto a = updated.volumes()[c].host(), b = fresh.volumes()[c].host();
+    EXPECT_TRUE(a->info == b->info);
+    EXPECT_EQ(a->info.extra, b->info.extra);
+    EXPECT_EQ(a->first_valid_k, b->first_valid_k);
+    ASSERT_EQ(a->values.size(), b->values.size());
+    long long different = 0;
+    for (std::size_t v = 0; v < a->values.size(); ++v) different += a->values[v] != b->values[v] ? 1 : 0;
+    ASSERT_EQ(different, 0) << "of " << a->values.size() << " voxels";
+  }
+  std::vector<std::string> warnings;
+  for (const std::string& warning : updated.warnings()) warnings.push_back(withoutCount(warning));
+  for (const std::string& warning : fresh.warnings()) {
+    EXPECT_THAT(warnings, ::testing::Contains(withoutCount(warning)));
+  }
+}
+
+/// Gives a solver one edit after the other, and compares each result with that of a new solver. Edits that a
+/// new solver refuses must be refused by the update too, and leave it as it was.
+/// @return how many edits were refused
+int checkEdits(std::shared_ptr<const Scenario> scenario, std::vector<scenario::TerrainPtr> terrains,
+               int count, const Editor& edit, Random& random, const FieldOptions& options = {}) {
+  scenario::TerrainPtr terrain = terrains.front();
+  FieldSolver solver(scenario, terrain, options);
+  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0), terrain);
+  int refused = 0;
+  for (int n = 0; n < count; ++n) {
+    auto edited = std::make_shared<Scenario>(*scenario);
+    SCOPED_TRACE(::testing::Message() << "edit " << n << ": " << edit(*edited, random));
+    const scenario::TerrainPtr ground = below(random, 12) == 0 ? oneOf(random, terrains) : terrain;
+    const double t_s = oneOf(random, std::vector{0., 0., 2., 3.5});
+    std::unique_ptr<FieldSolver> fresh;
+    scenario::Snapshot snapshot;
+    try {
+      snapshot = scenario::snapshotAt(edited, ground.get(), t_s);
+    } catch (const Error&) {
+      continue;  // stands below the ground: no solver sees it
+    }
+    try {
+      fresh = std::make_unique<FieldSolver>(edited, ground, options);
+      fresh->update(snapshot);
+    } catch (const Error& error) {
+      ++refused;
+      const auto before = solver.volumes().front().dense();
+      try {
+        solver.update(snapshot, ground);
+        ADD_FAILURE() << "not refused: " << error.what();
+      } catch (const Error& of_update) {
+        EXPECT_STREQ(of_update.what(), error.what());
+      }
+      EXPECT_EQ(solver.volumes().front().dense(), before);
+      continue;
+    }
+    solver.update(snapshot, ground);
+    expectEqualSolvers(solver, *fresh);
+    if (::testing::Test::HasFailure()) return refused;
+    scenario = edited;
+    terrain = ground;
+  }
+  return refused;
+}
+
+std::vector<scenario::TerrainPtr> hills() {
+  return {std::make_shared<MadeTerrain>(kLatitude_deg, kLongitude_deg, 0.4),
+          std::make_shared<MadeTerrain>(kLatitude_deg, kLongitude_deg, 0.5)};
+}
+
+TEST(EditedScenario, EqualsANewSolverWithoutTerrain) {
+  Random random(1);
+  checkEdits(
+      battlefield(random, FrameKind::altitude,
+                  {PropagationModel::free_space, PropagationModel::horizon, PropagationModel::two_ray}),
+      {nullptr}, 80, editValue, random);
+}
+
+TEST(EditedScenario, EqualsANewSolverOverTerrainInAllModels) {
+  Random random(2);
+  checkEdits(battlefield(random, FrameKind::altitude,
+                         {PropagationModel::diffraction, PropagationModel::horizon, PropagationModel::itm,
+                          PropagationModel::p528, PropagationModel::two_ray}),
+             hills(), 80, editValue, random);
+}
+
+TEST(EditedScenario, EqualsANewSolverInATiltedFrame) {
+  Random random(3);
+  checkEdits(battlefield(random, FrameKind::enu, {PropagationModel::diffraction, PropagationModel::horizon}),
+             hills(), 40, editValue, random);
+}
+
+TEST(EditedScenario, EqualsANewSolverWhereRadarsAreJammed) {
+  Random random(4);
+  auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
+  scenario->output.quantities = {"detection_probability", "jammer_to_signal_db", "burn_through_margin_db"};
+  scenario->output.radar_look = scenario::RadarLook::target;
+  checkEdits(scenario, hills(), 60, editValue, random);
+}
+
+TEST(EditedScenario, EqualsANewSolverForOneVolumePerEmitterOrBand) {
+  Random random(5);
+  for (const CombineMode combine : {CombineMode::per_emitter, CombineMode::per_band}) {
+    auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
+    scenario->output.combine = combine;
+    scenario->output.quantities = {"power_density_dbwm2", "snr_db"};
+    checkEdits(scenario, {nullptr}, 40, editValue, random);
+  }
+}
+
+TEST(EditedScenario, EqualsANewSolverWithABoundOnTheCaches) {
+  Random random(6);
+  FieldOptions options;
+  options.cache_bytes = 12 * 11 * 40 * 3 + 1;
+  checkEdits(
+      battlefield(random, FrameKind::altitude, {PropagationModel::free_space, PropagationModel::horizon}),
+      {nullptr}, 40, editValue, random, options);
+}
+
+/// Solves a scenario and then an edited one.
+class EditedOnce : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    Random random(7);
+    scenario_ = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
+    solver_ = std::make_unique<FieldSolver>(scenario_, nullptr, FieldOptions{});
+    solver_->update(scenario::snapshotAt(scenario_, nullptr, 0));
+  }
+  FieldChanged after(const std::function<void(Scenario&)>& edit) {
+    auto edited = std::make_shared<Scenario>(*scenario_);
+    edit(*edited);
+    const FieldChanged changed = solver_->update(scenario::snapshotAt(edited, nullptr, 0));
+    scenario_ = edited;
+    return changed;
+  }
+  std::shared_ptr<Scenario> scenario_;
+  std::unique_ptr<FieldSolver> solver_;
+};
+
+TEST_F(EditedOnce, PowerCostsTheCombineStageOfThatEmitterAlone) {
+  const FieldChanged changed = after([](Scenario& s) { s.emitters[3].power_w *= 2; });
+  EXPECT_TRUE(changed.any);
+  EXPECT_FALSE(changed.grid);
+  EXPECT_FALSE(changed.channels);
+  EXPECT_THAT(changed.moved, IsEmpty());
+  EXPECT_THAT(changed.turned, ElementsAre(3));
+  EXPECT_THAT(changed.volumes, ElementsAre(0));
+}
+
+TEST_F(EditedOnce, AModelCostsTheGeometryOfThatEmitterAlone) {
+  const FieldChanged changed =
+      after([](Scenario& s) { s.emitters[3].propagation = PropagationModel::two_ray; });
+  EXPECT_THAT(changed.moved, ElementsAre(3));
+  EXPECT_THAT(changed.turned, IsEmpty());
+}
+
+TEST_F(EditedOnce, TheFloorCostsTheProductAlone) {
+  const FieldChanged changed = after([](Scenario& s) { s.output.floor = -80; });
+  EXPECT_THAT(changed.moved, IsEmpty());
+  EXPECT_THAT(changed.turned, IsEmpty());
+  EXPECT_THAT(changed.volumes, ElementsAre(0));
+  EXPECT_EQ(solver_->stageTimes().combine_ms, 0);
+}
+
+TEST_F(EditedOnce, QuantitiesKeepTheGeometry) {
+  const FieldChanged changed = after([](Scenario& s) { s.output.quantities = {"snr_db", "emitter_count"}; });
+  EXPECT_TRUE(changed.channels);
+  EXPECT_FALSE(changed.grid);
+  EXPECT_THAT(changed.moved, IsEmpty());
+  EXPECT_THAT(changed.volumes, ElementsAre(0, 1));
+}
+
+TEST_F(EditedOnce, TheRegionMakesEverythingAnew) {
+  EXPECT_TRUE(after([](Scenario& s) { s.region.dims = {9, 9, 4}; }).grid);
+  EXPECT_EQ(solver_->grid().dims.x, 9);
+  EXPECT_EQ(solver_->volumes().front().grid().dims.z, 4);
+}
+
+TEST_F(EditedOnce, WhatNoVolumeDependsOnComputesNothing) {
+  const auto before = solver_->volumes().front().dense();
+  const FieldChanged changed = after([](Scenario& s) {
+    s.hash = "another";
+    s.receivers.front().gain_dbi = 9;
+    s.emitters[3].receiver.noise_figure_db = 7;
+  });
+  EXPECT_FALSE(changed.any);
+  EXPECT_EQ(solver_->volumes().front().dense(), before);
+  EXPECT_EQ(solver_->volumes().front().info().extra.at("scenario_hash"), "another");
+}
+
+TEST_F(EditedOnce, WarningsThatWereEditedAwayAreGone) {
+  after([](Scenario& s) {
+    s.emitters[3].frequency_hz = 9e9;
+    s.emitters[3].antenna = scenario::makeSinc(45, 0.3, 0.3, -60);
+  });
+  EXPECT_THAT(solver_->warnings(),
+              ::testing::Contains(HasSubstr("'radio': voxels nearer than its far field")));
+  after([](Scenario& s) { s.emitters[3].antenna = scenario::makeIsotropic(); });
+  EXPECT_THAT(solver_->warnings(), ::testing::Not(::testing::Contains(HasSubstr("'radio'"))));
+}
+
+TEST_F(EditedOnce, AnEditThatIsRefusedLeavesTheEarlierField) {
+  const auto before = solver_->volumes().front().dense();
+  auto refused = std::make_shared<Scenario>(*scenario_);
+  refused->emitters[3].propagation = PropagationModel::p528;
+  refused->emitters[3].p528.time_percent = 200;
+  EXPECT_THROW(solver_->update(scenario::snapshotAt(refused, nullptr, 0)), Error);
+  EXPECT_EQ(solver_->volumes().front().dense(), before);
+  after([](Scenario& s) { s.emitters[3].power_w *= 2; });
+  FieldSolver fresh(scenario_, nullptr, {});
+  fresh.update(scenario::snapshotAt(scenario_, nullptr, 0));
+  expectEqualSolvers(*solver_, fresh);
+}
+
+TEST_F(EditedOnce, OtherElevationFilesMustBeGiven) {
+  auto edited = std::make_shared<Scenario>(*scenario_);
+  auto snapshot = scenario::snapshotAt(scenario_, nullptr, 0);
+  edited->terrain = scenario::TerrainSpec{{"other.tif"}, {}, {}};
+  snapshot.scenario = edited;
+  try {
+    solver_->update(snapshot);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "test.yaml: the edited scenario names other elevation files: they must be loaded and given to the "
+        "update");
+  }
+}
+
+TEST(EditedScenario, AnUpdateThatFailsOverAHoleCanBeFollowedByOthers) {
+  Random random(8);
+  const auto terrain = std::make_shared<MadeTerrain>(kLatitude_deg, kLongitude_deg, 0.5, 0.02);
+  auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::free_space});
+  scenario->region.size_m = {9e3, 9e3, 4000};
+  FieldSolver solver(scenario, terrain, {});
+  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
+  auto edited = std::make_shared<Scenario>(*scenario);
+  edited->emitters[3].propagation = PropagationModel::diffraction;
+  edited->platforms[3].track.front().position.latitude_deg = kLatitude_deg + 0.24;
+  edited->platforms[3].track.front().position.longitude_deg = kLongitude_deg + 0.24;
+  try {
+    solver.update(scenario::snapshotAt(edited, terrain.get(), 0));
+    FAIL() << "the path crosses the hole";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.hint(), Hint::allow_missing_terrain);
+    EXPECT_THAT(error.what(), HasSubstr("emitter 'radio': the path to latitude"));
+  }
+  const auto moved = std::make_shared<Scenario>(*scenario);
+  moved->emitters[0].power_w = 5;
+  solver.update(scenario::snapshotAt(moved, terrain.get(), 2));
+  FieldSolver fresh(moved, terrain, {});
+  fresh.update(scenario::snapshotAt(moved, terrain.get(), 2));
+  expectEqualSolvers(solver, fresh);
+}
+
+}  // namespace
+}  // namespace emscape::emfield
