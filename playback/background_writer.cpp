@@ -1,9 +1,9 @@
-#include "apps/emscape/background_writer.h"
+#include "emscape/playback/background_writer.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
-BackgroundWriter::BackgroundWriter(std::size_t most_waiting)
-    : most_waiting_(most_waiting), thread_([this] { run(); }) {}
+BackgroundWriter::BackgroundWriter(std::size_t max_waiting)
+    : max_waiting_(max_waiting), thread_([this] { run(); }) {}
 
 BackgroundWriter::~BackgroundWriter() {
   {
@@ -17,7 +17,7 @@ BackgroundWriter::~BackgroundWriter() {
 
 void BackgroundWriter::push(std::function<void()> job) {
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [this] { return failure_ || waiting_.size() < most_waiting_; });
+  changed_.wait(lock, [this] { return failure_ || waiting_.size() < max_waiting_; });
   if (failure_) std::rethrow_exception(failure_);
   waiting_.push_back(std::move(job));
   changed_.notify_all();
@@ -54,4 +54,4 @@ void BackgroundWriter::run() {
   }
 }
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

@@ -1,45 +1,60 @@
-#include "apps/emscape/field_series.h"
+#include "emscape/playback/field_series.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 
-#include "apps/emscape/interrupt.h"
-#include "emscape/base/error.h"
+#include "emscape/playback/stop.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
 void ValueRange::add(const ValueRange& other) {
   if (other.empty() || std::isnan(other.min) || std::isnan(other.max)) return;
   *this = empty() ? other : ValueRange{std::min(min, other.min), std::max(max, other.max)};
 }
 
-ValueRange parseRange(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  ValueRange range;
-  if (colon == std::string::npos || !CLI::detail::lexical_cast(text.substr(0, colon), range.min) ||
-      !CLI::detail::lexical_cast(text.substr(colon + 1), range.max) || !std::isfinite(range.min) ||
-      !std::isfinite(range.max) || range.min >= range.max) {
-    throw Error(ErrorCode::usage, "--range '" + text + "' must be MIN:MAX, two numbers with MIN < MAX");
+bool operator==(const ValueRange& a, const ValueRange& b) {
+  return (a.empty() && b.empty()) || (a.min == b.min && a.max == b.max);
+}
+
+std::vector<ValueRange> rangesOf(const std::vector<volume::Volume>& volumes) {
+  std::vector<ValueRange> ranges;
+  for (const volume::Volume& volume : volumes) {
+    ValueRange range;
+    range.add({volume.info().range_min, volume.info().range_max});
+    ranges.push_back(range);
   }
-  return range;
+  return ranges;
+}
+
+void setRanges(std::vector<volume::Volume>& volumes, const std::vector<ValueRange>& ranges) {
+  for (std::size_t c = 0; c < volumes.size(); ++c) {
+    volume::VolumeInfo info = volumes[c].info();
+    const ValueRange range = ranges[c].empty() ? ValueRange{info.floor, info.floor} : ranges[c];
+    info.range_min = range.min;
+    info.range_max = range.max;
+    volumes[c].setInfo(std::move(info));
+  }
 }
 
 FieldSeries::FieldSeries(LoadedScenario input, std::vector<double> times_s,
-                         const emfield::FieldOptions& options)
+                         const emfield::FieldOptions& options, const StopFlag* stop)
     : input_(std::move(input)),
       times_s_(std::move(times_s)),
+      options_(options),
+      stop_(stop),
       solver_(input_.scenario, input_.terrain, options) {}
 
 scenario::Snapshot FieldSeries::snapshot(int step) const {
   return scenario::snapshotAt(input_.scenario, input_.terrain.get(), time_s(step));
 }
 
-scenario::Snapshot FieldSeries::update(int step) {
-  stopIfInterrupted();
-  scenario::Snapshot now = snapshot(step);
-  changed_ = solver_.update(now).any;
-  return now;
+void FieldSeries::update(int step) {
+  throwIfStopped(stop_);
+  if (step == updated_step_) return;
+  updated_step_ = -1;
+  if (solver_.update(snapshot(step)).any) changed_since_given_ = true;
+  updated_step_ = step;
+  ++updates_;
 }
 
 std::vector<volume::Volume> FieldSeries::latest() const {
@@ -55,34 +70,30 @@ std::vector<volume::Volume> FieldSeries::latest() const {
   return volumes;
 }
 
-std::vector<ValueRange> FieldSeries::findRanges(int stride, const std::function<void(int)>& done) {
+std::vector<ValueRange> FieldSeries::findRanges(int stride, const ProgressSink& progress) {
   std::vector<ValueRange> ranges(channels().size());
   for (int step = 0; step < count(); step += stride) {
     update(step);
-    const std::vector<volume::Volume> volumes = latest();
-    for (std::size_t c = 0; c < ranges.size(); ++c) {
-      const volume::VolumeInfo& info = volumes[c].info();
-      ranges[c].add({info.range_min, info.range_max});
-    }
-    done(step + 1);
+    const std::vector<ValueRange> own = rangesOf(latest());
+    for (std::size_t c = 0; c < ranges.size(); ++c) ranges[c].add(own[c]);
+    if (progress) progress("value range", static_cast<double>(step + 1) / count());
   }
   return ranges;
 }
 
-std::vector<volume::Volume> FieldSeries::compute(int step, const std::vector<ValueRange>& ranges) {
-  const scenario::Snapshot now = update(step);
+std::vector<volume::Volume> FieldSeries::compute(int step) {
+  update(step);
+  changed_ = std::exchange(changed_since_given_, false);
+  const scenario::Snapshot now = snapshot(step);
   std::vector<volume::Volume> volumes = latest();
-  for (std::size_t c = 0; c < volumes.size(); ++c) {
+  for (volume::Volume& volume : volumes) {
     // The solver leaves a volume that did not change as it was, its time too.
-    volume::VolumeInfo info = volumes[c].info();
-    const ValueRange range = ranges[c].empty() ? ValueRange{info.floor, info.floor} : ranges[c];
+    volume::VolumeInfo info = volume.info();
     info.time_s = now.time_s;
     info.time_utc = now.time_utc;
-    info.range_min = range.min;
-    info.range_max = range.max;
-    volumes[c].setInfo(std::move(info));
+    volume.setInfo(std::move(info));
   }
   return volumes;
 }
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

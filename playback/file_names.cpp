@@ -1,8 +1,9 @@
-#include "apps/emscape/file_names.h"
+#include "playback/file_names.h"
 
 #include <algorithm>
+#include <set>
 
-namespace emscape::app {
+namespace emscape::playback {
 
 std::string fileNameOf(const std::string& name) {
   const auto isForeign = [](char c) {
@@ -14,4 +15,17 @@ std::string fileNameOf(const std::string& name) {
   return result;
 }
 
-}  // namespace emscape::app
+std::vector<std::string> distinctFileNames(const std::vector<std::string>& names) {
+  std::vector<std::string> distinct;
+  std::set<std::string> used;
+  for (const std::string& name : names) {
+    const std::string plain = fileNameOf(name);
+    std::string candidate = plain;
+    for (int number = 2; !used.insert(candidate).second; ++number)
+      candidate = plain + "-" + std::to_string(number);
+    distinct.push_back(candidate);
+  }
+  return distinct;
+}
+
+}  // namespace emscape::playback

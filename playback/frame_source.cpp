@@ -1,4 +1,4 @@
-#include "apps/emscape/frame_source.h"
+#include "emscape/playback/frame_source.h"
 
 #include <fmt/core.h>
 
@@ -6,13 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "apps/emscape/interrupt.h"
-#include "apps/emscape/scene.h"
-#include "apps/emscape/volume_input.h"
 #include "emscape/base/error.h"
+#include "emscape/playback/scene.h"
+#include "emscape/playback/stop.h"
+#include "emscape/playback/volume_input.h"
 #include "emscape/volume/file.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 namespace {
 
 std::vector<double> timesOf(const FrameSelection& selection, const scenario::Clock& clock) {
@@ -21,9 +21,9 @@ std::vector<double> timesOf(const FrameSelection& selection, const scenario::Clo
 }
 
 /// The one quantity that is needed: "snr_db" of the channel "snr_db:search radar".
-emfield::FieldOptions fieldOptionsOf(const FrameSelection& selection, const Place& place,
+emfield::FieldOptions fieldOptionsOf(const FrameSelection& selection, const ComputeTarget& target,
                                      const scenario::Scenario& scenario) {
-  emfield::FieldOptions options = place.fieldOptions();
+  emfield::FieldOptions options = target.fieldOptions();
   options.quantities = {selection.quantity.empty()
                             ? scenario.output.quantities.front()
                             : selection.quantity.substr(0, selection.quantity.find(':'))};
@@ -34,26 +34,26 @@ emfield::FieldOptions fieldOptionsOf(const FrameSelection& selection, const Plac
 /// A scenario's frames, computed as they are asked for.
 class ComputedFrames : public FrameSource {
  public:
-  ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const Place& place,
-                 const GlobalOptions& global)
+  ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const ComputeTarget& target,
+                 const ProgressSink& progress, const StopFlag* stop)
       : series_(input, timesOf(selection, input.scenario->clock),
-                fieldOptionsOf(selection, place, *input.scenario)),
+                fieldOptionsOf(selection, target, *input.scenario), stop),
         channel_(channelOf(selection.quantity)) {
     if (selection.range) {
       ranges_.assign(series_.channels().size(), *selection.range);
       return;
     }
-    constexpr int kMostSteps =
-        24;  // beams come round: a part of the steps shows the range well enough for colours
-    ProgressBar progress(global, "value range", count());
-    ranges_ = series_.findRanges((count() + kMostSteps - 1) / kMostSteps,
-                                 [&progress](int done) { progress.show(done); });
+    // Beams come round: a part of the steps shows the range well enough for colours.
+    constexpr int kMaxSteps = 24;
+    ranges_ = series_.findRanges((count() + kMaxSteps - 1) / kMaxSteps, progress);
   }
 
   int count() const override { return series_.count(); }
   double time_s(int index) const override { return series_.time_s(index); }
   Frame frame(int index) override {
-    const volume::Volume volume = series_.compute(index, ranges_)[channel_];
+    std::vector<volume::Volume> volumes = series_.compute(index);
+    setRanges(volumes, ranges_);
+    const volume::Volume& volume = volumes[channel_];
     return {volume, markersOf(series_.snapshot(index), series_.input().terrain.get(), volume.grid()),
             series_.changed()};
   }
@@ -70,7 +70,7 @@ class ComputedFrames : public FrameSource {
       names += (c == 0 ? "" : ", ") + series_.channels()[c].name;
     }
     throw Error(ErrorCode::usage,
-                fmt::format("--quantity '{}': there is no such channel; there are {}", name, names));
+                fmt::format("quantity '{}': there is no such channel; there are {}", name, names));
   }
 
   FieldSeries series_;
@@ -81,8 +81,9 @@ class ComputedFrames : public FrameSource {
 /// Volumes from files.
 class StoredFrames : public FrameSource {
  public:
-  explicit StoredFrames(const FrameSelection& selection)
-      : quantity_(selection.quantity),
+  StoredFrames(const FrameSelection& selection, const StopFlag* stop)
+      : stop_(stop),
+        quantity_(selection.quantity),
         range_(selection.range),
         files_(volumeFilesOf(selection.input, quantity_)) {
     if (!selection.scenario.empty()) scene_ = loadScenarioWithTerrain(selection.scenario);
@@ -100,7 +101,7 @@ class StoredFrames : public FrameSource {
   int count() const override { return static_cast<int>(files_.size()); }
   double time_s(int index) const override { return files_[static_cast<std::size_t>(index)].time_s; }
   Frame frame(int index) override {
-    stopIfInterrupted();
+    throwIfStopped(stop_);
     auto volume = std::make_shared<const volume::DenseVolume>(
         volume::readVolume(files_[static_cast<std::size_t>(index)].file, quantity_));
     volume::VolumeInfo info = volume->info;
@@ -142,6 +143,7 @@ class StoredFrames : public FrameSource {
     return chosen;
   }
 
+  const StopFlag* const stop_;
   std::string quantity_;
   const std::optional<ValueRange> range_;
   std::vector<VolumeFile> files_;
@@ -151,18 +153,26 @@ class StoredFrames : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const Place& place,
-                                             const GlobalOptions& global) {
+int FrameSource::nearestIndex(double time_s) const {
+  int first = 0, last = count() - 1;
+  while (last - first > 1) {  // time_s(first) <= time_s < time_s(last), or time_s lies beyond an end
+    const int middle = first + (last - first) / 2;
+    (this->time_s(middle) <= time_s ? first : last) = middle;
+  }
+  return std::abs(this->time_s(last) - time_s) < std::abs(this->time_s(first) - time_s) ? last : first;
+}
+
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const ComputeTarget& target,
+                                             const ProgressSink& progress, const StopFlag* stop) {
   switch (inputKindOf(selection.input)) {
     case InputKind::scenario:
-      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input), selection, place,
-                                              global);
+      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input), selection, target,
+                                              progress, stop);
     case InputKind::volume:
-      return std::make_unique<StoredFrames>(selection);
+      return std::make_unique<StoredFrames>(selection, stop);
     default:
-      throw Error(ErrorCode::usage,
-                  selection.input + " is neither a scenario nor a volume; 'emscape info' says what it holds");
+      throw Error(ErrorCode::usage, selection.input + " is neither a scenario nor a volume");
   }
 }
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

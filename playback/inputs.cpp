@@ -1,4 +1,4 @@
-#include "apps/emscape/inputs.h"
+#include "emscape/playback/inputs.h"
 
 #include <algorithm>
 #include <cctype>
@@ -9,7 +9,7 @@
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/volume/file.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
 InputKind inputKindOf(const std::string& file) {
   namespace fs = std::filesystem;
@@ -41,4 +41,4 @@ LoadedScenario loadScenarioWithTerrain(const std::string& file) {
   return loaded;
 }
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

@@ -1,13 +1,13 @@
-#include "apps/emscape/picture_sink.h"
+#include "emscape/playback/picture_sink.h"
 
 #include <fmt/core.h>
 
-#include "apps/emscape/file_names.h"
-#include "apps/emscape/video.h"
 #include "emscape/base/error.h"
 #include "emscape/volume/file.h"
+#include "playback/file_names.h"
+#include "playback/video.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,7 +63,7 @@ std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::
   if (ending == ".png") {
     if (pictures != 1) {
       throw Error(ErrorCode::usage,
-                  fmt::format("-o {}: one .png for {} pictures; give --times T, a folder or an .mp4",
+                  fmt::format("{}: one .png for {} pictures; name one time, a folder or an .mp4",
                               output.string(), pictures));
     }
     return std::make_unique<OnePng>(output);
@@ -72,7 +72,7 @@ std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::
   if (ending.empty() || fs::is_directory(output)) return std::make_unique<PngFolder>(output, name);
   throw Error(
       ErrorCode::usage,
-      fmt::format("-o {}: must end in .png or .mp4, or be a folder (without an ending)", output.string()));
+      fmt::format("{}: must end in .png or .mp4, or be a folder (without an ending)", output.string()));
 }
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

@@ -1,4 +1,4 @@
-#include "apps/emscape/playback.h"
+#include "emscape/playback/real_time_loop.h"
 
 #include <fmt/core.h>
 
@@ -6,17 +6,15 @@
 #include <cmath>
 #include <cstring>
 
-#include "apps/emscape/interrupt.h"
-#include "base/stopwatch.h"
 #include "emscape/base/error.h"
+#include "emscape/playback/stop.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 namespace {
 
 using render::ControllerAction;
 using render::ControllerState;
 using render::SceneEvent;
-using Milliseconds = std::chrono::duration<double, std::milli>;
 
 bool sameBits(const render::Image& a, const render::Image& b) {
   return a.size == b.size &&
@@ -25,34 +23,36 @@ bool sameBits(const render::Image& a, const render::Image& b) {
 
 }  // namespace
 
-Playback::Playback(const PlaybackOptions& options, const Look& look, FrameSource& source, Painter& painter,
-                   Display display)
+RealTimeLoop::RealTimeLoop(const RealTimeOptions& options, const PictureStyle& style, FrameSource& source,
+                           Painter& painter, Display display, Clock& clock, const StopFlag* interrupt)
     : options_(options),
-      look_(look),
+      style_(style),
       source_(source),
       display_(std::move(display)),
+      clock_(clock),
+      interrupt_(interrupt),
       controller_(options.controller),
       painter_(painter),
       period_ms_(1000 / options.frames_per_s) {
-  if (options.orbit_rate_deg_s != 0 && look.camera.kind != render::CameraSpec::Kind::orbit) {
-    throw Error(ErrorCode::usage, "--orbit-rate: the camera must be an orbit");
+  if (options.orbit_rate_deg_s != 0 && style.camera.kind != render::CameraSpec::Kind::orbit) {
+    throw Error(ErrorCode::usage, "a camera that goes round must be an orbit");
   }
   report_.frames_per_s = options.frames_per_s;
 }
 
-Playback::~Playback() {
+RealTimeLoop::~RealTimeLoop() {
   stop_ = true;
 }
 
-PlaybackReport Playback::play(const std::function<void(const PlaybackEvent&)>& done) {
+RealTimeReport RealTimeLoop::play(const std::function<void(const RealTimeEvent&)>& done) {
   done_ = done;
   beginField(0);
   pending_ = field_.take();
   rehearse();
-  start_ = Clock::now();
+  start_ms_ = clock_.now_ms();
   raise(SceneEvent::field);
   for (double now = 0; now < end_ms(); now = now_ms()) {
-    stopIfInterrupted();
+    throwIfStopped(interrupt_);
     takeField();
     raiseEvents();
     if (restoration_.done()) endRestoration();
@@ -65,30 +65,30 @@ PlaybackReport Playback::play(const std::function<void(const PlaybackEvent&)>& d
   if (field_.active()) field_.take();
   report_.seconds = now_ms() / 1000;
   report_.epsilon_ms = controller_.epsilon_ms();
-  PlaybackEvent none;
+  RealTimeEvent none;
   countSlots(slotAt(end_ms()) - 1, none);
   if (display_) passOn(end_ms());
   return std::move(report_);
 }
 
-render::FrameCost Playback::costOf(const render::FrameReport& frame, double other_ms) const {
+render::FrameCost RealTimeLoop::costOf(const render::FrameReport& frame, double other_ms) const {
   return {frame.total_ms(), other_ms,
-          static_cast<double>(frame.rays) / static_cast<double>(look_.size.count())};
+          static_cast<double>(frame.rays) / static_cast<double>(style_.size.count())};
 }
 
-double Playback::now_ms() const {
-  return Milliseconds(Clock::now() - start_ - stood_still_).count();
+double RealTimeLoop::now_ms() const {
+  return clock_.now_ms() - start_ms_ - stood_still_ms_;
 }
 
-long long Playback::slotAt(double time_ms) const {
+long long RealTimeLoop::slotAt(double time_ms) const {
   return static_cast<long long>(std::floor(time_ms / period_ms_));
 }
 
-double Playback::slotBegin_ms(long long slot) const {
+double RealTimeLoop::slotBegin_ms(long long slot) const {
   return static_cast<double>(slot) * period_ms_;
 }
 
-int Playback::stepDueAt(long long slot) const {
+int RealTimeLoop::stepDueAt(long long slot) const {
   const double time_s = source_.time_s(0) + slotBegin_ms(slot) / 1000 * options_.speed;
   constexpr double kRounding_s = 1e-9;
   int step = shown_step_;
@@ -97,13 +97,13 @@ int Playback::stepDueAt(long long slot) const {
   return step;
 }
 
-bool Playback::isDue(long long slot) const {
+bool RealTimeLoop::isDue(long long slot) const {
   if (slot == 0 || options_.orbit_rate_deg_s != 0) return true;
   const int step = stepDueAt(slot);
   return step != stepDueAt(slot - 1) && unchanged_steps_.count(step) == 0;
 }
 
-double Playback::end_ms() const {
+double RealTimeLoop::end_ms() const {
   if (options_.duration_s) return *options_.duration_s * 1000;
   const int last = source_.count() - 1;
   const double length_s = source_.time_s(last) - source_.time_s(0);
@@ -111,24 +111,24 @@ double Playback::end_ms() const {
   return (length_s + step_s) / options_.speed * 1000;
 }
 
-void Playback::waitUntil(double time_ms) {
+void RealTimeLoop::waitUntil(double time_ms) {
   const double until_ms = std::min({time_ms, slotBegin_ms(slotAt(now_ms()) + 1), end_ms()});
-  bell_.wait(start_ + stood_still_ + std::chrono::duration_cast<Clock::duration>(Milliseconds(until_ms)));
+  clock_.waitUntil(start_ms_ + stood_still_ms_ + until_ms, event_);
 }
 
-void Playback::beginField(int step) {
+void RealTimeLoop::beginField(int step) {
   field_.start([this, step] {
-    Stopwatch watch;
+    const double begin_ms = clock_.now_ms();
     NewField field;
     field.step = step;
     field.frame = source_.frame(step);
-    field.ms = watch.lap_ms();
+    field.ms = clock_.now_ms() - begin_ms;
     return field;
   });
 }
 
 /// The step that will be due when it is computed, but no other than a later one.
-void Playback::beginNextField() {
+void RealTimeLoop::beginNextField() {
   const int newest = pending_ ? pending_->step : shown_step_;
   if (field_.active() || computed_ || newest + 1 >= source_.count()) return;
   const double now = now_ms();
@@ -140,23 +140,23 @@ void Playback::beginNextField() {
 
 /// Draws the first picture a few times: camera and colours are fitted, the memory is there, and the pattern
 /// is chosen before the clock starts.
-void Playback::rehearse() {
+void RealTimeLoop::rehearse() {
   painter_.setFrame(pending_->frame);
   constexpr int kFrames = 4;
   for (int n = 0; n < kFrames; ++n) {
     controller_.event(SceneEvent::field, 0);
-    painter_.setAzimuth(look_.camera.azimuth_deg);
+    painter_.setAzimuth(style_.camera.azimuth_deg);
     controller_.frameDone(costOf(painter_.draw(controller_.next(0).plan), 0));
   }
 }
 
-void Playback::takeField() {
+void RealTimeLoop::takeField() {
   if (!field_.done()) return;
   computed_ = field_.take();
   field_ms_ = computed_->ms;
 }
 
-void Playback::raise(SceneEvent event) {
+void RealTimeLoop::raise(SceneEvent event) {
   const bool stops = controller_.state() == ControllerState::restore;
   controller_.event(event, now_ms());
   settled_ = false;
@@ -164,7 +164,7 @@ void Playback::raise(SceneEvent event) {
 }
 
 /// At most once in a slot: events between two frames could not be shown.
-void Playback::raiseEvents() {
+void RealTimeLoop::raiseEvents() {
   const long long slot = slotAt(now_ms());
   if (slot <= begun_slot_) return;
   if (computed_ && computed_->step <= stepDueAt(slot)) {
@@ -181,7 +181,7 @@ void Playback::raiseEvents() {
   }
 }
 
-void Playback::act(const ControllerAction& action) {
+void RealTimeLoop::act(const ControllerAction& action) {
   switch (action.kind) {
     case ControllerAction::Kind::draw:
       drawFrame(action.plan);
@@ -200,8 +200,8 @@ void Playback::act(const ControllerAction& action) {
   }
 }
 
-void Playback::drawFrame(const render::FramePlan& plan) {
-  PlaybackEvent event;
+void RealTimeLoop::drawFrame(const render::FramePlan& plan) {
+  RealTimeEvent event;
   const double begin_ms = now_ms();
   const long long slot = slotAt(begin_ms);
   begun_slot_ = slot;
@@ -214,7 +214,7 @@ void Playback::drawFrame(const render::FramePlan& plan) {
     pending_.reset();
   }
   if (options_.orbit_rate_deg_s != 0) {
-    painter_.setAzimuth(look_.camera.azimuth_deg + options_.orbit_rate_deg_s * slotBegin_ms(slot) / 1000);
+    painter_.setAzimuth(style_.camera.azimuth_deg + options_.orbit_rate_deg_s * slotBegin_ms(slot) / 1000);
   }
   event.prepare_ms = now_ms() - begin_ms;
   drawn_ = painter_.draw(plan);
@@ -231,14 +231,14 @@ void Playback::drawFrame(const render::FramePlan& plan) {
   controller_.frameDone(costOf(drawn_, event.prepare_ms + std::max(event.field_ms, event.labels_ms)));
 }
 
-void Playback::beginRestoration() {
+void RealTimeLoop::beginRestoration() {
   stop_ = false;
   restoration_.start([this] { return painter_.restore(&stop_); });
 }
 
-void Playback::endRestoration() {
+void RealTimeLoop::endRestoration() {
   const render::FrameReport restored = restoration_.take();
-  PlaybackEvent event;
+  RealTimeEvent event;
   event.state = ControllerState::restore;
   event.rays = restored.rays;
   event.cast_ms = restored.cast_ms;
@@ -248,7 +248,7 @@ void Playback::endRestoration() {
 }
 
 /// The picture is exact from now on.
-void Playback::settle() {
+void RealTimeLoop::settle() {
   if (pending_) {  // the field is as it was, but not the time
     painter_.setFrame(pending_->frame);
     shown_step_ = pending_->step;
@@ -258,20 +258,20 @@ void Playback::settle() {
   }
   if (settled_) return;
   settled_ = true;
-  PlaybackEvent event;
+  RealTimeEvent event;
   event.state = ControllerState::idle;
   event.restored = true;
   if (options_.verify) {
-    const Clock::time_point begin = Clock::now();
+    const double begin_ms = clock_.now_ms();
     const render::Image& settled = painter_.image();
     event.equals_full = sameBits(settled, painter_.fullCast());
-    stood_still_ += Clock::now() - begin;
+    stood_still_ms_ += clock_.now_ms() - begin_ms;
   }
   report(event);
 }
 
 /// Counts slots up to this one, in which a frame was drawn: late if it came after the last that asked for it.
-void Playback::countSlots(long long slot, PlaybackEvent& event) {
+void RealTimeLoop::countSlots(long long slot, RealTimeEvent& event) {
   for (long long s = accounted_slot_ + 1; s <= slot; ++s) {
     if (!isDue(s)) continue;
     ++report_.due;
@@ -281,26 +281,26 @@ void Playback::countSlots(long long slot, PlaybackEvent& event) {
 }
 
 /// Puts the picture on display. @return what that took (ms)
-double Playback::show() {
+double RealTimeLoop::show() {
   if (!display_) return 0;
-  Stopwatch watch;
+  const double begin_ms = clock_.now_ms();
   render::Image8 picture = painter_.picture(
       fmt::format("{} rays, {}", render::toString(drawn_.pattern), render::toString(controller_.state())));
   const bool is_first = !displayed_;
   passOn(now_ms());
   displayed_ = std::move(picture);
   if (is_first) displayed_since_ = 0;
-  return watch.lap_ms();
+  return clock_.now_ms() - begin_ms;
 }
 
 /// What was on display has been there until now.
-void Playback::passOn(double now_ms) {
+void RealTimeLoop::passOn(double now_ms) {
   const long long slot = slotAt(std::min(now_ms, end_ms()));
   if (displayed_) display_(*displayed_, static_cast<int>(slot - displayed_since_));
   displayed_since_ = slot;
 }
 
-void Playback::report(PlaybackEvent event) {
+void RealTimeLoop::report(RealTimeEvent event) {
   event.time_ms = now_ms();
   event.scenario_s = source_.time_s(shown_step_);
   event.pattern = drawn_.pattern;
@@ -308,4 +308,4 @@ void Playback::report(PlaybackEvent event) {
   report_.events.push_back(std::move(event));
 }
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

@@ -1,4 +1,4 @@
-#include "apps/emscape/scene.h"
+#include "emscape/playback/scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,13 +7,13 @@
 #include "emscape/base/geoid.h"
 #include "emscape/base/parallel.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 namespace {
 
-constexpr int kMostPosts = 1500;
+constexpr int kMaxPosts = 1500;
 
 int postsAlong(double size_m, double spacing_m) {
-  return std::clamp(static_cast<int>(std::ceil(size_m / spacing_m)) + 1, 2, kMostPosts);
+  return std::clamp(static_cast<int>(std::ceil(size_m / spacing_m)) + 1, 2, kMaxPosts);
 }
 
 /// The ground (frame z, m) at a place of the frame; NaN over a hole.
@@ -100,4 +100,4 @@ std::vector<render::Category> categoriesOf(const scenario::Scenario& scenario) {
   return categories;
 }
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

@@ -1,4 +1,4 @@
-#include "apps/emscape/video.h"
+#include "playback/video.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -17,7 +17,7 @@
 
 extern char** environ;  // NOLINT: POSIX names it so
 
-namespace emscape::app {
+namespace emscape::playback {
 namespace {
 
 Error failure(const std::filesystem::path& path, const std::string& what) {
@@ -131,4 +131,4 @@ int VideoFile::waitForEnd() {
   return status;
 }
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

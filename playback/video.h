@@ -8,7 +8,7 @@
 
 #include "emscape/render/image.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
 /// Writes one .mp4 (H.264, yuv420p): the frames go to ffmpeg through a pipe, the file appears when it is
 /// whole.
@@ -42,4 +42,4 @@ class VideoFile {
   pid_t process_ = -1;
 };
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

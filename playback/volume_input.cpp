@@ -1,11 +1,11 @@
-#include "apps/emscape/volume_input.h"
+#include "emscape/playback/volume_input.h"
 
 #include <algorithm>
 
 #include "emscape/base/error.h"
 #include "emscape/volume/file.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
 std::vector<VolumeFile> volumeFilesOf(const std::filesystem::path& path, std::string& quantity) {
   const bool is_series = std::filesystem::is_directory(path) || path.extension() == ".pvd";
@@ -17,12 +17,11 @@ std::vector<VolumeFile> volumeFilesOf(const std::filesystem::path& path, std::st
     }
   }
   if (files.empty()) {
-    throw Error(ErrorCode::bad_input, {path.string(), 0, 0},
-                "there is no volume of '" + quantity + "'; see 'emscape info'");
+    throw Error(ErrorCode::bad_input, {path.string(), 0, 0}, "there is no volume of '" + quantity + "'");
   }
   std::stable_sort(files.begin(), files.end(),
                    [](const VolumeFile& a, const VolumeFile& b) { return a.time_s < b.time_s; });
   return files;
 }
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

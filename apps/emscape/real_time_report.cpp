@@ -1,4 +1,4 @@
-#include "apps/emscape/playback_report.h"
+#include "apps/emscape/real_time_report.h"
 
 #include <fmt/core.h>
 
@@ -27,8 +27,8 @@ struct Totals {
   int settled = 0, compared = 0, equal = 0;
   std::vector<double> abort_latencies_ms;  // sorted
 
-  explicit Totals(const PlaybackReport& report) {
-    for (const PlaybackEvent& event : report.events) {
+  explicit Totals(const RealTimeReport& report) {
+    for (const RealTimeEvent& event : report.events) {
       switch (event.state) {
         case ControllerState::busy:
           ++busy;
@@ -49,17 +49,17 @@ struct Totals {
   }
 };
 
-double heldPerSecond(const PlaybackReport& report, int frames) {
+double heldPerSecond(const RealTimeReport& report, int frames) {
   return report.due > 0 ? report.frames_per_s * frames / static_cast<double>(report.due) : 0;
 }
 
-int framesWith(const PlaybackReport& report, render::Pattern pattern) {
+int framesWith(const RealTimeReport& report, render::Pattern pattern) {
   return static_cast<int>(std::count_if(report.events.begin(), report.events.end(), [&](const auto& event) {
     return event.state == ControllerState::busy && event.pattern == pattern;
   }));
 }
 
-Json toJson(const PlaybackEvent& event) {
+Json toJson(const RealTimeEvent& event) {
   return {{"time_s", rounded(event.time_ms / 1000)},
           {"scenario_s", event.scenario_s},
           {"state", render::toString(event.state)},
@@ -79,18 +79,7 @@ Json toJson(const PlaybackEvent& event) {
 
 }  // namespace
 
-int PlaybackReport::count(ControllerState state) const {
-  return static_cast<int>(std::count_if(events.begin(), events.end(),
-                                        [state](const auto& event) { return event.state == state; }));
-}
-
-int PlaybackReport::unequal() const {
-  return static_cast<int>(std::count_if(events.begin(), events.end(), [](const auto& event) {
-    return event.equals_full && !*event.equals_full;
-  }));
-}
-
-std::string lineOf(const PlaybackEvent& event) {
+std::string lineOf(const RealTimeEvent& event) {
   std::string line = fmt::format("{:8.3f} s  t = {:<8g} {:<7} {:<8}", event.time_ms / 1000, event.scenario_s,
                                  render::toString(event.state), render::toString(event.pattern));
   if (event.state == ControllerState::idle) {
@@ -111,7 +100,7 @@ std::string lineOf(const PlaybackEvent& event) {
   return line;
 }
 
-std::string summaryOf(const PlaybackReport& report) {
+std::string summaryOf(const RealTimeReport& report) {
   const Totals totals(report);
   std::string text =
       fmt::format("{} frames in {:.1f} s; {:g} a second asked, {:.2f} held; {} late, {} dropped", totals.busy,
@@ -135,7 +124,7 @@ std::string summaryOf(const PlaybackReport& report) {
   return text;
 }
 
-Json toJson(const PlaybackReport& report) {
+Json toJson(const RealTimeReport& report) {
   const Totals totals(report);
   Json patterns = Json::object();
   for (const render::Pattern pattern : render::allPatterns()) {
@@ -144,7 +133,7 @@ Json toJson(const PlaybackReport& report) {
   }
   const std::vector<double>& latencies = totals.abort_latencies_ms;
   Json frames = Json::array();
-  for (const PlaybackEvent& event : report.events) frames.push_back(toJson(event));
+  for (const RealTimeEvent& event : report.events) frames.push_back(toJson(event));
   return {{"seconds", rounded(report.seconds)},
           {"frames_per_s",
            {{"asked", report.frames_per_s}, {"held", rounded(heldPerSecond(report, totals.busy))}}},

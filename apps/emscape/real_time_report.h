@@ -1,55 +1,22 @@
-/// What a playback did: frame by frame, and in sum.
+/// The report of a real-time loop as text and as JSON.
 #pragma once
 
-#include <optional>
 #include <string>
-#include <vector>
 
 #include "apps/emscape/console.h"
-#include "emscape/render/frame_controller.h"
+#include "emscape/playback/real_time_report.h"
 
 namespace emscape::app {
 
-/// A busy frame, a restoration, or that the picture settled.
-struct PlaybackEvent {
-  double time_ms = 0;     ///< of the playback, at its end
-  double scenario_s = 0;  ///< what it shows
-  render::ControllerState state = render::ControllerState::busy;
-  render::Pattern pattern = render::Pattern::full;  ///< of the busy frame
-  long long rays = 0;
-  double field_ms = 0;    ///< 0: the field was not new
-  double prepare_ms = 0;  ///< for the new field or view
-  double cast_ms = 0;
-  double interpolate_ms = 0;
-  double labels_ms = 0;  ///< where pictures are written
-  std::optional<double>
-      abort_latency_ms;             ///< from the event that stopped a restoration to this frame's begin
-  bool late = false;                ///< shown after the slot that it was due in
-  bool restored = false;            ///< all that was interpolated has been cast
-  std::optional<bool> equals_full;  ///< settled, and compared with a full cast
-  std::string reason;               ///< if the pattern is another one than before: why
-};
-
-struct PlaybackReport {
-  double frames_per_s = 0;  ///< asked for
-  double seconds = 0;
-  double epsilon_ms = 0;  ///< at the end
-  long long due = 0;      ///< slots of 1 / frames_per_s in which there was something new to show
-  int field_updates = 0;
-  int field_steps_skipped = 0;  ///< they came faster than they could be computed
-  std::vector<PlaybackEvent> events;
-
-  int count(render::ControllerState state) const;
-  /// Settled pictures that are not what a full cast gives.
-  int unequal() const;
-};
+using playback::RealTimeEvent;
+using playback::RealTimeReport;
 
 /// "1.240 s  BUSY  columns  540000 rays  field 22.1 ms  cast 38.2 ms ...": for a reader.
-std::string lineOf(const PlaybackEvent& event);
+std::string lineOf(const RealTimeEvent& event);
 /// A few lines in sum.
-std::string summaryOf(const PlaybackReport& report);
+std::string summaryOf(const RealTimeReport& report);
 /// Keys: frames_per_s {asked, held}, frames, due, late, dropped, patterns, restores {done, aborted}, settled,
 /// settled_equal_full (null: not compared), abort_latency_ms {median, max} (null: none), ..., frames [...].
-Json toJson(const PlaybackReport& report);
+Json toJson(const RealTimeReport& report);
 
 }  // namespace emscape::app

@@ -1,31 +1,11 @@
-#include "apps/emscape/place.h"
+#include "apps/emscape/target.h"
 
 namespace emscape::app {
-namespace {
 
 volume::VoxelPrecision precisionOf(const std::string& device_volume) {
   if (device_volume == "half") return volume::VoxelPrecision::float16;
   if (device_volume == "sparse") return volume::VoxelPrecision::sparse32;
   return volume::VoxelPrecision::float32;
-}
-
-}  // namespace
-
-emfield::FieldOptions Place::fieldOptions() const {
-  emfield::FieldOptions options;
-  options.backend = choice.backend;
-  // A field is written by kernels, which need every voxel to be there.
-  if (precisionOf(device_volume) == volume::VoxelPrecision::float16) {
-    options.device_precision = volume::VoxelPrecision::float16;
-  }
-  return options;
-}
-
-render::RendererOptions Place::rendererOptions() const {
-  render::RendererOptions options;
-  options.backend = choice.backend;
-  options.precision = precisionOf(device_volume);
-  return options;
 }
 
 void addDeviceVolumeOption(CLI::App& command, std::string& device_volume) {

@@ -1,4 +1,4 @@
-/// One piece of work at a time on a thread of its own, and a bell that says when it is done.
+/// One piece of work at a time on a thread of its own, and an event that says when it is done.
 #pragma once
 
 #include <atomic>
@@ -11,47 +11,65 @@
 #include <thread>
 #include <utility>
 
-namespace emscape::app {
+namespace emscape::playback {
 
-/// Wakes the one thread that waits for several others.
-class Bell {
+/// Wakes the one thread that waits for several others. Any thread may set it.
+class Event {
  public:
-  void ring() {
+  void set() {
     {
       std::lock_guard<std::mutex> lock(mutex_);
-      rung_ = true;
+      set_ = true;
     }
     changed_.notify_one();
   }
-  /// Returns when it was rung since the last wait, or at `until`.
-  void wait(std::chrono::steady_clock::time_point until) {
+  /// Returns when it was set since the last wait.
+  void wait() {
     std::unique_lock<std::mutex> lock(mutex_);
-    changed_.wait_until(lock, until, [this] { return rung_; });
-    rung_ = false;
+    changed_.wait(lock, [this] { return set_; });
+    set_ = false;
   }
+  /// The same, or at `time`.
+  void waitUntil(std::chrono::steady_clock::time_point time) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait_until(lock, time, [this] { return set_; });
+    set_ = false;
+  }
+
+  /// Tells that work has begun at whose end finish() is called: a clock that is not the wall's can ask
+  /// whether there is anything to wait for.
+  void begin() { ++begun_; }
+  /// set(), at the end of work.
+  void finish() {
+    --begun_;
+    set();
+  }
+  bool hasWork() const { return begun_ > 0; }
 
  private:
   std::mutex mutex_;
   std::condition_variable changed_;
-  bool rung_ = false;
+  bool set_ = false;
+  std::atomic<int> begun_{0};
 };
 
-/// The owner starts work, asks whether it is done, and takes the result.
+/// The owner starts work, asks whether it is done, and takes the result. One thread owns it.
 template <class Result>
-class Background {
+class AsyncTask {
  public:
-  /// @param bell  rung at the end of the work; outlives this
-  explicit Background(Bell& bell) : bell_(bell) {}
+  /// @param event  set at the end of the work; outlives this
+  explicit AsyncTask(Event& event) : event_(event) {}
   /// Waits for the end of the work.
-  ~Background() {
+  ~AsyncTask() {
     if (thread_.joinable()) thread_.join();
   }
-  Background(const Background&) = delete;
-  Background& operator=(const Background&) = delete;
+  AsyncTask(const AsyncTask&) = delete;
+  AsyncTask& operator=(const AsyncTask&) = delete;
 
   /// Only when the last result was taken.
   void start(std::function<Result()> work) {
     done_ = false;
+    event_.begin();
     thread_ = std::thread([this, work = std::move(work)] {
       try {
         result_ = work();
@@ -59,7 +77,7 @@ class Background {
         failure_ = std::current_exception();
       }
       done_ = true;
-      bell_.ring();
+      event_.finish();
     });
   }
   /// Whether there is work that runs, or a result that was not taken.
@@ -75,11 +93,11 @@ class Background {
   }
 
  private:
-  Bell& bell_;
+  Event& event_;
   std::thread thread_;
   std::atomic<bool> done_{false};
   std::optional<Result> result_;
   std::exception_ptr failure_;
 };
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

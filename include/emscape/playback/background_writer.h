@@ -8,14 +8,14 @@
 #include <mutex>
 #include <thread>
 
-namespace emscape::app {
+namespace emscape::playback {
 
 /// Runs jobs one after another. After a job has thrown, later ones are dropped and the exception reaches the
 /// caller at its next push() or finish().
 class BackgroundWriter {
  public:
-  /// @param most_waiting  push() waits while so many jobs are waiting: the bound on the memory that they hold
-  explicit BackgroundWriter(std::size_t most_waiting);
+  /// @param max_waiting  push() waits while so many jobs are waiting: the bound on the memory that they hold
+  explicit BackgroundWriter(std::size_t max_waiting);
   /// Finishes the job that runs, drops those that wait.
   ~BackgroundWriter();
   BackgroundWriter(const BackgroundWriter&) = delete;
@@ -28,7 +28,7 @@ class BackgroundWriter {
  private:
   void run();
 
-  const std::size_t most_waiting_;
+  const std::size_t max_waiting_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> waiting_;
@@ -38,4 +38,4 @@ class BackgroundWriter {
   std::thread thread_;
 };
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

@@ -6,15 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/emscape/console.h"
-#include "apps/emscape/field_series.h"
-#include "apps/emscape/place.h"
-#include "emscape/render/height_field.h"
-#include "emscape/render/legend.h"
+#include "emscape/base/progress.h"
+#include "emscape/playback/compute_target.h"
+#include "emscape/playback/field_series.h"
 #include "emscape/render/overlay.h"
 #include "emscape/volume/volume.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
 /// One instant.
 struct Frame {
@@ -27,20 +25,23 @@ struct Frame {
 struct FrameSelection {
   std::string input;                ///< scenario or volume file, .pvd, folder of volumes
   std::string quantity;             ///< empty: the first
-  std::string times;                ///< as on the command line; empty: all
+  std::string times;                ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
   bool first_only = false;          ///< without times: the first alone
   std::optional<ValueRange> range;  ///< of the colours; none: that of the series
   std::string scenario;             ///< beside volumes: whose ground and emitters are drawn; may be empty
   bool allow_missing_terrain = false;
 };
 
+/// Instants in order of time. One thread at a time calls frame(); the other functions are safe beside it, but
+/// for warnings().
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
+  /// At least 1.
   virtual int count() const = 0;
   /// Of the scenario, ascending.
   virtual double time_s(int index) const = 0;
-  /// The frame with index 0..count() - 1. @throws Error, Interrupted
+  /// The frame with index 0..count() - 1. @throws Error, Stopped
   virtual Frame frame(int index) = 0;
 
   /// For titles and names of files.
@@ -49,11 +50,20 @@ class FrameSource {
   virtual const LoadedScenario* scene() const = 0;
   /// What the models have to say about the frames so far.
   virtual std::vector<std::string> warnings() const = 0;
+
+  /// The index whose time is nearest; the earlier of two as near. @param time_s  any, beyond the ends too
+  int nearestIndex(double time_s) const;
+  /// The frame nearest to a time. @throws Error, Stopped
+  Frame frameAt(double time_s) { return frame(nearestIndex(time_s)); }
 };
 
-/// @param place  where a scenario's field is computed
-/// @throws Error (usage, bad_input, device)
-std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const Place& place,
-                                             const GlobalOptions& global);
+/// @param target    where a scenario's field is computed
+/// @param progress  told while the range of the colours is searched; may be empty
+/// @param stop      ends the work of this call and of frame() with Stopped; may be null, else outlives the
+/// source
+/// @throws Error (usage, bad_input, device), Stopped
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const ComputeTarget& target,
+                                             const ProgressSink& progress = {},
+                                             const StopFlag* stop = nullptr);
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

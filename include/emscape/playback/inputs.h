@@ -1,4 +1,4 @@
-/// Input files of the subcommands: what kind a file is, and scenarios with their ground.
+/// Input files: what kind a file is, and scenarios with their ground.
 #pragma once
 
 #include <memory>
@@ -7,7 +7,7 @@
 #include "emscape/scenario/scenario.h"
 #include "emscape/scenario/terrain.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
 enum class InputKind { scenario, volume, elevation, antenna };
 
@@ -23,4 +23,4 @@ struct LoadedScenario {
 /// @throws Error (bad_input) that lists all that is wrong
 LoadedScenario loadScenarioWithTerrain(const std::string& file);
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

@@ -7,7 +7,7 @@
 
 #include "emscape/render/image.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
 /// Takes the pictures of a series in order.
 class PictureSink {
@@ -25,4 +25,4 @@ class PictureSink {
 std::unique_ptr<PictureSink> makePictureSink(const std::filesystem::path& output, const std::string& name,
                                              int pictures, render::ImageSize size, double frames_per_s);
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

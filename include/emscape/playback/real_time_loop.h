@@ -1,23 +1,24 @@
-/// Playing against the wall clock, without a window: field -> busy frame -> settled picture.
+/// Playing against a clock, without a window: field -> busy frame -> settled picture.
 #pragma once
 
 #include <functional>
 #include <optional>
 #include <set>
 
-#include "apps/emscape/background.h"
-#include "apps/emscape/frame_source.h"
-#include "apps/emscape/painter.h"
-#include "apps/emscape/playback_report.h"
 #include "emscape/base/progress.h"
+#include "emscape/playback/async_task.h"
+#include "emscape/playback/clock.h"
+#include "emscape/playback/frame_source.h"
+#include "emscape/playback/painter.h"
+#include "emscape/playback/real_time_report.h"
 #include "emscape/render/frame_controller.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
-struct PlaybackOptions {
+struct RealTimeOptions {
   double frames_per_s = 25;          ///< slots: at the start of each, what is new is shown
   double speed = 1;                  ///< scenario seconds in a second
-  std::optional<double> duration_s;  ///< of the wall clock; none: until one step after the last
+  std::optional<double> duration_s;  ///< of the clock; none: until one step after the last
   double orbit_rate_deg_s = 0;       ///< the camera goes round, clockwise from above
   bool verify = false;  ///< compare each settled picture with a full cast; the clock stands still meanwhile
   render::ControllerOptions controller;
@@ -30,21 +31,23 @@ using Display = std::function<void(const render::Image8& picture, int slots)>;
 /// in every slot. A frame is begun at the start of a slot, or later in it as soon as the field is there. The
 /// next field is computed on a thread of its own from the end of one busy frame on; restorations run on
 /// another, so that an event can stop them.
-class Playback {
+class RealTimeLoop {
  public:
-  /// @param painter  draws the source in this look; outlives this, as look and source
-  /// @param display  empty: pictures get no labels and go nowhere
+  /// @param painter    draws the source in this style; outlives this, as style, source and clock
+  /// @param display    empty: pictures get no labels and go nowhere
+  /// @param clock      tests give one of their own
+  /// @param interrupt  ends play() with Stopped; may be null, else outlives this
   /// @throws Error (usage) for an orbit rate with a camera that does not orbit
-  Playback(const PlaybackOptions& options, const Look& look, FrameSource& source, Painter& painter,
-           Display display);
+  RealTimeLoop(const RealTimeOptions& options, const PictureStyle& style, FrameSource& source,
+               Painter& painter, Display display, Clock& clock, const StopFlag* interrupt = nullptr);
   /// Stops what still runs.
-  ~Playback();
-  Playback(const Playback&) = delete;
-  Playback& operator=(const Playback&) = delete;
+  ~RealTimeLoop();
+  RealTimeLoop(const RealTimeLoop&) = delete;
+  RealTimeLoop& operator=(const RealTimeLoop&) = delete;
 
   /// @param done  called after each event of the report
-  /// @throws Error, Interrupted
-  PlaybackReport play(const std::function<void(const PlaybackEvent&)>& done);
+  /// @throws Error, Stopped
+  RealTimeReport play(const std::function<void(const RealTimeEvent&)>& done);
 
  private:
   struct NewField {
@@ -52,8 +55,6 @@ class Playback {
     Frame frame;
     double ms = 0;
   };
-  using Clock = std::chrono::steady_clock;
-
   // Time
   double now_ms() const;
   long long slotAt(double time_ms) const;
@@ -80,22 +81,24 @@ class Playback {
   void endRestoration();
   void settle();
 
-  void countSlots(long long slot, PlaybackEvent& event);
+  void countSlots(long long slot, RealTimeEvent& event);
   double show();
   void passOn(double now_ms);
-  void report(PlaybackEvent event);
+  void report(RealTimeEvent event);
 
-  const PlaybackOptions options_;
-  const Look& look_;
+  const RealTimeOptions options_;
+  const PictureStyle& style_;
   FrameSource& source_;
   const Display display_;
-  std::function<void(const PlaybackEvent&)> done_;
+  Clock& clock_;
+  const StopFlag* const interrupt_;
+  std::function<void(const RealTimeEvent&)> done_;
   render::FrameController controller_;
   Painter& painter_;
-  PlaybackReport report_;
+  RealTimeReport report_;
 
-  Clock::time_point start_;
-  Clock::duration stood_still_{};
+  double start_ms_ = 0;  // of the clock
+  double stood_still_ms_ = 0;
   double period_ms_;
 
   std::optional<NewField> computed_;  // waits until it is due
@@ -116,9 +119,9 @@ class Playback {
   long long displayed_since_ = 0;  // slot; the first picture stands for the time before it too
 
   StopFlag stop_{false};
-  Bell bell_;
-  Background<render::FrameReport> restoration_{bell_};
-  Background<NewField> field_{bell_};
+  Event event_;
+  AsyncTask<render::FrameReport> restoration_{event_};
+  AsyncTask<NewField> field_{event_};
 };
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

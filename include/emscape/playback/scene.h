@@ -4,14 +4,14 @@
 #include <memory>
 #include <vector>
 
-#include "apps/emscape/inputs.h"
+#include "emscape/playback/inputs.h"
 #include "emscape/render/height_field.h"
 #include "emscape/render/legend.h"
 #include "emscape/render/overlay.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/volume/grid.h"
 
-namespace emscape::app {
+namespace emscape::playback {
 
 /// The ground below a grid, at about the spacing of the elevation posts (at most 1500 posts a side).
 std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
@@ -24,4 +24,4 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
 /// The emitters' names by index, for legends of indices.
 std::vector<render::Category> categoriesOf(const scenario::Scenario& scenario);
 
-}  // namespace emscape::app
+}  // namespace emscape::playback

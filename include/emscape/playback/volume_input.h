@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace emscape::app {
+namespace emscape::playback {
 
 /// One instant of a series on disk.
 struct VolumeFile {
@@ -18,4 +18,4 @@ struct VolumeFile {
 /// @throws Error (bad_input)
 std::vector<VolumeFile> volumeFilesOf(const std::filesystem::path& path, std::string& quantity);
 
-}  // namespace emscape::app
+}  // namespace emscape::playback
