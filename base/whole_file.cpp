@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cctype>
@@ -56,6 +57,33 @@ long writerOf(const fs::path& path) {
                                   [](unsigned char character) { return std::isdigit(character) != 0; });
   return digits ? std::stol(process) : 0;
 }
+
+/// Whether a file is a temporary whose writer no longer runs.
+bool isStale(const fs::path& path) {
+  const long process = writerOf(path);
+  return process != 0 && ::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH;
+}
+
+/// An open file, closed at the end of its scope.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, int flags)
+      : path_(path), number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {
+    if (number_ < 0) failWriting(path_, causeOf(errno));
+  }
+  ~Descriptor() { ::close(number_); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  int number() const { return number_; }
+  void sync() const {
+    if (::fsync(number_) != 0) failWriting(path_, causeOf(errno));
+  }
+
+ private:
+  const fs::path path_;
+  const int number_;
+};
 
 /// Renaming over a folder fails late and over a device would replace it, so both are refused before work
 /// begins.
@@ -171,11 +199,61 @@ int removeStaleTemporaries(const fs::path& folder) {
   int removed = 0;
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
-    const long process = writerOf(entry.path());
-    if (process == 0 || ::kill(static_cast<pid_t>(process), 0) == 0 || errno != ESRCH) continue;
-    if (fs::remove(entry.path(), error)) ++removed;
+    if (isStale(entry.path()) && fs::remove(entry.path(), error)) ++removed;
   }
   return removed;
+}
+
+void removeStaleTemporariesOf(const fs::path& path) {
+  std::error_code error;
+  const std::string prefix = path.filename().string() + kMarker;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folderOf(path), error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind(prefix, 0) == 0 && isStale(entry.path())) fs::remove(entry.path(), error);
+  }
+}
+
+void patchFile(const fs::path& path, const std::vector<FilePatch>& patches) {
+  Descriptor file(path, O_WRONLY);
+  for (const FilePatch& patch : patches) {
+    for (std::size_t done = 0; done < patch.bytes.size();) {
+      const ssize_t written = ::pwrite(file.number(), patch.bytes.data() + done, patch.bytes.size() - done,
+                                       static_cast<off_t>(patch.offset + done));
+      if (written < 0 && errno == EINTR) continue;
+      if (written <= 0) failWriting(path, causeOf(errno));
+      done += static_cast<std::size_t>(written);
+    }
+  }
+  file.sync();
+}
+
+void appendToFile(const fs::path& path, const std::string& bytes) {
+  Descriptor file(path, O_WRONLY | O_CREAT | O_APPEND);
+  for (std::size_t done = 0; done < bytes.size();) {
+    const ssize_t written = ::write(file.number(), bytes.data() + done, bytes.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) failWriting(path, causeOf(errno));
+    done += static_cast<std::size_t>(written);
+  }
+  file.sync();
+}
+
+FileDigest digestOf(const fs::path& path) {
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error(ErrorCode::bad_input, {path.string()}, "cannot read: " + causeOf(errno));
+  FileDigest digest;
+  uLong crc = ::crc32(0, nullptr, 0);
+  std::vector<char> block(1 << 20);
+  while (stream) {
+    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+    const auto bytes = static_cast<std::size_t>(stream.gcount());
+    crc = ::crc32_z(crc, reinterpret_cast<const Bytef*>(block.data()), bytes);
+    digest.bytes += bytes;
+  }
+  if (!stream.eof()) throw Error(ErrorCode::bad_input, {path.string()}, "cannot read: " + causeOf(errno));
+  digest.crc32 = static_cast<std::uint32_t>(crc);
+  return digest;
 }
 
 FolderLock::FolderLock(const fs::path& folder, const std::string& name) : file_(folder / name) {

@@ -41,6 +41,35 @@ bool isTemporary(const std::filesystem::path& path);
 /// @return how many; 0 where the folder does not exist
 int removeStaleTemporaries(const std::filesystem::path& folder);
 
+/// Removes the temporaries of one file that were left by processes that no longer run.
+void removeStaleTemporariesOf(const std::filesystem::path& path);
+
+/// Bytes that replace as many others of a file.
+struct FilePatch {
+  std::uint64_t offset = 0;
+  std::string bytes;
+};
+
+/// Overwrites parts of a file where it lies; they are on the disk at return. Not all or nothing: a crash of
+/// the machine may leave some of the patches unwritten.
+/// @throws Error (other)
+void patchFile(const std::filesystem::path& path, const std::vector<FilePatch>& patches);
+
+/// Adds bytes to the end of a file, which is created if need be; they are on the disk at return.
+/// @throws Error (other); a part of the bytes may then be there
+void appendToFile(const std::filesystem::path& path, const std::string& bytes);
+
+/// Size and checksum of a file's content.
+struct FileDigest {
+  std::uint64_t bytes = 0;
+  std::uint32_t crc32 = 0;
+
+  bool operator==(const FileDigest& other) const { return bytes == other.bytes && crc32 == other.crc32; }
+  bool operator!=(const FileDigest& other) const { return !(*this == other); }
+};
+/// @throws Error (bad_input) that names the path and the cause
+FileDigest digestOf(const std::filesystem::path& path);
+
 /// The exclusive right to write a folder's files, held until destruction by one process at a time; the kernel
 /// takes it back from a process that dies.
 class FolderLock {

@@ -19,7 +19,7 @@ std::size_t offsetOf(const std::string& text, int line, int column) {
   return at;
 }
 
-FilePlace placeOf(const std::string& file, const std::string& text, std::size_t offset) {
+SourceLocation placeOf(const std::string& file, const std::string& text, std::size_t offset) {
   const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size()));
   const int line = static_cast<int>(std::count(text.begin(), end, '\n')) + 1;
   const std::size_t newline = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
@@ -76,7 +76,7 @@ void EditedText::apply(const Splice& splice, const std::string& label) {
   changes_ = std::move(kept);
 }
 
-FilePlace EditedText::originOf(const FilePlace& place) const {
+SourceLocation EditedText::originOf(const SourceLocation& place) const {
   if (changes_.empty() || place.file != file_ || place.line == 0) return place;
   const std::size_t at = offsetOf(text_, place.line, place.column);
   std::size_t origin = at;

@@ -25,7 +25,7 @@ class EditedText {
 
   /// A place in text() as its reader knows it: its line and column in the file itself, or the label of the
   /// change that wrote it there. Places in other files are returned as they are.
-  FilePlace originOf(const FilePlace& place) const;
+  SourceLocation originOf(const SourceLocation& place) const;
 
  private:
   /// file bytes [begin, end) became text() bytes [new_begin, new_end).

@@ -229,7 +229,7 @@ namespace {
 
 /// The places that a scenario holds, as places in its file.
 void mapPlaces(Scenario& scenario, const document::EditedText& text) {
-  const auto map = [&text](FilePlace& place) { place = text.originOf(place); };
+  const auto map = [&text](SourceLocation& place) { place = text.originOf(place); };
   map(scenario.ground.place);
   for (Platform& platform : scenario.platforms) map(platform.place);
   for (Emitter& emitter : scenario.emitters) {
@@ -239,7 +239,7 @@ void mapPlaces(Scenario& scenario, const document::EditedText& text) {
     map(emitter.p528.place);
   }
   if (!scenario.terrain) return;
-  for (FilePlace& place : scenario.terrain->places) map(place);
+  for (SourceLocation& place : scenario.terrain->places) map(place);
 }
 
 /// Reads the scenario from its edited text. @param before  null, or what an earlier reading found

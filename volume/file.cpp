@@ -10,6 +10,7 @@
 #include "emscape/volume/raw.h"
 #include "emscape/volume/vdb.h"
 #include "emscape/volume/vti.h"
+#include "volume/stored_range.h"
 
 namespace emscape::volume {
 namespace fs = std::filesystem;
@@ -22,6 +23,7 @@ struct Format {
   void (*write)(const fs::path& path, const Volumes& volumes);
   DenseVolume (*read)(const fs::path& path, const std::string& name);
   std::vector<DenseVolume> (*describe)(const fs::path& path);
+  void (*set_range)(const fs::path& path, const std::vector<StoredRange>& ranges);
 };
 
 /// For files that hold one volume: the name, if given, has to be its.
@@ -42,17 +44,19 @@ std::vector<DenseVolume> listOf(DenseVolume volume) {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> kFormats = {
-      {{"vdb", true, true, false}, writeVdb, readVdb, describeVdb},
-      {{"nvdb", true, true, false}, writeNvdb, readNvdb, describeNvdb},
-      {{"vti", true, true, true}, writeVti, readVti, describeVti},
+      {{"vdb", true, true, false}, writeVdb, readVdb, describeVdb, setVdbRange},
+      {{"nvdb", true, true, false}, writeNvdb, readNvdb, describeNvdb, setNvdbRange},
+      {{"vti", true, true, true}, writeVti, readVti, describeVti, setVtiRange},
       {{"raw", true, false, false},
        [](const fs::path& path, const Volumes& volumes) { writeRaw(path, *volumes.front()); },
        [](const fs::path& path, const std::string& name) { return named(readRaw(path), path, name); },
-       [](const fs::path& path) { return listOf(describeRaw(path)); }},
+       [](const fs::path& path) { return listOf(describeRaw(path)); },
+       setRawRange},
       {{"dat", false, false, false},
        nullptr,
        [](const fs::path& path, const std::string& name) { return named(readDat(path), path, name); },
-       [](const fs::path& path) { return listOf(describeDat(path)); }},
+       [](const fs::path& path) { return listOf(describeDat(path)); },
+       nullptr},
   };
   return kFormats;
 }
@@ -163,6 +167,15 @@ void writeVolumes(const fs::path& path, const Volumes& volumes) {
 
 DenseVolume readVolume(const fs::path& path, const std::string& name) {
   return requireFormat(path).read(path, name);
+}
+
+void setStoredRange(const fs::path& path, const std::vector<StoredRange>& ranges) {
+  const Format& format = requireFormat(path);
+  if (format.set_range == nullptr) {
+    throw Error(ErrorCode::bad_input, {path.string()},
+                "." + format.about.name + " files are read, not written");
+  }
+  format.set_range(path, ranges);
 }
 
 FileListing listVolume(const fs::path& path) {

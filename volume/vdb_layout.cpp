@@ -9,7 +9,6 @@ namespace {
 constexpr std::int64_t kMagic = 0x56444220;
 constexpr std::uint32_t kOldestVersion = 222;
 constexpr std::uint32_t kNewestVersion = 224;
-constexpr int kUuidBytes = 36;
 constexpr char kNameSeparator = '\x1e';
 constexpr char kHalfSuffix[] = "_HalfFloat";
 
@@ -181,7 +180,7 @@ VdbHeader readVdbHeader(ByteReader& reader) {
   header.library_major = reader.value<std::uint32_t>("library version");
   header.library_minor = reader.value<std::uint32_t>("library version");
   header.has_offsets = reader.value<std::uint8_t>("header") != 0;
-  reader.take(kUuidBytes, "identifier");
+  reader.take(kVdbUuidBytes, "identifier");
   readVdbMetadata(reader);
   header.grid_count = reader.value<std::int32_t>("number of grids");
   return header;
@@ -221,6 +220,7 @@ VdbMetadata readVdbMetadata(ByteReader& reader) {
     const std::string key = reader.text("name of metadata");
     VdbMetaValue value;
     value.type = reader.text("type of metadata");
+    value.offset = reader.position() + sizeof(std::uint32_t);  // behind the length
     value.bytes = reader.text("metadata");
     metadata[key] = std::move(value);
   }

@@ -11,6 +11,9 @@
 
 namespace emscape::volume {
 
+/// Where a file's identifier lies, a UUID as text.
+constexpr int kVdbUuidOffset = 21, kVdbUuidBytes = 36;
+
 struct VdbHeader {
   std::uint32_t file_version = 0;
   std::uint32_t library_major = 0, library_minor = 0;
@@ -38,6 +41,7 @@ VdbDescriptor readVdbDescriptor(ByteReader& reader, const VdbHeader& header);
 struct VdbMetaValue {
   std::string type;
   std::string bytes;
+  std::uint64_t offset = 0;  ///< of the bytes, in the file
 };
 using VdbMetadata = std::map<std::string, VdbMetaValue>;
 

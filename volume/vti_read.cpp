@@ -38,16 +38,6 @@ std::optional<VoxelType> voxelTypeOf(const std::string& vtk_type) {
   return found->second;
 }
 
-/// The text that an array of character numbers spells, up to its zero.
-std::string spelledText(const char* numbers_text) {
-  std::istringstream text(numbers_text);
-  std::string spelled;
-  for (int character = 0; text >> character && character > 0 && character < 256;) {
-    spelled += static_cast<char>(character);
-  }
-  return spelled;
-}
-
 class VtiFile {
  public:
   explicit VtiFile(const std::filesystem::path& path) : file_(path, "ImageData"), path_(path.string()) {
@@ -72,7 +62,7 @@ class VtiFile {
 
   /// Without values and mask. The range of an array without our metadata is not known yet.
   DenseVolume describe(const std::string& name, bool& ours) const {
-    const std::string json = spelledText(fieldText("emscape:" + name).c_str());
+    const std::string json = spelledText(file_.fieldText("emscape:" + name).c_str());
     ours = !json.empty();
     if (ours) {
       DenseVolume volume = fromJson(parseJson(json, path_), path_);
@@ -83,7 +73,7 @@ class VtiFile {
     DenseVolume volume;
     volume.grid = grid_;
     volume.info.quantity = name.empty() ? "scalars" : name;
-    const std::string time = fieldText("TimeValue");
+    const std::string time = file_.fieldText("TimeValue");
     if (!time.empty()) volume.info.time_s = std::strtod(time.c_str(), nullptr);
     if (!std::isfinite(volume.info.time_s)) volume.info.time_s = 0;
     return volume;
@@ -124,15 +114,6 @@ class VtiFile {
     grid.first_center_m = {first[0], first[1], first[2]};
     checkDims(grid.dims, {path_});
     return grid;
-  }
-
-  /// An array of the field data in text form; empty where there is none.
-  std::string fieldText(const std::string& name) const {
-    for (const pugi::xml_node& array : image_.child("FieldData").children()) {
-      const bool text = std::string_view(array.attribute("format").value()) == "ascii";
-      if (text && name == array.attribute("Name").value()) return array.child_value();
-    }
-    return "";
   }
 
   pugi::xml_node arrayNamed(const std::string& name) const {

@@ -5,10 +5,14 @@
 #include "base/whole_file.h"
 #include "emscape/base/parallel.h"
 #include "emscape/volume/vti.h"
+#include "volume/stored_range.h"
 #include "volume/volume_json.h"
+#include "volume/vtk_xml.h"
 
 namespace emscape::volume {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 /// An array of the appended data.
 struct Appended {
@@ -64,6 +68,19 @@ void checkVolumes(const std::filesystem::path& path, const std::vector<const Den
   }
 }
 
+/// What a volume is, as its array in the field data says it. Blanks at the end make the length the same for
+/// every range, so that setVtiRange() can replace the text where it lies.
+std::string descriptionText(const Json& description) {
+  constexpr std::size_t kMaxRangeCharacters =
+      4 * 2 * 24;  // two doubles, up to four characters for each of theirs
+  const auto lengthOf = [](const Json& json) { return characterNumbers(json.dump()).size(); };
+  std::string text = dumpJson(description);
+  text.pop_back();
+  const std::size_t range_characters =
+      lengthOf(description["range_min"]) + lengthOf(description["range_max"]);
+  return characterNumbers(text) + std::string(kMaxRangeCharacters - range_characters, ' ');
+}
+
 void addFieldData(pugi::xml_node image, const std::vector<const DenseVolume*>& volumes) {
   pugi::xml_node field = image.append_child("FieldData");
   const auto addArray = [&](const char* element, const char* type, const std::string& name,
@@ -77,9 +94,7 @@ void addFieldData(pugi::xml_node image, const std::vector<const DenseVolume*>& v
   };
   addArray("DataArray", "Float64", "TimeValue", numberText(volumes.front()->info.time_s));
   for (const DenseVolume* volume : volumes) {
-    std::string json = dumpJson(toJson(*volume, false));
-    json.pop_back();
-    addArray("Array", "String", "emscape:" + volume->info.quantity, characterNumbers(json));
+    addArray("Array", "String", "emscape:" + volume->info.quantity, descriptionText(toJson(*volume, false)));
   }
 }
 
@@ -151,6 +166,23 @@ void writeVti(const std::filesystem::path& path, const std::vector<const DenseVo
     }
     stream << "\n  </AppendedData>\n</VTKFile>\n";
   });
+}
+
+void setVtiRange(const std::filesystem::path& path, const std::vector<StoredRange>& ranges) {
+  const VtkXmlFile file(path, "ImageData");
+  std::vector<FilePatch> patches;
+  for (const StoredRange& range : ranges) {
+    const std::string before = file.fieldText("emscape:" + range.quantity);
+    if (before.empty()) failNoSuchQuantity(path, range.quantity);
+    Json description = parseJson(spelledText(before), path.string());
+    description["range_min"] = numberToJson(range.min);
+    description["range_max"] = numberToJson(range.max);
+    const std::string after = descriptionText(description);
+    if (after.size() != before.size())
+      file.fail("the text that describes " + range.quantity + " has another length");
+    patches.push_back({file.headOffsetOf(before), after});
+  }
+  patchFile(path, patches);
 }
 
 void writePvd(const std::filesystem::path& path, const std::vector<PvdEntry>& entries) {

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <sstream>
 #include <string_view>
 
 #include "base/whole_file.h"
@@ -170,6 +171,30 @@ std::vector<std::uint8_t> VtkXmlFile::arrayBytes(const pugi::xml_node& array,
   }
   const std::uint8_t* begin = reader.take(bytes, "array");
   return {begin, begin + bytes};
+}
+
+std::string VtkXmlFile::fieldText(const std::string& name) const {
+  for (const pugi::xml_node& array : root_.child("ImageData").child("FieldData").children()) {
+    const bool text = std::string_view(array.attribute("format").value()) == "ascii";
+    if (text && name == array.attribute("Name").value()) return array.child_value();
+  }
+  return "";
+}
+
+std::uint64_t VtkXmlFile::headOffsetOf(const std::string& text) const {
+  const std::string_view whole(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
+  const std::size_t offset = whole.substr(0, appended_ == 0 ? whole.size() : appended_).find(text);
+  if (offset == std::string_view::npos) fail("a text of the head is written in another way");
+  return offset;
+}
+
+std::string spelledText(const std::string& numbers_text) {
+  std::istringstream text(numbers_text);
+  std::string spelled;
+  for (int character = 0; text >> character && character > 0 && character < 256;) {
+    spelled += static_cast<char>(character);
+  }
+  return spelled;
 }
 
 }  // namespace emscape::volume

@@ -23,6 +23,11 @@ class VtkXmlFile {
   /// @param expected_bytes  any other number is an Error, before anything is allocated for it
   std::vector<std::uint8_t> arrayBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
 
+  /// An array of the image's field data in text form; empty where there is none.
+  std::string fieldText(const std::string& name) const;
+  /// Where a text of the head begins in the file. @throws Error (bad_input) unless it is there
+  std::uint64_t headOffsetOf(const std::string& text) const;
+
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
@@ -36,5 +41,8 @@ class VtkXmlFile {
   pugi::xml_node root_;
   std::uint64_t appended_ = 0;  ///< offset of the appended data, behind the underscore; 0: there are none
 };
+
+/// The text that an array of character numbers spells, up to its zero.
+std::string spelledText(const std::string& numbers_text);
 
 }  // namespace emscape::volume

@@ -10,13 +10,13 @@
 #include "apps/emscape/bench.h"
 #include "apps/emscape/bench_statistics.h"
 #include "apps/emscape/console.h"
-#include "apps/emscape/inputs.h"
 #include "apps/emscape/interrupt.h"
-#include "apps/emscape/place.h"
+#include "apps/emscape/target.h"
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/emfield/field_solver.h"
+#include "emscape/playback/inputs.h"
 #include "emscape/scenario/snapshot.h"
 
 namespace emscape::app {
@@ -89,9 +89,9 @@ void turn(scenario::EmitterState& emitter, double angle_rad) {
 class FieldBench {
  public:
   /// @throws Error (device) if the field does not fit there
-  FieldBench(const LoadedScenario& input, int repeats, const Place& place)
-      : place_(place),
-        options_(place.fieldOptions()),
+  FieldBench(const playback::LoadedScenario& input, int repeats, const ComputeTarget& target)
+      : target_(target),
+        options_(target.fieldOptions()),
         solver_(input.scenario, input.terrain, options_),
         snapshot_(scenario::snapshotAt(input.scenario, input.terrain.get(), 0)),
         repeats_(repeats) {
@@ -113,11 +113,11 @@ class FieldBench {
   }
 
   double tolerance_m() const { return options_.move_tolerance_m; }
-  const Place& place() const { return place_; }
+  const ComputeTarget& target() const { return target_; }
   const emfield::FieldSolver& solver() const { return solver_; }
 
  private:
-  Place place_;
+  ComputeTarget target_;
   emfield::FieldOptions options_;
   emfield::FieldSolver solver_;
   scenario::Snapshot snapshot_;
@@ -125,12 +125,13 @@ class FieldBench {
 };
 
 int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
-  const LoadedScenario input = loadScenarioWithTerrain(options.scenario);
-  const std::unique_ptr<FieldBench> opened = openAtPlace(
-      global, options.device_volume,
-      [&](const Place& place) { return std::make_unique<FieldBench>(input, options.repeats, place); });
+  const playback::LoadedScenario input = playback::loadScenarioWithTerrain(options.scenario);
+  const std::unique_ptr<FieldBench> opened =
+      openOnTarget(global, options.device_volume, [&](const ComputeTarget& target) {
+        return std::make_unique<FieldBench>(input, options.repeats, target);
+      });
   FieldBench& bench = *opened;
-  const std::string device = bench.place().device();
+  const std::string device = bench.target().device();
   const double tolerance_m = bench.tolerance_m();
   const std::vector<std::size_t> chosen = chosenEmitters(*input.scenario, options.emitters);
   constexpr double kTurn_rad = 0.1;

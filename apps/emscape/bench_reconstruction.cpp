@@ -226,11 +226,11 @@ int benchReconstruction(const BenchReconstructionOptions& options, const GlobalO
   const int repeats = options.repeats > 0 ? options.repeats : scene.onGpu() ? 3 : 1;
   ReconstructionBench bench(scene, std::move(plans), repeats);
   {
-    ProgressBar progress(global, "drawing", options.frames);
+    Progress progress(global, "drawing");
     bench.warmUp();
     for (int view = 0; view < options.frames; ++view) {
       bench.measureView(360.0 * view / options.frames);
-      progress.show(view + 1);
+      progress.show((view + 1.0) / options.frames);
     }
   }
   scene.turnTo(0);

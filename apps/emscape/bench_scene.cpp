@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "apps/emscape/interrupt.h"
 #include "apps/emscape/paper_transfer.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
@@ -49,12 +50,12 @@ render::CameraSpec turned(render::CameraSpec spec, double angle_deg) {
 
 /// @param work  -> render::FrameReport
 template <class Work>
-Duration durationOf(const Place& place, const Work& work) {
+Duration durationOf(const ComputeTarget& target, const Work& work) {
   const std::clock_t cpu_begin = std::clock();
   Stopwatch watch;
   const render::FrameReport report = work();
   const double wall_ms = watch.lap_ms();
-  return {place.onGpu() ? report.total_ms() : wall_ms, wall_ms,
+  return {target.onGpu() ? report.total_ms() : wall_ms, wall_ms,
           1000.0 * static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC};
 }
 
@@ -84,20 +85,22 @@ Json transferJson(const render::TransferFunction& function) {
 
 }  // namespace
 
-BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& global, const Place& place)
-    : place_(place),
+BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& global,
+                       const ComputeTarget& target)
+    : target_(target),
       mode_(options.mode),
       camera_text_(options.camera),
       size_(render::parseImageSize(options.size)),
       camera_(render::parseCamera(options.camera)),
-      renderer_(place.rendererOptions()) {
+      renderer_(target.rendererOptions()) {
   renderer_.setSettings(settingsOf(options));
-  FrameSelection selection = options.selection;
+  playback::FrameSelection selection = options.selection;
   selection.first_only = selection.times.empty();
-  const std::unique_ptr<FrameSource> source = openFrameSource(selection, place, global);
+  const std::unique_ptr<playback::FrameSource> source =
+      playback::openFrameSource(selection, target, progressSink(global), &stopFlag());
   name_ = source->name();
   volume_ = source->frame(0).volume;
-  for (const std::string& warning : source->warnings()) logWarning(warning);
+  logWarnings(source->warnings());
   renderer_.setVolume(volume_);
   renderer_.setTransferFunction(functionFor(volume_.info(), options.transfer));
   turnTo(0);
@@ -108,11 +111,11 @@ void BenchScene::turnTo(double angle_deg) {
 }
 
 Duration BenchScene::draw(const render::FramePlan& plan, render::FrameReport& report) {
-  return durationOf(place_, [&] { return report = renderer_.draw(plan, size_); });
+  return durationOf(target_, [&] { return report = renderer_.draw(plan, size_); });
 }
 
 Duration BenchScene::restore() {
-  return durationOf(place_, [&] { return renderer_.restore(); });
+  return durationOf(target_, [&] { return renderer_.restore(); });
 }
 
 render::RayLoad BenchScene::loadOf(const std::vector<render::Lattice>& pixels) const {
@@ -123,7 +126,7 @@ render::RayLoad BenchScene::loadOf(const std::vector<render::Lattice>& pixels) c
 Json BenchScene::json() const {
   const Dims& dims = volume_.grid().dims;
   const render::SceneBox box = renderer_.sceneBox();
-  return {{"device", place_.device()},
+  return {{"device", target_.device()},
           {"threads", threadCount()},
           {"volume",
            {{"name", name_},
@@ -147,12 +150,12 @@ std::string BenchScene::summary() const {
   const Dims& dims = volume_.grid().dims;
   return fmt::format("{}: {} x {} x {} voxels, {} x {} pixels, {}, step {:g} voxel; device {} ({} threads)",
                      name_, dims.x, dims.y, dims.z, size_.width, size_.height, mode_,
-                     renderer_.settings().step_voxels, place_.device(), threadCount());
+                     renderer_.settings().step_voxels, target_.device(), threadCount());
 }
 
 std::unique_ptr<BenchScene> openBenchScene(const BenchSceneOptions& options, const GlobalOptions& global) {
-  return openAtPlace(global, options.device_volume, [&](const Place& place) {
-    return std::make_unique<BenchScene>(options, global, place);
+  return openOnTarget(global, options.device_volume, [&](const ComputeTarget& target) {
+    return std::make_unique<BenchScene>(options, global, target);
   });
 }
 

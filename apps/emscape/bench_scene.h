@@ -6,14 +6,15 @@
 
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
-#include "apps/emscape/frame_source.h"
+#include "apps/emscape/target.h"
+#include "emscape/playback/frame_source.h"
 #include "emscape/render/renderer.h"
 #include "render/ray_load.h"
 
 namespace emscape::app {
 
 struct BenchSceneOptions {
-  FrameSelection selection;
+  playback::FrameSelection selection;
   std::string size = "1200x900";
   std::string mode = "dvr";
   std::string camera = "orbit";
@@ -40,10 +41,10 @@ struct Duration {
 class BenchScene {
  public:
   /// @throws Error (usage, bad_input, device)
-  BenchScene(const BenchSceneOptions& options, const GlobalOptions& global, const Place& place);
+  BenchScene(const BenchSceneOptions& options, const GlobalOptions& global, const ComputeTarget& target);
 
   render::ImageSize size() const { return size_; }
-  bool onGpu() const { return place_.onGpu(); }
+  bool onGpu() const { return target_.onGpu(); }
   const render::Renderer& renderer() const { return renderer_; }
 
   /// Turns the camera about the vertical through its target, away from where the option put it. What was
@@ -68,7 +69,7 @@ class BenchScene {
   std::string summary() const;
 
  private:
-  const Place place_;
+  const ComputeTarget target_;
   const std::string mode_;
   const std::string camera_text_;
   const render::ImageSize size_;

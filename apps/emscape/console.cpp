@@ -1,12 +1,16 @@
 #include "apps/emscape/console.h"
 
 #include <fcntl.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <iostream>
+#include <memory>
 #include <mutex>
+#include <regex>
 #include <system_error>
 
 #include "emscape/base/error.h"
@@ -14,6 +18,8 @@
 
 namespace emscape::app {
 namespace {
+
+constexpr std::chrono::seconds kProgressInterval(10);
 
 std::mutex console_mutex;
 std::string shown_line;  // the progress line on the screen; empty if there is none
@@ -76,33 +82,113 @@ void writeMessage(const std::string& text) {
   std::clearerr(stderr);
 }
 
-ProgressBar::ProgressBar(const GlobalOptions& global, std::string task, int total)
+Progress::Progress(const GlobalOptions& global, std::string task)
     : task_(std::move(task)),
-      total_(total),
-      visible_(!global.quiet && isatty(STDERR_FILENO) != 0),
-      start_(std::chrono::steady_clock::now()) {
+      on_terminal_(isatty(STDERR_FILENO) != 0),
+      visible_(!global.quiet),
+      start_(Clock::now()),
+      told_(start_) {
   show(0);
 }
 
-ProgressBar::~ProgressBar() {
-  if (!visible_) return;
+Progress::~Progress() {
+  if (!visible_ || !on_terminal_) return;
   std::lock_guard<std::mutex> lock(console_mutex);
   writeMessage(clearLine());
   shown_line.clear();
 }
 
-void ProgressBar::show(int done) {
-  if (!visible_ || total_ <= 0) return;
-  constexpr int kWidth = 30;
-  const double fraction = static_cast<double>(done) / total_;
-  const int filled = static_cast<int>(fraction * kWidth);
-  const double elapsed_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-  const std::string left = done > 0 ? duration(elapsed_s / fraction - elapsed_s) + " left" : "";
+void Progress::show(double fraction) {
+  if (!visible_) return;
+  const Clock::time_point now = Clock::now();
+  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
+  const std::string left = fraction > 0 ? duration(elapsed_s / fraction - elapsed_s) + " left" : "";
   std::lock_guard<std::mutex> lock(console_mutex);
-  const std::string clear = clearLine();
-  shown_line =
-      fmt::format("{} [{:#<{}}{:.<{}}] {}/{} {}", task_, "", filled, "", kWidth - filled, done, total_, left);
-  writeMessage(clear + shown_line);
+  if (on_terminal_) {
+    constexpr int kWidth = 30;
+    const int filled = static_cast<int>(fraction * kWidth);
+    const std::string clear = clearLine();
+    shown_line = fmt::format("{} [{:#<{}}{:.<{}}] {:.0f} % {}", task_, "", filled, "", kWidth - filled,
+                             100 * fraction, left);
+    writeMessage(clear + shown_line);
+    return;
+  }
+  if (fraction <= 0 || fraction >= 1 || now - told_ < kProgressInterval) return;
+  told_ = now;
+  writeMessage(fmt::format("emscape: {}: {:.0f} %, {}\n", task_, 100 * fraction, left));
+}
+
+ProgressSink progressSink(const GlobalOptions& global) {
+  struct Current {
+    std::string step;
+    std::unique_ptr<Progress> progress;
+  };
+  return [&global, current = std::make_shared<Current>()](const std::string& step, double fraction) {
+    if (!current->progress || current->step != step) {
+      current->progress.reset();  // clears its line before the next one draws its own
+      current->step = step;
+      current->progress = std::make_unique<Progress>(global, step);
+    }
+    current->progress->show(fraction);
+    if (fraction >= 1) current->progress.reset();
+  };
+}
+
+std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings) {
+  static const std::regex kOfEmitter("emitter '([^']*)': (.*)");
+  static const std::regex kNumber(R"(\b\d+(\.\d+)?\b)");
+  struct Kind {
+    std::string form;  // the text with '#' for each number
+    std::vector<std::string> emitters;
+    std::vector<std::vector<std::string>> numbers;  // by place in the text, one per emitter
+  };
+  std::vector<Kind> kinds;
+  for (const std::string& warning : warnings) {
+    std::smatch parts;
+    if (!std::regex_match(warning, parts, kOfEmitter)) {
+      kinds.push_back({warning, {}, {}});
+      continue;
+    }
+    const std::string text = parts[2];
+    const std::string form = std::regex_replace(text, kNumber, "#");
+    auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& known) {
+      return known.form == form && !known.emitters.empty();
+    });
+    if (kind == kinds.end()) kind = kinds.insert(kinds.end(), Kind{form, {}, {}});
+    kind->emitters.push_back("'" + parts[1].str() + "'");
+    std::size_t place = 0;
+    for (std::sregex_iterator number(text.begin(), text.end(), kNumber), end; number != end;
+         ++number, ++place) {
+      if (kind->numbers.size() <= place) kind->numbers.emplace_back();
+      kind->numbers[place].push_back(number->str());
+    }
+  }
+  std::vector<std::string> lines;
+  for (const Kind& kind : kinds) {
+    if (kind.emitters.empty()) {
+      lines.push_back(kind.form);
+      continue;
+    }
+    std::string line =
+        fmt::format("emitter{} {}: ", kind.emitters.size() > 1 ? "s" : "", fmt::join(kind.emitters, ", "));
+    std::size_t place = 0;
+    for (const char character : kind.form) {
+      if (character != '#' || place >= kind.numbers.size()) {
+        line += character;
+        continue;
+      }
+      const std::vector<std::string>& numbers = kind.numbers[place++];
+      const bool same =
+          std::all_of(numbers.begin(), numbers.end(), [&](const auto& n) { return n == numbers.front(); });
+      line += same ? numbers.front() : fmt::format("{}", fmt::join(numbers, ", "));
+    }
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+void logWarnings(const std::vector<std::string>& warnings) {
+  for (const std::string& line : joinedWarnings(warnings)) logWarning(line);
 }
 
 }  // namespace emscape::app

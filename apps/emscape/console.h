@@ -1,4 +1,4 @@
-/// Standard output and error: results, log lines, a progress bar.
+/// Standard output and error: results, log lines, progress.
 #pragma once
 
 #include <fmt/core.h>
@@ -6,8 +6,10 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "apps/emscape/command.h"
+#include "emscape/base/progress.h"
 
 namespace emscape::app {
 
@@ -38,23 +40,35 @@ void printMessage(fmt::format_string<Arguments...> format, Arguments&&... argume
   writeMessage(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-/// A line on standard error that says what is being done, how far it is and how long it will take. Only on a
-/// terminal, and not with --quiet; log lines stand above it. One thread uses it.
-class ProgressBar {
+/// Tells on standard error what is being done, how far it is and how long it will take: on a terminal in a
+/// line that is rewritten, with log lines above it; elsewhere in a line every ten seconds. Not with --quiet.
+/// One thread uses it.
+class Progress {
  public:
-  ProgressBar(const GlobalOptions& global, std::string task, int total);
-  ~ProgressBar();
-  ProgressBar(const ProgressBar&) = delete;
-  ProgressBar& operator=(const ProgressBar&) = delete;
+  Progress(const GlobalOptions& global, std::string task);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
 
-  /// @param done  0..total
-  void show(int done);
+  /// @param fraction  of the work that is done, 0..1
+  void show(double fraction);
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   const std::string task_;
-  const int total_;
+  const bool on_terminal_;
   const bool visible_;
-  const std::chrono::steady_clock::time_point start_;
+  const Clock::time_point start_;
+  Clock::time_point told_;  // the last line that stays
 };
+
+/// A Progress for the work of a library: a new one for each step that it names. Kept by the sink.
+ProgressSink progressSink(const GlobalOptions& global);
+
+/// Logs warnings. Those that differ only in the emitter and in numbers become one that names all of them.
+void logWarnings(const std::vector<std::string>& warnings);
+/// The lines of logWarnings().
+std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings);
 
 }  // namespace emscape::app

@@ -7,9 +7,9 @@
 
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
-#include "apps/emscape/inputs.h"
-#include "apps/emscape/volume_input.h"
 #include "emscape/emfield/field_solver.h"
+#include "emscape/playback/inputs.h"
+#include "emscape/playback/volume_input.h"
 #include "emscape/scenario/antenna_shapes.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/volume/file.h"
@@ -104,14 +104,14 @@ Json describeVolume(const volume::DenseVolume& volume) {
 /// The first step's volumes; of a series also its steps.
 Json describeVolumeFiles(const std::string& path) {
   std::string quantity;
-  const std::vector<VolumeFile> files = volumeFilesOf(path, quantity);
+  const std::vector<playback::VolumeFile> files = playback::volumeFilesOf(path, quantity);
   Json volumes = Json::array();
   for (const volume::DenseVolume& volume : volume::listVolume(files.front().file).volumes) {
     volumes.push_back(describeVolume(volume::readVolume(files.front().file, volume.info.quantity)));
   }
   Json json{{"kind", "volume"}, {"file", path}, {"steps", files.size()}};
   json["times_s"] = Json::array();
-  for (const VolumeFile& file : files) json["times_s"].push_back(file.time_s);
+  for (const playback::VolumeFile& file : files) json["times_s"].push_back(file.time_s);
   json["volumes"] = volumes;
   return json;
 }
@@ -166,14 +166,14 @@ void printText(const Json& json, int depth) {
 }
 
 Json describe(const std::string& file) {
-  switch (inputKindOf(file)) {
-    case InputKind::scenario:
+  switch (playback::inputKindOf(file)) {
+    case playback::InputKind::scenario:
       return describeScenario(file);
-    case InputKind::volume:
+    case playback::InputKind::volume:
       return describeVolumeFiles(file);
-    case InputKind::elevation:
+    case playback::InputKind::elevation:
       return describeElevation(file);
-    case InputKind::antenna:
+    case playback::InputKind::antenna:
       break;
   }
   return describeAntenna(file);

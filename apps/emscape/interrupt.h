@@ -1,22 +1,20 @@
-/// Stopping in an orderly way on SIGINT and SIGTERM.
+/// Stopping in an orderly way on SIGINT, SIGTERM and SIGHUP.
 #pragma once
 
-#include "emscape/base/progress.h"
+#include "emscape/playback/stop.h"
 
 namespace emscape::app {
 
-/// Makes the first SIGINT or SIGTERM set stopFlag(); a second one ends the program at once.
+/// Makes the first SIGINT, SIGTERM or SIGHUP set stopFlag(); a second one ends the program at once. A signal
+/// that the program was started to ignore stays ignored.
 void catchInterrupts();
 
 /// Set once the user wants the program to stop.
 const StopFlag& stopFlag();
+/// The signal that set it; 0 before.
+int caughtSignal();
 
-/// Thrown between two steps of the work after a signal. What is finished stays.
-struct Interrupted {
-  int signal = 0;
-};
-
-/// @throws Interrupted if stopFlag() is set
+/// @throws playback::Stopped if stopFlag() is set
 void stopIfInterrupted();
 
 }  // namespace emscape::app

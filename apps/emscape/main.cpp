@@ -61,9 +61,9 @@ int run(const Action& action) {
     const int status = action();
     finishResult();
     return status;
-  } catch (const Interrupted& interrupted) {
-    printMessage("emscape: stopped by signal {}; finished files stay\n", interrupted.signal);
-    return 128 + interrupted.signal;
+  } catch (const playback::Stopped&) {
+    printMessage("emscape: stopped by signal {}; finished files stay\n", caughtSignal());
+    return 128 + caughtSignal();
   } catch (const Error& error) {
     return fail(error.code(), error.what() + optionText(error.hint()));
   } catch (const std::bad_alloc&) {

@@ -8,24 +8,37 @@
 #include <memory>
 #include <optional>
 
-#include "apps/emscape/background_writer.h"
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
-#include "apps/emscape/frame_source.h"
-#include "apps/emscape/painter.h"
-#include "apps/emscape/picture_sink.h"
-#include "apps/emscape/playback.h"
-#include "apps/emscape/playback_report.h"
+#include "apps/emscape/interrupt.h"
+#include "apps/emscape/real_time_report.h"
+#include "apps/emscape/target.h"
+#include "apps/emscape/value_range.h"
 #include "base/stopwatch.h"
+#include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
+#include "emscape/playback/background_writer.h"
+#include "emscape/playback/frame_source.h"
+#include "emscape/playback/painter.h"
+#include "emscape/playback/picture_sink.h"
+#include "emscape/playback/real_time_loop.h"
 #include "render/reconstruction.h"
 
 namespace emscape::app {
 namespace {
 
+using playback::BackgroundWriter;
+using playback::Display;
+using playback::FrameSource;
+using playback::Painter;
+using playback::PictureSink;
+using playback::PictureStyle;
+using playback::RealTimeLoop;
+using playback::RealTimeOptions;
+
 struct RenderOptions {
-  FrameSelection selection;
+  playback::FrameSelection selection;
   std::vector<std::string> outputs;
   std::string size = "1280x720";
   std::string mode = "dvr";
@@ -56,24 +69,24 @@ struct RenderOptions {
 };
 
 /// The options that say how pictures look, read: wrong ones are told before anything is computed.
-Look lookOf(const RenderOptions& options) {
-  Look look;
-  look.size = render::parseImageSize(options.size);
-  look.camera = render::parseCamera(options.camera);
-  look.theme = render::parseTheme(options.theme);
-  look.settings.mode = render::parseCompositingMode(options.mode);
-  look.settings.step_voxels = options.step_voxels;
-  look.settings.mida_gamma = options.mida_gamma;
-  look.settings.iso_value = options.iso_value;
-  look.settings.iso_opacity = options.iso_opacity;
-  look.settings.shading = options.shading;
-  look.settings.exact = options.exact;
-  look.settings.vertical_exaggeration = options.exaggeration;
-  look.transfer = options.transfer;
-  look.colors_span_range = !options.range.empty();
-  look.show_terrain = options.show_terrain;
-  look.show_emitters = options.show_emitters;
-  return look;
+PictureStyle styleOf(const RenderOptions& options) {
+  PictureStyle style;
+  style.size = render::parseImageSize(options.size);
+  style.camera = render::parseCamera(options.camera);
+  style.theme = render::parseTheme(options.theme);
+  style.settings.mode = render::parseCompositingMode(options.mode);
+  style.settings.step_voxels = options.step_voxels;
+  style.settings.mida_gamma = options.mida_gamma;
+  style.settings.iso_value = options.iso_value;
+  style.settings.iso_opacity = options.iso_opacity;
+  style.settings.shading = options.shading;
+  style.settings.exact = options.exact;
+  style.settings.vertical_exaggeration = options.exaggeration;
+  style.transfer = options.transfer;
+  style.colors_span_range = !options.range.empty();
+  style.show_terrain = options.show_terrain;
+  style.show_emitters = options.show_emitters;
+  return style;
 }
 
 bool isOnePicture(const std::vector<std::string>& outputs) {
@@ -84,26 +97,29 @@ bool isOnePicture(const std::vector<std::string>& outputs) {
 
 using Sinks = std::vector<std::unique_ptr<PictureSink>>;
 
-Sinks openSinks(const RenderOptions& options, const Look& look, const FrameSource& source, int pictures,
-                double frames_per_s) {
+Sinks openSinks(const RenderOptions& options, const PictureStyle& style, const FrameSource& source,
+                int pictures, double frames_per_s) {
   Sinks sinks;
   for (const std::string& output : options.outputs) {
-    sinks.push_back(makePictureSink(output, source.name(), pictures, look.size, frames_per_s));
+    removeStaleTemporariesOf(output);
+    sinks.push_back(playback::makePictureSink(output, source.name(), pictures, style.size, frames_per_s));
   }
   return sinks;
 }
 
 /// What is drawn, and who draws it; the first frame is set.
 struct Stage {
-  Place place;
+  ComputeTarget target;
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<Painter> painter;
 };
 
-Stage openStage(const RenderOptions& options, const Look& look, const GlobalOptions& global) {
-  return openAtPlace(global, options.device_volume, [&](const Place& place) {
-    Stage stage{place, openFrameSource(options.selection, place, global), nullptr};
-    stage.painter = std::make_unique<Painter>(look, *stage.source, place);
+Stage openStage(const RenderOptions& options, const PictureStyle& style, const GlobalOptions& global) {
+  return openOnTarget(global, options.device_volume, [&](const ComputeTarget& target) {
+    Stage stage{target,
+                playback::openFrameSource(options.selection, target, progressSink(global), &stopFlag()),
+                nullptr};
+    stage.painter = std::make_unique<Painter>(style, *stage.source, target);
     stage.painter->setFrame(stage.source->frame(0));
     return stage;
   });
@@ -111,24 +127,27 @@ Stage openStage(const RenderOptions& options, const Look& look, const GlobalOpti
 
 int renderPictures(RenderOptions options, const GlobalOptions& global) {
   if (options.outputs.empty()) throw Error(ErrorCode::usage, "--output is required (but for --realtime)");
-  const Look look = lookOf(options);
+  const PictureStyle style = styleOf(options);
   // Files are not in a hurry: `auto` casts every pixel.
   const render::FramePlan plan{
       options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays),
       render::parseInterpolation(options.interpolate)};
   if (!options.range.empty()) options.selection.range = parseRange(options.range);
   options.selection.first_only = options.selection.times.empty() && isOnePicture(options.outputs);
-  const Stage stage = openStage(options, look, global);
+  const Stage stage = openStage(options, style, global);
   const std::unique_ptr<FrameSource>& source = stage.source;
   Painter& painter = *stage.painter;
   const std::string note = fmt::format("{}, {} rays, step {:g} voxel", options.mode,
                                        render::toString(plan.pattern), options.step_voxels);
-  const Sinks sinks = openSinks(options, look, *source, source->count(), options.frames_per_s.value_or(10));
+  const Sinks sinks = openSinks(options, style, *source, source->count(), options.frames_per_s.value_or(10));
 
+  logInfo(fmt::format("drawing {} picture{} of {}x{} into {}", source->count(),
+                      source->count() == 1 ? "" : "s", style.size.width, style.size.height,
+                      fmt::join(options.outputs, ", ")));
   Stopwatch watch;
   double cast_ms = 0;
   {
-    ProgressBar progress(global, "drawing", source->count());
+    Progress progress(global, "drawing");
     BackgroundWriter writer(2);  // PNG and video are packed while the next picture is cast
     for (int index = 0; index < source->count(); ++index) {
       if (index > 0) painter.setFrame(source->frame(index));
@@ -136,17 +155,17 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
       writer.push([&sinks, index, picture = painter.picture(note)] {
         for (const auto& sink : sinks) sink->add(index + 1, picture, 1);
       });
-      progress.show(index + 1);
+      progress.show(static_cast<double>(index + 1) / source->count());
     }
     writer.finish();
   }
   for (const auto& sink : sinks) sink->finish();
-  for (const std::string& warning : source->warnings()) logWarning(warning);
+  logWarnings(source->warnings());
 
   const double seconds = watch.lap_ms() / 1000;
   if (global.json) {
-    printJson({{"device", stage.place.device()},
-               {"size", {look.size.width, look.size.height}},
+    printJson({{"device", stage.target.device()},
+               {"size", {style.size.width, style.size.height}},
                {"mode", options.mode},
                {"frames", source->count()},
                {"outputs", options.outputs},
@@ -159,33 +178,33 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
   return 0;
 }
 
-PlaybackOptions playbackOptionsOf(const RenderOptions& options) {
-  PlaybackOptions playback;
+RealTimeOptions realTimeOptionsOf(const RenderOptions& options) {
+  RealTimeOptions loop;
   constexpr double kBudget_ms = 40;  // the paper's bound of real time
-  playback.frames_per_s = options.frames_per_s.value_or(1000 / options.budget_ms.value_or(kBudget_ms));
-  playback.speed = options.speed;
-  playback.duration_s = options.duration_s;
-  playback.orbit_rate_deg_s = options.orbit_rate_deg_s;
-  playback.verify = options.verify;
-  if (options.rays != "auto") playback.controller.pattern = render::parsePattern(options.rays);
-  playback.controller.interpolation = render::parseInterpolation(options.interpolate);
-  playback.controller.budget_ms = options.budget_ms.value_or(1000 / playback.frames_per_s);
-  playback.controller.epsilon_ms = options.epsilon_ms;
-  return playback;
+  loop.frames_per_s = options.frames_per_s.value_or(1000 / options.budget_ms.value_or(kBudget_ms));
+  loop.speed = options.speed;
+  loop.duration_s = options.duration_s;
+  loop.orbit_rate_deg_s = options.orbit_rate_deg_s;
+  loop.verify = options.verify;
+  if (options.rays != "auto") loop.controller.pattern = render::parsePattern(options.rays);
+  loop.controller.interpolation = render::parseInterpolation(options.interpolate);
+  loop.controller.budget_ms = options.budget_ms.value_or(1000 / loop.frames_per_s);
+  loop.controller.epsilon_ms = options.epsilon_ms;
+  return loop;
 }
 
 int playInRealTime(RenderOptions options, const GlobalOptions& global) {
-  const Look look = lookOf(options);
-  const PlaybackOptions playback_options = playbackOptionsOf(options);
+  const PictureStyle style = styleOf(options);
+  const RealTimeOptions loop_options = realTimeOptionsOf(options);
   if (!options.range.empty()) options.selection.range = parseRange(options.range);
-  const Stage stage = openStage(options, look, global);
+  const Stage stage = openStage(options, style, global);
   const std::unique_ptr<FrameSource>& source = stage.source;
   constexpr int kSeveral = 2;
-  const Sinks sinks = openSinks(options, look, *source, kSeveral, playback_options.frames_per_s);
+  const Sinks sinks = openSinks(options, style, *source, kSeveral, loop_options.frames_per_s);
 
   // Long enough for the moments when packing lags behind.
   constexpr long long kWaitingBytes = 256LL << 20;
-  BackgroundWriter writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * look.size.count()))));
+  BackgroundWriter writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * style.size.count()))));
   int number = 0;
   Display display;
   if (!sinks.empty()) {
@@ -195,17 +214,21 @@ int playInRealTime(RenderOptions options, const GlobalOptions& global) {
       });
     };
   }
-  Playback playback(playback_options, look, *source, *stage.painter, display);
-  const PlaybackReport report = playback.play([](const PlaybackEvent& event) { logInfo(lineOf(event)); });
+  playback::SystemClock clock;
+  RealTimeLoop loop(loop_options, style, *source, *stage.painter, display, clock, &stopFlag());
+  const RealTimeReport report = loop.play([](const RealTimeEvent& event) { logInfo(lineOf(event)); });
   writer.finish();
   for (const auto& sink : sinks) sink->finish();
-  for (const std::string& warning : source->warnings()) logWarning(warning);
+  logWarnings(source->warnings());
 
   logInfo(summaryOf(report));
   if (global.json) {
-    Json json{{"device", stage.place.device()}, {"size", {look.size.width, look.size.height}},
-              {"mode", options.mode},           {"rays", options.rays},
-              {"outputs", options.outputs},     {"budget_ms", playback_options.controller.budget_ms}};
+    Json json{{"device", stage.target.device()},
+              {"size", {style.size.width, style.size.height}},
+              {"mode", options.mode},
+              {"rays", options.rays},
+              {"outputs", options.outputs},
+              {"budget_ms", loop_options.controller.budget_ms}};
     json.update(toJson(report));
     printJson(json);
   }
@@ -218,7 +241,7 @@ int playInRealTime(RenderOptions options, const GlobalOptions& global) {
 }
 
 /// Options that only --realtime takes.
-void addPlaybackOptions(CLI::App& command, RenderOptions& options) {
+void addRealTimeOptions(CLI::App& command, RenderOptions& options) {
   CLI::Option* realtime = command.add_flag(
       "--realtime", options.realtime,
       "Play against the wall clock, without a window: interpolated while it changes, exact when it settles");
@@ -295,7 +318,7 @@ Examples:
   command->add_option("--iso-opacity", options->iso_opacity, "Opacity of the isosurface")
       ->check(CLI::Range(0.0, 1.0));
   command->add_flag("--shading", options->shading, "Light on the fog of dvr and mida; iso always has it");
-  command->add_option("--theme", options->theme, "Background")->check(CLI::IsMember({"dark", "light"}));
+  command->add_option("--theme", options->theme, "AsyncTask")->check(CLI::IsMember({"dark", "light"}));
   command
       ->add_option("--fps", options->frames_per_s,
                    "Frames a second of a video (default 10); with --realtime: at most so many are shown")
@@ -306,7 +329,7 @@ Examples:
   command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,
                     "Compute although elevation data is missing; the holes are drawn as such");
   addDeviceVolumeOption(*command, options->device_volume);
-  addPlaybackOptions(*command, *options);
+  addRealTimeOptions(*command, *options);
   command->callback([options, &global, &action] {
     action = [options, &global] {
       return options->realtime ? playInRealTime(*options, global) : renderPictures(*options, global);

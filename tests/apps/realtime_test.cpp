@@ -1,5 +1,5 @@
-// emscape render --realtime: the loop from the field to the settled picture. No test asserts speed: the
-// machine may be busy with others.
+// emscape render --realtime, end to end. What happens when is tested against a clock of the tests' own in
+// tests/playback/real_time_loop_test.cpp; no test asserts speed: the machine may be busy with others.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -55,83 +55,6 @@ TEST(Realtime, GoesFromBusyToRestoreToIdleAtEveryStepAndSettlesExactly) {
     EXPECT_GT(report.at("settled"), 0);
     expectSettledPicturesAreExact(report);
   }
-}
-
-TEST(Realtime, ABusyFrameAndItsRestorationCastEveryPixelOnce) {
-  const json report = play({"--rays", "quarter", "--speed", "4", "--epsilon", "10"});
-  long long busy_rays = 0;
-  for (const json& frame : report.at("frames")) {
-    if (frame.at("state") == "BUSY") busy_rays = frame.at("rays");
-    if (frame.at("state") == "RESTORE" && frame.at("restored")) {
-      EXPECT_EQ(busy_rays, 49 * 38);
-      EXPECT_EQ(busy_rays + frame.at("rays").get<long long>(), 97 * 75);
-    }
-  }
-}
-
-TEST(Realtime, AFullFrameSettlesWithoutARestoration) {
-  const json report = play({"--rays", "full", "--speed", "4"});
-  EXPECT_THAT(all(report, "state"), Contains("IDLE"));
-  EXPECT_THAT(all(report, "state"), Not(Contains("RESTORE")));
-  expectSettledPicturesAreExact(report);
-}
-
-TEST(Realtime, AMovingCameraKeepsItBusy) {
-  const json report =
-      play({"--rays", "columns", "--orbit-rate", "30", "--duration", "1", "--epsilon", "1000"});
-  EXPECT_THAT(all(report, "state"), Each("BUSY"));
-  EXPECT_GT(report.at("busy_frames"), 1);
-  EXPECT_EQ(report.at("due"), 25);
-}
-
-TEST(Realtime, EventsDuringARestorationAbortItAndTheNextFrameBegins) {
-  // Slow rays, restorations that begin at once, and a camera that leaves them half of the time that they
-  // need.
-  const auto orbit = [](double frames_per_s) {
-    return play({"--rays", "quarter", "--orbit-rate", "30", "--duration", "2", "--epsilon", "0", "--fps",
-                 std::to_string(frames_per_s), "--step", "0.05", "--exact"},
-                quick(), "640x480");
-  };
-  std::vector<double> busy_ms;
-  const json unhurried = orbit(5);
-  for (const json& frame : unhurried.at("frames")) {
-    if (frame.at("state") == "BUSY") busy_ms.push_back(frame.at("cast_ms"));
-  }
-  ASSERT_FALSE(busy_ms.empty());
-  std::nth_element(busy_ms.begin(), busy_ms.begin() + static_cast<std::ptrdiff_t>(busy_ms.size() / 2),
-                   busy_ms.end());
-  const json report = orbit(std::clamp(1000 / (2 * busy_ms[busy_ms.size() / 2]), 0.5, 240.0));
-
-  const int aborted = report.at("restores").at("aborted");
-  EXPECT_GT(aborted, 0);
-  int begun_after_abort = 0;
-  for (const json& frame : report.at("frames")) {
-    if (frame.at("abort_latency_ms").is_null()) continue;
-    ++begun_after_abort;
-    EXPECT_EQ(frame.at("state"), "BUSY");
-    EXPECT_LT(frame.at("abort_latency_ms"), 1000);
-  }
-  EXPECT_GE(begun_after_abort, aborted - 1);  // the last one may have been stopped by the end
-  EXPECT_LE(begun_after_abort, aborted);
-  expectSettledPicturesAreExact(report);
-}
-
-TEST(Realtime, StepsThatAreShownComeInOrderAndInTime) {
-  const json report = play({"--speed", "8"});
-  double scenario_s = 0;
-  for (const json& frame : report.at("frames")) {
-    EXPECT_GE(frame.at("scenario_s"), scenario_s);
-    scenario_s = frame.at("scenario_s");
-    EXPECT_LE(scenario_s, frame.at("time_s").get<double>() * 8 + 1e-6);
-  }
-  EXPECT_GT(scenario_s, 0);
-  EXPECT_EQ(report.at("due"), 5);
-}
-
-TEST(Realtime, TimesSayWhenTheFieldIsNew) {
-  const json report = play({"--times", "0:1:0.1", "--rays", "quarter"});
-  EXPECT_EQ(report.at("due"), 11);
-  EXPECT_EQ(report.at("field_updates").get<int>() + report.at("field_steps_skipped").get<int>(), 11);
 }
 
 TEST(Realtime, AScenarioInWhichNothingChangesIsDrawnOnce) {

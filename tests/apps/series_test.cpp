@@ -37,7 +37,7 @@ TEST(Simulate, WritesEveryFormatOfEveryStepAndNothingElse) {
       EXPECT_THAT(files, Contains("s/quick_" + std::string(step) + ending));
     }
   }
-  EXPECT_THAT(files, IsSupersetOf({"s/quick.pvd", "s/series.json"}));
+  EXPECT_THAT(files, IsSupersetOf({"s/quick.pvd", "s/series.json", "s/series.steps"}));
   EXPECT_THAT(files, Not(Contains(HasSubstr(".part-"))));
   EXPECT_EQ(json::parse(result.out).at("steps"), 3);
 }
@@ -78,7 +78,8 @@ TEST(Simulate, ForceLeavesNothingOfTheSeriesBefore) {
   ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:3:1"}).status, 0);
   writeFile(folder / "s/notes.txt", "mine");
   ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0", "--force"}).status, 0);
-  EXPECT_THAT(folder.files(), ElementsAre("s/notes.txt", "s/quick_0001.vdb", "s/series.json"));
+  EXPECT_THAT(folder.files(),
+              ElementsAre("s/notes.txt", "s/quick_0001.vdb", "s/series.json", "s/series.steps"));
 }
 
 TEST(Simulate, ResumeRefusesOtherOptionsAndSaysWhich) {
@@ -139,31 +140,81 @@ TEST(Simulate, AFullDiskIsOneErrorAndLeavesWhatWasFinished) {
   EXPECT_THAT(folder.files(), ElementsAre("s/series.json"));
 }
 
-TEST(Simulate, ADamagedStateIsRefused) {
+TEST(Simulate, ADamagedStateOrJournalIsOneErrorThatNamesFileAndLine) {
   const TemporaryFolder folder;
   const Arguments arguments{"simulate", quick(), "-o", folder / "s", "--times", "0:1:1"};
   ASSERT_EQ(run(arguments).status, 0);
-  const std::string file = folder / "s/series.json";
-  const std::string whole = readFile(file);
   Arguments resume = arguments;
   resume.emplace_back("--resume");
-  const std::string finished = "\"finished_steps\": 2";
-  ASSERT_NE(whole.find(finished), std::string::npos);
+  const std::string state = readFile(folder / "s/series.json");
+  for (const char* key : {"ranges", "recipe"}) {
+    json damaged = json::parse(state);
+    damaged[key] = key == std::string("ranges") ? json::object() : json::array();
+    writeFile(folder / "s/series.json", damaged.dump());
+    const ProgramResult result = run(resume);
+    EXPECT_EQ(result.status, 3) << key;
+    EXPECT_THAT(result.err, HasSubstr("series.json: "));
+  }
+  writeFile(folder / "s/series.json", state);
+  const std::string journal = readFile(folder / "s/series.steps");
   for (const char* number : {"-3", "-2000000000", "99", "1e300", "null"}) {
-    std::string damaged = whole;
-    damaged.replace(damaged.find(finished), finished.size(), std::string("\"finished_steps\": ") + number);
-    writeFile(file, damaged);
+    std::string damaged = journal;
+    damaged.replace(damaged.find("\"step\":2"), 8, std::string("\"step\":") + number);
+    writeFile(folder / "s/series.steps", damaged);
     const ProgramResult result = run(resume);
     EXPECT_EQ(result.status, 3) << number << ": " << result.err;
-    EXPECT_THAT(result.err, HasSubstr("series.json")) << number;
+    EXPECT_THAT(result.err, HasSubstr("series.steps:2: ")) << number;
   }
-  for (const char* key : {"ranges", "recipe"}) {
-    json damaged = json::parse(whole);
-    damaged[key] = key == std::string("ranges") ? json::object() : json::array();
-    writeFile(file, damaged.dump());
-    EXPECT_EQ(run(resume).status, 3) << key;
-  }
-  EXPECT_EQ(folder.files().size(), 3U);
+  EXPECT_EQ(folder.files().size(), 4U);
+}
+
+TEST(Simulate, ResumeRestoresAFileThatWasDeleted) {
+  const TemporaryFolder folder;
+  Arguments arguments{"simulate", quick(), "-o", folder / "s"};
+  ASSERT_EQ(run(arguments).status, 0);
+  const std::string before = readFile(folder / "s/quick_0003.vdb");
+  std::filesystem::remove(folder / "s/quick_0003.vdb");
+  arguments.insert(arguments.end(), {"--resume", "--json"});
+  const ProgramResult result = run(arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out).at("steps_computed"), 1);
+  EXPECT_THAT(result.err, HasSubstr("computed again"));
+  EXPECT_TRUE(readFile(folder / "s/quick_0003.vdb") == before);
+}
+
+TEST(Simulate, WithoutATerminalItSaysOnceWhatItDoesAndWhereItRuns) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run({"simulate", quick(), "-o", folder / "s"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto occurrences = [&](const std::string& text) {
+    int count = 0;
+    for (std::size_t at = result.err.find(text); at != std::string::npos; at = result.err.find(text, at + 1))
+      ++count;
+    return count;
+  };
+  EXPECT_EQ(occurrences("computing 5 steps of quick into "), 1) << result.err;
+  EXPECT_EQ(occurrences("running on the "), 1) << result.err;
+  EXPECT_EQ(occurrences("\r"), 0);
+}
+
+TEST(Simulate, WarningsThatSayTheSameOfSeveralEmittersAreOneLine) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run(
+      {"simulate", shippedScenario("jacksboro.yaml"), "-o", folder / "s", "--times", "0", "--format", "raw"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::size_t first = result.err.find("nearer than its far field");
+  ASSERT_NE(first, std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("nearer than its far field", first + 1), std::string::npos) << result.err;
+}
+
+TEST(Simulate, AHangUpStopsItLikeCtrlC) {
+  const TemporaryFolder folder;
+  RunningProgram program({"simulate", longScenario(folder, 80), "-o", folder / "s", "--format", "raw"});
+  while (!std::filesystem::exists(folder / "s/quick_0002.raw"))
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  program.signal(SIGHUP);
+  EXPECT_EQ(program.wait().status, 128 + SIGHUP);
+  EXPECT_THAT(folder.files(), Not(Contains(HasSubstr(".part-"))));
 }
 
 TEST(Simulate, ASecondProcessIsRefusedWhileOneWritesTheFolder) {
@@ -243,6 +294,16 @@ TEST(Render, AVideoThatDoesNotFitOnTheDiskIsAnErrorAndNoFile) {
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.err, HasSubstr("v.mp4: ffmpeg"));
   EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Render, RemovesWhatAKilledOneLeftOfItsOutput) {
+  const TemporaryFolder folder;
+  writeFile(folder / "p.png.part-999999999", "killed");
+  writeFile(folder / "q.png.part-999999999", "not its own");
+  const ProgramResult result = run({"render", quick(), "-o", folder / "p.png", "--size", "64x48"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(folder.files(), ElementsAre("p.png", "q.png.part-999999999"));
+  EXPECT_THAT(result.err, HasSubstr("drawing 1 picture of 64x48 into "));
 }
 
 TEST(Render, WithoutFfmpegAVideoIsAClearErrorAndNoFile) {

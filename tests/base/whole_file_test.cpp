@@ -129,6 +129,53 @@ TEST_F(WholeFile, TemporariesOfKilledRunsAreKnownAndRemoved) {
   EXPECT_EQ(removeStaleTemporaries(folder_ / "none"), 0);
 }
 
+TEST_F(WholeFile, OnlyTheTemporariesOfAFileThatDeadProcessesLeftAreRemovedWithIt) {
+  const fs::path mine = temporaryFor(folder_ / "film.mp4");
+  std::ofstream(mine) << "running";
+  std::ofstream(folder_ / "film.mp4.part-999999999") << "killed";
+  std::ofstream(folder_ / "other.mp4.part-999999999") << "not asked for";
+  std::ofstream(folder_ / "film.mp4.part-notes") << "of another program";
+  removeStaleTemporariesOf(folder_ / "film.mp4");
+  EXPECT_FALSE(fs::exists(folder_ / "film.mp4.part-999999999"));
+  EXPECT_EQ(filesInFolder(), 3);
+  EXPECT_NO_THROW(removeStaleTemporariesOf(folder_ / "none" / "film.mp4"));
+}
+
+TEST_F(WholeFile, PatchesReplaceBytesWhereTheyLie) {
+  writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "0123456789"; });
+  patchFile(folder_ / "a", {{2, "xy"}, {9, "z"}});
+  EXPECT_EQ(textOf(folder_ / "a"), "01xy45678z");
+  EXPECT_THAT(errorOf([&] {
+                patchFile(folder_ / "none", {{0, "x"}});
+              }),
+              HasSubstr("none: cannot write: No such file or directory"));
+}
+
+TEST_F(WholeFile, AppendingMakesTheFileAndAddsToIt) {
+  appendToFile(folder_ / "a", "one\n");
+  appendToFile(folder_ / "a", "two\n");
+  EXPECT_EQ(textOf(folder_ / "a"), "one\ntwo\n");
+  EXPECT_THAT(errorOf([&] { appendToFile(folder_ / "none" / "a", "x"); }), HasSubstr("cannot write"));
+}
+
+TEST_F(WholeFile, ADigestIsTheSizeAndTheCrc32OfTheContent) {
+  writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "123456789"; });
+  const FileDigest digest = digestOf(folder_ / "a");
+  EXPECT_EQ(digest.bytes, 9U);
+  EXPECT_EQ(digest.crc32, 0xcbf43926U);  // the check value of the CRC-32 of ISO 3309
+  writeWhole(folder_ / "large", [](std::ostream& stream) { stream << std::string(3'000'001, 'x'); });
+  EXPECT_EQ(digestOf(folder_ / "large").bytes, 3'000'001U);
+  EXPECT_NE(digestOf(folder_ / "large"), digest);
+  writeWhole(folder_ / "empty", [](std::ostream&) {});
+  EXPECT_EQ(digestOf(folder_ / "empty"), (FileDigest{0, 0}));
+  try {
+    digestOf(folder_ / "none");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("none: cannot read: No such file or directory"));
+  }
+}
+
 TEST_F(WholeFile, ReadingNamesTheCause) {
   try {
     readWhole(folder_ / "none");

@@ -36,6 +36,22 @@ void writeVolumes(const std::filesystem::path& path, const std::vector<const Den
 /// @throws Error (bad_input)
 DenseVolume readVolume(const std::filesystem::path& path, const std::string& name = "");
 
+/// The range that the volume of one quantity is to state.
+struct StoredRange {
+  std::string quantity;
+  float min = 0, max = 0;
+};
+
+/// Changes info.range_min and range_max of volumes in a file that writeVolumes() wrote; the values are not
+/// touched. The result is byte-equal to a file that was written with these ranges. A .raw or .nvdb file's
+/// JSON beside it is written anew, whole; .vdb and .vti are patched where they lie (8 bytes a grid, or one
+/// text of fixed length a volume), so that a reader sees the old or the new range, and a file that was cut
+/// short by a crash of the machine is completed by the same call again.
+/// @param ranges  volumes that are not named keep theirs
+/// @throws Error (bad_input) for a format that is not written, a quantity that the file does not hold, or a
+/// file that states no range; (other) where writing fails
+void setStoredRange(const std::filesystem::path& path, const std::vector<StoredRange>& ranges);
+
 /// What a file holds.
 struct FileListing {
   std::string format;

@@ -19,4 +19,12 @@ struct ValueRange {
   }
 };
 
+/// Empty ranges are equal.
+inline bool operator==(const ValueRange& a, const ValueRange& b) {
+  return (a.empty() && b.empty()) || (a.min == b.min && a.max == b.max);
+}
+inline bool operator!=(const ValueRange& a, const ValueRange& b) {
+  return !(a == b);
+}
+
 }  // namespace emscape::volume

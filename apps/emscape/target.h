@@ -1,0 +1,32 @@
+/// Where a subcommand computes and draws.
+#pragma once
+
+#include <string>
+
+#include "apps/emscape/command.h"
+#include "emscape/base/backend.h"
+#include "emscape/base/log.h"
+#include "emscape/playback/compute_target.h"
+
+namespace emscape::app {
+
+using playback::ComputeTarget;
+
+/// --device-volume float|half|sparse
+void addDeviceVolumeOption(CLI::App& command, std::string& device_volume);
+/// The value of that option.
+volume::VoxelPrecision precisionOf(const std::string& device_volume);
+
+/// Opens what works where --backend says, and tells where that is; see withBackendFallback().
+/// @param open  (ComputeTarget) -> what is to be returned
+template <class Open>
+auto openOnTarget(const GlobalOptions& global, const std::string& device_volume, const Open& open) {
+  return withBackendFallback(
+      parseBackend(global.backend),
+      [&](const ResolvedBackend& choice) {
+        return open(ComputeTarget{choice, precisionOf(device_volume)});
+      },
+      [](const std::string& line) { logInfo(line); });
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,103 @@
+/// One piece of work at a time on a thread of its own, and an event that says when it is done.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+namespace emscape::playback {
+
+/// Wakes the one thread that waits for several others. Any thread may set it.
+class Event {
+ public:
+  void set() {
+    {
+      std::lock_guard<std::mutex> lock(mutex_);
+      set_ = true;
+    }
+    changed_.notify_one();
+  }
+  /// Returns when it was set since the last wait.
+  void wait() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return set_; });
+    set_ = false;
+  }
+  /// The same, or at `time`.
+  void waitUntil(std::chrono::steady_clock::time_point time) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait_until(lock, time, [this] { return set_; });
+    set_ = false;
+  }
+
+  /// Tells that work has begun at whose end finish() is called: a clock that is not the wall's can ask
+  /// whether there is anything to wait for.
+  void begin() { ++begun_; }
+  /// set(), at the end of work.
+  void finish() {
+    --begun_;
+    set();
+  }
+  bool hasWork() const { return begun_ > 0; }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool set_ = false;
+  std::atomic<int> begun_{0};
+};
+
+/// The owner starts work, asks whether it is done, and takes the result. One thread owns it.
+template <class Result>
+class AsyncTask {
+ public:
+  /// @param event  set at the end of the work; outlives this
+  explicit AsyncTask(Event& event) : event_(event) {}
+  /// Waits for the end of the work.
+  ~AsyncTask() {
+    if (thread_.joinable()) thread_.join();
+  }
+  AsyncTask(const AsyncTask&) = delete;
+  AsyncTask& operator=(const AsyncTask&) = delete;
+
+  /// Only when the last result was taken.
+  void start(std::function<Result()> work) {
+    done_ = false;
+    event_.begin();
+    thread_ = std::thread([this, work = std::move(work)] {
+      try {
+        result_ = work();
+      } catch (...) {
+        failure_ = std::current_exception();
+      }
+      done_ = true;
+      event_.finish();
+    });
+  }
+  /// Whether there is work that runs, or a result that was not taken.
+  bool active() const { return thread_.joinable(); }
+  bool done() const { return active() && done_; }
+  /// Waits for the end. Rethrows what the work threw.
+  Result take() {
+    thread_.join();
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+    Result result = std::move(*result_);
+    result_.reset();
+    return result;
+  }
+
+ private:
+  Event& event_;
+  std::thread thread_;
+  std::atomic<bool> done_{false};
+  std::optional<Result> result_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace emscape::playback

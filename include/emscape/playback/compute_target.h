@@ -1,0 +1,26 @@
+/// Where fields are computed and pictures are cast.
+#pragma once
+
+#include <string>
+
+#include "emscape/base/backend.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/render/renderer.h"
+#include "emscape/volume/device_volume.h"
+
+namespace emscape::playback {
+
+/// A processor, and how a GPU keeps volumes.
+struct ComputeTarget {
+  ResolvedBackend choice;
+  volume::VoxelPrecision precision = volume::VoxelPrecision::float32;
+
+  bool onGpu() const { return choice.backend == Backend::cuda; }
+  /// For reports: "cpu", or the name of the GPU.
+  const std::string& device() const { return choice.device; }
+  /// Options with this target in them. A field with sparse voxels is computed with dense ones.
+  emfield::FieldOptions fieldOptions() const;
+  render::RendererOptions rendererOptions() const;
+};
+
+}  // namespace emscape::playback

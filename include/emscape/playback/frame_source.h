@@ -1,0 +1,69 @@
+/// What is drawn, one instant after another: a scenario as it is computed, or volumes from files.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/base/progress.h"
+#include "emscape/playback/compute_target.h"
+#include "emscape/playback/field_series.h"
+#include "emscape/render/overlay.h"
+#include "emscape/volume/volume.h"
+
+namespace emscape::playback {
+
+/// One instant.
+struct Frame {
+  volume::Volume volume;
+  std::vector<render::Marker> markers;
+  bool changed = true;  ///< false: the volume's values are those of the frame asked for before
+};
+
+/// What to draw of an input.
+struct FrameSelection {
+  std::string input;                ///< scenario or volume file, .pvd, folder of volumes
+  std::string quantity;             ///< empty: the first
+  std::string times;                ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
+  bool first_only = false;          ///< without times: the first alone
+  std::optional<ValueRange> range;  ///< of the colours; none: that of the series
+  std::string scenario;             ///< beside volumes: whose ground and emitters are drawn; may be empty
+  bool allow_missing_terrain = false;
+};
+
+/// Instants in order of time. One thread at a time calls frame(); the other functions are safe beside it, but
+/// for warnings().
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  /// At least 1.
+  virtual int count() const = 0;
+  /// Of the scenario, ascending.
+  virtual double time_s(int index) const = 0;
+  /// The frame with index 0..count() - 1. @throws Error, Stopped
+  virtual Frame frame(int index) = 0;
+
+  /// For titles and names of files.
+  virtual std::string name() const = 0;
+  /// The scenario that the pictures show; null without one.
+  virtual const LoadedScenario* scene() const = 0;
+  /// What the models have to say about the frames so far.
+  virtual std::vector<std::string> warnings() const = 0;
+
+  /// The index whose time is nearest; the earlier of two as near. @param time_s  any, beyond the ends too
+  int nearestIndex(double time_s) const;
+  /// The frame nearest to a time. @throws Error, Stopped
+  Frame frameAt(double time_s) { return frame(nearestIndex(time_s)); }
+};
+
+/// @param target    where a scenario's field is computed
+/// @param progress  told while the range of the colours is searched; may be empty
+/// @param stop      ends the work of this call and of frame() with Stopped; may be null, else outlives the
+/// source
+/// @throws Error (usage, bad_input, device), Stopped
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const ComputeTarget& target,
+                                             const ProgressSink& progress = {},
+                                             const StopFlag* stop = nullptr);
+
+}  // namespace emscape::playback

@@ -1,0 +1,27 @@
+/// What of a scenario is drawn besides the field: the ground and the emitters.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "emscape/playback/inputs.h"
+#include "emscape/render/height_field.h"
+#include "emscape/render/legend.h"
+#include "emscape/render/overlay.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/volume/grid.h"
+
+namespace emscape::playback {
+
+/// The ground below a grid, at about the spacing of the elevation posts (at most 1500 posts a side).
+std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
+                                                         const volume::Grid& grid);
+
+/// The emitters of an instant, in the grid's frame.
+std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
+                                      const volume::Grid& grid);
+
+/// The emitters' names by index, for legends of indices.
+std::vector<render::Category> categoriesOf(const scenario::Scenario& scenario);
+
+}  // namespace emscape::playback

@@ -1,0 +1,22 @@
+/// How long work of this module ends before its time.
+#pragma once
+
+#include <exception>
+
+#include "emscape/base/progress.h"
+
+namespace emscape::playback {
+
+/// Thrown between two steps of the work once its StopFlag is set. What is finished stays.
+class Stopped : public std::exception {
+ public:
+  const char* what() const noexcept override { return "stopped"; }
+};
+
+/// @param stop  may be null
+/// @throws Stopped
+inline void throwIfStopped(const StopFlag* stop) {
+  if (stop != nullptr && *stop) throw Stopped();
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,77 @@
+#include "emscape/playback/field_series.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/playback/stop.h"
+
+namespace emscape::playback {
+
+std::vector<ValueRange> rangesOf(const std::vector<volume::Volume>& volumes) {
+  std::vector<ValueRange> ranges;
+  for (const volume::Volume& volume : volumes) {
+    ValueRange range;
+    range.add({volume.info().range_min, volume.info().range_max});
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+void setRanges(std::vector<volume::Volume>& volumes, const std::vector<ValueRange>& ranges) {
+  for (std::size_t c = 0; c < volumes.size(); ++c) {
+    volume::VolumeInfo info = volumes[c].info();
+    const ValueRange range = ranges[c].empty() ? ValueRange{info.floor, info.floor} : ranges[c];
+    info.range_min = range.min;
+    info.range_max = range.max;
+    volumes[c].setInfo(std::move(info));
+  }
+}
+
+FieldSeries::FieldSeries(LoadedScenario input, std::vector<double> times_s,
+                         const emfield::FieldOptions& options, const StopFlag* stop)
+    : input_(std::move(input)),
+      times_s_(std::move(times_s)),
+      options_(options),
+      stop_(stop),
+      solver_(input_.scenario, input_.terrain, options) {}
+
+scenario::Snapshot FieldSeries::snapshot(int step) const {
+  return scenario::snapshotAt(input_.scenario, input_.terrain.get(), time_s(step));
+}
+
+void FieldSeries::update(int step) {
+  throwIfStopped(stop_);
+  if (step == updated_step_) return;
+  updated_step_ = -1;
+  if (solver_.update(snapshot(step)).any) changed_since_given_ = true;
+  updated_step_ = step;
+  ++updates_;
+}
+
+std::vector<ValueRange> FieldSeries::findRanges(int stride, const ProgressSink& progress) {
+  std::vector<ValueRange> ranges(channels().size());
+  for (int step = 0; step < count(); step += stride) {
+    update(step);
+    const std::vector<ValueRange> own = rangesOf(solver_.volumes());
+    for (std::size_t c = 0; c < ranges.size(); ++c) ranges[c].add(own[c]);
+    if (progress) progress("value range", static_cast<double>(step + 1) / count());
+  }
+  return ranges;
+}
+
+std::vector<volume::Volume> FieldSeries::compute(int step) {
+  update(step);
+  changed_ = std::exchange(changed_since_given_, false);
+  const scenario::Snapshot now = snapshot(step);
+  std::vector<volume::Volume> volumes = solver_.volumes();
+  for (volume::Volume& volume : volumes) {
+    // The solver leaves a volume that did not change as it was, its time too.
+    volume::VolumeInfo info = volume.info();
+    info.time_s = now.time_s;
+    info.time_utc = now.time_utc;
+    volume.setInfo(std::move(info));
+  }
+  return volumes;
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,31 @@
+#include "playback/file_names.h"
+
+#include <algorithm>
+#include <set>
+
+namespace emscape::playback {
+
+std::string fileNameOf(const std::string& name) {
+  const auto isForeign = [](char c) {
+    return !((c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+             c == '-');
+  };
+  std::string result = name;
+  std::replace_if(result.begin(), result.end(), isForeign, '_');
+  return result;
+}
+
+std::vector<std::string> distinctFileNames(const std::vector<std::string>& names) {
+  std::vector<std::string> distinct;
+  std::set<std::string> used;
+  for (const std::string& name : names) {
+    const std::string plain = fileNameOf(name);
+    std::string candidate = plain;
+    for (int number = 2; !used.insert(candidate).second; ++number)
+      candidate = plain + "-" + std::to_string(number);
+    distinct.push_back(candidate);
+  }
+  return distinct;
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,44 @@
+#include "emscape/playback/inputs.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <set>
+
+#include "emscape/base/error.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/volume/file.h"
+
+namespace emscape::playback {
+
+InputKind inputKindOf(const std::string& file) {
+  namespace fs = std::filesystem;
+  if (!fs::exists(file)) throw Error(ErrorCode::bad_input, {file, 0, 0}, "no such file or folder");
+  if (fs::is_directory(file)) return InputKind::volume;
+  std::string ending = fs::path(file).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  static const std::set<std::string> kElevations{".tif", ".tiff", ".hgt", ".dt0", ".dt1",
+                                                 ".dt2", ".vrt",  ".asc", ".dem", ".bil"};
+  static const std::set<std::string> kAntennas{".msi", ".pln", ".csv"};
+  if (ending == ".yaml" || ending == ".yml" || ending == ".json") return InputKind::scenario;
+  if (ending == ".pvd" || volume::isVolumeFile(file)) return InputKind::volume;
+  if (kElevations.count(ending) != 0) return InputKind::elevation;
+  if (kAntennas.count(ending) != 0) return InputKind::antenna;
+  throw Error(ErrorCode::bad_input, {file, 0, 0},
+              "ending '" + ending +
+                  "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .pvd .raw .dat; "
+                  "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv");
+}
+
+LoadedScenario loadScenarioWithTerrain(const std::string& file) {
+  LoadedScenario loaded;
+  loaded.scenario = scenario::loadScenario(file);
+  if (loaded.scenario->terrain) {
+    loaded.terrain =
+        scenario::Terrain::load(*loaded.scenario->terrain, scenario::terrainBox(*loaded.scenario));
+  }
+  return loaded;
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,78 @@
+#include "emscape/playback/picture_sink.h"
+
+#include <fmt/core.h>
+
+#include "emscape/base/error.h"
+#include "emscape/volume/file.h"
+#include "playback/file_names.h"
+#include "playback/video.h"
+
+namespace emscape::playback {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OnePng : public PictureSink {
+ public:
+  explicit OnePng(fs::path file) : file_(std::move(file)) {}
+  void add(int /*number*/, const render::Image8& picture, int /*frames*/) override {
+    render::writePng(file_.string(), picture);
+  }
+  void finish() override {}
+
+ private:
+  const fs::path file_;
+};
+
+class PngFolder : public PictureSink {
+ public:
+  PngFolder(fs::path folder, const std::string& name) : folder_(std::move(folder)), name_(fileNameOf(name)) {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error)
+      throw Error(ErrorCode::other, {folder_.string(), 0, 0}, "cannot make the folder: " + error.message());
+  }
+  void add(int number, const render::Image8& picture, int /*frames*/) override {
+    render::writePng(volume::seriesFile(folder_, name_, number, "png").string(), picture);
+  }
+  void finish() override {}
+
+ private:
+  const fs::path folder_;
+  const std::string name_;
+};
+
+class Video : public PictureSink {
+ public:
+  Video(fs::path file, render::ImageSize size, double frames_per_s)
+      : video_(std::move(file), size, frames_per_s) {}
+  void add(int /*number*/, const render::Image8& picture, int frames) override {
+    for (int n = 0; n < frames; ++n) video_.add(picture);
+  }
+  void finish() override { video_.finish(); }
+
+ private:
+  VideoFile video_;
+};
+
+}  // namespace
+
+std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::string& name, int pictures,
+                                             render::ImageSize size, double frames_per_s) {
+  const std::string ending = output.extension().string();
+  if (ending == ".png") {
+    if (pictures != 1) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("{}: one .png for {} pictures; name one time, a folder or an .mp4",
+                              output.string(), pictures));
+    }
+    return std::make_unique<OnePng>(output);
+  }
+  if (ending == ".mp4") return std::make_unique<Video>(output, size, frames_per_s);
+  if (ending.empty() || fs::is_directory(output)) return std::make_unique<PngFolder>(output, name);
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("{}: must end in .png or .mp4, or be a folder (without an ending)", output.string()));
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,103 @@
+#include "emscape/playback/scene.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/geo_frame.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/parallel.h"
+
+namespace emscape::playback {
+namespace {
+
+constexpr int kMaxPosts = 1500;
+
+int postsAlong(double size_m, double spacing_m) {
+  return std::clamp(static_cast<int>(std::ceil(size_m / spacing_m)) + 1, 2, kMaxPosts);
+}
+
+/// The ground (frame z, m) at a place of the frame; NaN over a hole.
+double groundZ_m(const scenario::Terrain& terrain, const GeoFrame& frame, double x_m, double y_m) {
+  // In a tangent frame the place on the earth depends on z as well: once more with the z found.
+  double z_m = 0;
+  const int rounds = frame.origin().kind == FrameKind::enu ? 2 : 1;
+  for (int round = 0; round < rounds; ++round) {
+    GeodeticPosition place = frame.toGeodetic({x_m, y_m, z_m});
+    const double height_msl_m = terrain.heightMsl_m(place.latitude_deg, place.longitude_deg);
+    if (std::isnan(height_msl_m) || frame.origin().kind == FrameKind::altitude) return height_msl_m;
+    place.height_ellipsoid_m = height_msl_m + geoidUndulation_m(place.latitude_deg, place.longitude_deg);
+    z_m = frame.toLocal(place).z;
+  }
+  return z_m;
+}
+
+render::MarkerKind markerKind(scenario::EmitterKind kind) {
+  switch (kind) {
+    case scenario::EmitterKind::radar:
+      return render::MarkerKind::radar;
+    case scenario::EmitterKind::jammer:
+      return render::MarkerKind::jammer;
+    case scenario::EmitterKind::transmitter:
+      break;
+  }
+  return render::MarkerKind::transmitter;
+}
+
+}  // namespace
+
+std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
+                                                         const volume::Grid& grid) {
+  const Vec3d lower_m = grid.lower_m();
+  const Vec3d size_m = grid.upper_m() - lower_m;
+  auto field = std::make_shared<render::HeightField>();
+  field->columns = postsAlong(size_m.x, terrain.postSpacing_m());
+  field->rows = postsAlong(size_m.y, terrain.postSpacing_m());
+  field->first_x_m = lower_m.x;
+  field->first_y_m = lower_m.y;
+  field->spacing_x_m = size_m.x / (field->columns - 1);
+  field->spacing_y_m = size_m.y / (field->rows - 1);
+  field->heights_m.resize(static_cast<std::size_t>(field->columns) * field->rows);
+  const GeoFrame frame(grid.frame);
+  parallelFor(field->rows, 8, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      for (int i = 0; i < field->columns; ++i) {
+        field->heights_m[static_cast<std::size_t>(j) * field->columns + i] =
+            static_cast<float>(groundZ_m(terrain, frame, field->first_x_m + i * field->spacing_x_m,
+                                         field->first_y_m + j * field->spacing_y_m));
+      }
+    }
+  });
+  return field;
+}
+
+std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
+                                      const volume::Grid& grid) {
+  const GeoFrame frame(grid.frame);
+  std::vector<render::Marker> markers;
+  for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
+    const scenario::Emitter& emitter = snapshot.scenario->emitters[e];
+    const scenario::EmitterState& state = snapshot.emitters[e];
+    render::Marker marker;
+    marker.position_m = frame.toLocal(state.position);
+    marker.label = emitter.name;
+    marker.kind = markerKind(emitter.kind);
+    marker.active = state.active;
+    if (emitter.antenna->view().kind != scenario::PatternKind::isotropic) marker.beam = state.beam.forward;
+    if (terrain) {
+      const double ground_m = groundZ_m(*terrain, frame, marker.position_m.x, marker.position_m.y);
+      if (!std::isnan(ground_m)) marker.ground_m = ground_m;
+    }
+    markers.push_back(std::move(marker));
+  }
+  return markers;
+}
+
+std::vector<render::Category> categoriesOf(const scenario::Scenario& scenario) {
+  std::vector<render::Category> categories;
+  for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
+    categories.push_back({static_cast<int>(e), scenario.emitters[e].name});
+  }
+  return categories;
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,120 @@
+#include "playback/series_files.h"
+
+#include <regex>
+
+#include "emscape/playback/series_writer.h"
+#include "emscape/volume/file.h"
+#include "emscape/volume/vti.h"
+#include "playback/file_names.h"
+
+namespace emscape::playback {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kVtkFormat = "vti";
+
+/// Formats that keep what a volume is in a JSON file beside it.
+bool hasSidecar(const fs::path& file) {
+  return file.extension() == ".raw" || file.extension() == ".nvdb";
+}
+
+std::string sidecarOf(const std::string& name) {
+  return name + ".json";
+}
+
+}  // namespace
+
+std::vector<std::string> writableFormats() {
+  std::vector<std::string> names;
+  for (const volume::FileFormat& format : volume::fileFormats()) {
+    if (format.writable) names.push_back(format.name);
+  }
+  return names;
+}
+
+SeriesFiles::SeriesFiles(fs::path folder, const std::string& name, const std::vector<std::string>& formats,
+                         std::vector<std::string> channels, std::vector<double> times_s)
+    : folder_(std::move(folder)),
+      name_(fileNameOf(name)),
+      formats_(formats.begin(), formats.end()),
+      channels_(std::move(channels)),
+      channel_file_names_(distinctFileNames(channels_)),
+      times_s_(std::move(times_s)) {}
+
+std::vector<SeriesFiles::VolumeFile> SeriesFiles::volumeFilesOf(int step) const {
+  std::vector<VolumeFile> files;
+  for (const volume::FileFormat& format : volume::fileFormats()) {
+    if (formats_.count(format.name) == 0) continue;
+    const fs::path file = volume::seriesFile(folder_, name_, step + 1, format.name).filename();
+    if (format.several || channels_.size() == 1) {
+      files.push_back({file.string(), {}});
+      for (std::size_t c = 0; c < channels_.size(); ++c) files.back().channels.push_back(c);
+    } else {
+      for (std::size_t c = 0; c < channels_.size(); ++c) {
+        files.push_back({file.stem().string() + "_" + channel_file_names_[c] + "." + format.name, {c}});
+      }
+    }
+  }
+  return files;
+}
+
+std::vector<std::string> SeriesFiles::namesOf(int step) const {
+  std::vector<std::string> names;
+  for (const VolumeFile& file : volumeFilesOf(step)) {
+    names.push_back(file.name);
+    if (hasSidecar(file.name)) names.push_back(sidecarOf(file.name));
+  }
+  return names;
+}
+
+void SeriesFiles::write(int step, const std::vector<volume::Volume>& channels) const {
+  std::vector<std::shared_ptr<const volume::DenseVolume>> on_host;
+  for (const volume::Volume& channel : channels) on_host.push_back(channel.host());
+  for (const VolumeFile& file : volumeFilesOf(step)) {
+    std::vector<const volume::DenseVolume*> volumes;
+    for (const std::size_t c : file.channels) volumes.push_back(on_host[c].get());
+    volume::writeVolumes(folder_ / file.name, volumes);
+  }
+}
+
+std::set<std::string> SeriesFiles::setRanges(int step, const std::vector<ValueRange>& ranges) const {
+  std::set<std::string> changed;
+  for (const VolumeFile& file : volumeFilesOf(step)) {
+    std::vector<volume::StoredRange> stored;
+    for (const std::size_t c : file.channels) {
+      if (!ranges[c].empty()) stored.push_back({channels_[c], ranges[c].min, ranges[c].max});
+    }
+    volume::setStoredRange(folder_ / file.name, stored);
+    changed.insert(hasSidecar(file.name) ? sidecarOf(file.name) : file.name);
+  }
+  return changed;
+}
+
+bool SeriesFiles::hasIndex() const {
+  return formats_.count(kVtkFormat) != 0;
+}
+
+void SeriesFiles::writeIndex(const std::vector<bool>& finished) const {
+  std::vector<volume::PvdEntry> entries;
+  for (std::size_t step = 0; step < finished.size(); ++step) {
+    if (!finished[step]) continue;
+    entries.push_back(
+        {times_s_[step], volume::seriesFile(folder_, name_, static_cast<int>(step) + 1, kVtkFormat)});
+  }
+  volume::writePvd(folder_ / (name_ + ".pvd"), entries);
+}
+
+void SeriesFiles::removeOld() const {
+  // name_ is letters, digits, '_' and '-' alone: nothing in it means anything to a regular expression.
+  const std::regex ours(name_ + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|raw|nvdb\.json|raw\.json)|)" + name_ +
+                        R"(\.pvd|series\.json|series\.steps)");
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+    if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), ours))
+      files.push_back(entry);
+  }
+  for (const fs::path& file : files) fs::remove(file);
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,60 @@
+/// The volume files of a series: which there are, what they are called, and writing them. Internal to the
+/// module.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "emscape/playback/field_series.h"
+#include "emscape/volume/volume.h"
+
+namespace emscape::playback {
+
+class SeriesFiles {
+ public:
+  /// @param name      of the scenario
+  /// @param formats   of writableFormats()
+  /// @param channels  names, in the order of the volumes
+  SeriesFiles(std::filesystem::path folder, const std::string& name, const std::vector<std::string>& formats,
+              std::vector<std::string> channels, std::vector<double> times_s);
+
+  /// Names in the folder of all files of a step, those beside volumes included; always in the same order.
+  std::vector<std::string> namesOf(int step) const;
+
+  /// Writes a step in every format. @throws Error (other, device); then no file of the format that failed is
+  /// there
+  void write(int step, const std::vector<volume::Volume>& channels) const;
+
+  /// Puts other ranges into a step's files. @param ranges  one per channel; where empty, the files keep
+  /// theirs
+  /// @return the names of the files that may have changed
+  /// @throws Error
+  std::set<std::string> setRanges(int step, const std::vector<ValueRange>& ranges) const;
+
+  /// Whether there is a list of the files that writeIndex() writes.
+  bool hasIndex() const;
+  /// Writes it. @param finished  one per step
+  void writeIndex(const std::vector<bool>& finished) const;
+
+  /// Removes the files of any series of this name, and what describes it, from the folder.
+  void removeOld() const;
+
+ private:
+  /// A volume file of a step and the channels in it.
+  struct VolumeFile {
+    std::string name;
+    std::vector<std::size_t> channels;
+  };
+  std::vector<VolumeFile> volumeFilesOf(int step) const;
+
+  const std::filesystem::path folder_;
+  const std::string name_;
+  const std::set<std::string> formats_;
+  const std::vector<std::string> channels_;
+  const std::vector<std::string> channel_file_names_;
+  const std::vector<double> times_s_;
+};
+
+}  // namespace emscape::playback

@@ -1,0 +1,46 @@
+/// series.steps: the steps of a series whose files are whole. Internal to the module.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/whole_file.h"
+#include "emscape/playback/field_series.h"
+
+namespace emscape::playback {
+
+/// A step whose files are whole.
+struct StepRecord {
+  struct File {
+    std::string name;
+    FileDigest digest;
+  };
+  int step = 0;                    ///< counts from 0; in the journal from 1
+  std::vector<ValueRange> own;     ///< of the step's values, one per channel
+  std::vector<ValueRange> stored;  ///< that the step's files state
+  std::vector<File> files;
+};
+
+/// A file of JSON lines that grows by one synced line per record; the last record of a step counts. One
+/// thread uses it.
+class SeriesJournal {
+ public:
+  explicit SeriesJournal(const std::filesystem::path& folder);
+
+  /// The records of a journal by step; none where there is no file. A last line without its end was being
+  /// written when the process died: it is left out.
+  /// @param channels  ranges that each record must hold
+  /// @throws Error (bad_input) that names file and line for any other line that is no record
+  std::vector<std::optional<StepRecord>> read(int steps, std::size_t channels) const;
+
+  /// Adds a record. @throws Error (other)
+  void append(const StepRecord& record);
+
+ private:
+  const std::filesystem::path file_;
+  bool is_open_ = false;  // a line that was cut short has been removed
+};
+
+}  // namespace emscape::playback

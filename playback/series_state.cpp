@@ -1,0 +1,129 @@
+#include "playback/series_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "base/whole_file.h"
+#include "emscape/base/error.h"
+
+namespace emscape::playback {
+namespace {
+
+constexpr const char* kStateFile = "series.json";
+constexpr int kFormatVersion = 2;
+
+Json toJson(const SeriesState& state) {
+  Json ranges = Json::object();
+  for (std::size_t c = 0; c < state.channels.size(); ++c) {
+    ranges[state.channels[c]] = state.complete ? playback::toJson(state.ranges[c]) : Json(nullptr);
+  }
+  return {{"format_version", kFormatVersion},
+          {"complete", state.complete},
+          {"ranges", ranges},
+          {"recipe", state.recipe}};
+}
+
+SeriesState fromJson(const Json& json) {
+  if (json.at("format_version") != kFormatVersion) throw std::invalid_argument("format_version is not 2");
+  SeriesState state;
+  state.recipe = json.at("recipe");
+  if (!state.recipe.is_object()) throw std::invalid_argument("recipe is not an object");
+  if (!state.recipe.at("times").is_array()) throw std::invalid_argument("recipe: times is not a list");
+  state.complete = json.at("complete").get<bool>();
+  for (const auto& [channel, range] : json.at("ranges").items()) {
+    state.channels.push_back(channel);
+    state.ranges.push_back(rangeFromJson(range));
+  }
+  return state;
+}
+
+/// Line of a byte of a text; counts from 1.
+int lineOf(const std::vector<std::uint8_t>& text, std::size_t byte) {
+  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
+  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
+}
+
+}  // namespace
+
+Json recipeOf(const FieldSeries& series, const SeriesOptions& options) {
+  const scenario::Scenario& scenario = *series.input().scenario;
+  Json elevations = Json::array();
+  if (scenario.terrain) {
+    for (const std::string& file : scenario.terrain->files) {
+      const FileDigest digest = digestOf(file);
+      elevations.push_back({{"bytes", digest.bytes}, {"crc32", digest.crc32}});
+    }
+  }
+  Json channels = Json::array();
+  for (const emfield::Channel& channel : series.channels()) channels.push_back(channel.name);
+  return {{"scenario", scenario.name},
+          {"scenario hash", scenario.hash},
+          {"content of elevation files", elevations},
+          {"version of emscape", EMSCAPE_VERSION},
+          {"format", std::set<std::string>(options.formats.begin(), options.formats.end())},
+          {"quantity", channels},
+          {"range", options.range ? toJson(*options.range) : Json(nullptr)},
+          {"allow-missing-terrain", series.options().allow_missing_terrain},
+          {"times", series.times_s()}};
+}
+
+Json toJson(const ValueRange& range) {
+  return range.empty() ? Json(nullptr) : Json{range.min, range.max};
+}
+
+ValueRange rangeFromJson(const Json& json) {
+  if (json.is_null()) return {};
+  if (!json.is_array() || json.size() != 2) throw std::invalid_argument("a range is two numbers or null");
+  const ValueRange range{json.at(0).get<float>(), json.at(1).get<float>()};
+  if (!(range.min <= range.max)) throw std::invalid_argument("a range whose minimum exceeds its maximum");
+  return range;
+}
+
+std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / kStateFile;
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  const std::vector<std::uint8_t> bytes = readWhole(file);
+  const auto fail = [&](int line, const char* what) {
+    throw Error(ErrorCode::bad_input, {file.string(), line, 0},
+                std::string("not the state of a series (") + what + "); begin the series anew");
+  };
+  try {
+    return fromJson(Json::parse(bytes.begin(), bytes.end()));
+  } catch (const nlohmann::json::parse_error& error) {
+    fail(lineOf(bytes, error.byte), "no JSON");
+  } catch (const std::exception& error) {
+    fail(0, error.what());
+  }
+  return std::nullopt;
+}
+
+void writeSeriesState(const std::filesystem::path& folder, const SeriesState& state) {
+  writeWhole(folder / kStateFile, [&state](std::ostream& out) { out << toJson(state).dump(2) << '\n'; });
+}
+
+int stepsOf(const SeriesState& state) {
+  return static_cast<int>(state.recipe.at("times").size());
+}
+
+void checkSameRecipe(const std::filesystem::path& folder, const SeriesState& found,
+                     const SeriesState& wanted) {
+  const std::string file = (folder / kStateFile).string();
+  std::string differences;
+  for (const auto& [key, value] : wanted.recipe.items()) {
+    if (found.recipe.value(key, Json()) == value) continue;
+    differences += differences.empty() ? key : ", " + key;
+  }
+  if (!differences.empty()) {
+    throw Error(ErrorCode::bad_input, {file},
+                "the series was begun with another " + differences +
+                    "; resume it with the same, begin it anew, or take another folder");
+  }
+  if (found.channels != wanted.channels) {
+    throw Error(ErrorCode::bad_input, {file},
+                "damaged: 'ranges' does not hold each quantity once; begin the series anew");
+  }
+}
+
+}  // namespace emscape::playback

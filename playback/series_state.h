@@ -1,0 +1,47 @@
+/// series.json: what a folder of volumes holds, so that an interrupted series can go on. Internal to the
+/// module.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/playback/field_series.h"
+#include "emscape/playback/series_writer.h"
+
+namespace emscape::playback {
+
+using Json = nlohmann::ordered_json;
+
+struct SeriesState {
+  /// All that the values and names of the files depend on; a series goes on only with the same.
+  Json recipe;
+  std::vector<std::string> channels;
+  std::vector<ValueRange> ranges;  ///< one per channel, over the series; of use if complete
+  bool complete = false;           ///< every step is there and its files state these ranges
+};
+
+/// @throws Error (bad_input) for an elevation file that cannot be read
+Json recipeOf(const FieldSeries& series, const SeriesOptions& options);
+
+/// null for an empty range.
+Json toJson(const ValueRange& range);
+/// @throws nlohmann::json::exception or std::invalid_argument for what is no range
+ValueRange rangeFromJson(const Json& json);
+
+/// The state of a folder; none if it holds no series.
+/// @throws Error (bad_input) if series.json is damaged: it names the line where it is no JSON
+std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder);
+void writeSeriesState(const std::filesystem::path& folder, const SeriesState& state);
+
+/// Steps of the recipe.
+int stepsOf(const SeriesState& state);
+
+/// @throws Error (bad_input) that names every part in which the recipes differ, or if the channels are not
+/// those of the recipe
+void checkSameRecipe(const std::filesystem::path& folder, const SeriesState& found,
+                     const SeriesState& wanted);
+
+}  // namespace emscape::playback

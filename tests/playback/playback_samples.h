@@ -1,0 +1,148 @@
+/// Scenarios, sources and clocks for the tests of this module.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "emscape/base/error.h"
+#include "emscape/playback/clock.h"
+#include "emscape/playback/frame_source.h"
+
+namespace emscape::playback::test {
+
+/// A folder of the running test's own, gone when it ends.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "emscape-test-XXXXXX").string();
+    path_ = mkdtemp(pattern.data());
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string readFile(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+inline void writeFile(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+/// The message of the Error that `body` must throw.
+inline std::string errorOf(const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no Error was thrown";
+  return "";
+}
+
+/// scenarios/quick.yaml with each text `from` replaced by `to`, in a folder of the test's. @return the file
+inline std::string quickScenario(const TemporaryFolder& folder,
+                                 const std::vector<std::pair<std::string, std::string>>& replaced = {}) {
+  std::string text = readFile(std::filesystem::path(EMSCAPE_SOURCE_DIR) / "scenarios/quick.yaml");
+  for (const auto& [from, to] : replaced) {
+    const std::size_t at = text.find(from);
+    if (at == std::string::npos) throw std::runtime_error("quick.yaml does not hold " + from);
+    text.replace(at, from.size(), to);
+  }
+  writeFile(folder / "scenario.yaml", text);
+  return (folder / "scenario.yaml").string();
+}
+
+/// Made-up frames: one volume of 4 x 4 x 4 voxels each, all of the value of its index.
+class MadeFrames : public FrameSource {
+ public:
+  /// @param before  called at the beginning of frame(), on its thread
+  explicit MadeFrames(std::vector<double> times_s, std::function<void(int)> before = {})
+      : times_s_(std::move(times_s)), before_(std::move(before)) {}
+
+  int count() const override { return static_cast<int>(times_s_.size()); }
+  double time_s(int index) const override { return times_s_[static_cast<std::size_t>(index)]; }
+  Frame frame(int index) override {
+    if (before_) before_(index);
+    {
+      std::lock_guard<std::mutex> lock(mutex_);
+      asked_.push_back(index);
+    }
+    volume::DenseVolume volume;
+    volume.grid.dims = {4, 4, 4};
+    volume.grid.spacing_m = {1, 1, 1};
+    volume.info.quantity = "made";
+    volume.info.time_s = time_s(index);
+    volume.info.floor = -1;
+    volume.info.range_min = 0;
+    volume.info.range_max = static_cast<float>(count());
+    volume.values.assign(64, static_cast<float>(index) + 0.5F);
+    return {volume::Volume(std::move(volume)), {}, changes};
+  }
+  std::string name() const override { return "made"; }
+  const LoadedScenario* scene() const override { return nullptr; }
+  std::vector<std::string> warnings() const override { return {}; }
+
+  /// Indices that frame() was called with, in order.
+  std::vector<int> asked() const {
+    std::lock_guard<std::mutex> lock(mutex_);
+    return asked_;
+  }
+  bool changes = true;
+
+ private:
+  const std::vector<double> times_s_;
+  const std::function<void(int)> before_;
+  mutable std::mutex mutex_;
+  std::vector<int> asked_;
+};
+
+inline std::vector<double> seconds(int count) {
+  std::vector<double> times_s;
+  for (int i = 0; i < count; ++i) times_s.push_back(i);
+  return times_s;
+}
+
+/// Time that passes only where the loop waits. Work of other threads takes none of it, or does not end before
+/// the loop needs its result.
+class ManualClock : public Clock {
+ public:
+  explicit ManualClock(bool work_takes_no_time = true) : work_takes_no_time_(work_takes_no_time) {}
+
+  double now_ms() const override { return now_ms_; }
+  void waitUntil(double time_ms, Event& event) override {
+    if (work_takes_no_time_ && event.hasWork()) {
+      event.wait();
+      return;
+    }
+    now_ms_ = std::max(now_ms_.load(), time_ms);
+  }
+
+ private:
+  const bool work_takes_no_time_;
+  std::atomic<double> now_ms_{0};
+};
+
+}  // namespace emscape::playback::test

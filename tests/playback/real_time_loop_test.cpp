@@ -1,0 +1,222 @@
+// The loop from the field to the settled picture, against a clock that passes only where the loop waits.
+#include "emscape/playback/real_time_loop.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "emscape/playback/stop.h"
+#include "tests/playback/playback_samples.h"
+
+namespace emscape::playback::test {
+namespace {
+
+using render::ControllerState;
+using render::Pattern;
+
+/// What a played loop reported and put on display.
+struct Played {
+  RealTimeReport report;
+  std::vector<int> slots;  // of each picture that was displayed
+
+  std::vector<ControllerState> states() const {
+    std::vector<ControllerState> states;
+    for (const RealTimeEvent& event : report.events) states.push_back(event.state);
+    return states;
+  }
+  int count(ControllerState state) const { return report.count(state); }
+};
+
+RealTimeOptions optionsOf(std::optional<Pattern> pattern) {
+  RealTimeOptions options;
+  options.frames_per_s = 10;
+  options.controller.pattern = pattern;
+  options.controller.epsilon_ms = 200;
+  options.verify = true;
+  return options;
+}
+
+Played play(const RealTimeOptions& options, FrameSource& source, Clock& clock, bool displayed = false,
+            const StopFlag* interrupt = nullptr) {
+  PictureStyle style;
+  style.size = {33, 25};
+  style.colors_span_range = true;
+  Painter painter(style, source, {});
+  Played played;
+  Display display;
+  if (displayed) display = [&](const render::Image8&, int slots) { played.slots.push_back(slots); };
+  RealTimeLoop loop(options, style, source, painter, display, clock, interrupt);
+  played.report = loop.play([](const RealTimeEvent&) {});
+  return played;
+}
+
+Played play(const RealTimeOptions& options, FrameSource& source) {
+  ManualClock clock;
+  return play(options, source, clock);
+}
+
+TEST(RealTimeLoop, GoesFromBusyToRestoreToIdleAtEveryStepAndSettlesExactly) {
+  for (const Pattern pattern :
+       {Pattern::columns, Pattern::checkerboard, Pattern::quarter, Pattern::adaptive}) {
+    MadeFrames source(seconds(3));
+    const Played played = play(optionsOf(pattern), source);
+    const std::vector<ControllerState> round{ControllerState::busy, ControllerState::restore,
+                                             ControllerState::idle};
+    std::vector<ControllerState> expected;
+    for (int step = 0; step < 3; ++step) expected.insert(expected.end(), round.begin(), round.end());
+    EXPECT_EQ(played.states(), expected) << render::toString(pattern);
+    EXPECT_EQ(played.report.unequal(), 0);
+    for (const RealTimeEvent& event : played.report.events) {
+      EXPECT_EQ(event.pattern, pattern);
+      EXPECT_EQ(event.equals_full.has_value(), event.state == ControllerState::idle);
+      EXPECT_FALSE(event.late);
+    }
+  }
+}
+
+TEST(RealTimeLoop, ABusyFrameAndItsRestorationCastEveryPixelOnce) {
+  MadeFrames source(seconds(2));
+  const Played played = play(optionsOf(Pattern::quarter), source);
+  ASSERT_EQ(played.count(ControllerState::restore), 2);
+  long long busy_rays = 0;
+  for (const RealTimeEvent& event : played.report.events) {
+    if (event.state == ControllerState::busy) busy_rays = event.rays;
+    if (event.state == ControllerState::restore) {
+      EXPECT_EQ(busy_rays, 17 * 13);
+      EXPECT_EQ(busy_rays + event.rays, 33 * 25);
+    }
+  }
+}
+
+TEST(RealTimeLoop, AFullFrameSettlesWithoutARestoration) {
+  MadeFrames source(seconds(2));
+  const Played played = play(optionsOf(Pattern::full), source);
+  EXPECT_EQ(played.count(ControllerState::restore), 0);
+  EXPECT_EQ(played.count(ControllerState::idle), 2);
+}
+
+TEST(RealTimeLoop, AMovingCameraKeepsItBusyAndIsDueInEverySlot) {
+  MadeFrames source(seconds(1));
+  RealTimeOptions options = optionsOf(Pattern::columns);
+  options.orbit_rate_deg_s = 30;
+  options.duration_s = 2;
+  const Played played = play(options, source);
+  EXPECT_EQ(played.report.due, 20);
+  EXPECT_EQ(played.count(ControllerState::busy), 20);
+  EXPECT_EQ(played.report.events.size(), 20U);
+}
+
+TEST(RealTimeLoop, EveryStepIsShownWhenItsTimeHasCome) {
+  MadeFrames source({0, 0.5, 2});
+  RealTimeOptions options = optionsOf(Pattern::full);
+  options.speed = 2;
+  const Played played = play(options, source);
+  std::vector<std::pair<double, double>> shown;  // ms, scenario's seconds
+  for (const RealTimeEvent& event : played.report.events) {
+    if (event.state == ControllerState::busy) shown.emplace_back(event.time_ms, event.scenario_s);
+  }
+  // Of slots of 100 ms, the first in which each is due at twice the speed: 250 ms lies in the one that begins
+  // at 300.
+  EXPECT_EQ(shown, (std::vector<std::pair<double, double>>{{0, 0}, {300, 0.5}, {1000, 2}}));
+  EXPECT_EQ(played.report.due, 3);
+  EXPECT_EQ(played.report.field_updates, 3);
+  EXPECT_EQ(played.report.field_steps_skipped, 0);
+  EXPECT_EQ(played.report.seconds, 1.5);  // one step of mean length after the last
+}
+
+TEST(RealTimeLoop, StepsThatComeFasterThanSlotsAreSkippedAndCounted) {
+  MadeFrames source([] {
+    std::vector<double> times_s;
+    for (int i = 0; i <= 40; ++i) times_s.push_back(0.025 * i);
+    return times_s;
+  }());
+  RealTimeOptions options = optionsOf(Pattern::columns);
+  const Played played = play(options, source);
+  EXPECT_GT(played.report.field_steps_skipped, 20);
+  EXPECT_LE(played.report.field_updates + played.report.field_steps_skipped, 41);
+  double scenario_s = -1;
+  for (const RealTimeEvent& event : played.report.events) {
+    if (event.state != ControllerState::busy) continue;
+    EXPECT_GT(event.scenario_s, scenario_s);
+    EXPECT_LE(event.scenario_s, event.time_ms / 1000 + 1e-9);
+    scenario_s = event.scenario_s;
+  }
+}
+
+TEST(RealTimeLoop, AFieldInWhichNothingChangesIsDrawnOnce) {
+  MadeFrames source(seconds(4));
+  source.changes = false;
+  const Played played = play(optionsOf(Pattern::quarter), source);
+  EXPECT_EQ(played.count(ControllerState::busy), 1);
+  EXPECT_EQ(played.count(ControllerState::idle), 1);
+  EXPECT_EQ(played.report.due, 1);
+}
+
+TEST(RealTimeLoop, AnEventDuringARestorationAbortsItAndTheNextFrameBeginsAtOnce) {
+  MadeFrames source(seconds(1));
+  RealTimeOptions options = optionsOf(Pattern::quarter);
+  options.controller.epsilon_ms = 0;  // a restoration begins as soon as a frame is drawn
+  options.orbit_rate_deg_s = 30;
+  options.duration_s = 1;
+  ManualClock clock(/*work_takes_no_time=*/false);
+  const Played played = play(options, source, clock);
+  EXPECT_EQ(played.count(ControllerState::busy), 10);
+  EXPECT_EQ(played.count(ControllerState::idle), 0);
+  int begun_after_abort = 0;
+  for (const RealTimeEvent& event : played.report.events) {
+    if (event.state == ControllerState::restore) {
+      EXPECT_FALSE(event.restored);
+    }
+    if (!event.abort_latency_ms) continue;
+    ++begun_after_abort;
+    EXPECT_EQ(event.state, ControllerState::busy);
+    EXPECT_EQ(*event.abort_latency_ms, 0);
+  }
+  EXPECT_EQ(begun_after_abort, 9);
+}
+
+TEST(RealTimeLoop, ThePicturesOnDisplayFillTheTimeOfThePlaying) {
+  MadeFrames source(seconds(3));
+  ManualClock clock;
+  const Played played = play(optionsOf(Pattern::quarter), source, clock, /*displayed=*/true);
+  EXPECT_EQ(played.slots.size(), 6U);  // a busy and a restored one at each step
+  EXPECT_EQ(std::accumulate(played.slots.begin(), played.slots.end(), 0), 30);
+}
+
+TEST(RealTimeLoop, SaysWhyAPatternIsTakenWhenItChanges) {
+  MadeFrames source(seconds(2));
+  const Played played = play(optionsOf(Pattern::columns), source);
+  EXPECT_EQ(played.report.events.front().reason, "columns was asked for");
+  for (std::size_t i = 1; i < played.report.events.size(); ++i) EXPECT_EQ(played.report.events[i].reason, "");
+}
+
+TEST(RealTimeLoop, AnInterruptEndsIt) {
+  StopFlag interrupt{false};
+  MadeFrames source(seconds(100), [&](int index) { interrupt = index == 3; });
+  ManualClock clock;
+  EXPECT_THROW(play(optionsOf(Pattern::full), source, clock, false, &interrupt), Stopped);
+}
+
+TEST(RealTimeLoop, WhatTheSourceThrowsEndsIt) {
+  MadeFrames source(seconds(10), [](int index) {
+    if (index == 2) throw Error(ErrorCode::bad_input, "step 2 is damaged");
+  });
+  EXPECT_EQ(errorOf([&] { play(optionsOf(Pattern::full), source); }), "step 2 is damaged");
+}
+
+TEST(RealTimeLoop, OnlyAnOrbitGoesRound) {
+  MadeFrames source(seconds(1));
+  PictureStyle style;
+  style.size = {8, 6};
+  style.camera.kind = render::CameraSpec::Kind::lookat;
+  RealTimeOptions options;
+  options.orbit_rate_deg_s = 5;
+  PictureStyle orbit = style;
+  orbit.camera.kind = render::CameraSpec::Kind::orbit;
+  Painter painter(orbit, source, {});
+  ManualClock clock;
+  EXPECT_THAT(errorOf([&] { RealTimeLoop(options, style, source, painter, {}, clock); }),
+              testing::HasSubstr("orbit"));
+}
+
+}  // namespace
+}  // namespace emscape::playback::test

@@ -1,0 +1,340 @@
+#include "emscape/playback/series_writer.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "emscape/base/log.h"
+#include "emscape/playback/stop.h"
+#include "emscape/volume/file.h"
+#include "emscape/volume/vti.h"
+#include "tests/playback/playback_samples.h"
+
+namespace emscape::playback::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using Existing = SeriesOptions::Existing;
+
+const std::vector<std::string>& allFormats() {
+  static const std::vector<std::string> kFormats{"vdb", "nvdb", "vti", "raw"};
+  return kFormats;
+}
+
+/// A series of the quick scenario, small.
+class SeriesWriter : public testing::Test {
+ protected:
+  SeriesWriter() {
+    setLogSink([this](LogLevel, const std::string& message) { messages_.push_back(message); });
+  }
+  ~SeriesWriter() override { setLogSink({}); }
+
+  FieldSeries series(int steps, const std::vector<std::pair<std::string, std::string>>& replaced = {},
+                     const StopFlag* stop = nullptr, std::vector<std::string> quantities = {}) const {
+    // The strong transmitter comes on late, so that the range over the series is known late.
+    std::vector<std::pair<std::string, std::string>> all{
+        {"[40, 40, 20]", "[8, 9, 6]"}, {"power_w: 1000\n", "power_w: 1.0e9\n    active_s: [[3.5, 100]]\n"}};
+    all.insert(all.end(), replaced.begin(), replaced.end());
+    emfield::FieldOptions options;
+    options.quantities = std::move(quantities);
+    return {loadScenarioWithTerrain(quickScenario(input_, all)), seconds(steps), options, stop};
+  }
+  SeriesOptions into(const std::string& folder, std::vector<std::string> formats = allFormats(),
+                     Existing existing = Existing::refuse) const {
+    SeriesOptions options;
+    options.folder = folder_ / folder;
+    options.formats = std::move(formats);
+    options.existing = existing;
+    return options;
+  }
+  SeriesResult write(int steps, const SeriesOptions& options) const {
+    FieldSeries field = series(steps);
+    return writeSeries(field, options);
+  }
+  /// Stops as soon as so many steps have been computed and the writer has finished one of them.
+  void writeAndStopAfter(int stop_after, int steps, const SeriesOptions& options) const {
+    StopFlag stop{false};
+    FieldSeries field = series(steps, {}, &stop);
+    int told = 0;
+    EXPECT_THROW(writeSeries(field, options,
+                             [&](const std::string&, double) {
+                               if (++told == stop_after) stop = true;
+                             }),
+                 Stopped);
+  }
+
+  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
+  /// Contents of all files of a folder by name.
+  std::map<std::string, std::string> contents(const std::string& folder) const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder_ / folder)) {
+      files[entry.path().filename().string()] = readFile(entry.path());
+    }
+    return files;
+  }
+  /// The same without what depends on how often the work was interrupted.
+  std::map<std::string, std::string> volumes(const std::string& folder) const {
+    std::map<std::string, std::string> files = contents(folder);
+    files.erase("series.steps");
+    return files;
+  }
+  json stateOf(const std::string& folder) const {
+    return json::parse(readFile(folder_ / folder / "series.json"));
+  }
+  std::vector<json> journalOf(const std::string& folder) const {
+    std::istringstream lines(readFile(folder_ / folder / "series.steps"));
+    std::vector<json> records;
+    for (std::string line; std::getline(lines, line);) records.push_back(json::parse(line));
+    return records;
+  }
+
+  TemporaryFolder input_, folder_;
+  std::vector<std::string> messages_;
+};
+
+TEST_F(SeriesWriter, ComputesEachStepOnceInEveryFormat) {
+  for (const std::string& format : allFormats()) {
+    FieldSeries field = series(5);
+    const SeriesResult result = writeSeries(field, into(format, {format}));
+    EXPECT_EQ(field.updates(), 5) << format;
+    EXPECT_EQ(result.steps_computed, 5);
+  }
+  FieldSeries field = series(5);
+  field.rehearse();
+  writeSeries(field, into("all"));
+  EXPECT_EQ(field.updates(), 5) << "a rehearsed step is not computed again";
+}
+
+TEST_F(SeriesWriter, EveryFileStatesTheRangeOfTheSeriesAsIfItHadBeenKnownFromTheBeginning) {
+  const SeriesResult found = write(5, into("found"));
+  ASSERT_EQ(found.ranges.size(), 1U);
+  SeriesOptions known = into("known");
+  known.range = found.ranges[0];
+  write(5, known);
+  std::map<std::string, std::string> a = volumes("found"), b = volumes("known");
+  a.erase("series.json");  // it says whether the range was given
+  b.erase("series.json");
+  EXPECT_EQ(a.size(), 5U * 6 + 1);
+  EXPECT_TRUE(a == b);
+  for (const std::string& format : allFormats()) {
+    const volume::VolumeInfo first = volume::readVolume(*this / ("found/quick_0001." + format)).info;
+    EXPECT_EQ(first.range_min, found.ranges[0].min) << format;
+    EXPECT_EQ(first.range_max, found.ranges[0].max) << format;
+  }
+}
+
+TEST_F(SeriesWriter, WhileItRunsFilesAreWholeAndStateTheRangeSoFar) {
+  writeAndStopAfter(3, 6, into("s", {"vdb", "vti"}));
+  ValueRange so_far;
+  int finished = 0;
+  for (const json& record : journalOf("s")) {
+    ++finished;
+    so_far.add({record.at("range")[0].at(0).get<float>(), record.at("range")[0].at(1).get<float>()});
+    for (const json& file : record.at("files")) {
+      const volume::DenseVolume volume =
+          volume::readVolume(*this / ("s/" + file.at("name").get<std::string>()));
+      EXPECT_EQ(volume.info.range_min, so_far.min);
+      EXPECT_EQ(volume.info.range_max, so_far.max);
+    }
+  }
+  EXPECT_GT(finished, 0);
+  EXPECT_EQ(volume::readPvd(*this / "s/quick.pvd").size(), static_cast<std::size_t>(finished));
+  EXPECT_FALSE(stateOf("s").at("complete").get<bool>());
+}
+
+TEST_F(SeriesWriter, AnInterruptedSeriesResumesToTheSameBytes) {
+  write(6, into("whole"));
+  writeAndStopAfter(2, 6, into("s"));
+  writeAndStopAfter(2, 6, into("s", allFormats(), Existing::resume));
+  const SeriesResult resumed = write(6, into("s", allFormats(), Existing::resume));
+  EXPECT_LT(resumed.steps_computed, 6);
+  EXPECT_TRUE(volumes("s") == volumes("whole"));
+}
+
+TEST_F(SeriesWriter, AnInterruptedPassOverTheRangesIsCompleted) {
+  write(6, into("whole"));
+  // The 6 steps, then the third of those that get another range.
+  writeAndStopAfter(6 + 3, 6, into("s"));
+  const std::size_t lines = journalOf("s").size();
+  EXPECT_GE(lines, 6U);
+  FieldSeries field = series(6);
+  writeSeries(field, into("s", allFormats(), Existing::resume));
+  EXPECT_EQ(field.updates(), 0) << "no step is computed again";
+  EXPECT_TRUE(volumes("s") == volumes("whole"));
+  EXPECT_TRUE(stateOf("s").at("complete").get<bool>());
+}
+
+TEST_F(SeriesWriter, ADeathBetweenAFilesNewRangeAndItsRecordIsMended) {
+  write(4, into("whole"));
+  write(4, into("s"));
+  // As if the process had died after it had put another range into a file.
+  volume::setStoredRange(*this / "s/quick_0002.vdb", {{"power_density_dbwm2", -100, 1}});
+  const SeriesResult resumed = write(4, into("s", allFormats(), Existing::resume));
+  EXPECT_EQ(resumed.steps_computed, 1);
+  EXPECT_TRUE(volumes("s") == volumes("whole"));
+}
+
+TEST_F(SeriesWriter, FilesThatAreGoneEmptyOrReplacedAreComputedAgain) {
+  write(5, into("whole"));
+  write(5, into("s"));
+  fs::remove(*this / "s/quick_0001.vdb");
+  writeFile(*this / "s/quick_0002.raw", "");
+  fs::copy_file(*this / "s/quick_0005.vti", *this / "s/quick_0003.vti", fs::copy_options::overwrite_existing);
+  fs::remove(*this / "s/quick_0004.nvdb.json");
+  FieldSeries field = series(5);
+  const SeriesResult resumed = writeSeries(field, into("s", allFormats(), Existing::resume));
+  EXPECT_EQ(resumed.steps_computed, 4);
+  EXPECT_EQ(field.updates(), 4);
+  EXPECT_TRUE(volumes("s") == volumes("whole"));
+  EXPECT_THAT(messages_, Contains(AllOf(HasSubstr("4 of the finished steps are computed again"),
+                                        HasSubstr("quick_0001.vdb"))));
+}
+
+TEST_F(SeriesWriter, AFinishedSeriesIsLeftAsItIs) {
+  write(3, into("s"));
+  const auto before = contents("s");
+  FieldSeries field = series(3);
+  const SeriesResult resumed = writeSeries(field, into("s", allFormats(), Existing::resume));
+  EXPECT_EQ(resumed.steps_computed, 0);
+  EXPECT_EQ(field.updates(), 0);
+  EXPECT_TRUE(contents("s") == before);
+  EXPECT_THAT(messages_, Contains("3 of 3 steps are there already"));
+}
+
+TEST_F(SeriesWriter, TheJournalGrowsByALineAStepAndTheListOfFilesIsWrittenAtGrowingIntervals) {
+  SeriesOptions options = into("s", {"raw"});
+  options.range = ValueRange{-120, 20};
+  write(40, options);
+  const std::vector<json> records = journalOf("s");
+  EXPECT_EQ(records.size(), 40U);
+  for (std::size_t i = 0; i < records.size(); ++i) EXPECT_EQ(records[i].at("step"), i + 1);
+}
+
+TEST_F(SeriesWriter, ARecordThatWasCutShortIsForgotten) {
+  write(4, into("s", {"raw"}));
+  const std::string journal = readFile(*this / "s/series.steps");
+  writeFile(*this / "s/series.steps", journal + "{\"step\": 2, \"ran");
+  EXPECT_EQ(findSeries(*this / "s")->finished_steps, 4);
+  fs::remove(*this / "s/quick_0003.raw");
+  write(4, into("s", {"raw"}, Existing::resume));
+  EXPECT_EQ(findSeries(*this / "s")->finished_steps, 4);
+  EXPECT_NO_THROW(journalOf("s"));
+}
+
+TEST_F(SeriesWriter, ADamagedJournalIsAnErrorThatNamesTheLine) {
+  write(3, into("s", {"raw"}));
+  const std::string whole = readFile(*this / "s/series.steps");
+  const std::size_t second = whole.find('\n') + 1;
+  const std::vector<std::pair<std::string, std::string>> damages{
+      {"{\"step\": 2", "no JSON"},
+      {"{\"step\":99,\"range\":[null],\"stored_range\":[null],\"files\":[]}", "step 99 is outside 1..3"},
+      {"{\"step\":-2e9,\"range\":[null],\"stored_range\":[null],\"files\":[]}", "outside 1..3"},
+      {"{\"step\":2,\"range\":[],\"stored_range\":[null],\"files\":[]}", "one range per quantity"},
+      {"{\"step\":2,\"range\":[[3,1]],\"stored_range\":[null],\"files\":[]}", "minimum exceeds"},
+      {"[]", ""},
+      {"", "no JSON"},
+  };
+  for (const auto& [line, cause] : damages) {
+    std::string damaged = whole;
+    damaged.replace(second, whole.find('\n', second) - second, line);
+    writeFile(*this / "s/series.steps", damaged);
+    const std::string error = errorOf([&] { write(3, into("s", {"raw"}, Existing::resume)); });
+    EXPECT_THAT(error, HasSubstr("series.steps:2: not a step of the series")) << line;
+    EXPECT_THAT(error, HasSubstr(cause));
+  }
+}
+
+TEST_F(SeriesWriter, ADamagedStateIsAnErrorThatNamesTheFile) {
+  write(2, into("s", {"raw"}));
+  const std::string whole = readFile(*this / "s/series.json");
+  writeFile(*this / "s/series.json", whole.substr(0, whole.find("\"recipe\"")));
+  EXPECT_THAT(errorOf([&] { write(2, into("s", {"raw"}, Existing::resume)); }),
+              AllOf(HasSubstr("series.json:"), HasSubstr("no JSON")));
+  for (const char* key : {"format_version", "complete", "ranges", "recipe"}) {
+    json damaged = json::parse(whole);
+    damaged.erase(key);
+    writeFile(*this / "s/series.json", damaged.dump());
+    EXPECT_THAT(errorOf([&] { write(2, into("s", {"raw"}, Existing::resume)); }),
+                AllOf(HasSubstr("series.json"), HasSubstr(key)));
+  }
+}
+
+TEST_F(SeriesWriter, AFolderThatHoldsASeriesIsRefusedResumedOrReplaced) {
+  write(3, into("s", {"raw"}));
+  EXPECT_THAT(errorOf([&] { write(3, into("s", {"raw"})); }), HasSubstr("holds a series"));
+  EXPECT_THAT(errorOf([&] { write(4, into("s", {"raw"}, Existing::resume)); }), HasSubstr("another times"));
+  write(1, into("s", {"vdb"}, Existing::replace));
+  std::vector<std::string> names;
+  for (const auto& [name, content] : contents("s")) names.push_back(name);
+  EXPECT_THAT(names, ElementsAre("quick_0001.vdb", "series.json", "series.steps"));
+}
+
+TEST_F(SeriesWriter, AnotherElevationFileOfTheSameSizeIsNotTheSameSeries) {
+  std::string heights(std::size_t{2} * 1201 * 1201,
+                      '\0');  // a tile of SRTM: 16 bits a post, the high byte first
+  for (std::size_t post = 0; post < heights.size(); post += 2) heights[post + 1] = 100;
+  writeFile(input_ / "N52E005.hgt", heights);
+  const std::vector<std::pair<std::string, std::string>> over_ground{
+      {"latitude_deg: 52, longitude_deg: 5, height_msl_m: 0",
+       "latitude_deg: 52.5, longitude_deg: 5.5, height_msl_m: 0"},
+      {"latitude_deg: 52, longitude_deg: 5, height_agl",
+       "latitude_deg: 52.5, longitude_deg: 5.5, height_agl"},
+      {"latitude_deg: 52.05, longitude_deg: 5.06", "latitude_deg: 52.51, longitude_deg: 5.51"},
+      {"platforms:", "terrain: {files: [N52E005.hgt], vertical_datum: egm96}\nplatforms:"}};
+  FieldSeries first = series(1, over_ground);
+  writeSeries(first, into("s", {"raw"}));
+  heights[heights.size() / 2 + 1] = 101;
+  writeFile(input_ / "N52E005.hgt", heights);
+  EXPECT_THAT(errorOf([&] {
+                FieldSeries changed = series(1, over_ground);
+                writeSeries(changed, into("s", {"raw"}, Existing::resume));
+              }),
+              HasSubstr("another content of elevation files"));
+}
+
+TEST_F(SeriesWriter, ChannelsWhoseNamesCollideInFileNamesGetFilesOfTheirOwn) {
+  FieldSeries field = series(1, {{"- name: radar\n", "- name: a/b\n"},
+                                 {"- name: transmitter\n", "- name: a_b\n"},
+                                 {"platforms:", "output: {combine: per_emitter}\nplatforms:"}});
+  const SeriesResult result = writeSeries(field, into("s", {"raw"}));
+  ASSERT_EQ(result.channels.size(), 2U);
+  EXPECT_EQ(volume::readVolume(*this / "s/quick_0001_power_density_dbwm2_a_b.raw").info.quantity,
+            result.channels[0]);
+  EXPECT_EQ(volume::readVolume(*this / "s/quick_0001_power_density_dbwm2_a_b-2.raw").info.quantity,
+            result.channels[1]);
+}
+
+TEST_F(SeriesWriter, SeveralQuantitiesHaveARangeEachAndNoneIsGivenForAll) {
+  FieldSeries field = series(3, {}, nullptr, {"power_density_dbwm2", "emitter_count"});
+  const SeriesResult result = writeSeries(field, into("s"));
+  EXPECT_THAT(result.channels, ElementsAre("power_density_dbwm2", "emitter_count"));
+  const volume::VolumeInfo count = volume::readVolume(*this / "s/quick_0001.vdb", "emitter_count").info;
+  EXPECT_EQ(count.range_max, result.ranges[1].empty() ? count.floor : result.ranges[1].max);
+  SeriesOptions given = into("t");
+  given.range = ValueRange{0, 1};
+  FieldSeries again = series(3, {}, nullptr, {"power_density_dbwm2", "emitter_count"});
+  EXPECT_THAT(errorOf([&] { writeSeries(again, given); }),
+              HasSubstr("a range is for one quantity, these are 2"));
+}
+
+TEST_F(SeriesWriter, AFailureToWriteIsTheErrorAndWhatIsFinishedStays) {
+  FieldSeries field = series(4);
+  fs::create_directories(folder_ / "s/quick_0003.raw");  // a folder is in the way
+  EXPECT_THAT(errorOf([&] { writeSeries(field, into("s", {"vti", "raw"})); }), HasSubstr("quick_0003.raw"));
+  EXPECT_EQ(findSeries(*this / "s")->finished_steps, 2);
+  EXPECT_EQ(volume::readPvd(*this / "s/quick.pvd").size(), 2U);
+}
+
+TEST_F(SeriesWriter, AFolderWithoutASeriesHasNoStatus) {
+  EXPECT_FALSE(findSeries(folder_ / "nowhere"));
+}
+
+}  // namespace
+}  // namespace emscape::playback::test
