@@ -185,5 +185,22 @@ TEST(CommandLine, GlobalOptionsMayStandBeforeTheSubcommand) {
   EXPECT_EQ(json::parse(result.out).at("ok"), true);
 }
 
+TEST(CommandLine, AnErrorForWantOfTerrainNamesTheOption) {
+  const TemporaryFolder folder;
+  std::string text = readFile(shippedScenario("jacksboro.yaml"));
+  for (const char* name : {"data/jacksboro.tif", "data/helicopter.csv", "data/sector_450mhz.msi"}) {
+    text.replace(text.find(name), std::string(name).size(), shippedScenario(name));
+  }
+  const std::string dims = "dims: [200, 200, 100]", size = "size_m: [29000, 29000, 6000]";
+  text.replace(text.find(dims), dims.size(), "dims: [8, 8, 2]");
+  text.replace(text.find(size), size.size(), "size_m: [90000, 90000, 6000]");
+  writeFile(folder / "wide.yaml", text);
+  const ProgramResult result =
+      run({"simulate", folder / "wide.yaml", "-o", folder / "out", "--times", "0", "--backend", "cpu"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.err, HasSubstr("terrain is missing below"));
+  EXPECT_THAT(result.err, HasSubstr("(--allow-missing-terrain draws holes)\n"));
+}
+
 }  // namespace
 }  // namespace emscape::test

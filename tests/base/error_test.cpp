@@ -30,6 +30,13 @@ TEST(Error, WithoutAPlaceIsTheMessageAlone) {
   EXPECT_TRUE(error.place().file.empty());
 }
 
+TEST(Error, CarriesAHintForProgramsAndNoneByDefault) {
+  EXPECT_EQ(Error(ErrorCode::bad_input, {"a.yaml", 3, 7}, "void").hint(), Hint::none);
+  const Error error(ErrorCode::bad_input, {"a.yaml", 3, 7}, "void", Hint::allow_missing_terrain);
+  EXPECT_EQ(error.hint(), Hint::allow_missing_terrain);
+  EXPECT_STREQ(error.what(), "a.yaml:3:7: void");
+}
+
 TEST(Error, IsCaughtAsAStandardException) {
   EXPECT_THROW(throw Error(ErrorCode::device, "out of memory"), std::runtime_error);
 }

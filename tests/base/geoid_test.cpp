@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "emscape/base/error.h"
 #include "tests/reference_dir.h"
 
 namespace emscape {
@@ -83,6 +84,17 @@ TEST(Geoid, IsTheSameFromManyThreads) {
   }
   for (std::thread& thread : threads) thread.join();
   for (const double result_m : results_m) EXPECT_EQ(result_m, expected_m);
+}
+
+TEST(Geoid, AFileThatIsNamedTooLateIsRefused) {
+  geoidUndulation_m(0, 0);
+  try {
+    setGeoidFile("mine.gtx");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    EXPECT_STREQ(error.what(), "geoid file 'mine.gtx': the geoid grid was read before");
+  }
 }
 
 }  // namespace

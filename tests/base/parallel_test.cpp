@@ -1,6 +1,8 @@
 #include "emscape/base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <stdexcept>
@@ -81,6 +83,19 @@ TEST(ThreadLimit, BoundsTheThreadsAndIsLifted) {
   EXPECT_EQ(visits(1000, 1), std::vector<int>(1000, 1));
   setThreadLimit(0);
   EXPECT_EQ(threadCount(), all);
+}
+
+TEST(ThreadLimit, DoesNotRaiseALimitOfTheHostProgram) {
+  const tbb::global_control host(tbb::global_control::max_allowed_parallelism, 1);
+  setThreadLimit(8);
+  EXPECT_EQ(threadCount(), 1);
+  setThreadLimit(0);
+  EXPECT_EQ(threadCount(), 1);
+}
+
+TEST(ThreadLimit, CountsTheThreadsOfTheCallersArena) {
+  tbb::task_arena arena(1);
+  EXPECT_EQ(arena.execute([] { return threadCount(); }), 1);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "emscape/base/backend.h"
 #include "emscape/base/error.h"
 #include "render/reconstruction.h"
 #include "tests/render/random_scene.h"
@@ -81,6 +82,13 @@ TEST(Renderer, ShowsTheVolumeThatWasSetLast) {
   kept.setVolume(second);
   EXPECT_TRUE(kept.render(size).pixels == fresh(second).pixels);
   EXPECT_FALSE(fresh(first).pixels == fresh(second).pixels);
+}
+
+TEST(Renderer, TakesTheBackendThatAutomaticResolvesTo) {
+  RendererOptions options;
+  options.backend = Backend::automatic;
+  const Renderer renderer(options);
+  EXPECT_EQ(renderer.backend(), resolveBackend(Backend::automatic).backend);
 }
 
 TEST(Renderer, RefusesWhatItCannotDraw) {

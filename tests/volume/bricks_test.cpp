@@ -1,5 +1,6 @@
 #include "volume/bricks.h"
 
+#include <limits>
 #include <random>
 
 #include "emscape/base/parallel.h"
@@ -77,6 +78,26 @@ TEST(Bricks, FollowAnUpdateOfTheirVolume) {
   EXPECT_EQ(bricks.view().at(1, 1, 1).min, 2.F);
   EXPECT_EQ(bricks.view().at(1, 1, 1).max, 2.F);
   EXPECT_THROW(Bricks(volume, 0), Error);
+}
+
+TEST(ValueRange, IsEmptyUntilItTakesOneIn) {
+  ValueRange range;
+  EXPECT_TRUE(range.empty());
+  range.add({});
+  EXPECT_TRUE(range.empty());
+  range.add({3, 4});
+  range.add({1, 3.5F});
+  EXPECT_EQ(range.min, 1);
+  EXPECT_EQ(range.max, 4);
+}
+
+TEST(ValueRange, TakesNoNaNs) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  ValueRange range{1, 2};
+  range.add({nan, nan});
+  range.add({0, nan});
+  EXPECT_EQ(range.min, 1);
+  EXPECT_EQ(range.max, 2);
 }
 
 }  // namespace
