@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "emscape/scenario/edit.h"
+
 namespace emscape::app {
 
 /// Options that every subcommand takes, before or after its name.
@@ -22,6 +24,10 @@ inline CLI::Option* addListOption(CLI::App& command, const std::string& name,
                                   std::vector<std::string>& values, const std::string& description) {
   return command.add_option(name, values, description)->delimiter(',')->allow_extra_args(false);
 }
+
+/// --set PATH=VALUE, which may be given several times. @throws Error (usage) when it is parsed, for a text
+/// without '='
+void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits);
 
 /// Runs the subcommand that was chosen; returns the exit status.
 using Action = std::function<int()>;

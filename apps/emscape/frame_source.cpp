@@ -85,7 +85,11 @@ class StoredFrames : public FrameSource {
       : quantity_(selection.quantity),
         range_(selection.range),
         files_(volumeFilesOf(selection.input, quantity_)) {
-    if (!selection.scenario.empty()) scene_ = loadScenarioWithTerrain(selection.scenario);
+    if (!selection.scenario.empty()) {
+      scene_ = loadScenarioWithTerrain(selection.scenario, selection.edits);
+    } else if (!selection.edits.empty()) {
+      throw Error(ErrorCode::usage, "--set changes a scenario; volumes have none without --scenario");
+    }
     if (selection.first_only) {
       files_.resize(1);
     } else if (!selection.times.empty()) {
@@ -155,8 +159,8 @@ std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, co
                                              const GlobalOptions& global) {
   switch (inputKindOf(selection.input)) {
     case InputKind::scenario:
-      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input), selection, place,
-                                              global);
+      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input, selection.edits),
+                                              selection, place, global);
     case InputKind::volume:
       return std::make_unique<StoredFrames>(selection);
     default:

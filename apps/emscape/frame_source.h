@@ -32,6 +32,7 @@ struct FrameSelection {
   std::optional<ValueRange> range;  ///< of the colours; none: that of the series
   std::string scenario;             ///< beside volumes: whose ground and emitters are drawn; may be empty
   bool allow_missing_terrain = false;
+  std::vector<scenario::Edit> edits;  ///< to the scenario
 };
 
 class FrameSource {
