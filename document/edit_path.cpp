@@ -117,10 +117,11 @@ class Resolver {
     }
     const KeySpec* row = object_->find(name, variant.empty() ? nullptr : &variant);
     // A key of another variant: the edits may bring that variant, too.
-    if (row == nullptr) row = object_->find(name, nullptr);
+    const bool applies = row != nullptr;
+    if (!applies) row = object_->find(name, nullptr);
     if (row == nullptr) fail(unknownKeyMessage(name, *object_, nullptr));
     result_.name = "'" + name + "'";
-    result_.required = row->required;
+    result_.required = applies && row->required;
     append(name);
     result_.steps.emplace_back(name);
     DocumentNodePtr child;

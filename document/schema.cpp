@@ -22,8 +22,8 @@ ValueSpec simple(ValueType type) {
 
 ValueSpec textOf(ValueType type, int max_characters) {
   ValueSpec spec = simple(type);
-  spec.fewest_items = 1;
-  spec.most_items = max_characters;
+  spec.min_items = 1;
+  spec.max_items = max_characters;
   return spec;
 }
 
@@ -42,8 +42,8 @@ ValueSpec object(const ObjectSpec& fields) {
 ValueSpec listOf(const ValueSpec& item, int min_items, int max_items) {
   ValueSpec spec = simple(ValueType::list);
   spec.item = std::make_shared<ValueSpec>(item);
-  spec.fewest_items = min_items;
-  spec.most_items = max_items;
+  spec.min_items = min_items;
+  spec.max_items = max_items;
   return spec;
 }
 

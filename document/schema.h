@@ -24,8 +24,8 @@ struct ValueSpec {
   std::vector<std::string> choices;       ///< choice
   const ObjectSpec* object = nullptr;     ///< object
   std::shared_ptr<const ValueSpec> item;  ///< list
-  int fewest_items = 0;                   ///< list; text, file: characters
-  int most_items = 0;
+  int min_items = 0;                      ///< list; text, file: characters
+  int max_items = 0;
   bool items_differ = false;  ///< list: no two items are equal, nor are their names where they are objects
 
   ValueSpec from(double lowest) const;  ///< with this minimum

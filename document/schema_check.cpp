@@ -75,8 +75,8 @@ std::string expectation(const ValueSpec& spec) {
     case ValueType::object:
       return "a set of keys";
     case ValueType::list:
-      if (spec.fewest_items == spec.most_items) {
-        return fmt::format("a list of {} values{}", spec.fewest_items, withUnit(unitOf(spec)));
+      if (spec.min_items == spec.max_items) {
+        return fmt::format("a list of {} values{}", spec.min_items, withUnit(unitOf(spec)));
       }
       return "a list";
   }
@@ -220,19 +220,18 @@ class Checker {
       if (!parseUtc_ms(node.text)) wrongType();
     } else {
       const auto length = static_cast<long long>(characterCount(node.text));
-      if (length >= spec.fewest_items && length <= spec.most_items) return;
+      if (length >= spec.min_items && length <= spec.max_items) return;
       fault(node.position, fmt::format("{} has {} characters, outside the allowed {} to {}", name, length,
-                                       spec.fewest_items, spec.most_items));
+                                       spec.min_items, spec.max_items));
     }
   }
 
   void list(const std::string& name, const DocumentNode& node, const ValueSpec& spec) {
     const auto count = static_cast<long long>(node.items.size());
-    if (count < spec.fewest_items || count > spec.most_items) {
-      const std::string allowed =
-          spec.fewest_items == spec.most_items
-              ? fmt::format("it must have {}", spec.fewest_items)
-              : fmt::format("allowed are {} to {}", spec.fewest_items, spec.most_items);
+    if (count < spec.min_items || count > spec.max_items) {
+      const std::string allowed = spec.min_items == spec.max_items
+                                      ? fmt::format("it must have {}", spec.min_items)
+                                      : fmt::format("allowed are {} to {}", spec.min_items, spec.max_items);
       fault(node.position, fmt::format("{} has {} items; {}", name, count, allowed));
     }
     for (std::size_t i = 0; i < node.items.size(); ++i) {

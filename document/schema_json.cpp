@@ -35,7 +35,7 @@ class SchemaWriter {
         return numeric(spec);
       case ValueType::text:
       case ValueType::file:
-        return {{"type", "string"}, {"minLength", spec.fewest_items}, {"maxLength", spec.most_items}};
+        return {{"type", "string"}, {"minLength", spec.min_items}, {"maxLength", spec.max_items}};
       case ValueType::timestamp:
         return {{"type", "string"},
                 {"format", "date-time"},
@@ -49,8 +49,8 @@ class SchemaWriter {
     }
     Json list = {{"type", "array"},
                  {"items", valueOf(*spec.item)},
-                 {"minItems", spec.fewest_items},
-                 {"maxItems", spec.most_items}};
+                 {"minItems", spec.min_items},
+                 {"maxItems", spec.max_items}};
     if (spec.items_differ) list["uniqueItems"] = true;
     return list;
   }

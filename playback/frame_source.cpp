@@ -86,7 +86,11 @@ class StoredFrames : public FrameSource {
         quantity_(selection.quantity),
         range_(selection.range),
         files_(volumeFilesOf(selection.input, quantity_)) {
-    if (!selection.scenario.empty()) scene_ = loadScenarioWithTerrain(selection.scenario);
+    if (!selection.scenario.empty()) {
+      scene_ = loadScenarioWithTerrain(selection.scenario, selection.edits);
+    } else if (!selection.edits.empty()) {
+      throw Error(ErrorCode::usage, "--set changes a scenario; volumes have none without --scenario");
+    }
     if (selection.first_only) {
       files_.resize(1);
     } else if (!selection.times.empty()) {
@@ -166,8 +170,8 @@ std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, co
                                              const ProgressSink& progress, const StopFlag* stop) {
   switch (inputKindOf(selection.input)) {
     case InputKind::scenario:
-      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input), selection, target,
-                                              progress, stop);
+      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input, selection.edits),
+                                              selection, target, progress, stop);
     case InputKind::volume:
       return std::make_unique<StoredFrames>(selection, stop);
     default:

@@ -31,9 +31,9 @@ InputKind inputKindOf(const std::string& file) {
                   "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv");
 }
 
-LoadedScenario loadScenarioWithTerrain(const std::string& file) {
+LoadedScenario loadScenarioWithTerrain(const std::string& file, const std::vector<scenario::Edit>& edits) {
   LoadedScenario loaded;
-  loaded.scenario = scenario::loadScenario(file);
+  loaded.scenario = scenario::loadScenario(file, edits);
   if (loaded.scenario->terrain) {
     loaded.terrain =
         scenario::Terrain::load(*loaded.scenario->terrain, scenario::terrainBox(*loaded.scenario));

@@ -1,168 +1,171 @@
-/// Transfer functions as files: strict reading with the place of every fault.
+/// Transfer functions as files: the table of the format, and what it cannot say.
 #include <fmt/format.h>
-#include <yaml-cpp/yaml.h>
 
-#include <cmath>
-#include <fstream>
-#include <set>
-#include <sstream>
-
+#include "base/whole_file.h"
+#include "document/schema_check.h"
+#include "document/section.h"
+#include "document/text_file.h"
 #include "emscape/base/error.h"
 #include "emscape/render/transfer_function.h"
 
 namespace emscape::render {
 namespace {
 
-constexpr int kSchemaVersion = 1;
+using document::DocumentNode;
+using document::DocumentNodePtr;
+using document::NodeKind;
+using document::ObjectSpec;
+using document::ProblemList;
+using document::Section;
+using document::ValueSpec;
+using document::ValueType;
+namespace spec = document::spec;
 
-/// Reads one file; YAML is a superset of JSON, and its reader knows where each value stands.
+constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 20;
+constexpr double kMaxValue = 1e30;
+constexpr int kMaxPoints = 10000;
+
+ValueSpec textOrNothing() {
+  ValueSpec text = spec::textOf(ValueType::text, 1000);
+  text.min_items = 0;
+  return text;
+}
+
+/// The table of the format. Two of its values have two forms: positions are values or parts of the volume's
+/// range, and colours are the name of a map or points.
+class TransferFormat {
+ public:
+  TransferFormat(bool is_relative, bool has_map) {
+    const ValueSpec at =
+        is_relative ? spec::number().from(0).to(1) : spec::number().from(-kMaxValue).to(kMaxValue);
+    color_ = {
+        "colour point", "", {spec::required("at", at, ""), spec::required("color", textOrNothing(), "")}};
+    opacity_ = {"opacity point",
+                "",
+                {spec::required("at", at, ""), spec::required("opacity", spec::number().from(0).to(1), "")}};
+    const ValueSpec colors =
+        has_map ? spec::choice(colorMapNames()) : spec::listOf(spec::object(color_), 1, kMaxPoints);
+    root_ = {"transfer function",
+             "",
+             {spec::required("schema_version", spec::simple(ValueType::integer).from(1).to(1), ""),
+              spec::optional("name", textOrNothing(), ""),
+              spec::required("domain", spec::choice({"value", "relative"}), ""),
+              spec::optional("unit", textOrNothing(), ""), spec::required("colors", colors, ""),
+              spec::required("opacity", spec::listOf(spec::object(opacity_), 1, kMaxPoints), "")}};
+  }
+  TransferFormat(const TransferFormat&) = delete;
+  TransferFormat& operator=(const TransferFormat&) = delete;
+
+  const ObjectSpec& root() const { return root_; }
+
+ private:
+  ObjectSpec color_, opacity_, root_;
+};
+
+const DocumentNode* valueOf(const DocumentNode& map, const std::string& key) {
+  for (const document::MapEntry& entry : map.entries) {
+    if (entry.key == key) return entry.value.get();
+  }
+  return nullptr;
+}
+
 class Reader {
  public:
-  Reader(std::string file, const volume::VolumeInfo& info) : file_(std::move(file)), info_(info) {}
+  Reader(const std::string& file, const volume::VolumeInfo& info) : file_(file), info_(info) {}
 
   TransferFunction read(const std::string& text) {
-    const YAML::Node root = load(text);
-    requireMap(root, {"schema_version", "name", "domain", "unit", "colors", "opacity"});
-    number(required(root, "schema_version"), kSchemaVersion, kSchemaVersion, "schema_version");
     TransferFunction function;
-    if (root["name"]) function.name = scalar(root["name"]);
-    function.unit = info_.unit;
-    readDomain(root);
-    readOpacity(required(root, "opacity"), function);
-    readColors(required(root, "colors"), function);
-    if (!(function.highest() > function.lowest())) {
-      fail(root["opacity"], fmt::format("all points are at {}: expected an interval", function.lowest()));
+    if (const DocumentNodePtr root = document::readDocument(file_, text, problems_)) {
+      const DocumentNode* domain = valueOf(*root, "domain");
+      const DocumentNode* colors = valueOf(*root, "colors");
+      is_relative_ = domain != nullptr && domain->text == "relative";
+      has_map_ = colors != nullptr && colors->kind == NodeKind::scalar;
+      const TransferFormat format(is_relative_, has_map_);
+      if (document::checkObject(file_, *root, format.root(), problems_)) {
+        readRoot(Section(file_, root.get(), format.root()), function);
+      }
     }
+    requireNoFault();
     return function;
   }
 
  private:
-  YAML::Node load(const std::string& text) const {
-    try {
-      return YAML::Load(text);
-    } catch (const YAML::Exception& error) {
-      throw Error(ErrorCode::bad_input, {file_, error.mark.line + 1, error.mark.column + 1}, error.msg);
+  void readRoot(const Section& root, TransferFunction& function) {
+    function.name = root.text("name");
+    function.unit = info_.unit;
+    if (root.has("unit") && is_relative_) {
+      problems_.addError(root.placeOf("unit"), "a unit is given, but the domain is relative");
+    } else if (root.has("unit") && root.text("unit") != info_.unit) {
+      problems_.addError(root.placeOf("unit"),
+                         fmt::format("unit '{}' is not that of the volume: {} is in '{}'", root.text("unit"),
+                                     info_.quantity, info_.unit));
     }
-  }
-
-  [[noreturn]] void fail(const YAML::Node& node, const std::string& message) const {
-    throw Error(ErrorCode::bad_input, {file_, node.Mark().line + 1, node.Mark().column + 1}, message);
-  }
-
-  void requireMap(const YAML::Node& node, const std::set<std::string>& known) const {
-    if (!node.IsMap()) fail(node, "expected an object");
-    std::set<std::string> seen;
-    for (const auto& entry : node) {
-      const std::string key = scalar(entry.first);
-      if (known.count(key) == 0)
-        fail(entry.first, fmt::format("unknown key '{}': expected {}", key, fmt::join(known, ", ")));
-      if (!seen.insert(key).second) fail(entry.first, fmt::format("key '{}' is given twice", key));
+    for (const Section& point : root.sections("opacity")) {
+      const double* before = function.opacities.empty() ? nullptr : &function.opacities.back().at;
+      function.opacities.push_back({position(point, before, true), point.number("opacity")});
     }
-  }
-
-  YAML::Node required(const YAML::Node& map, const char* key) const {
-    YAML::Node value = map[key];
-    if (!value) fail(map, fmt::format("key '{}' is missing", key));
-    return value;
-  }
-
-  std::string scalar(const YAML::Node& node) const {
-    if (!node.IsScalar()) fail(node, "expected a single value");
-    return node.Scalar();
-  }
-
-  double number(const YAML::Node& node, double least, double largest, const char* what) const {
-    double value = 0;
-    if (!node.IsScalar() || !YAML::convert<double>::decode(node, value)) {
-      fail(node, fmt::format("{}: expected a number", what));
-    }
-    if (!(value >= least && value <= largest)) {
-      fail(node, least == largest ? fmt::format("{} {}: expected {}", what, value, least)
-                                  : fmt::format("{} {}: expected {}..{}", what, value, least, largest));
-    }
-    return value;
-  }
-
-  /// Gives an error that knows no place that of a node.
-  template <class Read>
-  auto atNode(const YAML::Node& node, const Read& read) const {
-    try {
-      return read();
-    } catch (const Error& error) {
-      if (error.place().line > 0) throw;
-      fail(node, error.message());
-    }
-  }
-
-  void readDomain(const YAML::Node& root) {
-    const YAML::Node node = required(root, "domain");
-    const std::string domain = scalar(node);
-    if (domain != "value" && domain != "relative") {
-      fail(node, fmt::format("domain '{}': expected value or relative", domain));
-    }
-    relative_ = domain == "relative";
-    const YAML::Node unit_node = root["unit"];
-    if (!unit_node) return;
-    const std::string unit = scalar(unit_node);
-    if (relative_) fail(unit_node, "a unit is given, but the domain is relative");
-    if (unit != info_.unit) {
-      fail(unit_node, fmt::format("unit '{}' is not that of the volume: {} is in '{}'", unit, info_.quantity,
-                                  info_.unit));
+    has_map_ ? spreadMap(root, function) : readColors(root, function);
+    if (!problems_.hasErrors() && !(function.highest() > function.lowest())) {
+      problems_.addError(root.placeOf("opacity"),
+                         fmt::format("all points are at {}: expected an interval", function.lowest()));
     }
   }
 
   /// `at` of a point, in the volume's unit; checks the order.
-  double position(const YAML::Node& point, const double* before, bool may_repeat) const {
-    const YAML::Node node = required(point, "at");
+  double position(const Section& point, const double* before, bool may_repeat) {
     const double range = info_.range_max > info_.range_min ? double{info_.range_max} - info_.range_min : 1.0;
-    const double at =
-        relative_ ? info_.range_min + range * number(node, 0, 1, "at") : number(node, -1e30, 1e30, "at");
+    const double given = point.number("at");
+    const double at = is_relative_ ? info_.range_min + range * given : given;
     if (before != nullptr && (may_repeat ? at < *before : at <= *before)) {
-      fail(node,
-           fmt::format("at {}: points must {}", scalar(node), may_repeat ? "not decrease" : "increase"));
+      problems_.addError(point.placeOf("at"), fmt::format("at {}: points must {}", given,
+                                                          may_repeat ? "not decrease" : "increase"));
     }
     return at;
   }
 
-  void requirePoints(const YAML::Node& list, const char* what) const {
-    if (!list.IsSequence() || list.size() == 0)
-      fail(list, fmt::format("{}: expected a list of points", what));
-  }
-
-  void readOpacity(const YAML::Node& list, TransferFunction& function) const {
-    requirePoints(list, "opacity");
-    for (const YAML::Node& point : list) {
-      requireMap(point, {"at", "opacity"});
-      const double* before = function.opacities.empty() ? nullptr : &function.opacities.back().at;
-      const double at = position(point, before, true);
-      function.opacities.push_back({at, number(required(point, "opacity"), 0, 1, "opacity")});
+  /// A colour map by name covers the opacity points.
+  void spreadMap(const Section& root, TransferFunction& function) {
+    const double lowest = function.opacities.front().at;
+    const double range = function.opacities.back().at - lowest;
+    if (!(range > 0)) {
+      problems_.addError(root.placeOf("colors"),
+                         "a colour map by name needs opacity points at two different values");
+    }
+    for (const ColorMap::Point& point : colorMap(root.text("colors")).points) {
+      function.colors.push_back({lowest + range * point.at, point.color});
     }
   }
 
-  void readColors(const YAML::Node& node, TransferFunction& function) const {
-    if (node.IsScalar()) {
-      const double lowest = function.opacities.front().at;
-      const double range = function.opacities.back().at - lowest;
-      if (!(range > 0)) fail(node, "a colour map by name needs opacity points at two different values");
-      const ColorMap map = atNode(node, [&] { return colorMap(node.Scalar()); });
-      for (const ColorMap::Point& point : map.points) {
-        function.colors.push_back({lowest + range * point.at, point.color});
-      }
-      return;
-    }
-    requirePoints(node, "colors");
-    for (const YAML::Node& point : node) {
-      requireMap(point, {"at", "color"});
+  void readColors(const Section& root, TransferFunction& function) {
+    for (const Section& point : root.sections("colors")) {
       const double* before = function.colors.empty() ? nullptr : &function.colors.back().at;
       const double at = position(point, before, false);
-      const YAML::Node color = required(point, "color");
-      function.colors.push_back({at, atNode(color, [&] { return parseColor(scalar(color)); })});
+      try {
+        function.colors.push_back({at, parseColor(point.text("color"))});
+      } catch (const Error& error) {
+        problems_.addError(point.placeOf("color"), error.message());
+      }
     }
   }
 
-  std::string file_;
+  /// One fault keeps its place; several are told one a line.
+  void requireNoFault() const {
+    const std::vector<document::Problem> problems = problems_.inOrder();
+    if (problems.empty()) return;
+    if (problems.size() == 1)
+      throw Error(ErrorCode::bad_input, problems.front().place, problems.front().message);
+    std::string all;
+    for (const document::Problem& problem : problems) {
+      all += (all.empty() ? "" : "\n") + toString(problem.place) + ": " + problem.message;
+    }
+    throw Error(ErrorCode::bad_input, all);
+  }
+
+  const std::string& file_;
   const volume::VolumeInfo& info_;
-  bool relative_ = false;
+  ProblemList problems_;
+  bool is_relative_ = false;
+  bool has_map_ = false;
 };
 
 }  // namespace
@@ -176,16 +179,11 @@ TransferFunction parseTransferFunction(const std::string& text, const std::strin
             "{} is categorical: its categories have their own colours, a transfer function does not apply",
             info.quantity));
   }
-  return Reader(file, info).read(text);
+  return Reader(file, info).read(document::checkedUtf8(file, text));
 }
 
 TransferFunction readTransferFunction(const std::string& file, const volume::VolumeInfo& info) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
-    throw Error(ErrorCode::bad_input, fmt::format("cannot read transfer function '{}'", file));
-  }
-  return parseTransferFunction(text.str(), file, info);
+  return parseTransferFunction(readWholeText(file, kMaxFileBytes), file, info);
 }
 
 }  // namespace emscape::render

@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kMostVoxels = 2147483648.0;
 constexpr double kMostSteps = 1e7;
+constexpr double kMaxVoxelAspect = 1000;  ///< of x over y
 
 Clock parseClock(const Section& root, ParseContext& context) {
   const Clock clock{root.text("epoch"), root.number("duration_s"), root.number("step_s")};
@@ -45,6 +46,14 @@ Region parseRegion(const Section& section, ParseContext& context) {
   if (!section.sound()) return region;
   region.size_m = {size_m[0], size_m[1], size_m[2]};
   region.dims = {static_cast<int>(dims[0]), static_cast<int>(dims[1]), static_cast<int>(dims[2])};
+  const double width_m = size_m[0] / dims[0], depth_m = size_m[1] / dims[1];
+  if (std::max(width_m, depth_m) > kMaxVoxelAspect * std::min(width_m, depth_m)) {
+    context.problems.addError(
+        section.placeOf("size_m"),
+        fmt::format(
+            "'size_m' and 'dims' make voxels of {} m by {} m; one side may be at most {} times the other",
+            width_m, depth_m, kMaxVoxelAspect));
+  }
   return region;
 }
 
@@ -323,7 +332,10 @@ void Scenario::set(const std::vector<Edit>& edits) {
 }
 
 std::vector<Edit> Scenario::edits() const {
-  return source ? source->edits : std::vector<Edit>{};
+  std::vector<Edit> all;
+  if (!source) return all;
+  for (const MadeEdit& made : source->edits) all.push_back(made.edit);
+  return all;
 }
 
 std::string scenarioJsonSchema() {

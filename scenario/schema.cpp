@@ -78,7 +78,8 @@ const ObjectSpec& regionSpec() {
           byDefault("frame", choice({toString(FrameKind::altitude), toString(FrameKind::enu)}), "altitude",
                     "altitude: x east and y north along the ground, z above mean sea level; enu: a Cartesian "
                     "box tangent at the origin"),
-          required("size_m", listOf(number("m").above(0).to(4e6), 3, 3), "extent along x, y and z"),
+          required("size_m", listOf(number("m").from(1).to(4e6), 3, 3),
+                   "extent along x, y and z; a voxel's x and y differ by at most 1000 times"),
           required("dims", listOf(kInteger.from(2).to(4096), 3, 3),
                    "voxels along x, y and z; at most 2^31 in all"),
       }};

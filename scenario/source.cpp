@@ -15,14 +15,23 @@ namespace {
 using document::DocumentNodePtr;
 using document::ResolvedPath;
 
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
+}
+
+bool isNull(const std::string& value) {
+  const std::string word = trimmed(value);
+  return word == "null" || word == "Null" || word == "NULL" || word == "~";
+}
+
 /// The value that an edit gives; null: it removes.
 DocumentNodePtr valueOf(const Edit& edit) {
-  const std::size_t begin = edit.value.find_first_not_of(" \t\r\n");
-  if (begin == std::string::npos) {
+  if (trimmed(edit.value).empty()) {
     throw Error(ErrorCode::bad_input, "the value is empty; null removes a key, \"\" is the empty text");
   }
-  const std::string word = edit.value.substr(begin, edit.value.find_last_not_of(" \t\r\n") - begin + 1);
-  if (word == "null" || word == "Null" || word == "NULL" || word == "~") return nullptr;
+  if (isNull(edit.value)) return nullptr;
   document::ProblemList problems;
   const DocumentNodePtr value = document::readDocument("", document::checkedUtf8("", edit.value), problems);
   const std::vector<document::Problem> faults = problems.inOrder();
@@ -36,20 +45,37 @@ bool leadsInto(const std::string& outer, const std::string& inner) {
          (inner.size() == outer.size() || inner[outer.size()] == '.');
 }
 
-/// Adds an edit to those made. An earlier one of the same path is forgotten, unless one in between depends on
-/// it.
-void remember(std::vector<Edit>& edits, Edit edit) {
-  for (std::size_t i = edits.size(); i-- > 0;) {
-    if (edits[i].path == edit.path) {
-      edits.erase(edits.begin() + static_cast<std::ptrdiff_t>(i));
-      break;
-    }
-    const std::string& path = edits[i].path;
-    const std::size_t point = path.rfind('.');
-    const bool renames = point != std::string::npos && path.substr(point) == ".name";
-    if (renames || leadsInto(path, edit.path) || leadsInto(edit.path, path)) break;
+/// Index of the last edit of a path before `end` that could be made anew without regard to what follows it;
+/// npos if there is none.
+std::size_t lastEditOf(const std::string& path, const std::vector<MadeEdit>& edits, std::size_t end) {
+  for (std::size_t i = end; i-- > 0;) {
+    if (edits[i].moves_paths) break;
+    if (edits[i].edit.path == path) return i;
+    if (leadsInto(edits[i].edit.path, path) || leadsInto(path, edits[i].edit.path)) break;
   }
-  edits.push_back(std::move(edit));
+  return std::string::npos;
+}
+
+/// Adds an edit to those made. They stay few: a value set again takes its earlier place, and what was set
+/// only to be removed again is forgotten.
+void remember(std::vector<MadeEdit>& edits, MadeEdit made) {
+  const std::size_t last =
+      made.moves_paths ? std::string::npos : lastEditOf(made.edit.path, edits, edits.size());
+  if (last == std::string::npos) {
+    edits.push_back(std::move(made));
+    return;
+  }
+  const bool was_removed = isNull(edits[last].edit.value), is_removed = isNull(made.edit.value);
+  if (!was_removed && !is_removed) {
+    edits[last] = std::move(made);
+  } else if (was_removed != is_removed) {
+    const std::size_t before = is_removed ? lastEditOf(made.edit.path, edits, last) : std::string::npos;
+    if (before != std::string::npos && isNull(edits[before].edit.value)) {
+      edits.erase(edits.begin() + static_cast<std::ptrdiff_t>(last));
+    } else {
+      edits.push_back(std::move(made));
+    }
+  }
 }
 
 void apply(ScenarioSource& source, const Edit& edit) {
@@ -79,7 +105,9 @@ void apply(ScenarioSource& source, const Edit& edit) {
                   "the file is written in a way that cannot be edited here; edit the file");
     }
   }
-  remember(source.edits, made);
+  const bool is_item = std::holds_alternative<std::size_t>(path.steps.back());
+  const bool is_name = !is_item && std::get<std::string>(path.steps.back()) == "name";
+  remember(source.edits, {made, is_name || (is_item && !value)});
   source.text = std::move(edited.text);
   source.root = std::move(edited.root);
 }

@@ -27,11 +27,18 @@ struct NamedFiles {
   std::string terrain_digest;                  ///< names and sizes of the elevation files
 };
 
+/// An edit that was made.
+struct MadeEdit {
+  Edit edit;
+  bool moves_paths =
+      false;  ///< the same path may lead elsewhere afterwards: a name changed, or an item was removed
+};
+
 /// Immutable; shared by all copies of a scenario.
 struct ScenarioSource {
   document::EditedText text;
   document::DocumentNodePtr root;  ///< null if the text could not be read
-  std::vector<Edit> edits;         ///< since the file; of edits of one path, the last
+  std::vector<MadeEdit> edits;     ///< since the file; those that later ones made superfluous are left out
   NamedFiles files;
 };
 

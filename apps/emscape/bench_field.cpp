@@ -24,6 +24,7 @@ namespace {
 
 struct BenchFieldOptions {
   std::string scenario;
+  std::vector<scenario::Edit> edits;
   int repeats = 5;
   std::string device_volume = "float";
   std::vector<std::string> emitters;  ///< that move and turn; empty: all
@@ -125,7 +126,7 @@ class FieldBench {
 };
 
 int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
-  const playback::LoadedScenario input = playback::loadScenarioWithTerrain(options.scenario);
+  const playback::LoadedScenario input = playback::loadScenarioWithTerrain(options.scenario, options.edits);
   const std::unique_ptr<FieldBench> opened =
       openOnTarget(global, options.device_volume, [&](const ComputeTarget& target) {
         return std::make_unique<FieldBench>(input, options.repeats, target);
@@ -204,6 +205,7 @@ Example:
   emscape bench field scenarios/jacksboro.yaml --emitters "search radar,tracking radar,jammer")");
   auto options = std::make_shared<BenchFieldOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
+  addSetOption(*command, options->edits);
   command->add_option("--repeats", options->repeats, "Updates of each kind, of which the median is told")
       ->check(CLI::Range(1, 1000));
   addListOption(*command, "--emitters", options->emitters,

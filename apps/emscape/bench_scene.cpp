@@ -164,6 +164,7 @@ void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
       .add_option("INPUT", options.selection.input,
                   "Volume (.raw .dat .vdb .nvdb .vti) or scenario, which is computed for one instant")
       ->required();
+  addSetOption(command, options.selection.edits);
   command.add_option("--size", options.size, "Picture size in pixels, WxH");
   command.add_option("--mode", options.mode, "How samples become a pixel, as for render");
   command.add_option("--step", options.step_voxels, "Distance of samples, in voxels")

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
+#include "emscape/scenario/edit.h"
 
 namespace emscape::app {
 
@@ -28,6 +29,10 @@ inline CLI::Option* addListOption(CLI::App& command, const std::string& name,
 /// What the program offers its user after an error, in parentheses and with a blank before; empty for
 /// Hint::none.
 std::string optionText(Hint hint);
+
+/// --set PATH=VALUE, which may be given several times. @throws Error (usage) when it is parsed, for a text
+/// without '='
+void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits);
 
 /// Runs the subcommand that was chosen; returns the exit status.
 using Action = std::function<int()>;

@@ -29,6 +29,7 @@ constexpr PropagationModel kModels[] = {PropagationModel::free_space,  Propagati
 
 struct ProfileOptions {
   std::string scenario;
+  std::vector<scenario::Edit> edits;
   std::string emitter;
   std::string to;
   double time_s = 0;
@@ -92,7 +93,7 @@ std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenar
 
 ProfileReport makeReport(const ProfileOptions& options) {
   const scenario::SitePosition to = parsePoint(options.to, options.above_ground);
-  const auto scenario = withPoint(*scenario::loadScenario(options.scenario), to);
+  const auto scenario = withPoint(*scenario::loadScenario(options.scenario, options.edits), to);
   const int emitter = emitterNamed(*scenario, options.emitter);
   const scenario::TerrainPtr terrain =
       scenario->terrain ? scenario::Terrain::load(*scenario->terrain, scenario::terrainBox(*scenario))
@@ -152,6 +153,7 @@ or a path over missing terrain.)");
   std::vector<std::string> names;
   for (const PropagationModel model : kModels) names.emplace_back(scenario::toString(model));
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
+  addSetOption(*command, options->edits);
   command->add_option("--emitter", options->emitter, "Name of the emitter")->required();
   command->add_option("--to", options->to, "The point: LAT,LON,HEIGHT (deg, deg, m)")->required();
   command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");

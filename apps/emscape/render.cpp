@@ -284,6 +284,7 @@ Examples:
       ->add_option("INPUT", options->selection.input,
                    "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes")
       ->required();
+  addSetOption(*command, options->selection.edits);
   command->add_option("-o,--output", options->outputs,
                       "NAME.png, NAME.mp4 or a folder for frames; may be given several times");
   command->add_option("--size", options->size, "Picture size in pixels, WxH");

@@ -20,6 +20,7 @@ namespace {
 
 struct SimulateOptions {
   std::string scenario;
+  std::vector<scenario::Edit> edits;
   std::string folder;
   std::vector<std::string> formats{"vdb"};
   std::vector<std::string> quantities;
@@ -65,7 +66,7 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
   Stopwatch watch;
   const playback::SeriesOptions series_options = seriesOptionsOf(options);
   checkFolderIsFree(options);
-  const playback::LoadedScenario input = playback::loadScenarioWithTerrain(options.scenario);
+  const playback::LoadedScenario input = playback::loadScenarioWithTerrain(options.scenario, options.edits);
   const std::vector<double> times_s = options.times.empty()
                                           ? scenario::timesOf(input.scenario->clock)
                                           : scenario::parseTimes(options.times, input.scenario->clock);
@@ -117,6 +118,7 @@ Examples:
   emscape simulate scenarios/jacksboro.yaml -o out --resume        after an interruption)");
   auto options = std::make_shared<SimulateOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
+  addSetOption(*command, options->edits);
   command->add_option("-o,--output", options->folder, "Folder of the series; made if need be")->required();
   addListOption(*command, "--format", options->formats,
                 "File formats, with commas between them: vdb, nvdb, vti, raw")

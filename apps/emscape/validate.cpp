@@ -95,8 +95,8 @@ const char* toString(Severity severity) {
   return severity == Severity::error ? "error" : "warning";
 }
 
-int validate(const std::string& file, const GlobalOptions& global) {
-  scenario::ParseResult result = scenario::parseScenario(file);
+int validate(const std::string& file, const std::vector<scenario::Edit>& edits, const GlobalOptions& global) {
+  scenario::ParseResult result = scenario::parseScenario(file, edits);
   if (result.scenario) checkMeaning(result.scenario, result.problems);
   const bool ok = std::none_of(result.problems.begin(), result.problems.end(),
                                [](const Problem& problem) { return problem.severity == Severity::error; });
@@ -131,13 +131,17 @@ elevation files cover the region and that no platform is below the ground at any
 
 Examples:
   emscape validate scenarios/jacksboro.yaml
+  emscape validate mine.yaml --set "emitters.search radar.power_w=500"
   emscape validate mine.yaml --json        {"ok", "problems": [{"file", "line", "column", "severity", "message"}]}
 
 Exit status: 0 without errors (warnings do not count), 3 otherwise.)");
   auto file = std::make_shared<std::string>();
   command->add_option("SCENARIO", *file, "Scenario (YAML or JSON)")->required();
-  command->callback(
-      [file, &global, &action] { action = [file, &global] { return validate(*file, global); }; });
+  auto edits = std::make_shared<std::vector<scenario::Edit>>();
+  addSetOption(*command, *edits);
+  command->callback([file, edits, &global, &action] {
+    action = [file, edits, &global] { return validate(*file, *edits, global); };
+  });
 }
 
 }  // namespace emscape::app

@@ -7,9 +7,12 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <sstream>
+#include <string>
 
 #include "emscape/base/units.h"
 #include "scenario/terrain/file.h"
+#include "scenario/terrain/vrt.h"
 
 namespace emscape::scenario {
 namespace {
@@ -26,6 +29,14 @@ constexpr double kSnap_posts = 0.01;
 /// Largest error of positions interpolated between transformed ones (posts).
 constexpr double kLineTolerance_posts = 0.01;
 constexpr long long kStripPosts = 1 << 21;
+/// Of a file that lies on the earth. Coordinates: metres or feet of a projection; angles are much smaller.
+constexpr double kMaxCrsCoordinate = 1e9;
+constexpr double kMaxLongitude_deg = 1080;
+constexpr int kMaxPostsPerAxis = 1 << 22;  ///< the whole earth in a third of an arc second
+
+/// Formats of elevation; GDAL's others read databases, network services and programs' own files.
+constexpr const char* kAllowedDrivers[] = {"GTiff",   "SRTMHGT", "DTED", "VRT",
+                                           "AAIGrid", "USGSDEM", "EHdr", nullptr};
 
 /// Keeps GDAL from printing and remembers its first complaint.
 class GdalMessages {
@@ -106,6 +117,12 @@ void snapToDegrees(double& first, double& step, int count) {
   step = 1.0 / per_degree;
 }
 
+std::string shortText(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 using TransformationPtr = std::unique_ptr<OGRCoordinateTransformation>;
 
 /// Points that could not be transformed become NaN.
@@ -156,8 +173,10 @@ struct TerrainFile::Impl {
 
 std::unique_ptr<GDALDataset> TerrainFile::Impl::open() const {
   GdalMessages messages;
-  std::unique_ptr<GDALDataset> dataset(
-      GDALDataset::Open(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  const std::string foreign = foreignSourceOfVrt(name);
+  if (!foreign.empty()) fail(foreign);
+  std::unique_ptr<GDALDataset> dataset(GDALDataset::Open(
+      name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kAllowedDrivers));
   if (!dataset) {
     VSIStatBufL status;
     const bool exists = VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
@@ -177,6 +196,10 @@ void TerrainFile::Impl::readHead() {
   format = long_name ? long_name : dataset->GetDriverName();
   columns = dataset->GetRasterXSize();
   rows = dataset->GetRasterYSize();
+  if (columns > kMaxPostsPerAxis || rows > kMaxPostsPerAxis) {
+    fail("has " + std::to_string(columns) + " x " + std::to_string(rows) + " posts, more than the allowed " +
+         std::to_string(kMaxPostsPerAxis) + " in a row or column");
+  }
   if (dataset->GetRasterCount() > 1) {
     notes.push_back("has " + std::to_string(dataset->GetRasterCount()) +
                     " bands: heights are taken from the first");
@@ -206,8 +229,20 @@ void TerrainFile::Impl::placePosts(GDALDataset& dataset) {
   double* g = pixel_to_crs;
   if (dataset.GetGeoTransform(g) != CE_None) fail("has no georeference");
   const double area = g[1] * g[5] - g[2] * g[4];
-  if (!std::isfinite(g[0] + g[3]) || !std::isfinite(area) || area == 0.0) {
+  double reach = 0;  // of the raster's corners from the CRS's origin
+  for (const double column : {0.0, double(columns)}) {
+    for (const double row : {0.0, double(rows)}) {
+      reach = std::max(
+          {reach, std::abs(g[0] + column * g[1] + row * g[2]), std::abs(g[3] + column * g[4] + row * g[5])});
+      if (std::isnan(g[0] + column * g[1] + row * g[2] + g[3] + column * g[4] + row * g[5])) reach = HUGE_VAL;
+    }
+  }
+  if (!std::isfinite(reach) || !std::isfinite(area) || area == 0.0) {
     fail("has a georeference of no extent");
+  }
+  if (reach > kMaxCrsCoordinate) {
+    fail("its posts lie nowhere on the earth: a coordinate is " + shortText(reach) +
+         ", more than the allowed " + shortText(kMaxCrsCoordinate));
   }
   const char* meaning = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
   is_area = meaning == nullptr || !EQUAL(meaning, GDALMD_AOP_POINT);
@@ -255,6 +290,12 @@ void TerrainFile::Impl::placeOnEarth(const OGRSpatialReference* given) {
   if (geographic) {
     snapToDegrees(lattice.x0, lattice.step_x, columns);
     snapToDegrees(lattice.y0, lattice.step_y, rows);
+    const double west_deg = lattice.x(0), east_deg = lattice.x(columns - 1);
+    if (west_deg < -kMaxLongitude_deg || east_deg > kMaxLongitude_deg) {
+      fail("its longitudes run from " + shortText(west_deg) + " to " + shortText(east_deg) +
+           " deg, outside the allowed " + shortText(-kMaxLongitude_deg) + " to " +
+           shortText(kMaxLongitude_deg) + " deg");
+    }
     plane_name = "WGS84";
     return;
   }

@@ -56,6 +56,25 @@ TEST_F(Validate, TellsPlaceAndSeverityOfEveryProblem) {
   }
 }
 
+TEST_F(Validate, ChecksTheEditsOfTheCommandLine) {
+  const std::string file = shippedScenario("jacksboro.yaml");
+  EXPECT_EQ(run({"validate", file, "--set", "emitters.search radar.power_w=500", "--set",
+                 "region.dims=[20, 20, 10]"})
+                .status,
+            0);
+  const ProgramResult unknown = run({"validate", file, "--set", "emitters.serch radar.power_w=500"});
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_THAT(unknown.out,
+              HasSubstr("emitters.serch radar.power_w=500: error: there is no emitter 'serch radar'; did "
+                        "you mean 'search radar'?"));
+  const ProgramResult value = run({"validate", file, "--set", "atmosphere.k_factor=99", "--json"});
+  EXPECT_EQ(value.status, 3);
+  EXPECT_EQ(json::parse(value.out).at("problems").at(0).at("file"), "atmosphere.k_factor=99");
+  const ProgramResult usage = run({"validate", file, "--set", "atmosphere.k_factor"});
+  EXPECT_EQ(usage.status, 2);
+  EXPECT_THAT(usage.err, HasSubstr("write PATH=VALUE"));
+}
+
 TEST_F(Validate, FindsRegionsBeyondTheElevationData) {
   const std::string dem = shippedScenario("data/jacksboro.tif");
   const std::string file = changed("platforms:", "terrain: {files: ['" + dem + "']}\nplatforms:");

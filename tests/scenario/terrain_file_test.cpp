@@ -319,6 +319,42 @@ TEST_F(TerrainFileTest, WhatIsNoRasterIsRefused) {
   EXPECT_THAT(problemOf((folder_ / "empty.dt1").string()), HasSubstr("not a raster"));
 }
 
+TEST_F(TerrainFileTest, AbsurdPositionsAreRefused) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.transform[0] = 6e282;
+  EXPECT_THAT(problemOf(write("far.tif", file)), HasSubstr("its posts lie nowhere on the earth"));
+  file.transform[0] = 5000;
+  EXPECT_THAT(
+      problemOf(write("round.tif", file)),
+      HasSubstr("its longitudes run from 5000.05 to 5000.95 deg, outside the allowed -1080 to 1080 deg"));
+  file.transform[0] = 10;
+  file.transform[1] = 1e300;
+  EXPECT_THAT(problemOf(write("wide.tif", file)), HasSubstr("its posts lie nowhere on the earth"));
+}
+
+TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {
+  const auto vrt = [&](const std::string& source, const std::string& size = "10") {
+    const std::string file = (folder_ / "a.vrt").string();
+    std::ofstream(file) << "<VRTDataset rasterXSize=\"" << size
+                        << "\" rasterYSize=\"10\"><SRS>EPSG:4326</SRS>"
+                        << "<GeoTransform>10, 0.1, 0, 50, 0, -0.1</GeoTransform>"
+                        << "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>" << source
+                        << "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+    return problemOf(file);
+  };
+  write("a.tif", geographicDem(10, 50, 0.1, 10, 10, flat));
+  EXPECT_EQ(vrt("<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>"), "");
+  EXPECT_EQ(vrt("<SourceFilename>" + (folder_ / "a.tif").string() + "</SourceFilename>"), "");
+  for (const char* source : {"<SourceFilename relativeToVRT=\"1\">../a.tif</SourceFilename>",
+                             "<SourceFilename>/etc/hostname</SourceFilename>",
+                             "<SourceFilename>/vsicurl/http://127.0.0.1:1/x.tif</SourceFilename>",
+                             "<SourceFilename>&lt;VRTDataset/></SourceFilename>"}) {
+    EXPECT_THAT(vrt(source), HasSubstr("does not lie in its own folder")) << source;
+  }
+  EXPECT_THAT(vrt("<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>", "2147483647"),
+              HasSubstr("more than the allowed 4194304 in a row or column"));
+}
+
 TEST_F(TerrainFileTest, ATruncatedFileIsAnErrorAndNotSeaLevel) {
   const auto path = write("a.tif", geographicDem(10, 50, 0.001, 1000, 1000, flat));
   std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);

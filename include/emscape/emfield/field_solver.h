@@ -50,9 +50,9 @@ struct FieldChanged {
   bool any = false;
   bool grid = false;      ///< everything is new: the first update, or another region, terrain or emitter list
   bool channels = false;  ///< channels() may be others than before
-  std::vector<int> moved;   ///< emitters whose geometry (fan and excess losses) was computed anew
-  std::vector<int> turned;  ///< emitters of which only the beam, the power or the activity changed, or what
-                            ///< else the combine stage reads
+  std::vector<int> moved;    ///< emitters whose geometry (fan and excess losses) was computed anew
+  std::vector<int> turned;   ///< emitters of which only the beam, the power or the activity changed, or what
+                             ///< else the combine stage reads
   std::vector<int> volumes;  ///< channels whose volume was computed anew
 };
 
@@ -78,7 +78,7 @@ class FieldSolver {
   /// @throws Error (bad_input) where the terrain is missing, naming the location, unless allowed; for
   /// values that a model refuses. Error (device) if a GPU is requested and there is none or it lacks memory
   FieldSolver(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
-              FieldOptions options);
+              FieldOptions options = {});
   ~FieldSolver();
 
   const volume::Grid& grid() const;

@@ -30,6 +30,7 @@ struct FrameSelection {
   std::optional<ValueRange> range;  ///< of the colours; none: that of the series
   std::string scenario;             ///< beside volumes: whose ground and emitters are drawn; may be empty
   bool allow_missing_terrain = false;
+  std::vector<scenario::Edit> edits;  ///< to the scenario
 };
 
 /// Instants in order of time. One thread at a time calls frame(); the other functions are safe beside it, but

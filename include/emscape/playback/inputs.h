@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "emscape/scenario/scenario.h"
 #include "emscape/scenario/terrain.h"
@@ -21,6 +22,7 @@ struct LoadedScenario {
   scenario::TerrainPtr terrain;
 };
 /// @throws Error (bad_input) that lists all that is wrong
-LoadedScenario loadScenarioWithTerrain(const std::string& file);
+LoadedScenario loadScenarioWithTerrain(const std::string& file,
+                                       const std::vector<scenario::Edit>& edits = {});
 
 }  // namespace emscape::playback

@@ -63,8 +63,8 @@ struct TerrainFileInfo {
 ///   height.
 class Terrain {
  public:
-  /// Reads what the files hold within the box (HGT, DTED, GeoTIFF in any CRS, VRT: whatever GDAL reads),
-  /// tiles as one mosaic.
+  /// Reads what the files hold within the box (GeoTIFF in any CRS, HGT, DTED, ASCII grid, USGS DEM, EHdr BIL,
+  /// VRT of files in its own folder), tiles as one mosaic.
   /// @throws Error (bad_input) naming the file; a file that does not meet the box is no error
   static std::shared_ptr<const Terrain> load(const TerrainSpec& spec, const GeoBox& box);
   /// @param read_heights  false: only the file's head is read

@@ -1,0 +1,579 @@
+#include "emscape/scenario/edit.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "document/document.h"
+#include "document/text_edit.h"
+#include "emscape/scenario/scenario_file.h"
+#include "scenario/schema.h"
+#include "scenario/source.h"
+#include "tests/scenario/scenario_files.h"
+
+namespace emscape::scenario {
+namespace {
+
+using document::DocumentNode;
+using document::DocumentNodePtr;
+using document::NodeKind;
+using document::ValueType;
+using test::ScratchFolder;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const std::string kSmall = R"(# a comment at the top
+schema_version: 1   # of the format
+name: small
+duration_s: 10
+region:
+  origin: {latitude_deg: 36, longitude_deg: -84}
+  size_m: [1000, 1000, 1000]
+  dims: [4, 4, 4]
+platforms:
+  - name: site   # the only one
+    position:
+      latitude_deg: 36
+      longitude_deg: -84
+      height_msl_m: 100
+  # between two
+  - {name: "a.b", position: {latitude_deg: 36.001, longitude_deg: -84, height_msl_m: 100}}
+  - name: 'a'
+    position: {latitude_deg: 36.002, longitude_deg: -84, height_msl_m: 100}
+emitters:
+  - name: search radar
+    platform: site
+    kind: transmitter
+    frequency_hz: 3.0e9
+    # how strong
+    power_w: 20000   # peak
+    antenna: {pattern: gaussian, beamwidth_az_deg: 3, beamwidth_el_deg: 4}
+  - name: x=1 "q"
+    platform: a.b
+    kind: transmitter
+    frequency_hz: 1.0e9
+    power_w: 10
+    antenna: {pattern: isotropic}
+)";
+
+class EditScenario : public ::testing::Test {
+ protected:
+  Scenario load(const std::string& text, const std::string& name = "s.yaml") {
+    return *loadScenario(folder_.write(name, text));
+  }
+  std::string saved(const Scenario& scenario) {
+    const std::string file = (folder_.path() / "saved.yaml").string();
+    saveScenario(scenario, file);
+    return test::readText(file);
+  }
+  ScratchFolder folder_;
+};
+
+std::string faultOf(Scenario& scenario, const std::string& path, const std::string& value) {
+  const std::string hash = scenario.hash;
+  const auto source = scenario.source;
+  try {
+    scenario.set(path, value);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::bad_input);
+    EXPECT_EQ(scenario.hash, hash) << "unchanged";
+    EXPECT_EQ(scenario.source, source) << "unchanged";
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(EditScenario, ChangesTheValueAndNothingElseOfTheText) {
+  Scenario scenario = load(kSmall);
+  const std::string hash = scenario.hash;
+  scenario.set("emitters.search radar.power_w", "500");
+  EXPECT_EQ(scenario.emitters[0].power_w, 500);
+  EXPECT_NE(scenario.hash, hash);
+  EXPECT_EQ(saved(scenario), test::replaced(kSmall, "power_w: 20000", "power_w: 500"));
+  scenario.set("emitters.search radar.power_w", "20000");
+  EXPECT_EQ(scenario.hash, hash);
+}
+
+TEST_F(EditScenario, AnUneditedScenarioIsSavedAsItWasRead) {
+  EXPECT_EQ(saved(load(kSmall)), kSmall);
+}
+
+TEST_F(EditScenario, AddsKeysInTheStyleOfTheirMap) {
+  Scenario scenario = load(kSmall);
+  scenario.set("emitters.search radar.antenna.gain_dbi", "30");
+  scenario.set("emitters.search radar.losses_db", "2");
+  scenario.set("platforms.site.position.height_msl_m", "120");
+  scenario.set("atmosphere.k_factor", "1.5");
+  std::string text =
+      test::replaced(kSmall, "beamwidth_el_deg: 4}", "beamwidth_el_deg: 4, gain_dbi: 30}\n    losses_db: 2");
+  text = test::replaced(text, "height_msl_m: 100\n", "height_msl_m: 120\n");
+  EXPECT_EQ(saved(scenario), text + "atmosphere: {k_factor: 1.5}\n");
+  EXPECT_EQ(scenario.atmosphere.k_factor, 1.5);
+  EXPECT_EQ(scenario.emitters[0].antenna->gain_dbi, 30);
+}
+
+TEST_F(EditScenario, NullReturnsToTheDefault) {
+  Scenario scenario = load(kSmall);
+  scenario.set("emitters.search radar.losses_db", "2");
+  scenario.set("emitters.search radar.losses_db", "null");
+  EXPECT_EQ(scenario.emitters[0].losses_db, 0);
+  EXPECT_EQ(saved(scenario), kSmall);
+  scenario.set("duration_s", "null");
+  EXPECT_EQ(scenario.clock.duration_s, 0);
+  EXPECT_EQ(saved(scenario), test::replaced(kSmall, "duration_s: 10\n", ""));
+  scenario.set("atmosphere.rain_mm_h", "null");
+  EXPECT_EQ(saved(scenario), test::replaced(kSmall, "duration_s: 10\n", ""))
+      << "removing nothing changes nothing";
+}
+
+TEST_F(EditScenario, RemovesAnItemOfAList) {
+  Scenario scenario = load(kSmall);
+  scenario.set("emitters.search radar", "null");
+  ASSERT_EQ(scenario.emitters.size(), 1u);
+  EXPECT_EQ(scenario.emitters[0].name, "x=1 \"q\"");
+  scenario.set("platforms.site", "null");
+  EXPECT_THAT(saved(scenario), HasSubstr("platforms:\n  # between two\n  - {name: \"a.b\""));
+}
+
+TEST_F(EditScenario, NamesMayHoldBlanksPointsAndEqualsSigns) {
+  Scenario scenario = load(kSmall);
+  scenario.set("platforms.a.b.position.height_msl_m", "150");
+  scenario.set("platforms.a.position.height_msl_m", "160");
+  scenario.set("emitters.x=1 \"q\".power_w", "20");
+  EXPECT_EQ(scenario.platforms[1].track[0].position.height_msl_m, 150);
+  EXPECT_EQ(scenario.platforms[2].track[0].position.height_msl_m, 160);
+  EXPECT_EQ(scenario.emitters[1].power_w, 20);
+  const std::string written = toString(scenario.edits().back());
+  EXPECT_EQ(written, R"(emitters."x=1 \"q\"".power_w=20)");
+  EXPECT_EQ(parseEdit(written), scenario.edits().back());
+  scenario.set(parseEdit(written).path, "30");
+  EXPECT_EQ(scenario.emitters[1].power_w, 30);
+}
+
+TEST_F(EditScenario, EditsOfOnePathAreOneEdit) {
+  Scenario scenario = load(kSmall);
+  for (int i = 1; i <= 100; ++i) scenario.set("emitters.search radar.power_w", std::to_string(i));
+  scenario.set("region.dims.2", "8");
+  ASSERT_EQ(scenario.edits().size(), 2u);
+  EXPECT_EQ(toString(scenario.edits()[0]), "emitters.search radar.power_w=100");
+  EXPECT_EQ(toString(scenario.edits()[1]), "region.dims.2=8");
+  EXPECT_EQ(loadScenario(scenario.file, scenario.edits())->hash, scenario.hash);
+}
+
+TEST_F(EditScenario, EditsStayInAnOrderThatWorksWhereNamesChange) {
+  Scenario scenario = load(kSmall);
+  scenario.set("emitters.search radar.power_w", "1");
+  scenario.set("emitters.search radar.name", "other");
+  scenario.set("emitters.other.power_w", "2");
+  scenario.set("emitters.other.name", "search radar");
+  scenario.set("emitters.search radar.power_w", "3");
+  EXPECT_EQ(loadScenario(scenario.file, scenario.edits())->hash, scenario.hash);
+}
+
+TEST_F(EditScenario, ValuesThatDependOnEachOtherAreSetTogether) {
+  Scenario scenario = load(kSmall);
+  EXPECT_THAT(faultOf(scenario, "emitters.search radar.antenna.pattern", "phased_array"),
+              HasSubstr("'columns'"));
+  scenario.set({{"emitters.search radar.antenna", "{pattern: phased_array, columns: 8, rows: 4}"}});
+  EXPECT_EQ(scenario.emitters[0].antenna->beamwidth_az_deg < 60, true);
+  scenario.set({{"emitters.search radar.antenna.pattern", "isotropic"},
+                {"emitters.search radar.antenna.columns", "null"},
+                {"emitters.search radar.antenna.rows", "null"}});
+  EXPECT_EQ(scenario.emitters[0].antenna->gain_dbi, 0);
+}
+
+TEST_F(EditScenario, FaultsNameTheEditAndLeaveTheScenario) {
+  Scenario scenario = load(kSmall);
+  EXPECT_EQ(faultOf(scenario, "emitters.search radar.power_w", "abc"),
+            "emitters.search radar.power_w=abc: 'power_w' must be a number (W), not 'abc'");
+  EXPECT_EQ(faultOf(scenario, "atmosphere.k_factor", "99"),
+            "atmosphere.k_factor=99: 'k_factor' is 99, outside the allowed 0.5 to 10");
+  EXPECT_EQ(faultOf(scenario, "emitters.serch radar.power_w", "5"),
+            "emitters.serch radar.power_w=5: there is no emitter 'serch radar'; did you mean 'search "
+            "radar'?; allowed "
+            "are 'search radar', 'x=1 \"q\"'");
+  EXPECT_EQ(faultOf(scenario, "emitters.search radar.power", "5"),
+            "emitters.search radar.power=5: unknown key 'power'; write 'power_w' (W)");
+  EXPECT_THAT(faultOf(scenario, "atmosfere.k_factor", "1"), HasSubstr("did you mean 'atmosphere'?"));
+  EXPECT_EQ(faultOf(scenario, "emitters.search radar.power_w", "null"),
+            "emitters.search radar.power_w=null: 'power_w' must be given; it cannot be removed");
+  EXPECT_EQ(faultOf(scenario, "region.dims.3", "4"),
+            "region.dims.3=4: '3' is not an item of 'dims'; allowed are 0 to 2");
+  EXPECT_EQ(faultOf(scenario, "name.first", "4"), "name.first=4: 'name' has no parts; the path ends there");
+  EXPECT_THAT(faultOf(scenario, "name", ""), HasSubstr("the value is empty"));
+  EXPECT_THAT(faultOf(scenario, "name", "[1"), HasSubstr("the value is not valid YAML"));
+  EXPECT_THAT(faultOf(scenario, "", "1"), HasSubstr("the path is empty"));
+  EXPECT_THAT(faultOf(scenario, "name.", "1"), HasSubstr("name.=1: "));
+  EXPECT_THAT(faultOf(scenario, "receivers.r.gain_dbi", "1"), HasSubstr("there is no receiver 'r'"));
+}
+
+TEST_F(EditScenario, FaultsElsewhereAreAtTheirPlaceInTheFile) {
+  Scenario scenario = load(kSmall);
+  scenario.set("platforms.site.attitude", "{roll_deg: 1}");  // a line more
+  EXPECT_THAT(faultOf(scenario, "platforms.site.name", "other"),
+              HasSubstr("s.yaml:21:15: there is no platform 'site'"));
+  EXPECT_EQ(scenario.emitters[0].place.line, 20);
+}
+
+TEST_F(EditScenario, AllFaultsOfSeveralEditsAreTold) {
+  const std::string file = folder_.write("s.yaml", kSmall);
+  const ParseResult result = parseScenario(
+      file, {{"nothing", "1"}, {"atmosphere.k_factor", "0"}, {"emitters.search radar.power_w", "5"}});
+  EXPECT_EQ(result.scenario, nullptr);
+  ASSERT_EQ(result.problems.size(), 2u);
+  EXPECT_EQ(result.problems[0].place.file, "nothing=1");
+  EXPECT_EQ(result.problems[1].place.file, "atmosphere.k_factor=0");
+}
+
+TEST_F(EditScenario, UnchangedAntennasAndTerrainStay) {
+  Scenario scenario = *loadScenario(std::string(EMSCAPE_SOURCE_DIR) + "/scenarios/jacksboro.yaml");
+  const Scenario before = scenario;
+  scenario.set("emitters." + scenario.emitters[0].name + ".power_w", "7");
+  scenario.set("emitters." + scenario.emitters[1].name + ".antenna.gain_dbi", "7");
+  ASSERT_EQ(scenario.emitters.size(), before.emitters.size());
+  for (std::size_t i = 0; i < scenario.emitters.size(); ++i) {
+    EXPECT_EQ(scenario.emitters[i].antenna == before.emitters[i].antenna, i != 1) << i;
+  }
+  EXPECT_EQ(*scenario.terrain, *before.terrain);
+}
+
+TEST_F(EditScenario, FilesThatAreNotTouchedAreNotReadAgain) {
+  const std::string track = "t_s,latitude_deg,longitude_deg,height_msl_m\n0,36,-84,100\n5,36.001,-84,100\n";
+  folder_.write("track.csv", track);
+  const std::string text =
+      test::replaced(kSmall, "    position: {latitude_deg: 36.002, longitude_deg: -84, height_msl_m: 100}",
+                     "    track: {file: track.csv}");
+  Scenario scenario = load(text);
+  std::filesystem::remove(folder_.path() / "track.csv");
+  scenario.set("duration_s", "5");
+  EXPECT_EQ(scenario.platforms[2].track.size(), 2u);
+  EXPECT_THAT(faultOf(scenario, "platforms.a.track.file", "other.csv"), HasSubstr("there is no such file"));
+}
+
+TEST_F(EditScenario, SavesToAnotherFolderWithNamesOfFilesThatStillLead) {
+  folder_.write("track.csv", "t_s,latitude_deg,longitude_deg,height_msl_m\n0,36,-84,100\n5,36.001,-84,100\n");
+  const Scenario scenario = load(
+      test::replaced(kSmall, "    position: {latitude_deg: 36.002, longitude_deg: -84, height_msl_m: 100}",
+                     "    track: {file: track.csv} # where"));
+  std::filesystem::create_directories(folder_.path() / "deep/er");
+  const std::string file = (folder_.path() / "deep/er/t.yaml").string();
+  saveScenario(scenario, file);
+  EXPECT_THAT(test::readText(file), HasSubstr("track: {file: ../../track.csv} # where"));
+  EXPECT_EQ(loadScenario(file)->platforms[2].track.size(), 2u);
+}
+
+TEST_F(EditScenario, AScenarioThatWasMadeByHandHasNoText) {
+  Scenario scenario;
+  EXPECT_THAT(faultOf(scenario, "name", "x"), HasSubstr("was not read from a file"));
+  EXPECT_THROW(saveScenario(scenario, (folder_.path() / "x.yaml").string()), Error);
+  EXPECT_TRUE(scenario.edits().empty());
+}
+
+TEST_F(EditScenario, KeepsCarriageReturns) {
+  std::string text;
+  for (const char c : kSmall) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  Scenario scenario = load(text);
+  scenario.set("emitters.search radar.losses_db", "2");
+  scenario.set("emitters.search radar.power_w", "5");
+  scenario.set("output", "{floor: -100}");
+  std::string expected =
+      test::replaced(text, "beamwidth_el_deg: 4}", "beamwidth_el_deg: 4}\r\n    losses_db: 2");
+  expected = test::replaced(expected, "power_w: 20000", "power_w: 5");
+  EXPECT_EQ(saved(scenario), expected + "output: {floor: -100}\r\n");
+}
+
+TEST_F(EditScenario, EditsJson) {
+  const std::string text = R"({
+  "schema_version": 1, "name": "j",
+  "region": {"origin": {"latitude_deg": 36, "longitude_deg": -84}, "size_m": [1000, 1000, 1000], "dims": [4, 4, 4]},
+  "platforms": [{"name": "p", "position": {"latitude_deg": 36, "longitude_deg": -84, "height_msl_m": 100}}],
+  "emitters": [
+    {
+	"name": "e", "platform": "p", "kind": "transmitter",
+	"frequency_hz": 1e9,
+	"power_w": 10, "antenna": {"pattern": "isotropic"}
+    }
+  ]
+})";
+  Scenario scenario = load(text, "s.json");
+  scenario.set("emitters.e.power_w", "+5");
+  scenario.set("name", "new");
+  scenario.set("emitters.e.propagation", "two_ray");
+  scenario.set("emitters.e.two_ray.sum", "envelope");
+  scenario.set("output.quantities", "[power_density_dbwm2, emitter_count]");
+  std::string expected = test::replaced(text, "\"power_w\": 10", "\"power_w\": 5");
+  expected = test::replaced(expected, "\"j\"", "\"new\"");
+  expected = test::replaced(
+      expected, "\"isotropic\"}",
+      "\"isotropic\"},\n\t\"propagation\": \"two_ray\",\n\t\"two_ray\": {\"sum\": \"envelope\"}");
+  expected =
+      test::replaced(expected, "  ]\n}",
+                     "  ],\n  \"output\": {\"quantities\": [\"power_density_dbwm2\", \"emitter_count\"]}\n}");
+  EXPECT_EQ(saved(scenario), expected);
+  scenario.set("emitters.e.two_ray", "null");
+  scenario.set("emitters.e.propagation", "null");
+  scenario.set("output", "null");
+  expected = test::replaced(text, "\"power_w\": 10", "\"power_w\": 5");
+  EXPECT_EQ(saved(scenario), test::replaced(expected, "\"j\"", "\"new\""));
+}
+
+TEST_F(EditScenario, TextsOfEveryKindSurvive) {
+  for (const std::string& name :
+       {std::string("\xC3\xA9\xE4\xB8\xAD"), std::string("a, b"), std::string("12"), std::string("true"),
+        std::string("a: b"), std::string("tab\there"), std::string("two\nlines"), std::string("# no comment"),
+        std::string("it's \"quoted\" \\"), std::string(" blanks "), std::string("-"), std::string("null")}) {
+    Scenario scenario = load(kSmall);
+    std::string json = "\"";
+    for (const char c : name) {
+      json += c == '"' || c == '\\' ? std::string("\\") + c
+              : c == '\n'           ? "\\n"
+              : c == '\t'           ? "\\t"
+                                    : std::string(1, c);
+    }
+    scenario.set("emitters.search radar.name", json + "\"");
+    EXPECT_EQ(scenario.emitters[0].name, name);
+    scenario.set({{"platforms.site.name", json + "\""}, {"emitters." + name + ".platform", json + "\""}});
+    EXPECT_EQ(scenario.platforms[0].name, name);
+    EXPECT_EQ(load(saved(scenario)).emitters[0].name, name);
+  }
+}
+
+TEST_F(EditScenario, BlockAndMultiLineTextsAreReplacedWhole) {
+  for (const std::string written :
+       {"|\n  two\n  lines\n", ">-\n  folded\n\n  text\n", "plain\n  over lines\n",
+        "\"quoted\n  over \\\"lines\"\n", "'it''s\n  one'   # remark\n"}) {
+    Scenario scenario = load(test::replaced(kSmall, "name: small\n", "name: " + written));
+    scenario.set("step_s", "2");
+    scenario.set("name", "new");
+    EXPECT_EQ(scenario.name, "new") << written;
+    EXPECT_EQ(scenario.clock.step_s, 2);
+    scenario.set("epoch", "2026-06-01T06:00:00Z");
+    EXPECT_EQ(scenario.clock.epoch_utc, "2026-06-01T06:00:00Z");
+  }
+}
+
+TEST_F(EditScenario, AnchorsAreNotEditedButWhatLiesBesideThemIs) {
+  const std::string text =
+      test::replaced(test::replaced(kSmall, "antenna: {pattern: isotropic}", "antenna: *beam"),
+                     "antenna: {pattern: gaussian", "antenna: &beam {pattern: gaussian");
+  Scenario scenario = load(text);
+  scenario.set("emitters.search radar.power_w", "5");
+  EXPECT_THAT(faultOf(scenario, "emitters.search radar.antenna.gain_dbi", "3"),
+              HasSubstr("an anchor (&) or an alias (*)"));
+  EXPECT_THAT(faultOf(scenario, "emitters.x=1 \"q\".antenna", "{pattern: isotropic}"),
+              HasSubstr("an anchor (&) or an alias (*)"));
+  EXPECT_EQ(saved(scenario), test::replaced(text, "power_w: 20000", "power_w: 5"));
+}
+
+TEST_F(EditScenario, EmptySectionsAreFilled) {
+  Scenario scenario = load(kSmall + "atmosphere: {}\n");
+  scenario.set("atmosphere.k_factor", "2");
+  scenario.set("atmosphere.rain_mm_h", "3");
+  EXPECT_EQ(saved(scenario), kSmall + "atmosphere: {k_factor: 2, rain_mm_h: 3}\n");
+  scenario.set("atmosphere.k_factor", "null");
+  scenario.set("atmosphere.rain_mm_h", "null");
+  EXPECT_EQ(saved(scenario), kSmall + "atmosphere: {}\n");
+}
+
+TEST_F(EditScenario, AnEditCanMendAFile) {
+  const std::string file =
+      folder_.write("s.yaml", test::replaced(kSmall, "power_w: 20000", "power_w: strong"));
+  EXPECT_EQ(loadScenario(file, {{"emitters.search radar.power_w", "5"}})->emitters[0].power_w, 5);
+}
+
+TEST(ParseEdit, EndsThePathAtTheFirstEqualsSignOutsideQuotes) {
+  EXPECT_EQ(parseEdit("a.b=c=d"), (Edit{"a.b", "c=d"}));
+  EXPECT_EQ(parseEdit("a.\"x=y\".b=1"), (Edit{"a.\"x=y\".b", "1"}));
+  EXPECT_EQ(parseEdit("a="), (Edit{"a", ""}));
+  for (const char* text : {"", "a", "=1", "a.\"b=1"}) {
+    try {
+      parseEdit(text);
+      FAIL() << text;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::usage);
+      EXPECT_THAT(error.what(), HasSubstr("write PATH=VALUE"));
+    }
+  }
+}
+
+/// Makes random values, most of them sound, and paths.
+class RandomEdits {
+ public:
+  explicit RandomEdits(unsigned seed) : random_(seed) {}
+
+  std::string valueFor(const ValueSpec& spec) {
+    switch (spec.type) {
+      case ValueType::number:
+        return numberText(std::uniform_real_distribution<double>(std::max(spec.minimum, -1e6),
+                                                                 std::min(spec.maximum, 1e6))(random_));
+      case ValueType::integer:
+        return std::to_string(std::uniform_int_distribution<int>(
+            static_cast<int>(spec.minimum), static_cast<int>(std::min(spec.maximum, 64.0)))(random_));
+      case ValueType::choice:
+        return spec.choices[below(spec.choices.size())];
+      case ValueType::timestamp:
+        return "2027-01-01T00:00:00Z";
+      case ValueType::text:
+      case ValueType::file:
+        return std::vector<std::string>{
+            "word", "two words", "\"12\"", "'a: b'", "\"tab\\t\"", "\xC3\xA9"}[below(6)];
+      case ValueType::list: {
+        std::string text;
+        const int count =
+            spec.min_items == spec.max_items ? spec.max_items : spec.min_items + static_cast<int>(below(2));
+        for (int i = 0; i < count; ++i) text += (i == 0 ? "" : ", ") + valueFor(*spec.item);
+        return "[" + text + "]";
+      }
+      case ValueType::object: {
+        std::string text;
+        for (const KeySpec& key : spec.object->keys) {
+          if (!key.required || !key.only_for.empty()) continue;
+          text += (text.empty() ? "" : ", ") + key.name + ": " + valueFor(key.value);
+        }
+        return "{" + text + "}";
+      }
+    }
+    return "";
+  }
+
+  std::size_t below(std::size_t count) {
+    return std::uniform_int_distribution<std::size_t>(0, count - 1)(random_);
+  }
+  std::string junk() {
+    static const std::string kPieces[] = {"emitters", ".",  "=",  "\"",  "name", "{",     "}",    "[",
+                                          "]",        ": ", ", ", "&a ", "*a",   "!!x ",  "#",    "\n",
+                                          "\t",       "|",  ">",  "0",   "-1",   "1e999", "null", "~",
+                                          "\xC3\xA9", "'",  "\\", "- ",  "? ",   "%"};
+    std::string text;
+    for (std::size_t i = 1 + below(6); i > 0; --i) text += kPieces[below(std::size(kPieces))];
+    return text;
+  }
+
+ private:
+  static std::string numberText(double value) {
+    std::ostringstream text;
+    text << value;
+    return text.str();
+  }
+  std::mt19937 random_;
+};
+
+/// Calls visit(path, spec) for every key of the table that applies to a document, whether it is given or not.
+void forEachPath(const DocumentNode* node, const ObjectSpec& spec, const std::string& prefix,
+                 const std::function<void(const std::string&, const ValueSpec&)>& visit) {
+  const auto child = [&](const std::string& key) -> const DocumentNode* {
+    if (node == nullptr) return nullptr;
+    for (const auto& entry : node->entries) {
+      if (entry.key == key) return entry.value.get();
+    }
+    return nullptr;
+  };
+  const DocumentNode* discriminator = spec.discriminator.empty() ? nullptr : child(spec.discriminator);
+  for (const KeySpec& key : spec.keys) {
+    if (spec.find(key.name, discriminator == nullptr ? nullptr : &discriminator->text) != &key) continue;
+    const std::string path = prefix + key.name;
+    visit(path, key.value);
+    const DocumentNode* value = child(key.name);
+    if (key.value.type == ValueType::object) forEachPath(value, *key.value.object, path + ".", visit);
+    if (key.value.type != ValueType::list || value == nullptr) continue;
+    for (std::size_t i = 0; i < value->items.size(); ++i) {
+      std::string step = std::to_string(i);
+      for (const auto& entry : value->items[i]->entries) {
+        if (entry.key == "name") step = entry.value->text;
+      }
+      if (key.value.item->type == ValueType::object) {
+        forEachPath(value->items[i].get(), *key.value.item->object, path + "." + step + ".", visit);
+      } else {
+        visit(path + "." + step, *key.value.item);
+      }
+    }
+  }
+}
+
+std::vector<std::string> messagesOf(const std::vector<Problem>& problems) {
+  std::vector<std::string> messages;
+  for (const Problem& problem : problems) messages.push_back(problem.message);
+  std::sort(messages.begin(), messages.end());
+  return messages;
+}
+
+/// An edit and a file that is written anew with the value must mean the same, for every key of the table.
+TEST(EditEveryKey, EqualsAFileWithThatValue) {
+  ScratchFolder folder;
+  for (const char* data : {"track.csv", "sector.msi", "valid.yaml"})
+    folder.write(data, test::readText(test::testData() / data));
+  RandomEdits random(7);
+  int sound = 0, all = 0;
+  for (const std::string& original :
+       {(folder.path() / "valid.yaml").string(), folder.write("small.yaml", kSmall)}) {
+    const auto scenario = loadScenario(original);
+    const DocumentNodePtr root = scenario->source->root;
+    forEachPath(root.get(), scenarioSpec(), "", [&](const std::string& path, const ValueSpec& spec) {
+      const std::string value = random.valueFor(spec);
+      SCOPED_TRACE(path + "=" + value);
+      ++all;
+      const ParseResult edited = editScenario(*scenario, {{path, value}});
+      ScenarioSource source{scenario->source->text, root, {}, {}};
+      ASSERT_NO_THROW(applyEdit(source, {path, value}));
+      const std::string anew = folder.write("anew.json", document::flowText(*source.root, true));
+      const ParseResult read = parseScenario(anew);
+      ASSERT_EQ(edited.scenario != nullptr, read.scenario != nullptr) << test::readText(anew);
+      if (!edited.scenario) return;
+      ++sound;
+      EXPECT_EQ(messagesOf(edited.problems), messagesOf(read.problems));
+      EXPECT_TRUE(document::sameValue(*edited.scenario->source->root, *read.scenario->source->root));
+      EXPECT_EQ(loadScenario(original, {{path, value}})->hash, edited.scenario->hash);
+      const ParseResult back = editScenario(*edited.scenario, {{path, "null"}});
+      if (back.scenario) {
+        EXPECT_LE(back.scenario->source->text.text().size(), edited.scenario->source->text.text().size());
+      }
+    });
+  }
+  EXPECT_GT(sound, all / 2) << "of " << all;
+}
+
+TEST(EditAtRandom, NeverCrashesAndKeepsTheTextInStep) {
+  ScratchFolder folder;
+  for (const char* data : {"track.csv", "sector.msi", "valid.yaml"})
+    folder.write(data, test::readText(test::testData() / data));
+  for (const std::string& file :
+       {(folder.path() / "valid.yaml").string(), folder.write("small.yaml", kSmall)}) {
+    RandomEdits random(11);
+    Scenario scenario = *loadScenario(file);
+    int made = 0;
+    for (int i = 0; i < 400; ++i) {
+      std::vector<Edit> choices;
+      forEachPath(scenario.source->root.get(), scenarioSpec(), "",
+                  [&](const std::string& path, const ValueSpec& spec) {
+                    if (random.below(20) == 0)
+                      choices.push_back({path, random.below(4) == 0 ? "null" : random.valueFor(spec)});
+                  });
+      if (choices.empty()) continue;
+      Edit edit = choices[random.below(choices.size())];
+      if (random.below(4) == 0) edit.value = random.junk();
+      if (random.below(8) == 0) edit.path = random.junk();
+      const std::string hash = scenario.hash;
+      try {
+        scenario.set(edit.path, edit.value);
+        ++made;
+      } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::bad_input) << toString(edit);
+        EXPECT_EQ(scenario.hash, hash);
+        continue;
+      }
+      const std::string again = folder.write("again.yaml", scenario.source->text.text());
+      const ParseResult read = parseScenario(again);
+      ASSERT_TRUE(read.scenario) << toString(edit) << "\n" << scenario.source->text.text();
+      EXPECT_EQ(read.scenario->hash, scenario.hash);
+    }
+    EXPECT_GT(made, 50);
+    const ParseResult repeated = parseScenario(file, scenario.edits());
+    ASSERT_TRUE(repeated.scenario);
+    EXPECT_TRUE(document::sameValue(*repeated.scenario->source->root, *scenario.source->root));
+  }
+}
+
+}  // namespace
+}  // namespace emscape::scenario
