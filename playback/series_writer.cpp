@@ -97,6 +97,9 @@ class SeriesWriter {
     checkSameRecipe(options_.folder, *found, state_);
     steps_ = journal_.read(series_.count(), state_.channels.size());
     checkFiles();
+    const bool is_whole =
+        std::all_of(steps_.begin(), steps_.end(), [](const auto& step) { return step.has_value(); });
+    if (found->complete && !is_whole) writeSeriesState(options_.folder, state_);
   }
 
   /// Forgets the steps whose files are not as the journal says.

@@ -196,6 +196,9 @@ RealTimeOptions realTimeOptionsOf(const RenderOptions& options) {
 int playInRealTime(RenderOptions options, const GlobalOptions& global) {
   const PictureStyle style = styleOf(options);
   const RealTimeOptions loop_options = realTimeOptionsOf(options);
+  if (loop_options.orbit_rate_deg_s != 0 && style.camera.kind != render::CameraSpec::Kind::orbit) {
+    throw Error(ErrorCode::usage, "--orbit-rate: the camera must be an orbit");
+  }
   if (!options.range.empty()) options.selection.range = parseRange(options.range);
   const Stage stage = openStage(options, style, global);
   const std::unique_ptr<FrameSource>& source = stage.source;

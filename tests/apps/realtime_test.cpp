@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include <algorithm>
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -19,7 +18,6 @@ using testing::Contains;
 using testing::Each;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
-using testing::Not;
 
 /// Plays the quick scenario, small and with every settled picture verified; returns what it reports.
 json play(const Arguments& more, const std::string& input = quick(), const std::string& size = "97x75") {

@@ -10,7 +10,7 @@ namespace {
 TEST(Painter, LabelsAreDrawnOverWhatWasCastAndCanBeDrawnByOthers) {
   MadeFrames source(seconds(2));
   PictureStyle style;
-  style.size = {64, 48};
+  style.size = {160, 120};
   style.colors_span_range = true;
   Painter painter(style, source, {});
   painter.setFrame(source.frame(1));
@@ -31,7 +31,7 @@ TEST(Painter, LabelsAreDrawnOverWhatWasCastAndCanBeDrawnByOthers) {
 TEST(Painter, ACameraThatCameBackGivesTheSamePicture) {
   MadeFrames source(seconds(2));
   PictureStyle style;
-  style.size = {40, 30};
+  style.size = {160, 120};
   style.colors_span_range = true;
   Painter painter(style, source, {});
   painter.setFrame(source.frame(1));

@@ -75,9 +75,11 @@ inline std::string quickScenario(const TemporaryFolder& folder,
   return (folder / "scenario.yaml").string();
 }
 
-/// Made-up frames: one volume of 4 x 4 x 4 voxels each, all of the value of its index.
+/// Made-up frames: one volume of 8 x 8 x 8 voxels each; the first has the value of the index and a half.
 class MadeFrames : public FrameSource {
  public:
+  static constexpr int kVoxels = 8 * 8 * 8;
+
   /// @param before  called at the beginning of frame(), on its thread
   explicit MadeFrames(std::vector<double> times_s, std::function<void(int)> before = {})
       : times_s_(std::move(times_s)), before_(std::move(before)) {}
@@ -91,14 +93,18 @@ class MadeFrames : public FrameSource {
       asked_.push_back(index);
     }
     volume::DenseVolume volume;
-    volume.grid.dims = {4, 4, 4};
-    volume.grid.spacing_m = {1, 1, 1};
+    volume.grid.dims = {8, 8, 8};
+    volume.grid.spacing_m = {100, 100, 100};
     volume.info.quantity = "made";
     volume.info.time_s = time_s(index);
     volume.info.floor = -1;
     volume.info.range_min = 0;
     volume.info.range_max = static_cast<float>(count());
-    volume.values.assign(64, static_cast<float>(index) + 0.5F);
+    const auto greatest = static_cast<float>(count());
+    for (int voxel = 0; voxel < kVoxels; ++voxel) {
+      volume.values.push_back(
+          std::fmod(static_cast<float>(index) + 0.5F + 0.37F * static_cast<float>(voxel), greatest));
+    }
     return {volume::Volume(std::move(volume)), {}, changes};
   }
   std::string name() const override { return "made"; }

@@ -36,7 +36,7 @@ class Gate {
   bool open_ = false;
 };
 
-constexpr std::size_t kFrameBytes = 64 * 4;
+constexpr std::size_t kFrameBytes = MadeFrames::kVoxels * 4;
 
 PrefetchOptions optionsOf(int steps_ahead, int frames) {
   PrefetchOptions options;

@@ -38,7 +38,7 @@ RealTimeOptions optionsOf(std::optional<Pattern> pattern) {
 Played play(const RealTimeOptions& options, FrameSource& source, Clock& clock, bool displayed = false,
             const StopFlag* interrupt = nullptr) {
   PictureStyle style;
-  style.size = {33, 25};
+  style.size = {97, 75};
   style.colors_span_range = true;
   Painter painter(style, source, {});
   Played played;
@@ -81,8 +81,8 @@ TEST(RealTimeLoop, ABusyFrameAndItsRestorationCastEveryPixelOnce) {
   for (const RealTimeEvent& event : played.report.events) {
     if (event.state == ControllerState::busy) busy_rays = event.rays;
     if (event.state == ControllerState::restore) {
-      EXPECT_EQ(busy_rays, 17 * 13);
-      EXPECT_EQ(busy_rays + event.rays, 33 * 25);
+      EXPECT_EQ(busy_rays, 49 * 38);
+      EXPECT_EQ(busy_rays + event.rays, 97 * 75);
     }
   }
 }

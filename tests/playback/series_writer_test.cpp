@@ -197,6 +197,16 @@ TEST_F(SeriesWriter, FilesThatAreGoneEmptyOrReplacedAreComputedAgain) {
                                         HasSubstr("quick_0001.vdb"))));
 }
 
+TEST_F(SeriesWriter, AFinishedSeriesThatLostFilesIsNotCompleteUntilTheyAreThereAgain) {
+  write(4, into("s", {"raw"}));
+  fs::remove(*this / "s/quick_0002.raw");
+  fs::remove(*this / "s/quick_0004.raw");
+  writeAndStopAfter(1, 4, into("s", {"raw"}, Existing::resume));
+  EXPECT_FALSE(findSeries(*this / "s")->complete);
+  write(4, into("s", {"raw"}, Existing::resume));
+  EXPECT_TRUE(findSeries(*this / "s")->complete);
+}
+
 TEST_F(SeriesWriter, AFinishedSeriesIsLeftAsItIs) {
   write(3, into("s"));
   const auto before = contents("s");
