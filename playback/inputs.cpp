@@ -34,10 +34,7 @@ InputKind inputKindOf(const std::string& file) {
 LoadedScenario loadScenarioWithTerrain(const std::string& file, const std::vector<scenario::Edit>& edits) {
   LoadedScenario loaded;
   loaded.scenario = scenario::loadScenario(file, edits);
-  if (loaded.scenario->terrain) {
-    loaded.terrain =
-        scenario::Terrain::load(*loaded.scenario->terrain, scenario::terrainBox(*loaded.scenario));
-  }
+  loaded.terrain = scenario::loadTerrain(*loaded.scenario);
   return loaded;
 }
 

@@ -95,9 +95,7 @@ ProfileReport makeReport(const ProfileOptions& options) {
   const scenario::SitePosition to = parsePoint(options.to, options.above_ground);
   const auto scenario = withPoint(*scenario::loadScenario(options.scenario, options.edits), to);
   const int emitter = emitterNamed(*scenario, options.emitter);
-  const scenario::TerrainPtr terrain =
-      scenario->terrain ? scenario::Terrain::load(*scenario->terrain, scenario::terrainBox(*scenario))
-                        : nullptr;
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), options.time_s);
   const emfield::PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};
   const auto budgetBy = [&](PropagationModel model) {

@@ -71,9 +71,7 @@ void checkSteps(const std::shared_ptr<const scenario::Scenario>& scenario, const
 /// What can be said only once the scenario is read: the ground, the quantities, the models, every step.
 void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std::vector<Problem>& problems) {
   try {
-    const scenario::TerrainPtr terrain =
-        scenario->terrain ? scenario::Terrain::load(*scenario->terrain, scenario::terrainBox(*scenario))
-                          : nullptr;
+    const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
     if (terrain) checkCoverage(*scenario, *terrain, problems);
     checkSteps(scenario, terrain.get(), problems);
     emfield::FieldOptions options;

@@ -430,8 +430,7 @@ TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     SCOPED_TRACE(entry.path().filename());
     const auto loaded = scenario::loadScenario(entry.path().string());
-    const scenario::TerrainPtr terrain =
-        loaded->terrain ? scenario::Terrain::load(*loaded->terrain, scenario::terrainBox(*loaded)) : nullptr;
+    const scenario::TerrainPtr terrain = scenario::loadTerrain(*loaded);
     FieldSolver solver(loaded, terrain, {});
     solver.update(scenario::snapshotAt(loaded, terrain.get(), 0));
     EXPECT_GT(solver.volumes().front().host()->info.range_max, -60);

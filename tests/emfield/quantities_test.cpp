@@ -46,7 +46,7 @@ TEST(Quantities, OfTheJammingScenarioShowWhatTheRidgeHides) {
   auto scenario = std::make_shared<scenario::Scenario>(
       *scenario::loadScenario(EMSCAPE_SOURCE_DIR "/scenarios/jamming.yaml"));
   scenario->region.dims = {40, 40, 16};
-  const auto terrain = scenario::Terrain::load(*scenario->terrain, scenario::terrainBox(*scenario));
+  const auto terrain = scenario::loadTerrain(*scenario);
   FieldSolver solver(scenario, terrain, {});
   const auto covered = [&](double t_s) {
     solver.update(scenario::snapshotAt(scenario, terrain.get(), t_s));
