@@ -9,6 +9,7 @@
 #include "apps/emscape/inputs.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/snapshot.h"
+#include "emscape/volume/value_range.h"
 #include "emscape/volume/volume.h"
 
 namespace emscape::app {
