@@ -7,6 +7,7 @@
 
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
+#include "render/reconstruction.h"
 #include "tests/render/random_scene.h"
 
 namespace emscape::render {
