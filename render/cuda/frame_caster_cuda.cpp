@@ -4,6 +4,7 @@
 
 #include "base/cuda/cuda_memory.h"
 #include "emscape/base/device.h"
+#include "render/adaptive_tolerance.h"
 #include "render/cuda/device_scene.h"
 #include "render/cuda/kept_orders.h"
 #include "render/cuda/kernels.h"

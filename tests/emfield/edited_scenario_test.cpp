@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 
+#include "emscape/base/device.h"
 #include "emscape/base/error.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/test_scenario.h"
@@ -374,14 +375,15 @@ void checkEdits(std::shared_ptr<const Scenario> scenario, std::vector<scenario::
       fresh = std::make_unique<FieldSolver>(edited, ground, options);
       fresh->update(snapshot);
     } catch (const Error& error) {
-      const auto before = solver.volumes().front().dense();
+      const volume::Volume before = solver.volumes().front();
       try {
         solver.update(snapshot, ground);
         ADD_FAILURE() << "not refused: " << error.what();
       } catch (const Error& of_update) {
         EXPECT_STREQ(of_update.what(), error.what());
       }
-      EXPECT_EQ(solver.volumes().front().dense(), before);
+      EXPECT_EQ(solver.volumes().front().dense(), before.dense());
+      EXPECT_EQ(solver.volumes().front().device(), before.device());
       continue;
     }
     solver.update(snapshot, ground);
@@ -446,6 +448,21 @@ TEST(EditedScenario, EqualsANewSolverWithABoundOnTheCaches) {
   checkEdits(
       battlefield(random, FrameKind::altitude, {PropagationModel::free_space, PropagationModel::horizon}),
       {nullptr}, 40, editValue, random, options);
+}
+
+TEST(CudaEditedScenario, EqualsANewSolver) {
+  const Device device = findDevice();
+  if (!device.usable) GTEST_SKIP() << device.why_not;
+  Random random(8);
+  FieldOptions options;
+  options.backend = Backend::cuda;
+  checkEdits(
+      battlefield(random, FrameKind::altitude,
+                  {PropagationModel::diffraction, PropagationModel::horizon, PropagationModel::two_ray}),
+      hills(), 80, editValue, random, options);
+  auto jammed = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
+  jammed->output.quantities = {"detection_probability", "jammer_to_signal_db", "burn_through_margin_db"};
+  checkEdits(jammed, hills(), 60, editValue, random, options);
 }
 
 /// Solves a scenario and then an edited one.
