@@ -104,6 +104,10 @@ constexpr std::size_t kDeviceScratchBytes = std::size_t{1} << 29;
 /// Bytes of a terrain's posts.
 std::size_t postBytes(const scenario::TerrainView& terrain);
 
+/// Memory of the host that a CPU engine takes, at most.
+/// @param slot_bytes  what the emitters keep
+std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes);
+
 /// Memory of the GPU that an engine takes there, at most.
 /// @param slot_bytes  what the emitters keep
 std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,

@@ -1,4 +1,4 @@
-// What the field takes of a GPU's memory.
+// What the field takes of the memory of the host or of a GPU.
 
 #include "emfield/field_engine.h"
 
@@ -11,6 +11,17 @@ std::size_t postBytes(const scenario::TerrainView& terrain) {
              static_cast<std::size_t>(terrain.rasters[r].rows);
   }
   return posts * sizeof(float);
+}
+
+std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes) {
+  const auto voxels = static_cast<std::size_t>(setup.grid.dims.count());
+  std::size_t bytes = slot_bytes;
+  for (const ChannelRecipe& recipe : setup.recipes) {
+    const std::size_t accumulators = recipe.reduction == Reduction::dominant ? 2 : 1;
+    // all emitters' and the resting ones' sums; a volume that is shown and one that is written
+    bytes += (2 * accumulators + 2) * voxels * sizeof(float);
+  }
+  return bytes;
 }
 
 std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,

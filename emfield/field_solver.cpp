@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/memory.h"
 #include "emfield/excess/excess_model.h"
 #include "emfield/field_solver_impl.h"
 #include "emscape/base/backend.h"
@@ -86,21 +87,24 @@ std::vector<bool> FieldSolver::Impl::chooseCached(const FieldPlan& plan, std::si
 
 std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine(std::size_t slot_bytes) const {
   const int slots = static_cast<int>(emitters.size()) + 1;
-  if (backend == Backend::cpu) return makeCpuEngine(setup, slots);
-  const std::size_t needed = cudaEngineBytes(setup, slot_bytes, options.device_precision);
-  const std::size_t free = findDevice().free_bytes;
+  const bool on_host = backend == Backend::cpu;
+  const std::size_t needed = on_host ? cpuEngineBytes(setup, slot_bytes)
+                                     : cudaEngineBytes(setup, slot_bytes, options.device_precision);
+  const std::size_t free = on_host ? availableMemory_bytes().value_or(needed) : findDevice().free_bytes;
   if (needed > free) {
-    const bool half = options.device_precision == volume::VoxelPrecision::float16;
     constexpr double kMebibyte = 1 << 20;
+    const bool half = on_host || options.device_precision == volume::VoxelPrecision::float16;
     throw Error(
-        ErrorCode::device, {setup.scenario->file},
+        on_host ? ErrorCode::other : ErrorCode::device, {setup.scenario->file},
         fmt::format(
             "the field of {} x {} x {} voxels, {} emitters and {} channels needs up to {:.0f} MiB of the "
-            "GPU's memory, of which {:.0f} MiB are free; a bound on what emitters keep{} would take less",
+            "{} memory, of which {:.0f} MiB are free; fewer voxels (region.dims){} and a bound on what "
+            "emitters keep take less",
             setup.grid.dims.x, setup.grid.dims.y, setup.grid.dims.z, emitters.size(), setup.channels.size(),
-            static_cast<double>(needed) / kMebibyte, static_cast<double>(free) / kMebibyte,
-            half ? "" : ", or volumes of 16 bit,"));
+            static_cast<double>(needed) / kMebibyte, on_host ? "host's" : "GPU's",
+            static_cast<double>(free) / kMebibyte, half ? "" : ", volumes of 16 bit"));
   }
+  if (on_host) return makeCpuEngine(setup, slots);
   return makeCudaEngine(setup, slots, options.device_precision);
 }
 

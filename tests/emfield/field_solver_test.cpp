@@ -243,6 +243,23 @@ TEST(FieldSolver, ComputesQuantitiesThatTheScenarioSchemaKnows) {
   }
 }
 
+TEST(FieldSolver, RefusesAFieldThatDoesNotFitIntoMemoryBeforeItComputes) {
+  const auto scenario = battlefield();
+  scenario->region.dims = {128, 128, 1024};
+  scenario->output.combine = scenario::CombineMode::per_emitter;
+  for (int n = 0; n < 2000; ++n) {  // half a TiB of volumes
+    scenario->emitters.push_back(scenario->emitters.front());
+    scenario->emitters.back().name += std::to_string(n);
+  }
+  try {
+    FieldSolver solver(scenario, nullptr, {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("128 x 128 x 1024 voxels"));
+    EXPECT_THAT(error.what(), HasSubstr("MiB of the host's memory, of which"));
+  }
+}
+
 TEST(FieldSolver, RefusesWhatItCannotCompute) {
   const auto scenario = battlefield();
   const auto messageOf = [&](const FieldOptions& options) -> std::string {

@@ -1,0 +1,56 @@
+#include "base/memory.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <string>
+
+namespace emscape {
+namespace {
+
+std::optional<std::size_t> numberIn(const char* file) {
+  std::ifstream in(file);
+  std::size_t number = 0;
+  if (in >> number) return number;
+  return std::nullopt;  // no such file, or "max"
+}
+
+/// MemAvailable of Linux.
+std::optional<std::size_t> systemBytes() {
+  std::ifstream in("/proc/meminfo");
+  std::string key, unit;
+  for (std::size_t kibibytes = 0; in >> key >> kibibytes; std::getline(in, unit)) {
+    if (key == "MemAvailable:") return kibibytes << 10;
+  }
+  return std::nullopt;
+}
+
+/// What is left of a control group's limit; its page cache, which can be dropped, counts as taken.
+std::optional<std::size_t> groupBytes() {
+  const auto limit = numberIn("/sys/fs/cgroup/memory.max"), taken = numberIn("/sys/fs/cgroup/memory.current");
+  if (!limit || !taken) return std::nullopt;
+  return *limit > *taken ? *limit - *taken : 0;
+}
+
+/// What is left of the limit on the address space (ulimit -v).
+std::optional<std::size_t> addressBytes() {
+  rlimit limit{};
+  const auto pages = numberIn("/proc/self/statm");
+  if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY || !pages) return std::nullopt;
+  const std::size_t taken = *pages * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+  return limit.rlim_cur > taken ? limit.rlim_cur - taken : 0;
+}
+
+}  // namespace
+
+std::optional<std::size_t> availableMemory_bytes() {
+  std::optional<std::size_t> least;
+  for (const auto& bytes : {systemBytes(), groupBytes(), addressBytes()}) {
+    if (bytes) least = std::min(least.value_or(*bytes), *bytes);
+  }
+  return least;
+}
+
+}  // namespace emscape
