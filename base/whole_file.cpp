@@ -58,10 +58,20 @@ long writerOf(const fs::path& path) {
   return digits ? std::stol(process) : 0;
 }
 
+/// Whether a process has ended that nobody has waited for yet; only where the system tells.
+bool isZombie(long process) {
+  std::ifstream stream("/proc/" + std::to_string(process) + "/stat");
+  std::string text;
+  std::getline(stream, text);
+  const std::size_t name_end = text.rfind(") ");  // "PID (NAME) STATE ..."
+  return name_end != std::string::npos && text.compare(name_end + 2, 1, "Z") == 0;
+}
+
 /// Whether a file is a temporary whose writer no longer runs.
 bool isStale(const fs::path& path) {
   const long process = writerOf(path);
-  return process != 0 && ::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH;
+  if (process == 0) return false;
+  return (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) || isZombie(process);
 }
 
 /// An open file, closed at the end of its scope.

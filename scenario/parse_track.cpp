@@ -6,6 +6,7 @@
 #include <functional>
 #include <string_view>
 
+#include "document/csv.h"
 #include "document/schema_check.h"
 #include "scenario/parse_sections.h"
 
@@ -13,29 +14,11 @@ namespace emscape::scenario {
 
 namespace {
 
+using document::CsvCell;
+using document::CsvReader;
+using document::CsvRow;
+
 constexpr int kMostFaults = 50;
-
-/// A cell of a line, without the blanks around it.
-struct Cell {
-  std::string text;
-  int column = 1;  ///< where it begins, in characters from 1
-};
-
-std::vector<Cell> split(std::string_view line) {
-  constexpr std::string_view kBlanks = " \t\r";
-  std::vector<Cell> cells;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    const std::string_view cell = line.substr(begin, end - begin);
-    const std::size_t first = std::min(cell.find_first_not_of(kBlanks), cell.size());
-    const std::size_t last = cell.find_last_not_of(kBlanks);
-    const std::size_t column_from = begin + (first < cell.size() ? first : 0);
-    cells.push_back({std::string(first < cell.size() ? cell.substr(first, last - first + 1) : ""),
-                     static_cast<int>(document::characterCount(line.substr(0, column_from))) + 1});
-    begin = end + 1;
-  }
-  return cells;
-}
 
 class TrackReader {
  public:
@@ -43,24 +26,19 @@ class TrackReader {
       : file_(file), named_at_(named_at), problems_(problems) {}
 
   std::vector<TrackPoint> read(const std::string& text) {
-    int number = 1;
-    for (std::size_t begin = 0; begin < text.size() && faults_ <= kMostFaults; ++number) {
-      const std::size_t end = std::min(text.find('\n', begin), text.size());
-      const std::string_view line = std::string_view(text).substr(begin, end - begin);
-      begin = end + 1;
-      const std::size_t first = line.find_first_not_of(" \t\r");
-      if (first == std::string_view::npos || line[first] == '#') continue;
+    CsvReader reader(text);
+    for (CsvRow row; faults_ <= kMostFaults && reader.next(row);) {
       if (columns_.empty()) {
-        readHeader(split(line), number);
+        readHeader(row.cells, row.line);
         if (faults_ > 0) return {};
       } else {
-        readRow(split(line), number);
+        readRow(row.cells, row.line);
       }
     }
     if (columns_.empty()) {
       fault(1, 1, "the track file is empty; it begins with " + header());
     } else if (faults_ == 0 && points_.size() < 2) {
-      fault(number - 1, 0, fmt::format("the track has {} rows; it needs at least 2", points_.size()));
+      fault(reader.lines(), 0, fmt::format("the track has {} rows; it needs at least 2", points_.size()));
     }
     return std::move(points_);
   }
@@ -77,19 +55,20 @@ class TrackReader {
     }
   }
 
-  void readHeader(const std::vector<Cell>& cells, int line) {
+  void readHeader(const std::vector<CsvCell>& cells, int line) {
     const ObjectSpec& spec = trackRowSpec();
     std::vector<std::string> seen;
-    for (const Cell& cell : cells) {
-      const KeySpec* key = spec.find(cell.text, nullptr);
+    for (const CsvCell& cell : cells) {
+      const std::string name(cell.text);
+      const KeySpec* key = spec.find(name, nullptr);
       if (key == nullptr) {
         std::vector<std::string> meant;
-        fault(line, cell.column, document::unknownKeyMessage(cell.text, spec, nullptr, &meant));
+        fault(line, cell.column, document::unknownKeyMessage(name, spec, nullptr, &meant));
         seen.insert(seen.end(), meant.begin(), meant.end());
-      } else if (has(seen, cell.text)) {
-        fault(line, cell.column, fmt::format("column '{}' stands here twice", cell.text));
+      } else if (has(seen, name)) {
+        fault(line, cell.column, fmt::format("column '{}' stands here twice", name));
       }
-      seen.push_back(cell.text);
+      seen.push_back(name);
       columns_.push_back(key);
     }
     for (const KeySpec& key : spec.keys) {
@@ -111,7 +90,7 @@ class TrackReader {
     return std::find(names.begin(), names.end(), name) != names.end();
   }
 
-  void readRow(const std::vector<Cell>& cells, int line) {
+  void readRow(const std::vector<CsvCell>& cells, int line) {
     if (cells.size() != columns_.size()) {
       fault(line, cells[std::min(cells.size(), columns_.size() + 1) - 1].column,
             fmt::format("{} values, but the header names {} columns", cells.size(), columns_.size()));
@@ -120,12 +99,12 @@ class TrackReader {
     TrackPoint point;
     bool sound = true;
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto value = document::numberOf(cells[i].text);
+      const std::string text(cells[i].text);
+      const auto value = document::numberOf(text);
       const std::string quoted_name = "'" + columns_[i]->name + "'";
-      const std::string wrong =
-          value ? document::rangeFault(quoted_name, cells[i].text, *value, columns_[i]->value)
-                : fmt::format("{} must be a number ({}), not '{}'", quoted_name, columns_[i]->value.unit,
-                              cells[i].text.substr(0, 40));
+      const std::string wrong = value ? document::rangeFault(quoted_name, text, *value, columns_[i]->value)
+                                      : fmt::format("{} must be a number ({}), not '{}'", quoted_name,
+                                                    columns_[i]->value.unit, text.substr(0, 40));
       if (!wrong.empty()) {
         fault(line, cells[i].column, wrong);
         sound = false;

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "base/whole_file.h"
+#include "document/csv.h"
 
 namespace emscape::emfield {
 namespace {
@@ -17,30 +18,14 @@ struct Line {
   std::vector<std::string> cells;
 };
 
-std::string trimmed(std::string_view text) {
-  const auto first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(" \t\r") - first + 1));
-}
-
-/// The lines of a file that are not blank, cut at commas.
+/// The lines of a file that are neither blank nor comments, cut at commas.
 std::vector<Line> readLines(const std::filesystem::path& file) {
-  const std::vector<std::uint8_t> bytes = readWhole(file);
-  const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string text = readWholeText(file);
+  document::CsvReader reader(text);
   std::vector<Line> lines;
-  int number = 0;
-  for (std::size_t begin = 0; begin < text.size();) {
-    const std::size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string_view line = text.substr(begin, end - begin);
-    begin = end + 1;
-    ++number;
-    if (trimmed(line).empty()) continue;
-    lines.push_back({number, {}});
-    for (std::size_t cell = 0; cell <= line.size();) {
-      const std::size_t comma = std::min(line.find(',', cell), line.size());
-      lines.back().cells.push_back(trimmed(line.substr(cell, comma - cell)));
-      cell = comma + 1;
-    }
+  for (document::CsvRow row; reader.next(row);) {
+    lines.push_back({row.line, {}});
+    for (const document::CsvCell& cell : row.cells) lines.back().cells.emplace_back(cell.text);
   }
   return lines;
 }

@@ -1,3 +1,5 @@
+#include "document/csv.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +18,10 @@
 namespace emscape::scenario {
 namespace {
 
+using document::CsvCell;
+using document::CsvReader;
+using document::CsvRow;
+
 struct ColumnSpec {
   const char* name;
   double lowest, highest;
@@ -25,23 +31,27 @@ constexpr ColumnSpec kAzimuth{"azimuth_deg", -360, 360, "deg"};
 constexpr ColumnSpec kElevation{"elevation_deg", -90, 90, "deg"};
 constexpr ColumnSpec kAttenuation{"attenuation_db", 0, kMostAttenuation_db, "dB"};
 
-struct CsvRow {
+struct GridRow {
   std::array<double, 3> values{};  ///< in the order of the columns asked for, of which there are two or three
   int line = 0;
 };
 
 /// The rows of a table with exactly the columns asked for, in any order.
-std::vector<CsvRow> readRows(const AntennaText& text, const std::vector<ColumnSpec>& columns) {
-  const auto fail = [&](const TextField& field, const std::string& message) {
-    throw Error(ErrorCode::bad_input, text.place(field), message);
+std::vector<GridRow> readRows(const AntennaText& text, const std::vector<ColumnSpec>& columns) {
+  int line = 1;
+  const auto fail = [&](const CsvCell& cell, const std::string& message) {
+    throw Error(ErrorCode::bad_input, {text.file(), line, cell.column}, message);
   };
   std::string wanted;
   for (const ColumnSpec& column : columns) wanted += (wanted.empty() ? "" : ",") + std::string(column.name);
-  if (text.lines().empty()) {
+  CsvReader reader(text.text());
+  CsvRow header_row;
+  if (!reader.next(header_row)) {
     throw Error(ErrorCode::bad_input, {text.file(), 1, 1},
                 fmt::format("no header line; it should be {}", wanted));
   }
-  const std::vector<TextField> header = cellsOf(text.lines().front());
+  const std::vector<CsvCell>& header = header_row.cells;
+  line = header_row.line;
   std::vector<std::size_t> position(columns.size(), header.size());  // of each column in a line
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto column = std::find_if(columns.begin(), columns.end(),
@@ -56,18 +66,18 @@ std::vector<CsvRow> readRows(const AntennaText& text, const std::vector<ColumnSp
   if (header.size() < columns.size())
     fail(header.front(), fmt::format("missing column; the header should be {}", wanted));
 
-  std::vector<CsvRow> rows;
-  rows.reserve(text.lines().size() - 1);
-  for (std::size_t n = 1; n < text.lines().size(); ++n) {
-    const TextField& line = text.lines()[n];
-    const std::vector<TextField> cells = cellsOf(line);
+  std::vector<GridRow> rows;
+  for (CsvRow cells_of; reader.next(cells_of);) {
+    line = cells_of.line;
+    const std::vector<CsvCell>& cells = cells_of.cells;
     if (cells.size() != columns.size()) {
-      fail(line, fmt::format("{} values, but the header names {} columns", cells.size(), columns.size()));
+      fail(cells.front(),
+           fmt::format("{} values, but the header names {} columns", cells.size(), columns.size()));
     }
-    CsvRow row;
-    row.line = line.line;
+    GridRow row;
+    row.line = cells_of.line;
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      const TextField& cell = cells[position[i]];
+      const CsvCell& cell = cells[position[i]];
       const ColumnSpec& column = columns[i];
       const std::optional<double> value = numberIn(cell.text);
       if (!value) fail(cell, fmt::format("{} is '{}', not a number", column.name, cell.text));
@@ -86,7 +96,7 @@ MeasuredCut readCut(const std::string& file, const ColumnSpec& angle, AxisKind k
   const AntennaText text(file);
   std::vector<CutRow> rows;
   double smallest_db = std::numeric_limits<double>::infinity();
-  for (const CsvRow& row : readRows(text, {angle, kAttenuation})) {
+  for (const GridRow& row : readRows(text, {angle, kAttenuation})) {
     rows.push_back({row.values[0], row.values[1], row.line, 1});
     smallest_db = std::min(smallest_db, row.values[1]);
   }
@@ -101,11 +111,11 @@ ShapeTable tableOf(const MeasuredCut& cut, double half_span) {
 }
 
 /// The attenuations of rows (elevation, azimuth, attenuation), azimuth fastest.
-std::vector<double> inGridOrder(std::vector<CsvRow> rows, const MeasuredAxis& azimuth,
+std::vector<double> inGridOrder(std::vector<GridRow> rows, const MeasuredAxis& azimuth,
                                 const MeasuredAxis& elevation, const SourceLocation& file) {
-  const auto pairOf = [](const CsvRow& row) { return std::make_pair(row.values[0], row.values[1]); };
+  const auto pairOf = [](const GridRow& row) { return std::make_pair(row.values[0], row.values[1]); };
   std::stable_sort(rows.begin(), rows.end(),
-                   [&](const CsvRow& a, const CsvRow& b) { return pairOf(a) < pairOf(b); });
+                   [&](const GridRow& a, const GridRow& b) { return pairOf(a) < pairOf(b); });
   std::vector<double> attenuations_db;
   const std::size_t columns = azimuth.angles_deg().size();
   const std::size_t cells = columns * elevation.angles_deg().size();
@@ -147,9 +157,9 @@ AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
   requireGain(gain_dbi);
   const SourceLocation place{file, 0, 0};
   const AntennaText text(file);
-  std::vector<CsvRow> rows = readRows(text, {kElevation, kAzimuth, kAttenuation});
+  std::vector<GridRow> rows = readRows(text, {kElevation, kAzimuth, kAttenuation});
   std::vector<double> azimuths_deg, elevations_deg;
-  for (CsvRow& row : rows) {
+  for (GridRow& row : rows) {
     elevations_deg.push_back(row.values[0] = MeasuredAxis::normalized(AxisKind::elevation, row.values[0]));
     azimuths_deg.push_back(row.values[1] = MeasuredAxis::normalized(AxisKind::circle, row.values[1]));
   }

@@ -55,16 +55,6 @@ std::vector<TextField> wordsOf(const TextField& line) {
   return words;
 }
 
-std::vector<TextField> cellsOf(const TextField& line) {
-  std::vector<TextField> cells;
-  for (std::size_t begin = 0; begin <= line.text.size();) {
-    const std::size_t end = std::min(line.text.find(',', begin), line.text.size());
-    cells.push_back(restOf({line.text.substr(0, end), line.line, line.column}, begin));
-    begin = end + 1;
-  }
-  return cells;
-}
-
 std::optional<double> numberIn(std::string_view text) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   double value = 0;

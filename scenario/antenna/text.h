@@ -28,6 +28,8 @@ class AntennaText {
   AntennaText& operator=(const AntennaText&) = delete;
 
   const std::string& file() const { return file_; }
+  /// The whole text, for CsvReader.
+  std::string_view text() const { return text_; }
   /// The lines that say something, without blanks at their ends; lines end in LF, CRLF or CR. Empty ones and
   /// those that begin with # are left out.
   const std::vector<TextField>& lines() const { return lines_; }
@@ -42,8 +44,6 @@ class AntennaText {
 
 /// The words of a line, separated by blanks and tabs.
 std::vector<TextField> wordsOf(const TextField& line);
-/// The cells of a line, separated by commas, without blanks at their ends; empty ones stay.
-std::vector<TextField> cellsOf(const TextField& line);
 /// The part of a field from byte `offset` on, without blanks at its ends.
 TextField restOf(const TextField& field, std::size_t offset);
 

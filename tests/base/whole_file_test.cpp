@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <fstream>
@@ -139,6 +140,16 @@ TEST_F(WholeFile, OnlyTheTemporariesOfAFileThatDeadProcessesLeftAreRemovedWithIt
   EXPECT_FALSE(fs::exists(folder_ / "film.mp4.part-999999999"));
   EXPECT_EQ(filesInFolder(), 3);
   EXPECT_NO_THROW(removeStaleTemporariesOf(folder_ / "none" / "film.mp4"));
+}
+
+TEST_F(WholeFile, TheTemporaryOfAProcessThatEndedButWasNotWaitedForIsStale) {
+  const pid_t process = fork();
+  if (process == 0) _exit(0);
+  siginfo_t ended{};
+  waitid(P_PID, static_cast<id_t>(process), &ended, WEXITED | WNOWAIT);
+  std::ofstream(folder_ / ("a.vdb.part-" + std::to_string(process))) << "killed";
+  EXPECT_EQ(removeStaleTemporaries(folder_), 1);
+  waitpid(process, nullptr, 0);
 }
 
 TEST_F(WholeFile, PatchesReplaceBytesWhereTheyLie) {

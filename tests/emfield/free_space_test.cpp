@@ -51,9 +51,8 @@ class FreeSpaceTable : public ::testing::Test {
   }
 
   /// One radiating antenna; the three quantities of the table.
-  std::vector<std::shared_ptr<const volume::DenseVolume>> volumesFor(const FreeSpaceRow& row,
-                                                                     scenario::AntennaPtr antenna,
-                                                                     double azimuth_deg) {
+  std::vector<volume::Volume> volumesFor(const FreeSpaceRow& row, scenario::AntennaPtr antenna,
+                                         double azimuth_deg) {
     auto scenario = lineOfVoxels(100e3, kSpacing_m);
     scenario::Emitter emitter = plainEmitter("source", 0);
     emitter.frequency_hz = row.frequency_hz;

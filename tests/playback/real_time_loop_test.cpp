@@ -46,6 +46,9 @@ Played play(const RealTimeOptions& options, FrameSource& source, Clock& clock, b
   if (displayed) display = [&](const render::Image8&, int slots) { played.slots.push_back(slots); };
   RealTimeLoop loop(options, style, source, painter, display, clock, interrupt);
   played.report = loop.play([](const RealTimeEvent&) {});
+  const std::vector<render::Rgba>& pixels = painter.image().pixels;
+  EXPECT_TRUE(
+      std::any_of(pixels.begin(), pixels.end(), [](const render::Rgba& pixel) { return pixel.a > 0; }));
   return played;
 }
 

@@ -132,7 +132,7 @@ TEST(CsvGrid, SaysWhatIsWrongAndWhere) {
   expectBroken("azimuth_deg,elevation_deg\n", 1, 1, "missing column");
   expectBroken(header + "0,0\n", 2, 1, "2 values, but the header names 3 columns");
   expectBroken(header + "0,x,0\n", 2, 3, "elevation_deg is 'x', not a number");
-  expectBroken(header + "\n0, ,0\n", 3, 4, "elevation_deg is '', not a number");
+  expectBroken(header + "\n0, ,0\n", 3, 3, "elevation_deg is '', not a number");
   expectBroken(header + "0,91,0\n", 2, 3, "elevation_deg is 91 deg; allowed are -90 to 90 deg");
   expectBroken(header + "0,0,-3\n", 2, 5, "attenuation_db is -3 dB; allowed are 0 to 300 dB");
   expectBroken(header + "0,0,nan\n", 2, 5, "attenuation_db is 'nan', not a number");

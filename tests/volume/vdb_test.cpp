@@ -241,8 +241,7 @@ TEST(Vdb, RefusesWhatIsNotOne) {
   TemporaryFolder folder;
   writeBytes(folder / "a.vdb", std::vector<std::uint8_t>(100, 'x'));
   EXPECT_THAT(errorOf([&] { readVdb(folder / "a.vdb"); }), HasSubstr("a.vdb: no OpenVDB file"));
-  EXPECT_THAT(errorOf([&] { readVdb(folder / "none.vdb"); }),
-              HasSubstr("none.vdb: there is no such file"));
+  EXPECT_THAT(errorOf([&] { readVdb(folder / "none.vdb"); }), HasSubstr("none.vdb: there is no such file"));
 }
 
 TEST(Vdb, RefusesCategoricalValuesThatAreNoIndices) {
