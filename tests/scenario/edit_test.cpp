@@ -411,6 +411,8 @@ class RandomEdits {
       case ValueType::integer:
         return std::to_string(std::uniform_int_distribution<int>(
             static_cast<int>(spec.minimum), static_cast<int>(std::min(spec.maximum, 64.0)))(random_));
+      case ValueType::boolean:
+        return below(2) == 0 ? "true" : "false";
       case ValueType::choice:
         return spec.choices[below(spec.choices.size())];
       case ValueType::timestamp:
