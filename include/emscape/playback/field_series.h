@@ -9,6 +9,7 @@
 #include "emscape/emfield/field_solver.h"
 #include "emscape/playback/inputs.h"
 #include "emscape/scenario/snapshot.h"
+#include "emscape/volume/value_range.h"
 #include "emscape/volume/volume.h"
 
 namespace emscape::playback {
