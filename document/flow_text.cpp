@@ -48,11 +48,6 @@ bool canBePlain(const std::string& text) {
   return true;
 }
 
-bool isBoolean(const std::string& text) {
-  return text == "true" || text == "True" || text == "TRUE" || text == "false" || text == "False" ||
-         text == "FALSE";
-}
-
 /// JSON knows no leading '+' or '.', no leading zeros and no infinities.
 std::string jsonNumber(const std::string& text, double value) {
   const std::string digits = text[0] == '-' ? text.substr(1) : text;
@@ -67,9 +62,9 @@ std::string jsonNumber(const std::string& text, double value) {
 std::string scalarText(const DocumentNode& node, bool json) {
   if (!node.quoted) {
     if (const auto value = numberOf(node.text)) return json ? jsonNumber(node.text, *value) : node.text;
-    if (isBoolean(node.text)) return node.text;
+    if (booleanOf(node.text)) return node.text;
   }
-  const bool like_another = numberOf(node.text) || isBoolean(node.text);
+  const bool like_another = numberOf(node.text) || booleanOf(node.text);
   return !json && !like_another && canBePlain(node.text) ? node.text : doubleQuoted(node.text);
 }
 
@@ -104,7 +99,8 @@ bool sameValue(const DocumentNode& a, const DocumentNode& b) {
   if (a.kind == NodeKind::scalar) {
     const auto number_a = a.quoted ? std::nullopt : numberOf(a.text);
     const auto number_b = b.quoted ? std::nullopt : numberOf(b.text);
-    const bool boolean_a = !a.quoted && isBoolean(a.text), boolean_b = !b.quoted && isBoolean(b.text);
+    const bool boolean_a = !a.quoted && booleanOf(a.text).has_value();
+    const bool boolean_b = !b.quoted && booleanOf(b.text).has_value();
     if (number_a && number_b) return a.text == b.text || number_a.value_or(0) == number_b.value_or(0);
     return !number_a && !number_b && boolean_a == boolean_b && a.text == b.text;
   }

@@ -12,7 +12,7 @@ namespace emscape::document {
 
 struct ObjectSpec;
 
-enum class ValueType { number, integer, text, choice, timestamp, file, object, list };
+enum class ValueType { number, integer, boolean, text, choice, timestamp, file, object, list };
 
 /// What a value may be.
 struct ValueSpec {

@@ -64,6 +64,8 @@ std::string expectation(const ValueSpec& spec) {
       return "a number" + withUnit(spec.unit);
     case ValueType::integer:
       return "a whole number";
+    case ValueType::boolean:
+      return "true or false";
     case ValueType::text:
       return "text";
     case ValueType::file:
@@ -85,9 +87,7 @@ std::string expectation(const ValueSpec& spec) {
 
 /// YAML reads these as something else than text.
 bool looksLikeText(const DocumentNode& node) {
-  if (node.quoted) return true;
-  static const std::set<std::string> kOthers{"true", "True", "TRUE", "false", "False", "FALSE"};
-  return !numberOf(node.text) && kOthers.count(node.text) == 0;
+  return node.quoted || (!numberOf(node.text) && !booleanOf(node.text));
 }
 
 int editDistance(const std::string& a, const std::string& b) {
@@ -201,6 +201,8 @@ class Checker {
       if (!number) return wrongType();
       const std::string message = rangeFault(name, node.text, *number, spec);
       if (!message.empty()) fault(node.position, message);
+    } else if (spec.type == ValueType::boolean) {
+      if (node.quoted || !booleanOf(node.text)) wrongType();
     } else {
       word(name, node, spec, wrongType);
     }
@@ -267,6 +269,23 @@ bool checkObject(const std::string& file, const DocumentNode& node, const Object
   Checker checker(file, problems);
   checker.object("the " + spec.name, node, spec);
   return checker.sound();
+}
+
+void requireNoProblem(const ProblemList& problems) {
+  const std::vector<Problem> all = problems.inOrder();
+  if (all.empty()) return;
+  if (all.size() == 1) throw Error(ErrorCode::bad_input, all.front().place, all.front().message);
+  std::string text;
+  for (const Problem& problem : all) {
+    text += (text.empty() ? "" : "\n") + toString(problem.place) + ": " + problem.message;
+  }
+  throw Error(ErrorCode::bad_input, text);
+}
+
+std::optional<bool> booleanOf(const std::string& text) {
+  if (text == "true" || text == "True" || text == "TRUE") return true;
+  if (text == "false" || text == "False" || text == "FALSE") return false;
+  return std::nullopt;
 }
 
 std::optional<double> numberOf(const std::string& text) {

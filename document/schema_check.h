@@ -21,6 +21,12 @@ bool checkObject(const std::string& file, const DocumentNode& node, const Object
 /// Infinity and NaN are numbers here.
 std::optional<double> numberOf(const std::string& text);
 
+/// @throws Error (bad_input) if there is any problem: one keeps its place, several are told one a line
+void requireNoProblem(const ProblemList& problems);
+
+/// The truth value that a scalar's text stands for (YAML 1.2 core schema); none if it is not one.
+std::optional<bool> booleanOf(const std::string& text);
+
 /// What is wrong with a number, as `'name' is 95, outside the allowed -90 to 90 deg`; empty if nothing is.
 std::string rangeFault(const std::string& name, const std::string& text, double value, const ValueSpec& spec);
 

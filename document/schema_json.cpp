@@ -33,6 +33,8 @@ class SchemaWriter {
       case ValueType::number:
       case ValueType::integer:
         return numeric(spec);
+      case ValueType::boolean:
+        return {{"type", "boolean"}};
       case ValueType::text:
       case ValueType::file:
         return {{"type", "string"}, {"minLength", spec.min_items}, {"maxLength", spec.max_items}};

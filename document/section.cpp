@@ -81,6 +81,11 @@ int Section::integer(const std::string& key) const {
   return std::isnan(value) ? 0 : static_cast<int>(value);
 }
 
+std::optional<bool> Section::optionalBoolean(const std::string& key) const {
+  const DocumentNode* node = find(key);
+  return node == nullptr || node->quoted ? std::nullopt : booleanOf(node->text);
+}
+
 std::string Section::text(const std::string& key) const {
   if (const DocumentNode* node = find(key)) return node->text;
   const std::string* fallback = std::get_if<std::string>(&row(key).default_value);

@@ -28,6 +28,7 @@ class Section {
   double number(const std::string& key) const;
   std::optional<double> optionalNumber(const std::string& key) const;
   int integer(const std::string& key) const;
+  std::optional<bool> optionalBoolean(const std::string& key) const;
   std::string text(const std::string& key) const;  ///< text, timestamp, file
   /// The value of a choice whose order in the table is the enumeration's.
   template <class Enum>

@@ -89,7 +89,7 @@ class StoredFrames : public FrameSource {
     if (!selection.scenario.empty()) {
       scene_ = loadScenarioWithTerrain(selection.scenario, selection.edits);
     } else if (!selection.edits.empty()) {
-      throw Error(ErrorCode::usage, "--set changes a scenario; volumes have none without --scenario");
+      throw Error(ErrorCode::usage, "edits change a scenario; volumes have none unless one is named beside them");
     }
     if (selection.first_only) {
       files_.resize(1);

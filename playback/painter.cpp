@@ -64,6 +64,10 @@ render::Image8 Painter::picture(const std::string& note) {
 
 render::TransferFunction Painter::functionFor(const volume::Volume& volume) const {
   if (!style_.transfer.empty()) return render::readTransferFunction(style_.transfer, volume.info());
+  if (style_.function && !volume.info().categorical) {
+    render::requireUnitOf(*style_.function, volume.info());
+    return *style_.function;
+  }
   return style_.colors_span_range ? render::defaultTransferFunction(volume.info())
                                   : render::defaultTransferFunction(*volume.host());
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -23,6 +22,7 @@
 #include "emscape/playback/painter.h"
 #include "emscape/playback/picture_sink.h"
 #include "emscape/playback/real_time_loop.h"
+#include "emscape/playback/view_state.h"
 #include "render/reconstruction.h"
 
 namespace emscape::app {
@@ -36,22 +36,28 @@ using playback::PictureSink;
 using playback::PictureStyle;
 using playback::RealTimeLoop;
 using playback::RealTimeOptions;
+using playback::ViewState;
 
+/// Those that a view has, too, count only where they are given; viewOf() has their defaults.
 struct RenderOptions {
+  const CLI::App* command = nullptr;
   playback::FrameSelection selection;
   std::vector<std::string> outputs;
-  std::string size = "1280x720";
-  std::string mode = "dvr";
+  std::string state;
+  std::string save_state;
+  std::string size;
+  std::string mode;
   std::string rays = "auto";
   std::string interpolate = "float";
-  std::string camera = "orbit";
+  std::string camera;
   std::string transfer;
+  std::string quantity;
   std::string range;
-  std::string theme = "dark";
-  double step_voxels = 1;
+  std::string theme;
+  double step_voxels = 0;
   double mida_gamma = 0;
-  double iso_value = std::numeric_limits<double>::quiet_NaN();
-  double iso_opacity = 1;
+  double iso_value = 0;
+  double iso_opacity = 0;
   bool shading = false;
   double exaggeration = 0;
   std::optional<double> frames_per_s;
@@ -68,24 +74,46 @@ struct RenderOptions {
   std::string device_volume = "float";
 };
 
-/// The options that say how pictures look, read: wrong ones are told before anything is computed.
-PictureStyle styleOf(const RenderOptions& options) {
-  PictureStyle style;
-  style.size = render::parseImageSize(options.size);
-  style.camera = render::parseCamera(options.camera);
-  style.theme = render::parseTheme(options.theme);
-  style.settings.mode = render::parseCompositingMode(options.mode);
-  style.settings.step_voxels = options.step_voxels;
-  style.settings.mida_gamma = options.mida_gamma;
-  style.settings.iso_value = options.iso_value;
-  style.settings.iso_opacity = options.iso_opacity;
-  style.settings.shading = options.shading;
-  style.settings.exact = options.exact;
-  style.settings.vertical_exaggeration = options.exaggeration;
+/// What is drawn: the view of --state, or the default one, with the options that are given. They are read
+/// here, so that wrong ones are told before anything is computed.
+ViewState viewOf(const RenderOptions& options) {
+  ViewState view = options.state.empty() ? ViewState{} : playback::readViewState(options.state);
+  const auto isGiven = [&options](const char* name) { return options.command->count(name) > 0; };
+  const auto take = [&isGiven](const char* name, const auto& value, auto& target) {
+    if (isGiven(name)) target = value;
+  };
+  if (isGiven("--size")) view.size = render::parseImageSize(options.size);
+  if (isGiven("--camera")) view.camera = render::parseCamera(options.camera);
+  if (isGiven("--theme")) view.theme = render::parseTheme(options.theme);
+  if (isGiven("--quantity") && options.quantity != view.quantity) {
+    // Colours, range and surface are those of the view's own quantity.
+    view.quantity = options.quantity;
+    view.transfer.reset();
+    view.range.reset();
+    view.settings.iso_value = render::RenderSettings{}.iso_value;
+  }
+  if (isGiven("--range")) {
+    view.range = parseRange(options.range);
+    view.transfer.reset();
+  }
+  if (isGiven("--mode")) view.settings.mode = render::parseCompositingMode(options.mode);
+  take("--step", options.step_voxels, view.settings.step_voxels);
+  take("--mida-gamma", options.mida_gamma, view.settings.mida_gamma);
+  take("--iso-value", options.iso_value, view.settings.iso_value);
+  take("--iso-opacity", options.iso_opacity, view.settings.iso_opacity);
+  take("--shading", options.shading, view.settings.shading);
+  take("--exact", options.exact, view.settings.exact);
+  take("--exaggeration", options.exaggeration, view.settings.vertical_exaggeration);
+  take("--terrain", options.show_terrain, view.show_terrain);
+  take("--emitters", options.show_emitters, view.show_emitters);
+  const std::vector<scenario::Edit>& edits = options.selection.edits;
+  view.edits.insert(view.edits.end(), edits.begin(), edits.end());
+  return view;
+}
+
+PictureStyle styleOf(const ViewState& view, const RenderOptions& options) {
+  PictureStyle style = playback::pictureStyleOf(view);
   style.transfer = options.transfer;
-  style.colors_span_range = !options.range.empty();
-  style.show_terrain = options.show_terrain;
-  style.show_emitters = options.show_emitters;
   return style;
 }
 
@@ -93,6 +121,21 @@ bool isOnePicture(const std::vector<std::string>& outputs) {
   return std::all_of(outputs.begin(), outputs.end(), [](const std::string& output) {
     return std::filesystem::path(output).extension() == ".png";
   });
+}
+
+playback::FrameSelection selectionOf(const ViewState& view, const RenderOptions& options) {
+  playback::FrameSelection selection = options.selection;
+  selection.quantity = view.quantity;
+  selection.range = view.range;
+  selection.edits = view.edits;
+  if (selection.times.empty() && !options.realtime && isOnePicture(options.outputs)) {
+    if (options.state.empty()) {
+      selection.first_only = true;
+    } else {
+      selection.times = fmt::format("{}", view.time_s);
+    }
+  }
+  return selection;
 }
 
 using Sinks = std::vector<std::unique_ptr<PictureSink>>;
@@ -112,33 +155,53 @@ struct Stage {
   ComputeTarget target;
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<Painter> painter;
+  std::optional<playback::ValueRange> range;  ///< of the series, as far as it was looked at
 };
 
-Stage openStage(const RenderOptions& options, const PictureStyle& style, const GlobalOptions& global) {
+Stage openStage(const playback::FrameSelection& selection, const RenderOptions& options,
+                const PictureStyle& style, const GlobalOptions& global) {
   return openOnTarget(global, options.device_volume, [&](const ComputeTarget& target) {
-    Stage stage{target,
-                playback::openFrameSource(options.selection, target, progressSink(global), &stopFlag()),
+    Stage stage{target, playback::openFrameSource(selection, target, progressSink(global), &stopFlag()),
                 nullptr};
     stage.painter = std::make_unique<Painter>(style, *stage.source, target);
-    stage.painter->setFrame(stage.source->frame(0));
+    const playback::Frame frame = stage.source->frame(0);
+    stage.painter->setFrame(frame);
+    const volume::VolumeInfo& info = frame.volume.info();
+    if (info.range_min < info.range_max) stage.range = {info.range_min, info.range_max};
     return stage;
   });
 }
 
-int renderPictures(RenderOptions options, const GlobalOptions& global) {
-  if (options.outputs.empty()) throw Error(ErrorCode::usage, "--output is required (but for --realtime)");
-  const PictureStyle style = styleOf(options);
+/// Writes what --save-state asks for: the view, with the colours that were fitted to the first frame.
+void saveState(const RenderOptions& options, ViewState view, const Stage& stage) {
+  if (options.save_state.empty()) return;
+  view.time_s = stage.source->time_s(0);
+  view.transfer = stage.painter->renderer().transferFunction();
+  view.range = stage.range;
+  const playback::LoadedScenario* scene = stage.source->scene();
+  view.edits = scene != nullptr ? scene->scenario->edits() : std::vector<scenario::Edit>{};
+  playback::writeViewState(options.save_state, view);
+  logInfo("wrote " + options.save_state);
+}
+
+int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
+  if (options.outputs.empty() && options.save_state.empty()) {
+    throw Error(ErrorCode::usage, "--output is required (but for --realtime and --save-state)");
+  }
+  const ViewState view = viewOf(options);
+  const PictureStyle style = styleOf(view, options);
+  const std::string mode = render::toString(view.settings.mode);
   // Files are not in a hurry: `auto` casts every pixel.
   const render::FramePlan plan{
       options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays),
       render::parseInterpolation(options.interpolate)};
-  if (!options.range.empty()) options.selection.range = parseRange(options.range);
-  options.selection.first_only = options.selection.times.empty() && isOnePicture(options.outputs);
-  const Stage stage = openStage(options, style, global);
+  const Stage stage = openStage(selectionOf(view, options), options, style, global);
+  saveState(options, view, stage);
+  if (options.outputs.empty()) return 0;
   const std::unique_ptr<FrameSource>& source = stage.source;
   Painter& painter = *stage.painter;
-  const std::string note = fmt::format("{}, {} rays, step {:g} voxel", options.mode,
-                                       render::toString(plan.pattern), options.step_voxels);
+  const std::string note = fmt::format("{}, {} rays, step {:g} voxel", mode, render::toString(plan.pattern),
+                                       view.settings.step_voxels);
   const Sinks sinks = openSinks(options, style, *source, source->count(), options.frames_per_s.value_or(10));
 
   logInfo(fmt::format("drawing {} picture{} of {}x{} into {}", source->count(),
@@ -166,7 +229,7 @@ int renderPictures(RenderOptions options, const GlobalOptions& global) {
   if (global.json) {
     printJson({{"device", stage.target.device()},
                {"size", {style.size.width, style.size.height}},
-               {"mode", options.mode},
+               {"mode", mode},
                {"frames", source->count()},
                {"outputs", options.outputs},
                {"cast_ms", cast_ms},
@@ -193,14 +256,15 @@ RealTimeOptions realTimeOptionsOf(const RenderOptions& options) {
   return loop;
 }
 
-int playInRealTime(RenderOptions options, const GlobalOptions& global) {
-  const PictureStyle style = styleOf(options);
+int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
+  const ViewState view = viewOf(options);
+  const PictureStyle style = styleOf(view, options);
   const RealTimeOptions loop_options = realTimeOptionsOf(options);
   if (loop_options.orbit_rate_deg_s != 0 && style.camera.kind != render::CameraSpec::Kind::orbit) {
     throw Error(ErrorCode::usage, "--orbit-rate: the camera must be an orbit");
   }
-  if (!options.range.empty()) options.selection.range = parseRange(options.range);
-  const Stage stage = openStage(options, style, global);
+  const Stage stage = openStage(selectionOf(view, options), options, style, global);
+  saveState(options, view, stage);
   const std::unique_ptr<FrameSource>& source = stage.source;
   constexpr int kSeveral = 2;
   const Sinks sinks = openSinks(options, style, *source, kSeveral, loop_options.frames_per_s);
@@ -228,7 +292,7 @@ int playInRealTime(RenderOptions options, const GlobalOptions& global) {
   if (global.json) {
     Json json{{"device", stage.target.device()},
               {"size", {style.size.width, style.size.height}},
-              {"mode", options.mode},
+              {"mode", render::toString(view.settings.mode)},
               {"rays", options.rays},
               {"outputs", options.outputs},
               {"budget_ms", loop_options.controller.budget_ms}};
@@ -278,20 +342,27 @@ emitters of the scenario that they came from.
 
 Examples:
   emscape render scenarios/jacksboro.yaml -o now.png --times 30
+  emscape render scenarios/jacksboro.yaml -o now.png --state jacksboro.view.json --size 3840x2160
   emscape render scenarios/jacksboro.yaml -o film.mp4 -o frames --times 0:120:0.5 --camera orbit:azimuth_deg=200
   emscape render out/jacksboro.pvd -o film.mp4 --scenario scenarios/jacksboro.yaml
   emscape render engine_256x256x110_uint8.raw -o engine.png --mode mida
   emscape render scenarios/jacksboro.yaml --realtime --size 1200x900 --fps 25 --orbit-rate 10)");
   auto options = std::make_shared<RenderOptions>();
+  options->command = command;
   command
       ->add_option("INPUT", options->selection.input,
                    "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes")
       ->required();
   addSetOption(*command, options->selection.edits);
+  command->add_option(
+      "--state", options->state,
+      "View file: camera, colours, time, edits and the rest; options that are given count more");
+  command->add_option("--save-state", options->save_state,
+                      "Write what is drawn as a view file; --output may then be left out");
   command->add_option("-o,--output", options->outputs,
                       "NAME.png, NAME.mp4 or a folder for frames; may be given several times");
-  command->add_option("--size", options->size, "Picture size in pixels, WxH");
-  command->add_option("--mode", options->mode, "How samples become a pixel")
+  command->add_option("--size", options->size, "Picture size in pixels, WxH; default: 1280x720");
+  command->add_option("--mode", options->mode, "How samples become a pixel; default: dvr")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
   command->add_option("--rays", options->rays, "Pixels that are cast, the rest interpolated; auto: all")
       ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter", "adaptive"}));
@@ -305,15 +376,14 @@ Examples:
   command->add_option(
       "--times", options->selection.times,
       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: all steps, for a .png alone the first");
-  command->add_option("--quantity", options->selection.quantity,
-                      "Quantity or channel to draw; default: the first");
+  command->add_option("--quantity", options->quantity, "Quantity or channel to draw; default: the first");
   command->add_option("--range", options->range, "MIN:MAX of the colours; default: the range of the series");
   command->add_option("--scenario", options->selection.scenario,
                       "Scenario whose ground and emitters are drawn with volumes");
   command
       ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
       ->check(CLI::Range(0.0, 100.0));
-  command->add_option("--step", options->step_voxels, "Distance of samples, in voxels")
+  command->add_option("--step", options->step_voxels, "Distance of samples, in voxels; default: 1")
       ->check(CLI::Range(0.05, 10.0));
   command->add_option("--mida-gamma", options->mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
       ->check(CLI::Range(-1.0, 1.0));
@@ -322,7 +392,8 @@ Examples:
   command->add_option("--iso-opacity", options->iso_opacity, "Opacity of the isosurface")
       ->check(CLI::Range(0.0, 1.0));
   command->add_flag("--shading", options->shading, "Light on the fog of dvr and mida; iso always has it");
-  command->add_option("--theme", options->theme, "AsyncTask")->check(CLI::IsMember({"dark", "light"}));
+  command->add_option("--theme", options->theme, "Background and labels; default: dark")
+      ->check(CLI::IsMember({"dark", "light"}));
   command
       ->add_option("--fps", options->frames_per_s,
                    "Frames a second of a video (default 10); with --realtime: at most so many are shown")

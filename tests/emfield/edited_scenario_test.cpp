@@ -412,7 +412,7 @@ TEST(EditedScenario, EqualsANewSolverOverTerrainInAllModels) {
   checkEdits(battlefield(random, FrameKind::altitude,
                          {PropagationModel::diffraction, PropagationModel::horizon, PropagationModel::itm,
                           PropagationModel::p528, PropagationModel::two_ray}),
-             hills(), 80, editValue, random);
+             hills(), 50, editValue, random);
 }
 
 TEST(EditedScenario, EqualsANewSolverInATiltedFrame) {

@@ -59,16 +59,5 @@ TEST(FieldSeries, AStopFlagEndsItBetweenTwoSteps) {
   EXPECT_THROW(series.findRanges(1, {}), Stopped);
 }
 
-TEST(ValueRange, EmptyAndUnknownRangesChangeNothing) {
-  ValueRange range;
-  range.add({});
-  EXPECT_TRUE(range.empty());
-  range.add({1, 2});
-  range.add({std::nanf(""), 5});
-  EXPECT_EQ(range, (ValueRange{1, 2}));
-  range.add({-1, 1.5F});
-  EXPECT_EQ(range, (ValueRange{-1, 2}));
-}
-
 }  // namespace
 }  // namespace emscape::playback::test

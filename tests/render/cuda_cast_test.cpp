@@ -265,7 +265,7 @@ TEST(CudaCast, IsRefusedWhereThereIsNoGpu) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::device);
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("pictures cast by the GPU: "));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("backend cuda: "));
   }
 }
 

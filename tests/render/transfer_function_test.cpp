@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
+#include <random>
 
 #include "emscape/base/error.h"
 #include "render/transfer_table.h"
@@ -175,6 +177,85 @@ TEST(TransferFile, RefusesUnknownMapsBadColoursAndOtherUnits) {
           "{\"schema_version\": 1, \"domain\": \"value\", \"unit\": \"dBm\", \"colors\": \"viridis\", " +
           tail),
       HasSubstr("unit 'dBm' is not that of the volume: power_density_dbwm2 is in 'dBW/m2'"));
+}
+
+TEST(TransferFile, WhatIsWrittenIsReadBackToTheBit) {
+  std::mt19937 random(7);
+  const auto uniform = [&random](double from, double to) {
+    return std::uniform_real_distribution<double>(from, to)(random);
+  };
+  for (int round = 0; round < 200; ++round) {
+    TransferFunction function;
+    function.name = round % 3 == 0 ? "" : "a \"name\"\\, \xC3\xA9";
+    function.unit = "dBW/m2";
+    double at = uniform(-200, 0);
+    for (int i = 0; i <= round % 17; ++i) {
+      const auto level = [&] {
+        return round % 2 == 0 ? static_cast<float>(random() % 256) / 255.0F
+                              : static_cast<float>(uniform(0, 1));
+      };
+      function.colors.push_back({at += uniform(1e-9, 20), {level(), level(), level()}});
+    }
+    at = uniform(-200, 0);
+    for (int i = 0; i < 2 + round % 9; ++i) {
+      function.opacities.push_back({at, std::pow(10, uniform(-12, 0))});
+      if (i % 3 != 1) at += uniform(0, 20);
+    }
+    const std::string text = transferFunctionText(function);
+    const TransferFunction read = parseTransferFunction(text, "tf.json", decibels());
+    EXPECT_EQ(read.name, function.name);
+    EXPECT_EQ(read.unit, function.unit);
+    ASSERT_EQ(read.colors.size(), function.colors.size());
+    for (std::size_t i = 0; i < read.colors.size(); ++i) {
+      ASSERT_EQ(read.colors[i].at, function.colors[i].at);
+      ASSERT_EQ(read.colors[i].color.r, function.colors[i].color.r) << text;
+      ASSERT_EQ(read.colors[i].color.g, function.colors[i].color.g);
+      ASSERT_EQ(read.colors[i].color.b, function.colors[i].color.b);
+    }
+    ASSERT_EQ(read.opacities.size(), function.opacities.size());
+    for (std::size_t i = 0; i < read.opacities.size(); ++i) {
+      ASSERT_EQ(read.opacities[i].at, function.opacities[i].at);
+      ASSERT_EQ(read.opacities[i].opacity, function.opacities[i].opacity);
+    }
+    EXPECT_EQ(transferFunctionText(read), text);
+  }
+}
+
+TEST(TransferFile, WholeLevelsAreWrittenAsColoursAndOthersAsComponents) {
+  TransferFunction function = defaultTransferFunction(decibels());
+  EXPECT_THAT(transferFunctionText(function), HasSubstr("{\"at\": -100.0, \"color\": \"#440154\"}"));
+  function.colors[0].color = {0.1F, 0.2F, 0.3F};
+  EXPECT_THAT(transferFunctionText(function), HasSubstr("{\"at\": -100.0, \"rgb\": [0.1, 0.2, 0.3]}"));
+}
+
+TEST(TransferFile, AColourHasOneForm) {
+  const std::string tail = "]}], \"opacity\": [{\"at\": 0, \"opacity\": 0}, {\"at\": 1, \"opacity\": 1}]}";
+  const std::string head = "{\"schema_version\": 1, \"domain\": \"value\", \"colors\": [{\"at\": 0, ";
+  EXPECT_THAT(refusalOf(head + "\"color\": \"#000000\", \"rgb\": [0, 0, 0" + tail),
+              HasSubstr("the colour point must have exactly one of 'color', 'rgb'; it has 2"));
+  EXPECT_THAT(refusalOf(head + "\"rgb\": [0, 0, 2" + tail), HasSubstr("is 2, outside the allowed 0 to 1"));
+  EXPECT_THAT(refusalOf(head + "\"rgb\": [0, 0" + tail), HasSubstr("'rgb' has 2 items; it must have 3"));
+}
+
+TEST(TransferFile, CategoriesAreNotWritten) {
+  TransferFunction function = defaultTransferFunction(decibels());
+  function.categorical = true;
+  EXPECT_THROW(transferFunctionText(function), Error);
+}
+
+TEST(TransferFile, AnotherUnitIsRefused) {
+  TransferFunction function = defaultTransferFunction(decibels());
+  EXPECT_NO_THROW(requireUnitOf(function, decibels()));
+  function.unit = "";
+  EXPECT_NO_THROW(requireUnitOf(function, decibels()));
+  function.unit = "dB";
+  try {
+    requireUnitOf(function, decibels());
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(),
+                HasSubstr("unit 'dB' is not that of the volume: power_density_dbwm2 is in 'dBW/m2'"));
+  }
 }
 
 TEST(TransferFile, AMissingFileIsNamed) {

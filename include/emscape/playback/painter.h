@@ -1,6 +1,7 @@
 /// Frames of a source as finished pictures: one camera, one set of colours.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "emscape/base/progress.h"
@@ -18,7 +19,8 @@ struct PictureStyle {
   render::CameraSpec camera;
   render::Theme theme = render::Theme::dark;
   render::RenderSettings settings;
-  std::string transfer;            ///< file of the transfer function; empty: fitted to the first volume
+  std::string transfer;  ///< file of the transfer function; empty: fitted to the first volume
+  std::optional<render::TransferFunction> function;  ///< without such a file; not used for categories
   bool colors_span_range = false;  ///< fitted to the range of its values alone, not to how frequent they are
   bool show_terrain = true;
   bool show_emitters = true;

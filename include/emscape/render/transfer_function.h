@@ -71,12 +71,13 @@ TransferFunction defaultTransferFunction(const volume::VolumeInfo& info);
 
 /// Reads a transfer function (JSON or YAML) for a volume.
 ///
-///     { "schema_version": 1, "name": "power density",
-///       "domain": "value",                       // "value": `at` in the quantity's unit; "relative": 0..1
-///       of info.range_* "unit": "dBW/m2",                        // optional with "value"; must then be the
-///       volume's "colors": "viridis",                     // a colour map by name, over the interval of the
-///       opacity points, or "colors": [{"at": -90, "color": "#440154"}, {"at": -20, "color": "#fde725"}],
+///     { "schema_version": 1, "name": "power density", "domain": "value", "unit": "dBW/m2",
+///       "colors": [{"at": -90, "color": "#440154"}, {"at": -20, "rgb": [0.99, 0.906, 0.145]}],
 ///       "opacity": [{"at": -90, "opacity": 0}, {"at": -20, "opacity": 0.08}] }
+///
+/// "domain": "value": `at` in the quantity's unit; "relative": 0..1 of info.range_*. "unit", optional with
+/// "value", must be that of the volume. "colors" may be the name of a colour map, which then covers the
+/// interval of the opacity points.
 ///
 /// @throws Error (bad_input) with file:line:column for what is wrong: unknown, missing or repeated keys,
 /// types, ranges, order, unit
@@ -84,5 +85,14 @@ TransferFunction readTransferFunction(const std::string& file, const volume::Vol
 /// The same from a text; `file` is the name that errors give.
 TransferFunction parseTransferFunction(const std::string& text, const std::string& file,
                                        const volume::VolumeInfo& info);
+
+/// The text of a function, "domain": "value", that parseTransferFunction() reads back to the same bits.
+/// @throws Error (bad_input) for a categorical function: categories have their own colours
+std::string transferFunctionText(const TransferFunction& function);
+/// Writes that text; the file appears whole or not at all. @throws Error (bad_input) as above, (other)
+void writeTransferFunction(const std::string& file, const TransferFunction& function);
+
+/// @throws Error (bad_input) if the function states a unit and it is not the volume's
+void requireUnitOf(const TransferFunction& function, const volume::VolumeInfo& info);
 
 }  // namespace emscape::render

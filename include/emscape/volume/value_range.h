@@ -14,8 +14,9 @@ struct ValueRange {
   /// Widens the range to hold another one; an empty one and one with NaN add nothing.
   EMSCAPE_HD void add(const ValueRange& other) {
     if (!(other.min <= other.max)) return;
-    min = empty() || other.min < min ? other.min : min;
-    max = empty() || other.max > max ? other.max : max;
+    const bool was_empty = empty();
+    min = was_empty || other.min < min ? other.min : min;
+    max = was_empty || other.max > max ? other.max : max;
   }
 };
 

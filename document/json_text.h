@@ -1,0 +1,17 @@
+/// JSON for people: what fits on a line stands on one.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace emscape::document {
+
+/// Strict JSON in UTF-8 that ends with a line end. The members of the root stand on lines of their own; so do
+/// those of every other object or list that is longer than a line. Numbers have the digits that give the same
+/// double again.
+std::string jsonText(const nlohmann::ordered_json& root);
+
+/// A float as the shortest decimal number that is this float once it is read as a double and rounded.
+nlohmann::ordered_json shortNumber(float value);
+
+}  // namespace emscape::document

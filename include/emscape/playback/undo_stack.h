@@ -1,0 +1,73 @@
+/// Undo and redo of whole states, in steps that may be drags.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace emscape::playback {
+
+/// A state and those before and after it. State is copied at every step: a small value or a shared pointer.
+/// One thread uses it.
+template <class State>
+class UndoStack {
+ public:
+  explicit UndoStack(State state, std::size_t max_steps = 1000)
+      : state_(std::move(state)), max_steps_(max_steps) {}
+
+  const State& state() const { return state_; }
+
+  /// Makes a step; what was undone cannot be redone any more. Within a drag, the step is the whole drag.
+  void set(State next) {
+    if (!drag_) push(state_);
+    state_ = std::move(next);
+  }
+
+  /// From here to endDrag() or cancelDrag() all changes are one step. An open drag is ended first.
+  void beginDrag() {
+    endDrag();
+    drag_ = state_;
+  }
+  void endDrag() {
+    if (drag_) push(*std::exchange(drag_, std::nullopt));
+  }
+  /// Back to the state at the beginning of the drag, which leaves no step.
+  void cancelDrag() {
+    if (drag_) state_ = *std::exchange(drag_, std::nullopt);
+  }
+  /// The state at the beginning of the drag; null if there is none.
+  const State* dragged() const { return drag_ ? &*drag_ : nullptr; }
+
+  bool canUndo() const { return !past_.empty() || drag_; }
+  bool canRedo() const { return !future_.empty() && !drag_; }
+  /// One step back; an open drag is that step. Nothing happens where there is none.
+  void undo() {
+    endDrag();
+    move(past_, future_);
+  }
+  /// One step forward again. Nothing happens where there is none.
+  void redo() {
+    endDrag();
+    move(future_, past_);
+  }
+
+ private:
+  void push(State before) {
+    past_.push_back(std::move(before));
+    if (past_.size() > max_steps_) past_.erase(past_.begin());
+    future_.clear();
+  }
+  void move(std::vector<State>& from, std::vector<State>& to) {
+    if (from.empty()) return;
+    to.push_back(std::exchange(state_, std::move(from.back())));
+    from.pop_back();
+  }
+
+  State state_;
+  std::size_t max_steps_;
+  std::optional<State> drag_;  ///< the state at its beginning
+  std::vector<State> past_, future_;
+};
+
+}  // namespace emscape::playback

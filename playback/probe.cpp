@@ -1,0 +1,260 @@
+#include "emscape/playback/probe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "emscape/base/error.h"
+#include "emscape/render/legend.h"
+#include "emscape/scenario/snapshot.h"
+
+namespace emscape::playback {
+namespace {
+
+using volume::DenseVolume;
+using volume::Grid;
+
+/// A ray in frame metres: origin + t * direction, of which a part lies in the box.
+struct Ray {
+  Vec3d origin_m, direction;
+  double begin = 0, end = 0;
+
+  Vec3d at(double t) const { return origin_m + direction * t; }
+};
+
+/// @return none where the ray passes the box by, or the box lies behind the eye
+std::optional<Ray> rayThrough(const render::Camera& camera, const render::SceneBox& box,
+                              render::ImageSize size, double x, double y) {
+  const Vec3d on_plane = camera.right * (camera.planeX(x, size) * camera.half_height) +
+                         camera.up * (camera.planeY(y, size) * camera.half_height);
+  const bool is_perspective = camera.projection == render::Projection::perspective;
+  const Vec3d eye = is_perspective ? camera.eye_m : camera.eye_m + on_plane;
+  const Vec3d drawn = is_perspective ? camera.forward + on_plane : camera.forward;
+  // toFrame() is affine: a line stays a line.
+  const Vec3d origin = box.toFrame(eye);
+  Ray ray{origin, box.toFrame(eye + drawn) - origin, 0, std::numeric_limits<double>::infinity()};
+  const std::array<std::array<double, 4>, 3> axes{
+      {{ray.origin_m.x, ray.direction.x, box.lower_m.x, box.upper_m.x},
+       {ray.origin_m.y, ray.direction.y, box.lower_m.y, box.upper_m.y},
+       {ray.origin_m.z, ray.direction.z, box.lower_m.z, box.upper_m.z}}};
+  for (const auto& [from, along, lower, upper] : axes) {
+    if (along == 0) {
+      if (from < lower || from > upper) return std::nullopt;
+      continue;
+    }
+    const double a = (lower - from) / along, b = (upper - from) / along;
+    ray.begin = std::max(ray.begin, std::min(a, b));
+    ray.end = std::min(ray.end, std::max(a, b));
+  }
+  if (!(ray.begin < ray.end)) return std::nullopt;
+  return ray;
+}
+
+/// Height of the ground (frame z, m), bilinear between posts; NaN over a hole.
+double heightAt_m(const render::HeightField& ground, double x_m, double y_m) {
+  const double x = std::clamp((x_m - ground.first_x_m) / ground.spacing_x_m, 0.0, ground.columns - 1.0);
+  const double y = std::clamp((y_m - ground.first_y_m) / ground.spacing_y_m, 0.0, ground.rows - 1.0);
+  const int i = std::min(static_cast<int>(x), ground.columns - 2);
+  const int j = std::min(static_cast<int>(y), ground.rows - 2);
+  const auto post = [&](int di, int dj) {
+    return double{ground.heights_m[static_cast<std::size_t>(j + dj) * ground.columns + i + di]};
+  };
+  const double u = x - i, v = y - j;
+  return (post(0, 0) * (1 - u) + post(1, 0) * u) * (1 - v) + (post(0, 1) * (1 - u) + post(1, 1) * u) * v;
+}
+
+/// Where the ray goes below the ground: looked for every half post, then halved to a thousandth of that.
+std::optional<double> meetGround(const Ray& ray, const render::HeightField& ground) {
+  const auto clearance_m = [&](double t) {
+    const Vec3d at = ray.at(t);
+    return at.z - heightAt_m(ground, at.x, at.y);
+  };
+  const double posts =
+      std::hypot(ray.direction.x / ground.spacing_x_m, ray.direction.y / ground.spacing_y_m) *
+      (ray.end - ray.begin);
+  const int steps = static_cast<int>(std::ceil(2 * posts)) + 1;
+  double above = ray.begin;
+  if (clearance_m(above) <= 0) return above;  // the box's side, where the ground is cut
+  for (int step = 1; step <= steps; ++step) {
+    double below = ray.begin + (ray.end - ray.begin) * step / steps;
+    if (!(clearance_m(below) <= 0)) {
+      above = below;
+      continue;
+    }
+    for (int half = 0; half < 30; ++half) {
+      const double middle = 0.5 * (above + below);
+      (clearance_m(middle) <= 0 ? below : above) = middle;
+    }
+    return below;
+  }
+  return std::nullopt;
+}
+
+/// Position in voxels: (0, 0, 0) is the centre of the first one.
+Vec3d inVoxels(const Grid& grid, const Vec3d& position_m) {
+  const Vec3d offset = position_m - grid.first_center_m;
+  return {offset.x / grid.spacing_m.x, offset.y / grid.spacing_m.y, offset.z / grid.spacing_m.z};
+}
+
+/// Where the largest value of the ray is; none where it meets no field.
+std::optional<double> strongestOn(const Ray& ray, const DenseVolume& volume) {
+  const Vec3d spacing_m = volume.grid.spacing_m;
+  const double voxels = length(Vec3d{ray.direction.x / spacing_m.x, ray.direction.y / spacing_m.y,
+                                     ray.direction.z / spacing_m.z}) *
+                        (ray.end - ray.begin);
+  const int steps = static_cast<int>(std::ceil(2 * voxels)) + 1;
+  std::optional<double> strongest;
+  float largest = -std::numeric_limits<float>::infinity();
+  for (int step = 0; step < steps; ++step) {
+    const double t = ray.begin + (ray.end - ray.begin) * (step + 0.5) / steps;
+    const VolumeSample sample = sampleVolume(volume, ray.at(t));
+    if (sample.kind != VolumeSample::Kind::value || !(sample.value > largest)) continue;
+    largest = sample.value;
+    strongest = t;
+  }
+  return strongest;
+}
+
+bool holdsField(const DenseVolume& volume, int i, int j, int k) {
+  const float value = volume.values[static_cast<std::size_t>(volume.grid.index(i, j, k))];
+  return !volume.isMasked(i, j, k) && std::isfinite(value) && value > volume.info.floor;
+}
+
+/// Trilinear; none unless all eight voxels around hold a field.
+std::optional<float> interpolated(const DenseVolume& volume, const Vec3d& at) {
+  const Dims& dims = volume.grid.dims;
+  const auto lower = [](double position, int count) {
+    return std::clamp(static_cast<int>(std::floor(position)), 0, std::max(count - 2, 0));
+  };
+  const int i = lower(at.x, dims.x), j = lower(at.y, dims.y), k = lower(at.z, dims.z);
+  double sum = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const int ci = std::min(i + (corner & 1), dims.x - 1), cj = std::min(j + (corner >> 1 & 1), dims.y - 1),
+              ck = std::min(k + (corner >> 2 & 1), dims.z - 1);
+    if (!holdsField(volume, ci, cj, ck)) return std::nullopt;
+    const auto weight = [](double position, int low, bool is_upper) {
+      const double part = std::clamp(position - low, 0.0, 1.0);
+      return is_upper ? part : 1 - part;
+    };
+    sum += weight(at.x, i, (corner & 1) != 0) * weight(at.y, j, (corner & 2) != 0) *
+           weight(at.z, k, (corner & 4) != 0) *
+           double{volume.values[static_cast<std::size_t>(volume.grid.index(ci, cj, ck))]};
+  }
+  return static_cast<float>(sum);
+}
+
+std::string textOf(const VolumeSample& sample, const DenseVolume& volume,
+                   const scenario::Scenario* scenario) {
+  const volume::VolumeInfo& info = volume.info;
+  const std::string unit = info.unit.empty() ? "" : " " + info.unit;
+  switch (sample.kind) {
+    case VolumeSample::Kind::outside:
+      return "outside the volume's box";
+    case VolumeSample::Kind::masked:
+      return volume.grid.georeferenced ? "masked: below the ground, or over missing terrain" : "masked";
+    case VolumeSample::Kind::at_floor:
+      return info.categorical ? "none" : fmt::format("no field above the floor of {:g}{}", info.floor, unit);
+    case VolumeSample::Kind::value:
+      break;
+  }
+  if (!info.categorical) return fmt::format("{:.4g}{}", sample.value, unit);
+  const auto index = static_cast<std::size_t>(std::lround(sample.value));
+  const bool is_named = scenario != nullptr && index < scenario->emitters.size();
+  return is_named ? scenario->emitters[index].name : std::to_string(index);
+}
+
+std::vector<EmitterProbe> probeEmitters(const emfield::PathEnd& point, double time_s,
+                                        const std::shared_ptr<const scenario::Scenario>& scenario,
+                                        const scenario::Terrain* terrain) {
+  std::vector<EmitterProbe> emitters;
+  for (const scenario::Emitter& emitter : scenario->emitters) emitters.push_back({emitter.name, {}, ""});
+  const auto refuse = [](EmitterProbe& emitter, const Error& error) { emitter.refusal = error.message(); };
+  scenario::Snapshot snapshot;
+  try {
+    snapshot = scenario::snapshotAt(scenario, terrain, time_s);
+  } catch (const Error& error) {
+    for (EmitterProbe& emitter : emitters) refuse(emitter, error);
+    return emitters;
+  }
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    try {
+      emitters[e].budget = emfield::pathBudget(snapshot, static_cast<int>(e), point,
+                                               scenario->emitters[e].propagation, terrain);
+    } catch (const Error& error) {
+      refuse(emitters[e], error);
+    }
+  }
+  return emitters;
+}
+
+}  // namespace
+
+std::optional<PickedPoint> pick(const render::Camera& camera, const render::SceneBox& box,
+                                render::ImageSize size, double x, double y, const DenseVolume& volume,
+                                const render::HeightField* ground) {
+  const std::optional<Ray> ray = rayThrough(camera, box, size, x, y);
+  if (!ray) return std::nullopt;
+  using On = PickedPoint::On;
+  if (ground != nullptr) {
+    if (const auto t = meetGround(*ray, *ground)) return PickedPoint{ray->at(*t), On::ground};
+  }
+  if (!volume.info.categorical) {
+    if (const auto t = strongestOn(*ray, volume)) return PickedPoint{ray->at(*t), On::strongest};
+  }
+  return PickedPoint{ray->at(ray->begin), On::box};
+}
+
+VolumeSample sampleVolume(const DenseVolume& volume, const Vec3d& position_m) {
+  using Kind = VolumeSample::Kind;
+  const Dims& dims = volume.grid.dims;
+  const Vec3d at = inVoxels(volume.grid, position_m);
+  constexpr double kRounding = 1e-6;  // voxels; a ray's end lies in the box
+  const auto isInside = [](double position, int count) {
+    return position >= -0.5 - kRounding && position <= count - 0.5 + kRounding;
+  };
+  if (!isInside(at.x, dims.x) || !isInside(at.y, dims.y) || !isInside(at.z, dims.z)) return {};
+  const auto nearest = [](double position, int count) {
+    return std::clamp(static_cast<int>(std::lround(position)), 0, count - 1);
+  };
+  VolumeSample sample;
+  sample.voxel = {nearest(at.x, dims.x), nearest(at.y, dims.y), nearest(at.z, dims.z)};
+  const auto [i, j, k] = sample.voxel;
+  sample.value = volume.values[static_cast<std::size_t>(volume.grid.index(i, j, k))];
+  if (volume.isMasked(i, j, k) || std::isnan(sample.value)) {
+    sample.kind = Kind::masked;
+  } else if (!holdsField(volume, i, j, k)) {
+    sample.kind = Kind::at_floor;
+  } else {
+    sample.kind = Kind::value;
+    if (!volume.info.categorical) sample.value = interpolated(volume, at).value_or(sample.value);
+  }
+  return sample;
+}
+
+ProbeReading probe(const Vec3d& position_m, const DenseVolume& volume,
+                   const std::shared_ptr<const scenario::Scenario>& scenario,
+                   const scenario::Terrain* terrain) {
+  ProbeReading reading;
+  reading.position_m = position_m;
+  reading.sample = sampleVolume(volume, position_m);
+  reading.text = textOf(reading.sample, volume, scenario.get());
+  if (!volume.grid.georeferenced) return reading;
+  const GeoFrame frame(volume.grid.frame);
+  const GeodeticPosition position = frame.toGeodetic(position_m);
+  const double height_msl_m = frame.heightMsl_m(position_m);
+  reading.position = position;
+  reading.height_msl_m = height_msl_m;
+  if (terrain != nullptr) {
+    const double ground_msl_m = terrain->heightMsl_m(position.latitude_deg, position.longitude_deg);
+    if (!std::isnan(ground_msl_m)) reading.height_agl_m = height_msl_m - ground_msl_m;
+  }
+  if (scenario) {
+    reading.emitters = probeEmitters({position, height_msl_m}, volume.info.time_s, scenario, terrain);
+  }
+  return reading;
+}
+
+}  // namespace emscape::playback

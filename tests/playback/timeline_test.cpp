@@ -1,0 +1,172 @@
+#include "emscape/playback/timeline.h"
+
+#include "emscape/scenario/scenario_file.h"
+#include "tests/playback/playback_samples.h"
+
+namespace emscape::playback::test {
+namespace {
+
+using testing::DoubleEq;
+using testing::ElementsAre;
+
+std::vector<double> halfSeconds(int count) {
+  std::vector<double> times_s;
+  for (int i = 0; i < count; ++i) times_s.push_back(0.5 * i);
+  return times_s;
+}
+
+std::vector<double> timesOf(const std::vector<TimelineTick>& ticks) {
+  std::vector<double> times_s;
+  for (const TimelineTick& tick : ticks) times_s.push_back(tick.time_s);
+  return times_s;
+}
+
+TEST(Timeline, TicksAreAtRoundTimesWithBothTexts) {
+  const Timeline timeline(halfSeconds(241), "2026-06-01T06:00:00Z");
+  const std::vector<TimelineTick> ticks = timeline.ticks(0, 120, 8);
+  EXPECT_THAT(timesOf(ticks), ElementsAre(0, 15, 30, 45, 60, 75, 90, 105, 120));
+  EXPECT_EQ(ticks[1].seconds_text, "15");
+  EXPECT_EQ(ticks[5].utc_text, "06:01:15");
+  const std::vector<TimelineTick> close = timeline.ticks(10.02, 11, 5);
+  EXPECT_THAT(timesOf(close),
+              ElementsAre(DoubleEq(10.2), DoubleEq(10.4), DoubleEq(10.6), DoubleEq(10.8), 11));
+  EXPECT_EQ(close[0].seconds_text, "10.2");
+  EXPECT_EQ(close[0].utc_text, "06:00:10.2");
+  EXPECT_THAT(timesOf(timeline.ticks(0, 86400 * 30, 6)),
+              ElementsAre(0, 432000, 864000, 1296000, 1728000, 2160000, 2592000));
+  EXPECT_TRUE(timeline.ticks(5, 5, 5).empty());
+  EXPECT_EQ(Timeline(halfSeconds(3)).ticks(0, 1, 2)[0].utc_text, "");
+}
+
+TEST(Timeline, TicksOfEveryZoomAreAboutAsManyAsAskedFor) {
+  const Timeline timeline(halfSeconds(3));
+  for (double span_s = 1e-3; span_s < 1e8; span_s *= 1.3) {
+    const auto count = timeline.ticks(0, span_s, 10).size();
+    EXPECT_GE(count, 4u) << span_s;
+    EXPECT_LE(count, 12u) << span_s;
+  }
+}
+
+TEST(Timeline, BarsShowWhenEmittersRadiate) {
+  const TemporaryFolder folder;
+  const auto scenario = scenario::loadScenario(quickScenario(
+      folder, {{"    power_w: 10000\n", "    power_w: 10000\n    active_s: [[-5, 1], [1, 2], [3, 99]]\n"}}));
+  const Timeline timeline(seconds(5), *scenario);
+  ASSERT_EQ(timeline.bars().size(), 2u);
+  EXPECT_EQ(timeline.bars()[0].emitter, "radar");
+  ASSERT_EQ(timeline.bars()[0].intervals.size(), 2u);
+  EXPECT_EQ(timeline.bars()[0].intervals[0].begin_s, 0);
+  EXPECT_EQ(timeline.bars()[0].intervals[0].end_s, 2);
+  EXPECT_EQ(timeline.bars()[0].intervals[1].begin_s, 3);
+  EXPECT_EQ(timeline.bars()[0].intervals[1].end_s, 4);
+  ASSERT_EQ(timeline.bars()[1].intervals.size(), 1u);
+  EXPECT_EQ(timeline.bars()[1].intervals[0].end_s, 4);
+}
+
+TEST(Timeline, CachedStepsAreSpansOfTime) {
+  const Timeline timeline(seconds(6));
+  const auto spans = timeline.cachedSpans({0, 1, 3, 5, 77});
+  ASSERT_EQ(spans.size(), 3u);
+  EXPECT_EQ(spans[0].begin_s, 0);
+  EXPECT_EQ(spans[0].end_s, 1.5);
+  EXPECT_EQ(spans[1].begin_s, 2.5);
+  EXPECT_EQ(spans[1].end_s, 3.5);
+  EXPECT_EQ(spans[2].begin_s, 4.5);
+  EXPECT_EQ(spans[2].end_s, 5);
+  EXPECT_TRUE(timeline.cachedSpans({}).empty());
+}
+
+TEST(Timeline, StepsGoToTheStepsOfTheSource) {
+  Timeline timeline({0, 1, 2.5, 4});
+  EXPECT_EQ(timeline.nearestStep(-10), 0);
+  EXPECT_EQ(timeline.nearestStep(0.5), 0);
+  EXPECT_EQ(timeline.nearestStep(0.51), 1);
+  EXPECT_EQ(timeline.nearestStep(2.5), 2);
+  EXPECT_EQ(timeline.nearestStep(99), 3);
+  timeline.seek(1.2);
+  EXPECT_EQ(timeline.time_s(), 1.2);
+  timeline.stepBy(1);
+  EXPECT_EQ(timeline.time_s(), 2.5);
+  timeline.stepBy(-2);
+  EXPECT_EQ(timeline.time_s(), 0);
+  timeline.stepBy(-1);
+  EXPECT_EQ(timeline.time_s(), 0);
+  timeline.stepBy(1 << 30);
+  EXPECT_EQ(timeline.time_s(), 4);
+  timeline.goToFirst();
+  EXPECT_EQ(timeline.time_s(), 0);
+  timeline.goToLast();
+  EXPECT_EQ(timeline.step(), 3);
+  timeline.seek(77);
+  EXPECT_EQ(timeline.time_s(), 4);
+  timeline.seek(std::nan(""));
+  EXPECT_EQ(timeline.time_s(), 4);
+}
+
+TEST(Timeline, AdvancesByTheRateAndStopsAtTheEnds) {
+  Timeline timeline(seconds(11));
+  EXPECT_EQ(timeline.advance(1), 0);
+  timeline.play();
+  EXPECT_EQ(timeline.advance(1), 1);
+  timeline.setRate(5);
+  EXPECT_EQ(timeline.advance(0.5), 3.5);
+  timeline.reverse();
+  EXPECT_EQ(timeline.advance(0.2), 2.5);
+  EXPECT_TRUE(timeline.playing());
+  EXPECT_EQ(timeline.advance(10), 0);
+  EXPECT_FALSE(timeline.playing());
+  timeline.play();  // backwards, at the beginning: from the end
+  EXPECT_EQ(timeline.time_s(), 10);
+  timeline.reverse();
+  timeline.play();
+  EXPECT_EQ(timeline.time_s(), 0);
+  EXPECT_EQ(timeline.advance(10), 10);
+  timeline.stepBy(-1);
+  EXPECT_FALSE(timeline.playing());
+}
+
+TEST(Timeline, ALoopGoesOnFromTheOtherEnd) {
+  Timeline timeline({10, 11, 12, 13, 14});
+  timeline.setLoop(true);
+  timeline.play();
+  EXPECT_EQ(timeline.advance(5.5), 11.5);
+  EXPECT_EQ(timeline.advance(41), 12.5);
+  timeline.setRate(-1);
+  EXPECT_EQ(timeline.advance(3), 13.5);
+  EXPECT_TRUE(timeline.playing());
+}
+
+TEST(Timeline, OneStepDoesNotPlay) {
+  Timeline timeline({3});
+  timeline.setLoop(true);
+  timeline.play();
+  EXPECT_FALSE(timeline.playing());
+  EXPECT_EQ(timeline.advance(1), 3);
+  EXPECT_THROW(Timeline({}), Error);
+}
+
+TEST(Timeline, RatesSnapAndGoUpAndDownInEitherDirection) {
+  EXPECT_THAT(playRates(), ElementsAre(0.1, 0.25, 0.5, 1, 2, 5, 10, 30, 60, 120));
+  EXPECT_EQ(snappedRate(0.9), 1);
+  EXPECT_EQ(snappedRate(-20), -30);
+  EXPECT_EQ(snappedRate(1e9), 120);
+  EXPECT_EQ(snappedRate(0), 0.1);
+  Timeline timeline(seconds(2));
+  for (const double rate : {2.0, 5.0, 10.0, 30.0, 60.0, 120.0, 120.0}) {
+    timeline.faster();
+    EXPECT_EQ(timeline.rate(), rate);
+  }
+  timeline.setRate(-0.3);
+  timeline.slower();
+  EXPECT_EQ(timeline.rate(), -0.25);
+  timeline.slower();
+  timeline.slower();
+  EXPECT_EQ(timeline.rate(), -0.1);
+  timeline.faster();
+  EXPECT_EQ(timeline.rate(), -0.25);
+  timeline.setRate(0);
+  EXPECT_EQ(timeline.rate(), -0.25);
+}
+
+}  // namespace
+}  // namespace emscape::playback::test

@@ -1,0 +1,245 @@
+#include "emscape/playback/view_state.h"
+
+#include <algorithm>
+#include <random>
+
+#include "tests/playback/playback_samples.h"
+
+namespace emscape::playback::test {
+namespace {
+
+using testing::HasSubstr;
+
+class RandomState {
+ public:
+  explicit RandomState(unsigned seed) : random_(seed) {}
+
+  ViewState make() {
+    ViewState state;
+    state.camera = camera();
+    for (unsigned i = below(4); i > 0; --i) {
+      state.bookmarks.push_back({text(), camera(), maybe(uniform(-10, 1e4))});
+    }
+    state.time_s = uniform(0, 1e5);
+    state.rate = uniform(-120, 120);
+    state.loop = coin();
+    state.quantity = coin() ? "" : "snr_db:search \"radar\", 1";
+    if (coin()) state.transfer = transfer();
+    if (coin()) {
+      state.range =
+          volume::ValueRange{static_cast<float>(uniform(-200, 0)), static_cast<float>(uniform(0.1, 9))};
+    }
+    state.settings.mode = static_cast<render::CompositingMode>(below(4));
+    state.settings.step_voxels = uniform(0.05, 10);
+    state.settings.mida_gamma = uniform(-1, 1);
+    state.settings.exact = coin();
+    state.settings.shading = coin();
+    if (coin()) state.settings.iso_value = uniform(-200, 10);
+    state.settings.iso_opacity = uniform(0, 1);
+    state.settings.vertical_exaggeration = coin() ? 0 : uniform(0.1, 20);
+    state.theme = coin() ? render::Theme::dark : render::Theme::light;
+    state.show_terrain = coin();
+    state.show_emitters = coin();
+    state.size = {static_cast<int>(1 + below(4000)), static_cast<int>(1 + below(4000))};
+    for (unsigned i = below(4); i > 0; --i) state.edits.push_back({"emitters.\"a=b\".power_w", text()});
+    for (unsigned i = below(3); i > 0; --i) state.open_panels.push_back("panel " + std::to_string(i));
+    return state;
+  }
+
+ private:
+  unsigned below(unsigned count) { return static_cast<unsigned>(random_()) % count; }
+  bool coin() { return below(2) == 0; }
+  double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
+  std::optional<double> maybe(double value) { return coin() ? std::optional<double>(value) : std::nullopt; }
+  std::string text() {
+    static const char* const kTexts[] = {
+        "ridge", "",   "a: b # c", "\"quoted\" \\ text", "two\nlines\t", "\xC3\xA9\xE2\x82\xAC", "[1, 2]",
+        "true",  "12", "null"};
+    return kTexts[below(std::size(kTexts))];
+  }
+  Vec3d position() { return {uniform(-1e5, 1e5), uniform(-1e5, 1e5), uniform(-1e3, 2e4)}; }
+  render::CameraSpec camera() {
+    render::CameraSpec camera;
+    camera.fov_deg = uniform(1, 150);
+    if (coin()) camera.projection = render::Projection::orthographic;
+    if (coin()) {
+      camera.kind = render::CameraSpec::Kind::lookat;
+      camera.eye_m = position();
+      camera.target_m = position();
+      return camera;
+    }
+    camera.azimuth_deg = uniform(-360, 360);
+    camera.elevation_deg = uniform(-90, 90);
+    camera.distance = maybe(uniform(0.01, 10));
+    if (coin()) camera.target_m = position();
+    return camera;
+  }
+  render::TransferFunction transfer() {
+    render::TransferFunction function;
+    function.name = text();
+    function.unit = "dB";
+    for (int i = 0; i < 5; ++i) {
+      function.colors.push_back({i + uniform(0, 0.5), {static_cast<float>(uniform(0, 1)), 0.5F, 1}});
+      function.opacities.push_back({i + uniform(0, 0.5), uniform(0, 1)});
+    }
+    return function;
+  }
+
+  std::mt19937 random_;
+};
+
+TEST(ViewState, RandomStatesAreReadBackToTheBit) {
+  RandomState random(3);
+  for (int i = 0; i < 300; ++i) {
+    const ViewState state = random.make();
+    const std::string text = viewStateText(state);
+    const ViewState read = parseViewState(text, "a.view.json");
+    ASSERT_EQ(viewStateText(read), text);
+    // The text has all digits, but that of a member could be left out.
+    ASSERT_EQ(toString(read.camera), toString(state.camera));
+    ASSERT_EQ(read.bookmarks.size(), state.bookmarks.size());
+    for (std::size_t b = 0; b < read.bookmarks.size(); ++b) {
+      ASSERT_EQ(read.bookmarks[b].name, state.bookmarks[b].name);
+      ASSERT_EQ(read.bookmarks[b].time_s, state.bookmarks[b].time_s);
+      ASSERT_EQ(toString(read.bookmarks[b].camera), toString(state.bookmarks[b].camera));
+    }
+    ASSERT_EQ(read.time_s, state.time_s);
+    ASSERT_EQ(read.rate, state.rate);
+    ASSERT_EQ(read.loop, state.loop);
+    ASSERT_EQ(read.quantity, state.quantity);
+    ASSERT_EQ(read.range, state.range);
+    ASSERT_EQ(read.transfer.has_value(), state.transfer.has_value());
+    ASSERT_EQ(read.settings.mode, state.settings.mode);
+    ASSERT_EQ(read.settings.step_voxels, state.settings.step_voxels);
+    ASSERT_EQ(read.settings.mida_gamma, state.settings.mida_gamma);
+    ASSERT_EQ(read.settings.exact, state.settings.exact);
+    ASSERT_EQ(read.settings.shading, state.settings.shading);
+    ASSERT_EQ(std::isnan(read.settings.iso_value), std::isnan(state.settings.iso_value));
+    if (!std::isnan(state.settings.iso_value)) {
+      ASSERT_EQ(read.settings.iso_value, state.settings.iso_value);
+    }
+    ASSERT_EQ(read.settings.iso_opacity, state.settings.iso_opacity);
+    ASSERT_EQ(read.settings.vertical_exaggeration, state.settings.vertical_exaggeration);
+    ASSERT_EQ(read.theme, state.theme);
+    ASSERT_EQ(read.show_terrain, state.show_terrain);
+    ASSERT_EQ(read.show_emitters, state.show_emitters);
+    ASSERT_EQ(read.size, state.size);
+    ASSERT_EQ(read.edits, state.edits);
+    ASSERT_EQ(read.open_panels, state.open_panels);
+  }
+}
+
+TEST(ViewState, KeysThatAreNotGivenHaveTheirDefault) {
+  EXPECT_EQ(viewStateText(parseViewState("{\"schema_version\": 1}", "a")), viewStateText({}));
+  const ViewState state =
+      parseViewState("schema_version: 1\ncamera: orbit:azimuth_deg=10\ntheme: light\n", "a");
+  EXPECT_EQ(state.camera.azimuth_deg, 10);
+  EXPECT_EQ(state.theme, render::Theme::light);
+  EXPECT_EQ(state.size, (render::ImageSize{1280, 720}));
+}
+
+std::string refusalOf(const std::string& text) {
+  return errorOf([&] { parseViewState(text, "a.json"); });
+}
+
+TEST(ViewState, RefusalsSayWhereAndWhat) {
+  const std::string head = "{\"schema_version\": 1,\n ";
+  EXPECT_EQ(refusalOf(head + "\"camera\": \"orbit:azimuth_deg=400\"}"),
+            "a.json:2:12: camera 'orbit:azimuth_deg=400': azimuth_deg '400': expected a number -360..360");
+  EXPECT_EQ(refusalOf(head + "\"rat\": 1}"),
+            "a.json:2:2: unknown key 'rat' of the view; did you mean 'rate'?");
+  EXPECT_EQ(refusalOf(head + "\"size\": [0, 10]}"),
+            "a.json:2:11: item 1 of 'size' is 0, outside the allowed 1 to 32768");
+  EXPECT_EQ(refusalOf(head + "\"loop\": 1}"), "a.json:2:10: 'loop' must be true or false, not '1'");
+  EXPECT_EQ(refusalOf(head + "\"range\": {\"min\": 1, \"max\": 0.5}}"),
+            "a.json:2:30: 'max' is 0.5, not above 'min', 1");
+  EXPECT_THAT(refusalOf(head + "\"edits\": [\"a.b=1\", \"power\"]}"),
+              HasSubstr("a.json:2:21: 'power' is not an edit; write PATH=VALUE"));
+  EXPECT_THAT(refusalOf(head + "\"mode\": \"fog\"}"),
+              HasSubstr("a.json:2:10: 'mode' must be one of dvr, mida, mip, iso, not the quoted text 'fog'"));
+  EXPECT_THAT(refusalOf(head + "\"bookmarks\": [{\"name\": \"a\"}]}"),
+              HasSubstr("missing key 'camera' of the bookmark"));
+  EXPECT_THAT(refusalOf("{}"), HasSubstr("missing key 'schema_version' of the view"));
+  EXPECT_THAT(refusalOf("[]"), HasSubstr("the view must be a set of keys, not a list"));
+  EXPECT_THAT(refusalOf(""), HasSubstr("the file is empty"));
+}
+
+TEST(ViewState, AllFaultsAreToldAtOnce) {
+  const std::string message =
+      refusalOf("{\"schema_version\": 1,\n \"theme\": \"pink\",\n \"loop\": \"no\",\n \"time_s\": \"x\"}");
+  EXPECT_THAT(message, HasSubstr("a.json:2:11: "));
+  EXPECT_THAT(message, HasSubstr("\na.json:3:10: "));
+  EXPECT_THAT(message, HasSubstr("\na.json:4:12: "));
+}
+
+TEST(ViewState, ANewerVersionIsRefusedWithOneError) {
+  EXPECT_EQ(refusalOf("{\"schema_version\": 2, \"new\": 1, \"newer\": 2}"),
+            "a.json:1:20: this view is of schema_version 2; this program reads 1");
+}
+
+TEST(ViewState, ATransferFunctionIsAsInItsOwnFile) {
+  const std::string head = "{\"schema_version\": 1, \"transfer\": {\"schema_version\": 1, \"domain\": ";
+  const std::string tail = ", \"opacity\": [{\"at\": 0, \"opacity\": 0}, {\"at\": 1, \"opacity\": 0.5}]}}";
+  const ViewState state =
+      parseViewState(head + "\"value\", \"unit\": \"dB\", \"colors\": \"viridis\"" + tail, "a");
+  ASSERT_TRUE(state.transfer);
+  EXPECT_EQ(state.transfer->unit, "dB");
+  EXPECT_EQ(state.transfer->colors.size(), 17u);
+  EXPECT_EQ(refusalOf(head + "\"relative\", \"colors\": \"viridis\"" + tail),
+            "a.json:1:67: 'domain' must be value here: no volume gives the range");
+  EXPECT_THAT(refusalOf(head + "\"value\", \"colors\": \"jet\"" + tail),
+              HasSubstr("'colors' must be one of viridis, cividis"));
+}
+
+TEST(ViewState, WhatCouldNotBeReadAgainIsNotWritten) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "a.view.json").string();
+  ViewState state;
+  writeViewState(file, state);
+  const std::string before = readFile(file);
+  state.camera.fov_deg = 500;
+  EXPECT_THAT(errorOf([&] { writeViewState(file, state); }),
+              HasSubstr("fov_deg '500': expected a number 1..150"));
+  EXPECT_EQ(readFile(file), before);
+  EXPECT_EQ(viewStateText(readViewState(file)), before);
+}
+
+TEST(ViewState, APainterDrawsTheSamePictureFromTheFile) {
+  ViewState state;
+  state.size = {160, 120};
+  state.camera.azimuth_deg = 33.3;
+  state.camera.distance = 1.1;
+  state.settings.mode = render::CompositingMode::mida;
+  state.settings.vertical_exaggeration = 1.7;
+  state.theme = render::Theme::light;
+  MadeFrames source(seconds(3));
+  const Frame frame = source.frame(2);
+  state.transfer = render::defaultTransferFunction(*frame.volume.host());
+  state.transfer->opacities.push_back({state.transfer->highest() + 1, 0.123456789});
+  const auto pictureOf = [&](const ViewState& view) {
+    const PictureStyle style = pictureStyleOf(view);
+    Painter painter(style, source, {});
+    painter.setFrame(frame);
+    painter.draw({});
+    return painter.picture("").rgba;
+  };
+  const auto picture = pictureOf(state);
+  EXPECT_TRUE(picture == pictureOf(parseViewState(viewStateText(state), "a")));
+  ViewState other = state;
+  other.transfer->opacities.back().opacity = 0.9;
+  EXPECT_FALSE(picture == pictureOf(other));
+}
+
+TEST(ViewState, ATransferFunctionOfAnotherUnitIsRefused) {
+  MadeFrames source(seconds(1));
+  ViewState state;
+  state.transfer = render::defaultTransferFunction(*source.frame(0).volume.host());
+  state.transfer->unit = "dB";
+  const PictureStyle style = pictureStyleOf(state);
+  Painter painter(style, source, {});
+  EXPECT_THAT(errorOf([&] { painter.setFrame(source.frame(0)); }),
+              HasSubstr("unit 'dB' is not that of the volume: made is in ''"));
+}
+
+}  // namespace
+}  // namespace emscape::playback::test
