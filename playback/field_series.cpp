@@ -27,6 +27,12 @@ void setRanges(std::vector<volume::Volume>& volumes, const std::vector<ValueRang
   }
 }
 
+int rangeSearchStride(int steps) {
+  // Beams come round: a part of the steps shows the range well enough for colours.
+  constexpr int kMaxSteps = 24;
+  return (steps + kMaxSteps - 1) / kMaxSteps;
+}
+
 FieldSeries::FieldSeries(LoadedScenario input, std::vector<double> times_s,
                          const emfield::FieldOptions& options, const StopFlag* stop)
     : input_(std::move(input)),
@@ -39,11 +45,17 @@ scenario::Snapshot FieldSeries::snapshot(int step) const {
   return scenario::snapshotAt(input_.scenario, input_.terrain.get(), time_s(step));
 }
 
+void FieldSeries::setScenario(LoadedScenario input, std::vector<double> times_s) {
+  input_ = std::move(input);
+  times_s_ = std::move(times_s);
+  updated_step_ = -1;
+}
+
 void FieldSeries::update(int step) {
   throwIfStopped(stop_);
   if (step == updated_step_) return;
   updated_step_ = -1;
-  if (solver_.update(snapshot(step)).any) changed_since_given_ = true;
+  if (solver_.update(snapshot(step), input_.terrain).any) changed_since_given_ = true;
   updated_step_ = step;
   ++updates_;
 }

@@ -21,14 +21,28 @@ std::vector<double> timesOf(const FrameSelection& selection, const scenario::Clo
 }
 
 /// The one quantity that is needed: "snr_db" of the channel "snr_db:search radar".
+std::vector<std::string> quantitiesOf(const std::string& quantity, const scenario::Scenario& scenario) {
+  return {quantity.empty() ? scenario.output.quantities.front() : quantity.substr(0, quantity.find(':'))};
+}
+
 emfield::FieldOptions fieldOptionsOf(const FrameSelection& selection, const ComputeTarget& target,
                                      const scenario::Scenario& scenario) {
   emfield::FieldOptions options = target.fieldOptions();
-  options.quantities = {selection.quantity.empty()
-                            ? scenario.output.quantities.front()
-                            : selection.quantity.substr(0, selection.quantity.find(':'))};
+  options.quantities = quantitiesOf(selection.quantity, scenario);
   options.allow_missing_terrain = selection.allow_missing_terrain;
+  if (selection.independent) options.move_tolerance_m = 0;
   return options;
+}
+
+std::size_t channelOf(const std::vector<emfield::Channel>& channels, const std::string& name) {
+  if (name.find(':') == std::string::npos) return 0;
+  std::string names;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (channels[c].name == name) return c;
+    names += (c == 0 ? "" : ", ") + channels[c].name;
+  }
+  throw Error(ErrorCode::usage,
+              fmt::format("quantity '{}': there is no such channel; there are {}", name, names));
 }
 
 /// A scenario's frames, computed as they are asked for.
@@ -36,65 +50,63 @@ class ComputedFrames : public FrameSource {
  public:
   ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const ComputeTarget& target,
                  const ProgressSink& progress, const StopFlag* stop)
-      : series_(input, timesOf(selection, input.scenario->clock),
-                fieldOptionsOf(selection, target, *input.scenario), stop),
-        channel_(channelOf(selection.quantity)) {
-    if (selection.range) {
-      ranges_.assign(series_.channels().size(), *selection.range);
-      return;
-    }
-    // Beams come round: a part of the steps shows the range well enough for colours.
-    constexpr int kMaxSteps = 24;
-    ranges_ = series_.findRanges((count() + kMaxSteps - 1) / kMaxSteps, progress);
+      : selection_(selection),
+        series_(std::make_unique<FieldSeries>(input, timesOf(selection, input.scenario->clock),
+                                              fieldOptionsOf(selection, target, *input.scenario), stop)) {
+    range_ = rangeOf(*series_, selection.quantity, progress);
   }
 
-  int count() const override { return series_.count(); }
-  double time_s(int index) const override { return series_.time_s(index); }
+  int count() const override { return series_->count(); }
+  double time_s(int index) const override { return series_->time_s(index); }
   Frame frame(int index) override {
-    std::vector<volume::Volume> volumes = series_.compute(index);
-    setRanges(volumes, ranges_);
-    const volume::Volume& volume = volumes[channel_];
-    return {volume, markersOf(series_.snapshot(index), series_.input().terrain.get(), volume.grid()),
-            series_.changed()};
+    std::vector<volume::Volume> volumes = series_->compute(index);
+    std::vector<volume::Volume> chosen{volumes[channelOf(series_->channels(), selection_.quantity)]};
+    if (range_) setRanges(chosen, {*range_});
+    const volume::Volume& volume = chosen.front();
+    return {volume, markersOf(series_->snapshot(index), series_->input().terrain.get(), volume.grid()),
+            series_->changed()};
   }
-  std::string name() const override { return series_.input().scenario->name; }
-  const LoadedScenario* scene() const override { return &series_.input(); }
-  std::vector<std::string> warnings() const override { return series_.warnings(); }
+  std::string name() const override { return series_->input().scenario->name; }
+  const LoadedScenario* scene() const override { return &series_->input(); }
+  std::vector<std::string> warnings() const override { return series_->warnings(); }
+
+  void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
+    std::vector<double> times_s = timesOf(selection_, scenario->clock);
+    series_->setScenario(withScenario(series_->input(), std::move(scenario)), std::move(times_s));
+  }
+  void setQuantity(const std::string& quantity) override {
+    emfield::FieldOptions options = series_->options();
+    options.quantities = quantitiesOf(quantity, *series_->input().scenario);
+    auto series =
+        std::make_unique<FieldSeries>(series_->input(), series_->times_s(), options, series_->stopFlag());
+    range_ = rangeOf(*series, quantity, {});
+    series_ = std::move(series);
+    selection_.quantity = quantity;
+  }
 
  private:
-  std::size_t channelOf(const std::string& name) const {
-    if (name.find(':') == std::string::npos) return 0;
-    std::string names;
-    for (std::size_t c = 0; c < series_.channels().size(); ++c) {
-      if (series_.channels()[c].name == name) return c;
-      names += (c == 0 ? "" : ", ") + series_.channels()[c].name;
-    }
-    throw Error(ErrorCode::usage,
-                fmt::format("quantity '{}': there is no such channel; there are {}", name, names));
+  /// That of all frames; none if each has its own.
+  std::optional<ValueRange> rangeOf(FieldSeries& series, const std::string& quantity,
+                                    const ProgressSink& progress) const {
+    const std::size_t channel = channelOf(series.channels(), quantity);
+    if (selection_.range || selection_.independent) return selection_.range;
+    return series.findRanges(rangeSearchStride(series.count()), progress)[channel];
   }
 
-  FieldSeries series_;
-  const std::size_t channel_;
-  std::vector<ValueRange> ranges_;
+  FrameSelection selection_;
+  std::unique_ptr<FieldSeries> series_;
+  std::optional<ValueRange> range_;
 };
 
 /// Volumes from files.
 class StoredFrames : public FrameSource {
  public:
   StoredFrames(const FrameSelection& selection, const StopFlag* stop)
-      : stop_(stop),
-        quantity_(selection.quantity),
-        range_(selection.range),
-        files_(volumeFilesOf(selection.input, quantity_)) {
+      : stop_(stop), quantity_(selection.quantity), selection_(selection), files_(filesOf(quantity_)) {
     if (!selection.scenario.empty()) {
       scene_ = loadScenarioWithTerrain(selection.scenario, selection.edits);
     } else if (!selection.edits.empty()) {
       throw Error(ErrorCode::usage, "edits change a scenario; volumes have none unless one is named beside them");
-    }
-    if (selection.first_only) {
-      files_.resize(1);
-    } else if (!selection.times.empty()) {
-      files_ = nearest(scenario::parseTimes(selection.times, clockOfFiles()));
     }
     namespace fs = std::filesystem;
     const fs::path input = selection.input;
@@ -109,9 +121,9 @@ class StoredFrames : public FrameSource {
     auto volume = std::make_shared<const volume::DenseVolume>(
         volume::readVolume(files_[static_cast<std::size_t>(index)].file, quantity_));
     volume::VolumeInfo info = volume->info;
-    if (range_) {
-      info.range_min = range_->min;
-      info.range_max = range_->max;
+    if (selection_.range) {
+      info.range_min = selection_.range->min;
+      info.range_max = selection_.range->max;
     }
     Frame frame{{volume, info}, {}, true};
     if (scene_ && volume->grid.georeferenced) {
@@ -125,22 +137,45 @@ class StoredFrames : public FrameSource {
   const LoadedScenario* scene() const override { return scene_ ? &*scene_ : nullptr; }
   std::vector<std::string> warnings() const override { return {}; }
 
+  void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
+    if (!scene_) return FrameSource::setScenario(std::move(scenario));
+    scene_ = withScenario(*scene_, std::move(scenario));
+    name_ = scene_->scenario->name;
+  }
+  void setQuantity(const std::string& quantity) override {
+    std::string chosen = quantity;
+    files_ = filesOf(chosen);
+    quantity_ = chosen;
+  }
+
  private:
-  /// The time line of the files, for times on the command line that say no step.
-  scenario::Clock clockOfFiles() const {
+  /// The files to be shown. @param quantity  as for volumeFilesOf()
+  std::vector<VolumeFile> filesOf(std::string& quantity) const {
+    std::vector<VolumeFile> files = volumeFilesOf(selection_.input, quantity);
+    if (selection_.first_only) {
+      files.resize(1);
+    } else if (!selection_.times.empty()) {
+      files = nearest(files, scenario::parseTimes(selection_.times, clockOf(files)));
+    }
+    return files;
+  }
+
+  /// The time line of files, for times on the command line that say no step.
+  static scenario::Clock clockOf(const std::vector<VolumeFile>& files) {
     scenario::Clock clock;
-    clock.duration_s = files_.back().time_s;
-    if (files_.size() > 1)
-      clock.step_s = (files_.back().time_s - files_.front().time_s) / static_cast<double>(files_.size() - 1);
+    clock.duration_s = files.back().time_s;
+    if (files.size() > 1)
+      clock.step_s = (files.back().time_s - files.front().time_s) / static_cast<double>(files.size() - 1);
     if (clock.step_s <= 0) clock.step_s = 1;
     return clock;
   }
 
-  std::vector<VolumeFile> nearest(const std::vector<double>& times_s) const {
+  static std::vector<VolumeFile> nearest(const std::vector<VolumeFile>& files,
+                                         const std::vector<double>& times_s) {
     std::vector<VolumeFile> chosen;
     for (const double time_s : times_s) {
       chosen.push_back(
-          *std::min_element(files_.begin(), files_.end(), [time_s](const VolumeFile& a, const VolumeFile& b) {
+          *std::min_element(files.begin(), files.end(), [time_s](const VolumeFile& a, const VolumeFile& b) {
             return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);
           }));
     }
@@ -149,13 +184,21 @@ class StoredFrames : public FrameSource {
 
   const StopFlag* const stop_;
   std::string quantity_;
-  const std::optional<ValueRange> range_;
+  const FrameSelection selection_;
   std::vector<VolumeFile> files_;
   std::optional<LoadedScenario> scene_;
   std::string name_;
 };
 
 }  // namespace
+
+void FrameSource::setScenario(std::shared_ptr<const scenario::Scenario> /*scenario*/) {
+  throw Error(ErrorCode::usage, name() + ": volumes without a scenario cannot be edited");
+}
+
+void FrameSource::setQuantity(const std::string& quantity) {
+  throw Error(ErrorCode::usage, fmt::format("quantity '{}': {} holds one quantity alone", quantity, name()));
+}
 
 int FrameSource::nearestIndex(double time_s) const {
   int first = 0, last = count() - 1;

@@ -10,6 +10,14 @@
 #include "emscape/volume/file.h"
 
 namespace emscape::playback {
+namespace {
+
+bool sameBox(const scenario::GeoBox& a, const scenario::GeoBox& b) {
+  return a.south_deg == b.south_deg && a.north_deg == b.north_deg && a.west_deg == b.west_deg &&
+         a.east_deg == b.east_deg;
+}
+
+}  // namespace
 
 InputKind inputKindOf(const std::string& file) {
   namespace fs = std::filesystem;
@@ -36,6 +44,15 @@ LoadedScenario loadScenarioWithTerrain(const std::string& file, const std::vecto
   loaded.scenario = scenario::loadScenario(file, edits);
   loaded.terrain = scenario::loadTerrain(*loaded.scenario);
   return loaded;
+}
+
+LoadedScenario withScenario(const LoadedScenario& loaded, std::shared_ptr<const scenario::Scenario> edited) {
+  const bool same_files = loaded.scenario->terrain == edited->terrain;
+  const bool same_box =
+      loaded.terrain && sameBox(scenario::terrainBox(*loaded.scenario), scenario::terrainBox(*edited));
+  LoadedScenario result{std::move(edited), loaded.terrain};
+  if (!same_files || (loaded.terrain && !same_box)) result.terrain = scenario::loadTerrain(*result.scenario);
+  return result;
 }
 
 }  // namespace emscape::playback

@@ -7,24 +7,94 @@
 namespace emscape::playback {
 
 Painter::Painter(const PictureStyle& style, const FrameSource& source, const ComputeTarget& target)
-    : style_(style), source_(source), renderer_(target.rendererOptions()) {
+    : Painter(style, target) {
+  setScene(source.name(), source.scene());
+}
+
+Painter::Painter(const PictureStyle& style, const ComputeTarget& target)
+    : style_(style), renderer_(target.rendererOptions()) {
   renderer_.setSettings(style.settings);
-  annotations_.title = source.name();
   annotations_.theme = style.theme;
 }
 
+void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
+  annotations_.title = title;
+  scene_ = scene ? std::optional(*scene) : std::nullopt;
+}
+
 void Painter::setFrame(const Frame& frame) {
+  const bool is_first_of_colors = !has_colors_;
+  if (is_first_of_colors) {
+    renderer_.setTransferFunction(functionFor(frame.volume));
+    has_colors_ = true;
+  }
+  const bool is_other_grid = !frame_ || frame_->volume.grid() != frame.volume.grid();
   renderer_.setVolume(frame.volume);
+  frame_ = frame;
   annotations_.time = fmt::format("t = {:g} s", frame.volume.info().time_s);
   annotations_.time_utc = frame.volume.info().time_utc;
-  if (style_.show_emitters) annotations_.markers = frame.markers;
-  if (!fitted_) fitTo(frame.volume);
+  annotations_.georeferenced = frame.volume.grid().georeferenced;
+  setMarkers();
+  setLegend();
+  if (is_other_grid) setGround(nullptr);
+  setGround();
+  if (is_other_grid) fitCamera();  // after the legend, which takes space
+  if (is_first_of_colors && style_.settings.mode == render::CompositingMode::iso) {
+    render::checkIsoValue(renderer_.isoValue(), *frame.volume.host());
+  }
 }
 
 void Painter::setAzimuth(double azimuth_deg) {
   render::CameraSpec spec = style_.camera;
   spec.azimuth_deg = azimuth_deg;
-  setCamera(spec);
+  renderer_.setCamera(cameraOf(spec));
+}
+
+void Painter::setCamera(const render::CameraSpec& spec) {
+  if (frame_) renderer_.setCamera(cameraOf(spec));
+  style_.camera = spec;
+}
+
+void Painter::setSize(render::ImageSize size) {
+  style_.size = size;
+  fitCamera();
+}
+
+void Painter::setSettings(const render::RenderSettings& settings) {
+  renderer_.setSettings(settings);
+  style_.settings = settings;
+  setLegend();
+  fitCamera();  // heights may be stretched otherwise
+}
+
+void Painter::setTransferFunction(const render::TransferFunction& function) {
+  renderer_.setTransferFunction(function);
+  has_colors_ = true;
+  setLegend();
+}
+
+void Painter::fitColors() {
+  style_.transfer.clear();
+  style_.colors_span_range = false;
+  has_colors_ = false;
+  if (frame_) setTransferFunction(functionFor(frame_->volume));
+}
+
+void Painter::fitColors(const volume::ValueRange& range) {
+  volume::VolumeInfo info = frame_->volume.info();
+  info.range_min = range.min;
+  info.range_max = range.max;
+  setTransferFunction(render::defaultTransferFunction(info));
+}
+
+void Painter::showTerrain(bool show) {
+  style_.show_terrain = show;
+  if (frame_) setGround();
+}
+
+void Painter::showEmitters(bool show) {
+  style_.show_emitters = show;
+  setMarkers();
 }
 
 render::FrameReport Painter::draw(const render::FramePlan& plan, const StopFlag* stop) {
@@ -72,26 +142,37 @@ render::TransferFunction Painter::functionFor(const volume::Volume& volume) cons
                                   : render::defaultTransferFunction(*volume.host());
 }
 
-void Painter::setCamera(const render::CameraSpec& spec) {
-  renderer_.setCamera(render::makeCamera(spec, renderer_.sceneBox(), style_.size,
-                                         render::overlayMargins(style_.size, annotations_)));
+render::Camera Painter::cameraOf(const render::CameraSpec& spec) const {
+  return render::makeCamera(spec, renderer_.sceneBox(), style_.size,
+                            render::overlayMargins(style_.size, annotations_));
 }
 
-void Painter::fitTo(const volume::Volume& volume) {
-  const LoadedScenario* scene = source_.scene();
-  const render::TransferFunction function = functionFor(volume);
-  renderer_.setTransferFunction(function);
-  if (style_.show_terrain && scene && scene->terrain) {
-    renderer_.setHeightField(heightFieldOf(*scene->terrain, volume.grid()));
+void Painter::fitCamera() {
+  if (frame_) renderer_.setCamera(cameraOf(style_.camera));
+}
+
+void Painter::setGround() {
+  setGround(style_.show_terrain && scene_ ? scene_->terrain : nullptr);
+}
+
+void Painter::setGround(const scenario::TerrainPtr& ground) {
+  if (ground == ground_) return;
+  renderer_.setHeightField(ground ? heightFieldOf(*ground, frame_->volume.grid()) : nullptr);
+  ground_ = ground;
+}
+
+void Painter::setMarkers() {
+  annotations_.markers = style_.show_emitters && frame_ ? frame_->markers : std::vector<render::Marker>{};
+}
+
+void Painter::setLegend() {
+  if (!frame_) return;
+  annotations_.legend = render::legendOf(frame_->volume.info(), renderer_.transferFunction());
+  if (style_.settings.mode == render::CompositingMode::iso)
+    annotations_.legend->iso_value = renderer_.isoValue();
+  if (scene_ && frame_->volume.info().categorical) {
+    annotations_.legend->categories = categoriesOf(*scene_->scenario);
   }
-  const bool shows_surface = style_.settings.mode == render::CompositingMode::iso;
-  if (shows_surface) render::checkIsoValue(renderer_.isoValue(), *volume.host());
-  annotations_.georeferenced = volume.grid().georeferenced;
-  annotations_.legend = render::legendOf(volume.info(), function);
-  if (shows_surface) annotations_.legend->iso_value = renderer_.isoValue();
-  if (scene && volume.info().categorical) annotations_.legend->categories = categoriesOf(*scene->scenario);
-  setCamera(style_.camera);
-  fitted_ = true;
 }
 
 }  // namespace emscape::playback

@@ -2,21 +2,18 @@
 
 #include <algorithm>
 
+#include "playback/frame_cache.h"
+
 namespace emscape::playback {
-namespace {
-
-std::size_t bytesOf(const Frame& frame) {
-  constexpr std::size_t kVoxelBytes = 4;
-  return static_cast<std::size_t>(frame.volume.grid().dims.count()) * kVoxelBytes;
-}
-
-}  // namespace
 
 PrefetchingSource::PrefetchingSource(FrameSource& source, const PrefetchOptions& options, Clock& clock,
                                      std::function<void(int)> ready)
-    : source_(source), options_(options), clock_(clock), ready_(std::move(ready)), thread_([this] {
-        run();
-      }) {}
+    : source_(source),
+      options_(options),
+      clock_(clock),
+      ready_(std::move(ready)),
+      cache_(std::make_unique<FrameCache>(options.cache_bytes)),
+      thread_([this] { run(); }) {}
 
 PrefetchingSource::~PrefetchingSource() {
   {
@@ -32,8 +29,7 @@ void PrefetchingSource::request(int index) {
     std::lock_guard<std::mutex> lock(mutex_);
     rethrowFailure();
     requested_ = std::clamp(index, 0, source_.count() - 1);
-    const auto found = cache_.find(requested_);
-    if (found != cache_.end()) latest_ = IndexedFrame{found->first, found->second};
+    if (const Frame* frame = cache_->find(requested_)) latest_ = IndexedFrame{requested_, *frame};
   }
   wake_.set();
 }
@@ -66,9 +62,7 @@ Frame PrefetchingSource::wait(int index) {
 
 std::vector<int> PrefetchingSource::cached() const {
   std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<int> indices;
-  for (const auto& [index, frame] : cache_) indices.push_back(index);
-  return indices;
+  return cache_->indices();
 }
 
 long long PrefetchingSource::computed() const {
@@ -116,15 +110,11 @@ void PrefetchingSource::run() {
 
 int PrefetchingSource::nextIndex() const {
   if (requested_ < 0) return -1;
-  if (cache_.count(requested_) == 0) return requested_;
+  if (!cache_->find(requested_)) return requested_;
   const int last = std::min(requested_ + options_.steps_ahead, source_.count() - 1);
   for (int index = requested_ + 1; index <= last; ++index) {
-    if (cache_.count(index) != 0) continue;
-    const bool fits = bytesInCache() + frame_bytes_ <= options_.cache_bytes;
-    const bool replaces = std::any_of(cache_.begin(), cache_.end(), [&](const auto& cached) {
-      return distance(cached.first) > distance(index);
-    });
-    return fits || replaces ? index : -1;
+    if (cache_->find(index)) continue;
+    return cache_->wouldKeep(index, [this](int other) { return distance(other); }) ? index : -1;
   }
   return -1;
 }
@@ -141,19 +131,7 @@ void PrefetchingSource::keep(int index, Frame frame) {
   // A frame that was requested a moment ago is newer than what is shown, although another one is requested by
   // now.
   if (index == requested_ || !latest_ || latest_->index != requested_) latest_ = IndexedFrame{index, frame};
-  frame_bytes_ = std::max(frame_bytes_, bytesOf(frame));
-  cache_.emplace(index, std::move(frame));
-  while (cache_.size() > 1 && bytesInCache() > options_.cache_bytes) {
-    cache_.erase(std::max_element(cache_.begin(), cache_.end(), [this](const auto& a, const auto& b) {
-      return distance(a.first) < distance(b.first);
-    }));
-  }
-}
-
-std::size_t PrefetchingSource::bytesInCache() const {
-  std::size_t bytes = 0;
-  for (const auto& [index, frame] : cache_) bytes += bytesOf(frame);
-  return bytes;
+  cache_->keep(index, std::move(frame), [this](int other) { return distance(other); });
 }
 
 void PrefetchingSource::rethrowFailure() const {

@@ -20,6 +20,8 @@ using volume::ValueRange;
 std::vector<ValueRange> rangesOf(const std::vector<volume::Volume>& volumes);
 /// Sets info().range_* of each volume; to its floor where the range is empty. @param ranges  one per volume
 void setRanges(std::vector<volume::Volume>& volumes, const std::vector<ValueRange>& ranges);
+/// Every so many-th step of a series is searched for the range of its colours: at most 24 of them.
+int rangeSearchStride(int steps);
 
 /// One thread uses it.
 class FieldSeries {
@@ -39,6 +41,11 @@ class FieldSeries {
   const StopFlag* stopFlag() const { return stop_; }
   const emfield::FieldOptions& options() const { return options_; }
   scenario::Snapshot snapshot(int step) const;
+
+  /// Another scenario from now on: what an edit left as it was is not computed again. Faults that show only
+  /// in computing are told by the next compute().
+  /// @param times_s  ascending
+  void setScenario(LoadedScenario input, std::vector<double> times_s);
 
   /// Computes the first step, so that what it lacks is told now. @throws Error, Stopped
   void rehearse() { update(0); }

@@ -31,6 +31,9 @@ struct FrameSelection {
   std::string scenario;             ///< beside volumes: whose ground and emitters are drawn; may be empty
   bool allow_missing_terrain = false;
   std::vector<scenario::Edit> edits;  ///< to the scenario
+  /// Frames of a scenario that do not depend on any other ones: the range of each is that of its own values,
+  /// and emitters have moved however little they did. For frames in any order.
+  bool independent = false;
 };
 
 /// Instants in order of time. One thread at a time calls frame(); the other functions are safe beside it, but
@@ -51,6 +54,15 @@ class FrameSource {
   virtual const LoadedScenario* scene() const = 0;
   /// What the models have to say about the frames so far.
   virtual std::vector<std::string> warnings() const = 0;
+
+  /// Another scenario: an edit of that of scene(). Frames show it from now on; their number and times may be
+  /// others than before. The thread that calls frame() calls it, while no other one uses the source.
+  /// @throws Error (bad_input) if its ground cannot be read, (usage) without a scenario; nothing is changed
+  /// then
+  virtual void setScenario(std::shared_ptr<const scenario::Scenario> scenario);
+  /// Another quantity or channel; empty: the first. As setScenario().
+  /// @throws Error (bad_input, usage, device); nothing is changed then
+  virtual void setQuantity(const std::string& quantity);
 
   /// The index whose time is nearest; the earlier of two as near. @param time_s  any, beyond the ends too
   int nearestIndex(double time_s) const;

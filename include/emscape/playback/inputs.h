@@ -24,5 +24,9 @@ struct LoadedScenario {
 /// @throws Error (bad_input) that lists all that is wrong
 LoadedScenario loadScenarioWithTerrain(const std::string& file,
                                        const std::vector<scenario::Edit>& edits = {});
+/// An edited scenario with its ground: the ground that is there where the scenario names the same elevation
+/// files and needs the same box of them, else the files are read.
+/// @throws Error (bad_input) naming the file
+LoadedScenario withScenario(const LoadedScenario& loaded, std::shared_ptr<const scenario::Scenario> edited);
 
 }  // namespace emscape::playback

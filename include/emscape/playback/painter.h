@@ -26,21 +26,45 @@ struct PictureStyle {
   bool show_emitters = true;
 };
 
-/// Draws frames of one source; camera and colours stay as they were fitted to the first. Casting a picture
-/// and writing its labels are apart: who draws labels of its own takes image() or fetch(), annotations() and
-/// renderer(). One thread at a time uses it.
+/// Draws frames; colours stay as they were fitted to the first, the camera as long as frames have the same
+/// grid. Casting a picture and writing its labels are apart: who draws labels of its own takes image() or
+/// fetch(), annotations() and renderer(). One thread at a time uses it.
 class Painter {
  public:
-  /// @param style, source  outlive this
-  /// @throws Error (bad_input, device)
+  /// Draws frames of one source. @throws Error (device)
   Painter(const PictureStyle& style, const FrameSource& source, const ComputeTarget& target);
+  /// The same without title and scene, until setScene(). @throws Error (bad_input) for settings, (device)
+  Painter(const PictureStyle& style, const ComputeTarget& target);
 
-  /// What the next pictures show. @throws Error (bad_input) for a transfer file, (device)
+  /// What the next frames show besides the field. Another terrain object is another ground.
+  /// @param scene  null: volumes without a scenario
+  void setScene(const std::string& title, const LoadedScenario* scene);
+  /// What the next pictures show.
+  /// @throws Error (bad_input) for a transfer file, nothing is changed then; or for an isosurface that shows
+  /// nothing of the first frame, which is set all the same. Error (device)
   void setFrame(const Frame& frame);
   /// Turns an orbiting camera to another azimuth. A frame must be set.
   void setAzimuth(double azimuth_deg);
-  /// Another camera, fitted to the box of the volume. A frame must be set. @throws Error (bad_input)
+  /// Another camera, fitted to the box of the volume. A frame must be set.
+  /// @throws Error (usage) if eye and target coincide; the camera is then as before
   void setCamera(const render::CameraSpec& spec);
+
+  /// The functions below change the style of the next pictures, before or after the first frame.
+  /// @param size  both sides at least 1
+  void setSize(render::ImageSize size);
+  /// An isosurface is not checked against the volume. @throws Error (bad_input) for a value out of its range;
+  /// the settings are then as before
+  void setSettings(const render::RenderSettings& settings);
+  /// This function in place of a file or a fitted one.
+  void setTransferFunction(const render::TransferFunction& function);
+  /// A function fitted to the frame, or to the next one if there is none yet: to how frequent its values are.
+  void fitColors();
+  /// The same, spread over a range of values. A frame must be set.
+  void fitColors(const volume::ValueRange& range);
+  /// Whether they have been fitted, read or set.
+  bool hasColors() const { return has_colors_; }
+  void showTerrain(bool show);
+  void showEmitters(bool show);
 
   render::FrameReport draw(const render::FramePlan& plan, const StopFlag* stop = nullptr);
   /// Casts what the last draw() left out.
@@ -62,16 +86,24 @@ class Painter {
   render::Image8 picture(const std::string& note);
 
  private:
-  void fitTo(const volume::Volume& volume);
+  /// That of the scene below the grid of the frame, if it is to be shown.
+  void setGround();
+  void setGround(const scenario::TerrainPtr& ground);
+  void setMarkers();
+  void setLegend();
+  render::Camera cameraOf(const render::CameraSpec& spec) const;
+  void fitCamera();
   render::TransferFunction functionFor(const volume::Volume& volume) const;
 
-  const PictureStyle& style_;
-  const FrameSource& source_;
+  PictureStyle style_;
+  std::optional<LoadedScenario> scene_;
+  std::optional<Frame> frame_;
+  scenario::TerrainPtr ground_;  // whose height field the renderer has
   render::Renderer renderer_;
   render::Annotations annotations_;
   render::Image image_;
   bool fetched_ = false;  ///< image_ is what was drawn last
-  bool fitted_ = false;
+  bool has_colors_ = false;
 };
 
 }  // namespace emscape::playback

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
-#include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -14,6 +14,8 @@
 #include "emscape/playback/frame_source.h"
 
 namespace emscape::playback {
+
+class FrameCache;
 
 struct PrefetchOptions {
   std::size_t cache_bytes = std::size_t{1} << 30;  ///< of volumes; one frame is kept even if it is larger
@@ -72,7 +74,6 @@ class PrefetchingSource {
   /// How soon a frame may be of use again: the smaller the sooner.
   long long distance(int index) const;
   void keep(int index, Frame frame);
-  std::size_t bytesInCache() const;
   void rethrowFailure() const;
 
   FrameSource& source_;
@@ -83,8 +84,7 @@ class PrefetchingSource {
 
   mutable std::mutex mutex_;
   std::condition_variable stored_;
-  std::map<int, Frame> cache_;
-  std::size_t frame_bytes_ = 0;  // of the largest so far
+  std::unique_ptr<FrameCache> cache_;
   int requested_ = -1;
   std::optional<IndexedFrame> latest_;
   long long computed_ = 0;

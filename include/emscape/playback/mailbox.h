@@ -1,0 +1,54 @@
+/// What one thread asks of another one: a single slot in which the latest request wins.
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "emscape/playback/async_task.h"
+
+namespace emscape::playback {
+
+/// Holds at most one value. A value that was not taken is replaced by the next one, so that requests never
+/// pile up. Threads may share it; nothing waits.
+template <class T>
+class Mailbox {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+  struct Letter {
+    T value;
+    Time since;  ///< when the oldest request that this value stands for was put: it or one that it replaced
+  };
+
+  /// @param event  set by each put(); outlives this
+  explicit Mailbox(Event& event) : event_(event) {}
+  Mailbox(const Mailbox&) = delete;
+  Mailbox& operator=(const Mailbox&) = delete;
+
+  /// @param since  when what the value stands for was asked for
+  void put(T value, Time since = std::chrono::steady_clock::now()) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      if (letter_ && letter_->since < since) since = letter_->since;
+      letter_.emplace(Letter{std::move(value), since});
+    }
+    event_.set();
+  }
+  /// Empties the slot.
+  std::optional<Letter> take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(letter_, std::nullopt);
+  }
+  bool isEmpty() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return !letter_;
+  }
+
+ private:
+  Event& event_;
+  mutable std::mutex mutex_;
+  std::optional<Letter> letter_;
+};
+
+}  // namespace emscape::playback

@@ -1,0 +1,40 @@
+/// Frames by their index, within a bound of memory. Internal to the module.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "emscape/playback/frame_source.h"
+
+namespace emscape::playback {
+
+/// One thread at a time uses it.
+class FrameCache {
+ public:
+  /// How soon the frame of an index may be of use again: the smaller the sooner.
+  using Distance = std::function<long long(int index)>;
+
+  /// @param max_bytes  of volumes; one frame is kept even if it is larger
+  explicit FrameCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+
+  /// Null if the frame is not there.
+  const Frame* find(int index) const;
+  /// Adds a frame; those with the largest distance go where the bound asks for it.
+  void keep(int index, Frame frame, const Distance& distance);
+  /// Whether a frame would be kept: there is room, or one with a larger distance.
+  bool wouldKeep(int index, const Distance& distance) const;
+  /// Ascending.
+  std::vector<int> indices() const;
+  void clear() { frames_.clear(); }
+
+ private:
+  std::size_t bytes() const;
+
+  const std::size_t max_bytes_;
+  std::map<int, Frame> frames_;
+  std::size_t frame_bytes_ = 0;  // of the largest so far
+};
+
+}  // namespace emscape::playback

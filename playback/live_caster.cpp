@@ -1,0 +1,397 @@
+#include "playback/live_caster.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/stopwatch.h"
+#include "emscape/base/error.h"
+#include "playback/first_line.h"
+
+namespace emscape::playback {
+namespace {
+
+using render::ControllerAction;
+using render::SceneEvent;
+using SteadyClock = std::chrono::steady_clock;
+
+double between_ms(SteadyClock::time_point begin, SteadyClock::time_point end) {
+  return std::chrono::duration<double, std::milli>(end - begin).count();
+}
+
+bool sameValues(const volume::Volume& a, const volume::Volume& b) {
+  return a.dense() == b.dense() && a.device() == b.device();
+}
+
+/// A size of 0 draws nothing, but a camera needs one.
+PictureStyle drawableStyle(PictureStyle style) {
+  if (style.size.count() == 0) style.size = {1, 1};
+  return style;
+}
+
+/// Which of the markers the ground hides, as a test of their positions that needs no renderer.
+render::HiddenTest hiddenAmong(const std::vector<render::Marker>& markers, const render::Renderer& renderer) {
+  std::vector<Vec3d> hidden_m;
+  for (const render::Marker& marker : markers) {
+    if (renderer.isHidden(marker.position_m)) hidden_m.push_back(marker.position_m);
+  }
+  return [hidden_m = std::move(hidden_m)](const Vec3d& position_m) {
+    return std::find(hidden_m.begin(), hidden_m.end(), position_m) != hidden_m.end();
+  };
+}
+
+}  // namespace
+
+LiveCaster::LiveCaster(const PictureStyle& style, const ViewRequest& first, const ComputeTarget& target,
+                       const render::ControllerOptions& controller, int threads, Events events)
+    : events_(std::move(events)),
+      arena_(threads > 0 ? std::make_unique<ThreadArena>(threads) : nullptr),
+      painter_(drawableStyle(style), target),
+      controller_options_(controller),
+      controller_(controller),
+      view_(first) {
+  thread_ = std::thread([this] { run(); });
+}
+
+LiveCaster::~LiveCaster() {
+  close();
+}
+
+void LiveCaster::close() {
+  stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void LiveCaster::request(ViewRequest request) {
+  view_box_.put(std::move(request));
+  stop_restoration_ = true;  // after the request is there: see restore()
+}
+
+void LiveCaster::deliver(FieldDelivery delivery, Mailbox<FieldDelivery>::Time asked) {
+  field_box_.put(std::move(delivery), asked);
+  stop_restoration_ = true;
+}
+
+void LiveCaster::setSeriesRange(SeriesRange range) {
+  range_box_.put(range);
+  stop_restoration_ = true;
+}
+
+void LiveCaster::stop() {
+  closing_ = true;
+  stop_restoration_ = true;
+  event_.set();
+}
+
+CasterStatus LiveCaster::status() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return status_;
+}
+
+void LiveCaster::run() {
+  while (!closing_) {
+    try {
+      takeMail();
+      act(canDraw() ? controller_.next(now_ms())
+                    : ControllerAction{ControllerAction::Kind::wait, {}, INFINITY});
+    } catch (const std::exception& error) {
+      controller_ = render::FrameController(controller_options_);
+      is_drawing_ = false;
+      has_image_ = false;
+      fail(error.what());
+    }
+  }
+}
+
+bool LiveCaster::hasMail() const {
+  return !view_box_.isEmpty() || !field_box_.isEmpty() || !range_box_.isEmpty();
+}
+
+void LiveCaster::takeMail() {
+  Stopwatch watch;
+  auto view = view_box_.take();
+  auto field = field_box_.take();
+  const auto range = range_box_.take();
+  if (!view && !field && !range) return;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.error.clear();
+  }
+  // The field first: what is asked of the view belongs to the newest one.
+  if (field) {
+    noteInput(field->since);
+    attempt([&] { applyField(field->value); });
+  }
+  if (view) {
+    noteInput(view->since);
+    applyView(view->value);
+  }
+  if (range) applySeriesRange(range->value);
+  prepare_ms_ += watch.lap_ms();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (field) status_.field_revision = field->value.revision;
+    if (view) status_.view_revision = view->value.revision;
+  }
+  if (is_labels_only_ && !is_raised_ && has_image_) {
+    shown_input_ = std::exchange(input_, std::nullopt);
+    publish();
+  }
+  is_labels_only_ = false;
+  if (!is_raised_) input_.reset();
+  publishState();
+  events_.changed();
+}
+
+void LiveCaster::applyView(const ViewRequest& request) {
+  const ViewRequest before = std::exchange(view_, request);
+  if (request.size.version != before.size.version && request.size.value.count() > 0) {
+    attempt([&] {
+      painter_.setSize(request.size.value);
+      raise(SceneEvent::resized);
+    });
+  }
+  if (request.settings.version != before.settings.version) {
+    attempt([&] {
+      painter_.setSettings(request.settings.value);
+      raise(SceneEvent::mode);
+    });
+  }
+  if (request.camera.version != before.camera.version) {
+    attempt([&] {
+      painter_.setCamera(request.camera.value);
+      raise(SceneEvent::view);
+    });
+  }
+  if (request.colors.version != before.colors.version) {
+    attempt([&] { applyColors(request.colors.value); });
+  }
+  if (request.show_terrain.version != before.show_terrain.version) {
+    attempt([&] {
+      painter_.showTerrain(request.show_terrain.value);
+      raise(SceneEvent::mode);
+    });
+  }
+  if (request.show_emitters.version != before.show_emitters.version) {
+    painter_.showEmitters(request.show_emitters.value);
+    is_labels_only_ = true;
+  }
+  if (request.pattern.version != before.pattern.version) {
+    controller_options_.pattern = request.pattern.value;
+    controller_.setOptions(controller_options_, now_ms());
+    raise(SceneEvent::mode);
+  }
+}
+
+void LiveCaster::applyField(const FieldDelivery& delivery) {
+  const bool is_first = !field_;
+  const bool is_other_quantity = field_ && field_->quantity != delivery.quantity;
+  const bool is_other_grid = field_ && field_->frame.volume.grid() != delivery.frame.volume.grid();
+  const scenario::TerrainPtr ground = field_ && field_->scene ? field_->scene->terrain : nullptr;
+  const bool is_other_ground = ground != (delivery.scene ? delivery.scene->terrain : nullptr);
+  const bool is_same_field =
+      !is_first && !is_other_ground && sameValues(field_->frame.volume, delivery.frame.volume);
+  painter_.setScene(delivery.title, delivery.scene ? &*delivery.scene : nullptr);
+  field_ = delivery;
+  is_labels_only_ = true;
+  if (!is_same_field) raise(is_other_grid ? SceneEvent::resized : SceneEvent::field);
+  std::exception_ptr refused;
+  try {
+    painter_.setFrame(delivery.frame);
+  } catch (const Error&) {
+    refused = std::current_exception();
+    if (!painter_.hasColors()) {  // not from the file: as without one
+      painter_.fitColors();
+      painter_.setFrame(delivery.frame);
+    }
+  }
+  if (is_other_quantity) {
+    painter_.fitColors();
+    range_.reset();
+  } else if (is_first) {
+    applyColors(view_.colors.value);
+  }
+  if (refused) std::rethrow_exception(refused);
+}
+
+void LiveCaster::applySeriesRange(const SeriesRange& range) {
+  if (view_.colors.value.kind != ColorOrder::Kind::series || range.fit != view_.colors.version) return;
+  if (!range.range.empty()) attempt([&] { fitColorsTo(range.range); });
+}
+
+void LiveCaster::applyColors(const ColorOrder& order) {
+  switch (order.kind) {
+    case ColorOrder::Kind::first_step:
+    case ColorOrder::Kind::series:
+      break;
+    case ColorOrder::Kind::step:
+      painter_.fitColors();
+      range_.reset();
+      raise(SceneEvent::transfer_function);
+      break;
+    case ColorOrder::Kind::range:
+      if (field_) fitColorsTo(order.range);
+      break;
+    case ColorOrder::Kind::function:
+      painter_.setTransferFunction(order.function);
+      range_.reset();
+      raise(SceneEvent::transfer_function);
+      break;
+  }
+}
+
+void LiveCaster::fitColorsTo(const ValueRange& range) {
+  painter_.fitColors(range);
+  range_ = range;
+  raise(SceneEvent::transfer_function);
+}
+
+void LiveCaster::attempt(const std::function<void()>& change) {
+  try {
+    change();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+void LiveCaster::raise(SceneEvent event) {
+  is_raised_ = true;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.complete = false;
+  }
+  if (canDraw()) controller_.event(event, now_ms());
+}
+
+void LiveCaster::noteInput(Time since) {
+  input_ = input_ ? std::min(*input_, since) : since;
+}
+
+bool LiveCaster::canDraw() const {
+  return field_ && view_.size.value.count() > 0;
+}
+
+void LiveCaster::act(const ControllerAction& action) {
+  publishState();
+  switch (action.kind) {
+    case ControllerAction::Kind::draw:
+      drawFrame(action.plan);
+      break;
+    case ControllerAction::Kind::restore:
+      restore();
+      break;
+    case ControllerAction::Kind::stop_restore:  // a restoration has ended before events are told of
+      break;
+    case ControllerAction::Kind::wait:
+      if (std::isinf(action.until_ms)) {
+        event_.wait();
+      } else {
+        event_.waitUntil(start_ + std::chrono::duration_cast<SteadyClock::duration>(
+                                      std::chrono::duration<double, std::milli>(action.until_ms)));
+      }
+      const std::lock_guard<std::mutex> lock(mutex_);
+      ++status_.wake_ups;
+      break;
+  }
+}
+
+void LiveCaster::drawFrame(const render::FramePlan& plan) {
+  is_drawing_ = true;
+  const Time begin = SteadyClock::now();
+  is_raised_ = false;
+  shown_input_ = std::exchange(input_, std::nullopt);
+  input_to_frame_ms_ = shown_input_ ? between_ms(*shown_input_, begin) : 0;
+  inArena([&] { drawn_ = painter_.draw(plan, &closing_); });
+  has_image_ = drawn_.complete;
+  if (drawn_.complete) {
+    if (drawn_.pattern == render::Pattern::full) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      status_.complete = true;
+    }
+    publish();
+  }
+  const double other_ms =
+      std::exchange(prepare_ms_, 0) + between_ms(begin, SteadyClock::now()) - drawn_.total_ms();
+  controller_.frameDone({drawn_.total_ms(), std::max(other_ms, 0.0),
+                         static_cast<double>(drawn_.rays) / static_cast<double>(view_.size.value.count())});
+  is_drawing_ = false;
+}
+
+void LiveCaster::restore() {
+  is_drawing_ = true;
+  stop_restoration_ = false;
+  // Requests are put before the flag is set: one that came before the line above is in its box.
+  if (hasMail() || closing_) stop_restoration_ = true;
+  render::FrameReport restored;
+  inArena([&] { restored = painter_.restore(&stop_restoration_); });
+  is_drawing_ = false;
+  has_image_ = restored.complete;
+  if (controller_.restoreDone(restored.complete)) {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      status_.complete = true;
+    }
+    publishState();
+    publish();
+  }
+}
+
+void LiveCaster::publish() {
+  LivePicture picture;
+  inArena([&] { painter_.fetch(picture.image); });
+  const render::Renderer& renderer = painter_.renderer();
+  picture.camera = renderer.camera();
+  picture.box = renderer.sceneBox();
+  picture.annotations = painter_.annotations();
+  picture.hidden = hiddenAmong(picture.annotations.markers, renderer);
+  picture.transfer = renderer.transferFunction();
+  picture.settings = renderer.settings();
+  picture.range = range_;
+  picture.volume = field_->frame.volume;
+  if (field_->scene) {
+    picture.scenario = field_->scene->scenario;
+    picture.terrain = field_->scene->terrain;
+  }
+  LiveStatus& status = picture.status;
+  status.pattern = drawn_.pattern;
+  status.rays_fraction = static_cast<double>(drawn_.rays) / static_cast<double>(picture.image.size.count());
+  status.cast_ms = drawn_.total_ms();
+  status.shown_s = picture.volume.info().time_s;
+  if (shown_input_) {
+    status.input_to_picture_ms = between_ms(*shown_input_, SteadyClock::now());
+    status.input_to_frame_ms = input_to_frame_ms_;
+  }
+  shown_input_.reset();
+  events_.publish(std::move(picture));
+}
+
+void LiveCaster::publishState() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (status_.state == controller_.state()) return;
+    status_.state = controller_.state();
+    status_.reason = controller_.reason();
+  }
+  events_.changed();
+}
+
+void LiveCaster::fail(const char* what) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.error = firstLine(what);
+  }
+  events_.changed();
+}
+
+double LiveCaster::now_ms() const {
+  return between_ms(start_, SteadyClock::now());
+}
+
+void LiveCaster::inArena(const std::function<void()>& work) {
+  if (arena_) {
+    arena_->run(work);
+  } else {
+    work();
+  }
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,159 @@
+/// The thread of a live view that draws. Internal to the module.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "emscape/base/thread_arena.h"
+#include "emscape/playback/async_task.h"
+#include "emscape/playback/live_view.h"
+#include "emscape/playback/mailbox.h"
+#include "emscape/playback/painter.h"
+#include "emscape/render/frame_controller.h"
+#include "playback/live_fields.h"
+
+namespace emscape::playback {
+
+/// A value, and how often it was set: tells who keeps a copy whether it is another one.
+template <class T>
+struct Versioned {
+  T value{};
+  long long version = 0;
+
+  void set(T other) {
+    value = std::move(other);
+    ++version;
+  }
+};
+
+/// Where colours come from.
+struct ColorOrder {
+  enum class Kind {
+    first_step,  ///< fitted to the first step that is drawn, or as the style says
+    step,        ///< fitted to the step on screen
+    series,      ///< over the range of the series, as soon as that is known
+    range,
+    function
+  };
+  Kind kind = Kind::first_step;
+  ValueRange range;
+  render::TransferFunction function;
+};
+
+/// All that is asked of the view.
+struct ViewRequest {
+  long long revision = 0;  ///< counts requests
+  Versioned<render::CameraSpec> camera;
+  Versioned<render::RenderSettings> settings;
+  Versioned<render::ImageSize> size;
+  Versioned<std::optional<render::Pattern>> pattern;
+  Versioned<ColorOrder> colors;
+  Versioned<bool> show_terrain;
+  Versioned<bool> show_emitters;
+};
+
+struct CasterStatus {
+  render::ControllerState state = render::ControllerState::idle;
+  std::string reason;
+  bool complete = false;        ///< the picture shows the scene as it is here, and all of its pixels are cast
+  long long view_revision = 0;  ///< of the last requests that were taken
+  long long field_revision = 0;
+  std::string error;
+  long long wake_ups = 0;
+};
+
+/// Draws what was asked for last: the state machine of render::FrameController on a thread of its own.
+class LiveCaster {
+ public:
+  struct Events {
+    std::function<void(LivePicture)> publish;  ///< its status says what this thread knows
+    std::function<void()> changed;             ///< of the status
+  };
+
+  /// @param first    the request that `style` stands for
+  /// @param threads  of loops; 0: all
+  /// @throws Error (bad_input, device)
+  LiveCaster(const PictureStyle& style, const ViewRequest& first, const ComputeTarget& target,
+             const render::ControllerOptions& controller, int threads, Events events);
+  ~LiveCaster();
+  LiveCaster(const LiveCaster&) = delete;
+  LiveCaster& operator=(const LiveCaster&) = delete;
+
+  /// Any thread calls these.
+  void request(ViewRequest request);
+  void deliver(FieldDelivery delivery, Mailbox<FieldDelivery>::Time asked);
+  void setSeriesRange(SeriesRange range);
+  /// Ends what is under way soon.
+  void stop();
+  /// stop(), and waits for the end.
+  void close();
+  bool isDrawing() const { return is_drawing_; }
+  CasterStatus status() const;
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+
+  void run();
+  // Requests
+  bool hasMail() const;
+  void takeMail();
+  void applyView(const ViewRequest& request);
+  void applyField(const FieldDelivery& delivery);
+  void applySeriesRange(const SeriesRange& range);
+  void applyColors(const ColorOrder& order);
+  void fitColorsTo(const ValueRange& range);
+  /// Makes a change; what it throws becomes the error of the status.
+  void attempt(const std::function<void()>& change);
+  void raise(render::SceneEvent event);
+  void noteInput(Time since);
+  // What the controller asks for
+  bool canDraw() const;
+  void act(const render::ControllerAction& action);
+  void drawFrame(const render::FramePlan& plan);
+  void restore();
+  void publish();
+  void publishState();
+  void fail(const char* what);
+  double now_ms() const;
+  void inArena(const std::function<void()>& work);
+
+  const Events events_;
+  Event event_;
+  Mailbox<ViewRequest> view_box_{event_};
+  Mailbox<FieldDelivery> field_box_{event_};
+  Mailbox<SeriesRange> range_box_{event_};
+  StopFlag stop_restoration_{false};
+  StopFlag closing_{false};
+  std::atomic<bool> is_drawing_{false};
+
+  // Of the thread
+  const Time start_ = std::chrono::steady_clock::now();
+  std::unique_ptr<ThreadArena> arena_;  // null: all threads
+  Painter painter_;
+  render::ControllerOptions controller_options_;
+  render::FrameController controller_;
+  ViewRequest view_;
+  std::optional<FieldDelivery> field_;
+  std::optional<ValueRange> range_;
+  bool is_labels_only_ = false;  // the next picture has other labels on what was cast
+  bool is_raised_ = false;       // an event since the last frame was begun
+  std::optional<Time> input_;    // the oldest that no picture shows yet
+  double input_to_frame_ms_ = 0;
+  double prepare_ms_ = 0;            // since the last frame
+  render::FrameReport drawn_;        // the busy frame
+  bool has_image_ = false;           // what was cast last can be shown again
+  std::optional<Time> shown_input_;  // that the next picture is the first to show
+
+  mutable std::mutex mutex_;
+  CasterStatus status_;
+
+  std::thread thread_;
+};
+
+}  // namespace emscape::playback

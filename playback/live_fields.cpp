@@ -1,0 +1,259 @@
+#include "playback/live_fields.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/stopwatch.h"
+#include "emscape/base/parallel.h"
+#include "emscape/playback/stop.h"
+#include "playback/first_line.h"
+
+namespace emscape::playback {
+namespace {
+
+using SteadyClock = std::chrono::steady_clock;
+
+SteadyClock::duration milliseconds(double ms) {
+  return std::chrono::duration_cast<SteadyClock::duration>(std::chrono::duration<double, std::milli>(ms));
+}
+
+std::vector<double> timesOf(const FrameSource& source) {
+  std::vector<double> times_s;
+  for (int index = 0; index < source.count(); ++index) times_s.push_back(source.time_s(index));
+  return times_s;
+}
+
+/// After a request, so long nothing is done that nobody asked for.
+constexpr double kQuiet_ms = 150;
+/// A field that takes longer leaves a core to others even if they do not need it yet.
+constexpr double kLongField_ms = 200;
+
+}  // namespace
+
+LiveFields::LiveFields(Open open, FieldRequest first, const Options& options, Events events)
+    : open_(std::move(open)),
+      options_(options),
+      events_(std::move(events)),
+      arena_(std::make_unique<ThreadArena>(options.threads > 0 ? options.threads : threadCount() - 1)),
+      cache_(options.cache_bytes) {
+  quantity_ = first.quantity;
+  box_.put(std::move(first));
+  thread_ = std::thread([this] { run(); });
+}
+
+LiveFields::~LiveFields() {
+  close();
+}
+
+void LiveFields::close() {
+  stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+void LiveFields::stop() {
+  stop_ = true;
+  event_.set();
+}
+
+FieldsStatus LiveFields::status() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return status_;
+}
+
+void LiveFields::run() {
+  open();
+  while (!stop_) {
+    if (auto letter = box_.take()) accept(std::move(*letter));
+    if (is_due_) {
+      serve();
+      continue;
+    }
+    const std::optional<int> step = idleStep();
+    if (!step) {
+      wait();
+    } else if (SteadyClock::now() < quiet_from_) {
+      waitUntil(quiet_from_);
+    } else {
+      doIdleWork(*step);
+    }
+  }
+}
+
+void LiveFields::open() {
+  try {
+    source_ = open_(stop_);
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (const LoadedScenario* scene = source_->scene()) status_.scenario = scene->scenario;
+    status_.times_s = timesOf(*source_);
+  } catch (const std::exception& error) {
+    source_ = nullptr;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.error = firstLine(error.what());
+  }
+}
+
+void LiveFields::accept(Mailbox<FieldRequest>::Letter letter) {
+  asked_ = is_due_ ? std::min(asked_, letter.since) : letter.since;
+  wanted_ = std::move(letter.value);
+  is_due_ = true;
+  quiet_from_ = SteadyClock::now() + milliseconds(kQuiet_ms);
+  if (wanted_.fit != fit_) beginFit();
+}
+
+void LiveFields::serve() {
+  if (!source_) {  // why is told already
+    const std::string error = status().error;
+    fail(error.c_str());
+    return;
+  }
+  try {
+    const bool is_changed = applyChanges();
+    const int index = source_->nearestIndex(wanted_.time_s);
+    const Frame* frame = cache_.find(index);
+    if (!frame && !is_changed) {
+      const Time may_begin = field_begin_ + milliseconds(options_.min_seek_interval_ms);
+      if (SteadyClock::now() < may_begin) return waitUntil(may_begin);
+    }
+    if (index != index_) is_playing_ = index == index_ + 1;
+    index_ = index;
+    deliver(frame ? *frame : compute(index));
+  } catch (const Stopped&) {
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+/// Gives the source the scenario and the quantity that are wanted. @return whether they are others than
+/// before
+bool LiveFields::applyChanges() {
+  const bool is_edited = wanted_.scenario != scenario_;
+  const bool is_other_quantity = wanted_.quantity != quantity_;
+  if (!is_edited && !is_other_quantity) return false;
+  if (is_edited) {
+    source_->setScenario(wanted_.scenario);
+    scenario_ = wanted_.scenario;
+    cache_.clear();
+  }
+  if (is_other_quantity) {
+    source_->setQuantity(wanted_.quantity);
+    quantity_ = wanted_.quantity;
+    cache_.clear();
+  }
+  if (!fit_left_.empty()) beginFit();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status_.times_s = timesOf(*source_);
+  status_.cached_steps.clear();
+  return true;
+}
+
+Frame LiveFields::compute(int index) {
+  Stopwatch watch;
+  field_begin_ = SteadyClock::now();
+  const FieldsStatus before = status();
+  const bool shares = (events_.is_shared && events_.is_shared()) || before.field_ms > kLongField_ms;
+  Frame frame;
+  if (options_.threads > 0 || (shares && before.fields_computed > 0)) {
+    arena_->run([&] { frame = source_->frame(index); });
+  } else {
+    frame = source_->frame(index);
+  }
+  cache_.keep(index, frame, distance());
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status_.field_ms = watch.lap_ms();
+  ++status_.fields_computed;
+  status_.cached_steps = cache_.indices();
+  return frame;
+}
+
+void LiveFields::deliver(const Frame& frame) {
+  is_due_ = false;
+  FieldDelivery delivery{wanted_.revision, source_->name(), std::nullopt, quantity_, frame};
+  if (const LoadedScenario* scene = source_->scene()) delivery.scene = *scene;
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.error.clear();
+  }
+  events_.deliver(std::move(delivery), asked_);
+  events_.changed();
+}
+
+void LiveFields::fail(const char* what) {
+  is_due_ = false;
+  fit_left_.clear();
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.error = firstLine(what);
+    status_.failed_revision = wanted_.revision;
+    status_.fitting = false;
+  }
+  events_.changed();
+}
+
+void LiveFields::beginFit() {
+  fit_ = wanted_.fit;
+  fit_left_.clear();
+  fit_range_ = {};
+  if (source_) {
+    const int stride = rangeSearchStride(source_->count());
+    for (int index = 0; index < source_->count(); index += stride) fit_left_.push_back(index);
+    std::reverse(fit_left_.begin(), fit_left_.end());
+  }
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status_.fitting = !fit_left_.empty();
+}
+
+std::optional<int> LiveFields::idleStep() const {
+  if (!source_) return std::nullopt;
+  if (is_playing_) {
+    const int last = std::min(index_ + options_.steps_ahead, source_->count() - 1);
+    for (int index = index_ + 1; index <= last; ++index) {
+      if (!cache_.find(index) && cache_.wouldKeep(index, distance())) return index;
+    }
+  }
+  if (!fit_left_.empty()) return fit_left_.back();
+  return std::nullopt;
+}
+
+void LiveFields::doIdleWork(int index) {
+  try {
+    const Frame* cached = cache_.find(index);
+    const Frame frame = cached ? *cached : compute(index);
+    if (!fit_left_.empty() && index == fit_left_.back()) {
+      fit_range_.add({frame.volume.info().range_min, frame.volume.info().range_max});
+      fit_left_.pop_back();
+      if (fit_left_.empty()) {
+        {
+          const std::lock_guard<std::mutex> lock(mutex_);
+          status_.fitting = false;
+        }
+        if (events_.fitted) events_.fitted({fit_, fit_range_});
+      }
+    }
+    events_.changed();
+  } catch (const Stopped&) {
+  } catch (const std::exception& error) {
+    is_playing_ = false;
+    fail(error.what());
+  }
+}
+
+void LiveFields::waitUntil(Time time) {
+  event_.waitUntil(time);
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++status_.wake_ups;
+}
+
+void LiveFields::wait() {
+  event_.wait();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++status_.wake_ups;
+}
+
+FrameCache::Distance LiveFields::distance() const {
+  return [this](int index) {
+    const long long steps = static_cast<long long>(index) - index_;
+    return steps >= 0 ? steps : options_.steps_ahead - steps;
+  };
+}
+
+}  // namespace emscape::playback

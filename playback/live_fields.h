@@ -1,0 +1,142 @@
+/// The thread of a live view that opens the input and computes fields. Internal to the module.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "emscape/base/thread_arena.h"
+#include "emscape/playback/async_task.h"
+#include "emscape/playback/frame_source.h"
+#include "emscape/playback/mailbox.h"
+#include "playback/frame_cache.h"
+
+namespace emscape::playback {
+
+/// All that is asked of the field.
+struct FieldRequest {
+  long long revision = 0;  ///< counts requests
+  double time_s = 0;
+  std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
+  std::string quantity;
+  long long fit = 0;  ///< number of the search of the series' range that is asked for; 0: none
+};
+
+/// A field and what belongs to it.
+struct FieldDelivery {
+  long long revision = 0;  ///< of the request that it answers
+  std::string title;
+  std::optional<LoadedScenario> scene;
+  std::string quantity;
+  Frame frame;
+};
+
+/// The range of the values of a series.
+struct SeriesRange {
+  long long fit = 0;  ///< of the request
+  ValueRange range;
+};
+
+struct FieldsStatus {
+  std::vector<double> times_s;                         ///< of the source; empty before it is open
+  std::shared_ptr<const scenario::Scenario> scenario;  ///< as it was opened; may be null
+  std::vector<int> cached_steps;
+  double field_ms = 0;  ///< of the last field
+  long long fields_computed = 0;
+  long long failed_revision = 0;  ///< the last request that failed
+  std::string error;              ///< why; empty once another request succeeded
+  bool fitting = false;
+  long long wake_ups = 0;
+};
+
+/// Serves the latest request; one that was not begun when the next one came is never served. When nothing was
+/// asked for during a moment it computes the next steps of a series that is being played, and searches its
+/// range.
+class LiveFields {
+ public:
+  struct Options {
+    std::size_t cache_bytes = 0;
+    double min_seek_interval_ms = 0;
+    int steps_ahead = 0;
+    int threads = 0;  ///< 0: one fewer than there are while others need them
+  };
+  /// Called on the thread of this object. `deliver` and `changed` are required.
+  struct Events {
+    std::function<void(FieldDelivery, Mailbox<FieldRequest>::Time asked)> deliver;
+    std::function<void(SeriesRange)> fitted;
+    std::function<void()> changed;    ///< of the status
+    std::function<bool()> is_shared;  ///< whether others need the processor now; empty: no
+  };
+  using Open = std::function<std::unique_ptr<FrameSource>(const StopFlag& stop)>;
+
+  /// @param open   makes the source, on the thread of this object; frames of it must be independent
+  /// @param first  the first request
+  LiveFields(Open open, FieldRequest first, const Options& options, Events events);
+  /// close().
+  ~LiveFields();
+  LiveFields(const LiveFields&) = delete;
+  LiveFields& operator=(const LiveFields&) = delete;
+
+  /// Any thread calls these.
+  void request(FieldRequest request) { box_.put(std::move(request)); }
+  /// Ends what is under way after its step.
+  void stop();
+  /// stop(), and waits for the end.
+  void close();
+  FieldsStatus status() const;
+
+ private:
+  using Time = Mailbox<FieldRequest>::Time;
+
+  void run();
+  void open();
+  void accept(Mailbox<FieldRequest>::Letter letter);
+  void serve();
+  bool applyChanges();
+  Frame compute(int index);
+  void deliver(const Frame& frame);
+  void fail(const char* what);
+  void beginFit();
+  /// @return the step to be computed when nothing is asked for; none: there is nothing to do
+  std::optional<int> idleStep() const;
+  void doIdleWork(int index);
+  void waitUntil(Time time);
+  void wait();
+  FrameCache::Distance distance() const;
+
+  const Open open_;
+  const Options options_;
+  const Events events_;
+  Event event_;
+  Mailbox<FieldRequest> box_{event_};
+  StopFlag stop_{false};
+
+  // Of the thread
+  std::unique_ptr<FrameSource> source_;
+  std::unique_ptr<ThreadArena> arena_;
+  FrameCache cache_;
+  FieldRequest wanted_;
+  Time asked_;  // when
+  bool is_due_ = false;
+  std::shared_ptr<const scenario::Scenario> scenario_;  // that the source has, if it is not the opened one
+  std::string quantity_;
+  int index_ = 0;            // of the step asked for last, in the source
+  bool is_playing_ = false;  // steps are asked for one after another
+  Time field_begin_{};
+  Time quiet_from_{};
+  long long fit_ = 0;          // the last that was begun
+  std::vector<int> fit_left_;  // steps, the next one last
+  ValueRange fit_range_;
+
+  mutable std::mutex mutex_;
+  FieldsStatus status_;
+
+  std::thread thread_;
+};
+
+}  // namespace emscape::playback

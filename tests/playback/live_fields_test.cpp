@@ -1,0 +1,214 @@
+#include "playback/live_fields.h"
+
+#include <condition_variable>
+#include <numeric>
+
+#include "tests/playback/playback_samples.h"
+
+namespace emscape::playback::test {
+namespace {
+
+using testing::Contains;
+using testing::ElementsAre;
+
+/// Made-up frames of scenarios that are nothing but objects: an edit is another object.
+class EditableFrames : public MadeFrames {
+ public:
+  using MadeFrames::MadeFrames;
+  void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
+    if (scenario->name == "without ground") throw Error(ErrorCode::bad_input, "no ground\nat all");
+    ++edits;
+  }
+  std::atomic<int> edits{0};
+};
+
+std::shared_ptr<const scenario::Scenario> scenarioNamed(const std::string& name) {
+  auto scenario = std::make_shared<scenario::Scenario>();
+  scenario->name = name;
+  return scenario;
+}
+
+/// A LiveFields over made-up frames, and what it delivered.
+class Fields {
+ public:
+  explicit Fields(int steps, const LiveFields::Options& options = defaults(),
+                  std::function<void(int)> before = {}) {
+    auto made = std::make_unique<EditableFrames>(seconds(steps), std::move(before));
+    source = made.get();
+    LiveFields::Events events;
+    events.deliver = [this](FieldDelivery delivery, auto) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      delivered_.push_back(std::move(delivery));
+    };
+    events.fitted = [this](SeriesRange range) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      fitted_ = range;
+    };
+    events.changed = [this] {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      changed_.notify_all();
+    };
+    request_.revision = 1;
+    fields = std::make_unique<LiveFields>(
+        [opened = std::make_shared<std::unique_ptr<EditableFrames>>(std::move(made))](const StopFlag&) {
+          return std::move(*opened);
+        },
+        request_, options, events);
+  }
+
+  static LiveFields::Options defaults() {
+    LiveFields::Options options;
+    options.cache_bytes = std::size_t{1} << 30;
+    return options;
+  }
+
+  void ask(const std::function<void(FieldRequest&)>& change) {
+    change(request_);
+    ++request_.revision;
+    fields->request(request_);
+  }
+  void seek(int step) {
+    ask([step](FieldRequest& request) { request.time_s = step; });
+  }
+  /// Waits until the last request is answered or has failed.
+  void wait() {
+    waitFor([this] { return lastRevision() == request_.revision; });
+  }
+  void waitFor(const std::function<bool()>& condition) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!condition()) changed_.wait_for(lock, std::chrono::milliseconds(10));
+  }
+  double shown_s() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return delivered_.back().frame.volume.info().time_s;
+  }
+  std::optional<SeriesRange> fitted() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return fitted_;
+  }
+  /// With the lock.
+  long long lastRevision() const {
+    return std::max(delivered_.empty() ? 0 : delivered_.back().revision, fields->status().failed_revision);
+  }
+
+  EditableFrames* source;
+
+ private:
+  FieldRequest request_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<FieldDelivery> delivered_;
+  std::optional<SeriesRange> fitted_;
+
+ public:
+  std::unique_ptr<LiveFields> fields;  // the first to go
+};
+
+TEST(LiveFields, TwoHundredSeeksInABurstComputeAtMostFortyFieldsAndTheLastIsShown) {
+  LiveFields::Options options = Fields::defaults();
+  options.min_seek_interval_ms = 60;
+  Fields live(1000, options);
+  live.wait();
+  const auto begin = std::chrono::steady_clock::now();
+  for (int n = 0; n < 200; ++n) {
+    live.seek((n * 617) % 1000);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  const double took_ms =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+  live.wait();
+  EXPECT_EQ(live.shown_s(), (199 * 617) % 1000);
+  EXPECT_LE(live.fields->status().fields_computed, took_ms / options.min_seek_interval_ms + 3);
+}
+
+TEST(LiveFields, AStepThatWasShownIsNotComputedAgain) {
+  Fields live(10);
+  for (const int step : {3, 7, 3, 7, 3}) {
+    live.seek(step);
+    live.wait();
+    EXPECT_EQ(live.shown_s(), step);
+  }
+  EXPECT_THAT(live.source->asked(), testing::AnyOf(ElementsAre(0, 3, 7), ElementsAre(3, 7)));
+  EXPECT_THAT(live.fields->status().cached_steps, Contains(7));
+}
+
+TEST(LiveFields, AnEditEmptiesTheCacheAndIsComputedAtOnce) {
+  LiveFields::Options options = Fields::defaults();
+  options.min_seek_interval_ms = 1e9;  // holds back what is no edit, for ever
+  Fields live(10, options);
+  live.wait();
+  live.ask([](FieldRequest& request) {
+    request.time_s = 4;
+    request.scenario = scenarioNamed("edited");
+  });
+  live.wait();
+  EXPECT_EQ(live.source->edits, 1);
+  EXPECT_THAT(live.source->asked(), ElementsAre(0, 4));
+  EXPECT_THAT(live.fields->status().cached_steps, ElementsAre(4));
+}
+
+TEST(LiveFields, AFailedEditIsToldInOneLineUntilAnotherOneSucceeds) {
+  Fields live(10);
+  live.wait();
+  live.ask([](FieldRequest& request) { request.scenario = scenarioNamed("without ground"); });
+  live.wait();
+  EXPECT_EQ(live.fields->status().error, "no ground");
+  EXPECT_EQ(live.fields->status().failed_revision, 2);
+  live.ask([](FieldRequest& request) { request.scenario = scenarioNamed("with ground"); });
+  live.wait();
+  EXPECT_EQ(live.fields->status().error, "");
+  EXPECT_THAT(live.source->asked(), ElementsAre(0, 0));
+}
+
+TEST(LiveFields, AStepThatFailsLeavesTheOthers) {
+  Fields live(10, Fields::defaults(), [](int step) {
+    if (step == 5) throw Error(ErrorCode::bad_input, "step 5 is damaged");
+  });
+  live.wait();
+  live.seek(5);
+  live.wait();
+  EXPECT_EQ(live.fields->status().error, "step 5 is damaged");
+  EXPECT_EQ(live.shown_s(), 0);
+  live.seek(6);
+  live.wait();
+  EXPECT_EQ(live.shown_s(), 6);
+}
+
+TEST(LiveFields, TheRangeOfTheSeriesIsFoundBesideWhatIsAskedFor) {
+  Fields live(48);
+  live.wait();
+  live.ask([](FieldRequest& request) { request.fit = 7; });
+  live.wait();
+  live.waitFor([&] { return !live.fields->status().fitting; });
+  ASSERT_TRUE(live.fitted());
+  EXPECT_EQ(live.fitted()->fit, 7);
+  EXPECT_EQ(live.fitted()->range, (ValueRange{0, 48}));
+  EXPECT_EQ(live.source->asked().size(), 24U) << "every other step, each once";
+  EXPECT_EQ(live.shown_s(), 0) << "what is shown stays";
+}
+
+TEST(LiveFields, StepsAskedForInOrderAreComputedAhead) {
+  LiveFields::Options options = Fields::defaults();
+  options.steps_ahead = 2;
+  Fields live(10, options);
+  live.wait();
+  live.seek(1);
+  live.waitFor([&] { return live.fields->status().cached_steps == std::vector<int>{0, 1, 2, 3}; });
+  live.seek(7);
+  live.wait();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_THAT(live.fields->status().cached_steps, ElementsAre(0, 1, 2, 3, 7)) << "a jump is no playing";
+}
+
+TEST(LiveFields, NothingWakesTheThreadWhenNothingIsToBeDone) {
+  Fields live(10);
+  live.seek(4);
+  live.wait();
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  const long long before = live.fields->status().wake_ups;
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  EXPECT_EQ(live.fields->status().wake_ups, before);
+}
+
+}  // namespace
+}  // namespace emscape::playback::test

@@ -1,0 +1,395 @@
+#include "emscape/playback/live_view.h"
+
+#include <algorithm>
+#include <condition_variable>
+
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/volume/file.h"
+#include "tests/playback/playback_samples.h"
+
+namespace emscape::playback::test {
+namespace {
+
+using render::ControllerState;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr render::ImageSize kSize{200, 150};
+
+PictureStyle smallStyle() {
+  PictureStyle style;
+  style.size = kSize;
+  return style;
+}
+
+LiveOptions quarterOptions() {
+  LiveOptions options;
+  options.controller.pattern = render::Pattern::quarter;
+  options.controller.epsilon_ms = 20;
+  return options;
+}
+
+/// A LiveView, and the states that it went through.
+class Live {
+ public:
+  explicit Live(const std::string& input, const LiveOptions& options = quarterOptions(),
+                const PictureStyle& style = smallStyle(), const std::string& scenario = "") {
+    view = std::make_unique<LiveView>(input, scenario, style, options, [this] { wake(); });
+    const std::lock_guard<std::mutex> lock(mutex_);
+    has_view_ = true;
+  }
+  ~Live() {
+    pass();  // else threads would wait in wake()
+    view.reset();
+  }
+
+  void waitUntil(const std::function<bool(const LiveStatus&)>& condition) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    while (!condition(view->status())) changed_.wait_for(lock, std::chrono::milliseconds(5));
+  }
+  /// The picture in which all is settled.
+  std::shared_ptr<const LivePicture> settled() {
+    waitUntil([](const LiveStatus& status) { return status.isSettled(); });
+    return view->picture();
+  }
+  /// Waits for a failure.
+  std::string error() {
+    waitUntil([](const LiveStatus& status) { return !status.error.empty(); });
+    return view->status().error;
+  }
+  /// States since the last call, each once in a row.
+  std::vector<ControllerState> states() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(states_, {});
+  }
+
+  /// Threads of the view wait in their next call of wake() until pass().
+  void hold() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    holds_ = true;
+  }
+  void waitUntilHeld() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return held_ > 0; });
+  }
+  void pass() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    holds_ = false;
+    changed_.notify_all();
+  }
+
+ private:
+  void wake() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (has_view_) {
+      const ControllerState state = view->status().state;
+      if (states_.empty() || states_.back() != state) states_.push_back(state);
+    }
+    ++held_;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return !holds_; });
+    --held_;
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<ControllerState> states_;
+  bool has_view_ = false;
+  bool holds_ = false;
+  int held_ = 0;
+
+ public:
+  std::unique_ptr<LiveView> view;
+};
+
+/// What Painter casts in full of a scenario that nobody else computes.
+struct Expected {
+  explicit Expected(std::string file) : input(std::move(file)) {}
+
+  std::string input;
+  double time_s = 0;
+  std::string quantity;
+  std::vector<scenario::Edit> edits;
+  PictureStyle style = smallStyle();
+  std::optional<render::TransferFunction> transfer;
+
+  render::Image8 picture() const {
+    FrameSelection selection;
+    selection.input = input;
+    selection.quantity = quantity;
+    selection.edits = edits;
+    selection.independent = true;
+    const auto source = openFrameSource(selection, {});
+    Painter painter(style, *source, {});
+    if (transfer) painter.setTransferFunction(*transfer);
+    painter.setFrame(source->frameAt(time_s));
+    painter.draw({});
+    render::Image8 image;
+    painter.fetch(image);
+    return image;
+  }
+};
+
+void expectSame(const std::shared_ptr<const LivePicture>& shown, const Expected& expected) {
+  const render::Image8 full = expected.picture();
+  ASSERT_EQ(shown->image.size, full.size);
+  EXPECT_TRUE(shown->image.rgba == full.rgba);
+  EXPECT_TRUE(std::any_of(full.rgba.begin(), full.rgba.end(), [](std::uint8_t level) { return level > 0; }));
+}
+
+std::shared_ptr<const scenario::Scenario> edited(const LiveView& view, const std::string& path,
+                                                 const std::string& value) {
+  auto scenario = std::make_shared<scenario::Scenario>(*view.scenario());
+  scenario->set(path, value);
+  return scenario;
+}
+
+constexpr auto kBusyRestoreIdle = {ControllerState::busy, ControllerState::restore, ControllerState::idle};
+
+TEST(LiveView, EveryKindOfEventGoesFromBusyOverRestoreToIdleAndThePictureIsThatOfAFullCast) {
+  const TemporaryFolder folder;
+  Expected expected(quickScenario(folder));
+  Live live(expected.input);
+  const auto expectSettled = [&](const char* event) {
+    SCOPED_TRACE(event);
+    const auto shown = live.settled();
+    EXPECT_THAT(live.states(), testing::IsSupersetOf(kBusyRestoreIdle));
+    EXPECT_TRUE(shown->status.exact);
+    expectSame(shown, expected);
+  };
+  const auto first = live.settled();
+  live.states();
+  expectSame(first, expected);
+  EXPECT_EQ(first->status.pattern, render::Pattern::quarter);
+  EXPECT_EQ(live.view->times_s(), (std::vector<double>{0, 1, 2, 3, 4}));
+  expected.transfer = first->transfer;
+
+  live.view->seek(2.2);
+  expected.time_s = 2;
+  expectSettled("seek");
+  EXPECT_EQ(live.view->picture()->annotations.time, "t = 2 s");
+
+  live.view->setScenario(edited(*live.view, "emitters.radar.power_w", "900"));
+  expected.edits = {{"emitters.radar.power_w", "900"}};
+  expectSettled("edit");
+  EXPECT_EQ(live.view->picture()->scenario->emitters[0].power_w, 900);
+
+  expected.style.camera.azimuth_deg = 20;
+  live.view->setCamera(expected.style.camera);
+  expectSettled("camera");
+
+  expected.transfer = render::TransferFunction(*expected.transfer);
+  for (auto& point : expected.transfer->opacities) point.opacity *= 0.5;
+  live.view->setTransferFunction(*expected.transfer);
+  expectSettled("transfer function");
+
+  expected.style.settings.vertical_exaggeration = 3;
+  expected.style.settings.mode = render::CompositingMode::mip;
+  live.view->setSettings(expected.style.settings);
+  expectSettled("settings");
+
+  expected.style.size = {160, 220};
+  live.view->resize(expected.style.size);
+  expectSettled("size");
+
+  live.view->setQuantity("snr_db");
+  expected.quantity = "snr_db";
+  expected.transfer.reset();  // fitted anew
+  expectSettled("quantity");
+  EXPECT_EQ(live.view->picture()->volume.info().quantity, "snr_db");
+}
+
+TEST(LiveView, AnEventStopsARestorationAndThePictureThatSettlesShowsIt) {
+  const TemporaryFolder folder;
+  Expected expected(quickScenario(folder));
+  Live live(expected.input);
+  for (int round = 0; round < 5; ++round) {
+    live.waitUntil([](const LiveStatus& status) { return status.state == ControllerState::restore; });
+    expected.style.camera.azimuth_deg += 30;
+    live.view->setCamera(expected.style.camera);
+    EXPECT_FALSE(live.view->status().exact);
+  }
+  expectSame(live.settled(), expected);
+}
+
+TEST(LiveView, SeekingBackComputesNothingAndAnEditDropsWhatWasComputed) {
+  const TemporaryFolder folder;
+  Live live(quickScenario(folder));
+  for (const double time_s : {0.0, 3.0}) {
+    live.view->seek(time_s);
+    live.settled();
+  }
+  EXPECT_THAT(live.view->status().cached_steps, ElementsAre(0, 3));
+  const long long computed = live.view->status().fields_computed;
+  live.view->seek(0);
+  EXPECT_EQ(live.settled()->status.shown_s, 0);
+  EXPECT_EQ(live.view->status().fields_computed, computed);
+  live.view->setScenario(edited(*live.view, "emitters.radar.power_w", "1"));
+  live.settled();
+  EXPECT_EQ(live.view->status().fields_computed, computed + 1);
+  EXPECT_THAT(live.view->status().cached_steps, ElementsAre(0));
+}
+
+TEST(LiveView, WhatIsAskedForAndWhatIsShownAreToldApartAndThePictureStays) {
+  const TemporaryFolder folder;
+  Live live(quickScenario(folder));
+  const auto before = live.settled();
+  live.hold();
+  live.view->setCamera({});
+  live.waitUntilHeld();  // the thread that casts cannot go on
+  live.view->seek(3.1);
+  const LiveStatus status = live.view->status();
+  EXPECT_EQ(status.asked_s, 3);
+  EXPECT_EQ(status.shown_s, 0);
+  EXPECT_TRUE(status.computing);
+  EXPECT_FALSE(status.exact);
+  EXPECT_EQ(live.view->picture()->status.shown_s, 0);
+  live.pass();
+  const auto after = live.settled();
+  EXPECT_EQ(after->status.shown_s, 3);
+  EXPECT_FALSE(live.view->status().computing);
+  EXPECT_GT(after->status.frame, before->status.frame);
+}
+
+TEST(LiveView, SettingsOutOfTheirRangeAreToldAndThePictureStays) {
+  const TemporaryFolder folder;
+  Live live(quickScenario(folder));
+  const auto before = live.settled();
+  render::RenderSettings settings;
+  settings.step_voxels = 99;
+  live.view->setSettings(settings);
+  EXPECT_EQ(live.error(), "step (voxels) 99: expected 0.05..10");
+  EXPECT_EQ(live.view->picture(), before);
+  EXPECT_TRUE(live.view->status().exact);
+  live.view->setCamera({});
+  live.settled();
+  EXPECT_EQ(live.view->status().error, "");
+}
+
+TEST(LiveView, AnEditThatCannotBeComputedLeavesThePictureUntilItIsUndone) {
+  const TemporaryFolder folder;
+  Live live(quickScenario(folder));
+  const auto before = live.settled();
+  const auto good = live.view->scenario();
+  // By hand, past the checks of a file.
+  auto bad = std::make_shared<scenario::Scenario>(*good);
+  bad->output.quantities = {"no_such_quantity"};
+  bad->terrain.emplace();
+  bad->terrain->files = {"no_such_file.tif"};
+  live.view->setScenario(bad);
+  EXPECT_THAT(live.error(), HasSubstr("no_such_file.tif"));
+  EXPECT_FALSE(live.view->status().computing);
+  EXPECT_EQ(live.view->picture()->image.rgba, before->image.rgba);
+  EXPECT_EQ(live.view->scenario(), bad);
+  live.view->setScenario(good);
+  live.settled();
+  EXPECT_EQ(live.view->status().error, "");
+}
+
+TEST(LiveView, AFileThatCannotBeReadIsToldAndEndsNothing) {
+  Live live("no/such/file.yaml");
+  EXPECT_EQ(live.error(), "no/such/file.yaml: no such file or folder");
+  live.view->seek(3);
+  live.view->setCamera({});
+  EXPECT_EQ(live.view->picture(), nullptr);
+  EXPECT_EQ(live.view->scenario(), nullptr);
+}
+
+TEST(LiveView, NoThreadWakesWhileNothingHappens) {
+  const TemporaryFolder folder;
+  Live live(quickScenario(folder));
+  live.settled();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  const long long before = live.view->status().wake_ups;
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  EXPECT_EQ(live.view->status().wake_ups, before);
+}
+
+TEST(LiveView, LabelsChangeWithoutACast) {
+  const TemporaryFolder folder;
+  Live live(quickScenario(folder));
+  const auto before = live.settled();
+  EXPECT_EQ(before->annotations.markers.size(), 2U);
+  live.states();
+  live.view->showEmitters(false);
+  const auto after = live.settled();
+  EXPECT_TRUE(after->annotations.markers.empty());
+  EXPECT_EQ(after->image.rgba, before->image.rgba);
+  EXPECT_THAT(live.states(), testing::Not(testing::Contains(ControllerState::busy)));
+}
+
+TEST(LiveView, NothingIsDrawnWithoutPixels) {
+  const TemporaryFolder folder;
+  PictureStyle style = smallStyle();
+  style.size = {0, 0};
+  Expected expected(quickScenario(folder));
+  Live live(expected.input, quarterOptions(), style);
+  live.waitUntil([](const LiveStatus& status) { return status.fields_computed == 1 && !status.computing; });
+  EXPECT_EQ(live.view->picture(), nullptr);
+  live.view->resize(kSize);
+  expectSame(live.settled(), expected);
+  live.view->resize({0, 0});
+  live.view->seek(2);
+  live.waitUntil([](const LiveStatus& status) { return !status.computing; });
+  EXPECT_EQ(live.view->status().shown_s, 0);
+  live.view->resize(kSize);
+  EXPECT_EQ(live.settled()->status.shown_s, 2);
+}
+
+TEST(LiveView, ColoursAreFittedToTheSeriesOrARangeWhenTheUserSaysSo) {
+  const TemporaryFolder folder;
+  const std::string input = quickScenario(folder);
+  Live live(input);
+  const render::TransferFunction fitted = live.settled()->transfer;
+  live.view->seek(2);
+  EXPECT_EQ(live.settled()->transfer.lowest(), fitted.lowest()) << "colours stay over the series";
+  live.view->fitToSeries();
+  live.waitUntil([&](const LiveStatus& status) { return status.isSettled() && live.view->picture()->range; });
+  FrameSelection selection;
+  selection.input = input;
+  const volume::VolumeInfo series = openFrameSource(selection, {})->frame(0).volume.info();
+  const auto shown = live.settled();
+  EXPECT_EQ(*shown->range, (ValueRange{series.range_min, series.range_max}));
+  EXPECT_EQ(shown->transfer.highest(), render::defaultTransferFunction(series).highest());
+  live.view->setRange({-90, -20});
+  EXPECT_EQ(live.settled()->transfer.lowest(), -90);
+  live.view->fitToStep();
+  EXPECT_FALSE(live.settled()->range);
+}
+
+TEST(LiveView, VolumesFromFilesAreShownWithTheirTimes) {
+  const TemporaryFolder folder;
+  MadeFrames made(seconds(3));
+  for (int i = 0; i < made.count(); ++i) {
+    volume::writeVolumes(folder / ("v_000" + std::to_string(i + 1) + ".vdb"),
+                         {made.frame(i).volume.host().get()});
+  }
+  Live live(folder.path().string());
+  live.view->seek(1.2);
+  const auto shown = live.settled();
+  EXPECT_EQ(shown->status.shown_s, 1);
+  EXPECT_EQ(shown->scenario, nullptr);
+  live.view->setScenario(std::make_shared<scenario::Scenario>());
+  EXPECT_THAT(live.error(), HasSubstr("volumes without a scenario cannot be edited"));
+}
+
+TEST(LiveView, EndsWhileEverythingRuns) {
+  const TemporaryFolder folder;
+  const std::string input = quickScenario(folder);
+  for (int round = 0; round < 10; ++round) {
+    LiveView view(input, "", smallStyle(), quarterOptions(), {});
+    for (int n = 0; n < 20 * round; ++n) {
+      view.seek(n % 5);
+      render::CameraSpec camera;
+      camera.azimuth_deg = n;
+      view.setCamera(camera);
+      if (n % 7 == 0) view.fitToSeries();
+      if (n % 50 == 49 && view.scenario()) {
+        view.setScenario(edited(view, "emitters.radar.power_w", std::to_string(n)));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace emscape::playback::test
