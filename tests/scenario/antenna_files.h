@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
@@ -30,7 +31,8 @@ class TemporaryFile {
   /// Tests of one program run side by side: the running test's name keeps their files apart.
   static std::string pathOf(const std::string& name) {
     const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-    return testing::TempDir() + "emscape_" + test->test_suite_name() + "_" + test->name() + "_" + name;
+    return testing::TempDir() + "emscape_" + std::to_string(::getpid()) + "_" + test->test_suite_name() +
+           "_" + test->name() + "_" + name;
   }
 
   std::string path_;

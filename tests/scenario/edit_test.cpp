@@ -472,7 +472,9 @@ TEST(EditAtRandom, NeverCrashesAndKeepsTheTextInStep) {
       }
       const std::string again = folder.write("again.yaml", scenario.source->text.text());
       const ParseResult read = parseScenario(again);
-      ASSERT_TRUE(read.scenario) << toString(edit) << "\n" << scenario.source->text.text();
+      ASSERT_TRUE(read.scenario) << toString(edit) << "\n"
+                                 << testing::PrintToString(messagesOf(read.problems)) << "\n"
+                                 << scenario.source->text.text();
       EXPECT_EQ(read.scenario->hash, scenario.hash);
     }
     EXPECT_GT(made, 50);

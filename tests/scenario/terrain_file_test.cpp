@@ -2,6 +2,7 @@
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -30,8 +31,8 @@ class TerrainFileTest : public testing::Test {
  protected:
   TerrainFileTest() {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        std::filesystem::path(testing::TempDir()) / (std::string("emscape_terrain_file_") + info->name());
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              ("emscape_terrain_file_" + std::to_string(::getpid()) + info->name());
     std::filesystem::create_directories(folder_);
   }
   ~TerrainFileTest() override { std::filesystem::remove_all(folder_); }

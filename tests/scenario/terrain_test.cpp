@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -38,7 +39,8 @@ class TerrainTest : public testing::Test {
  protected:
   TerrainTest() {
     const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) / (std::string("emscape_terrain_") + info->name());
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              ("emscape_terrain_" + std::to_string(::getpid()) + info->name());
     std::filesystem::create_directories(folder_);
   }
   ~TerrainTest() override { std::filesystem::remove_all(folder_); }
