@@ -1,0 +1,56 @@
+/// A camera moved by hand: orbit, pan, dolly, look around, fly. No window, no OpenGL.
+#pragma once
+
+#include "emscape/render/camera.h"
+
+namespace emscape::view {
+
+/// What a picture was drawn for: a movement in pixels means something only together with it.
+struct Viewport {
+  render::SceneBox box;
+  render::ImageSize size;
+  render::FrameMargins margins;  ///< kept free of the box
+};
+
+/// Holds a camera and moves it. After the first movement the camera is an orbit with a distance and a target:
+/// a fitted camera does not jump when it is first moved, a lookat camera becomes the orbit with the same eye.
+/// One thread uses it.
+class CameraControl {
+ public:
+  explicit CameraControl(const render::CameraSpec& spec = {}) : spec_(spec) {}
+
+  const render::CameraSpec& spec() const { return spec_; }
+  void set(const render::CameraSpec& spec) { spec_ = spec; }
+
+  /// Turns the camera about its target. Elevation is clamped to -89..89.
+  /// @param azimuth_deg  clockwise as seen from above
+  void orbit(double azimuth_deg, double elevation_deg, const Viewport& viewport);
+  /// Moves the scene with the cursor, parallel to the picture.
+  /// @param right_px, down_px  how far the cursor moved
+  void pan(double right_px, double down_px, const Viewport& viewport);
+  /// Moves towards the target, which itself moves such that what lies in its plane under the cursor stays there.
+  /// @param factor  of the distance, > 0: 0.5 halves it
+  /// @param x, y    cursor in pixels of the picture
+  void dolly(double factor, double x, double y, const Viewport& viewport);
+  /// Turns the camera about its eye. Angles as for orbit().
+  void look(double azimuth_deg, double elevation_deg, const Viewport& viewport);
+  /// Moves eye and target. @param forward, right, up  in diagonals of the drawn box, along the camera's axes
+  void fly(double forward, double right, double up, const Viewport& viewport);
+  /// Looks at a position from the same direction. @param target_m  frame metres
+  void focus(const Vec3d& target_m, double distance, const Viewport& viewport);
+
+ private:
+  struct Pose {
+    render::Camera camera;
+    Vec3d target_m;  // drawn
+    double distance_m = 0;
+    double metresPerPixel(render::ImageSize size) const;
+  };
+  Pose poseIn(const Viewport& viewport) const;
+  void settle(const Viewport& viewport);
+  void moveTarget(const Vec3d& drawn_m, const Viewport& viewport);
+
+  render::CameraSpec spec_;
+};
+
+}  // namespace emscape::view

@@ -1,0 +1,49 @@
+/// What the window can be told to do: verbs with arguments, as scripts write them and as keys and menus send them.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace emscape::view {
+
+using Json = nlohmann::ordered_json;
+
+enum class ArgumentType { number, text, boolean };
+
+struct Argument {
+  const char* name;
+  ArgumentType type = ArgumentType::number;
+  bool required = true;
+};
+
+/// One verb: how a script calls it and what it does.
+struct Verb {
+  const char* name;
+  std::vector<Argument> arguments;
+  const char* help;
+};
+
+/// Every verb, in the order in which the manual lists them.
+const std::vector<Verb>& verbs();
+
+/// A verb with its arguments: {"do": "seek", "time_s": 49.5}.
+struct Command {
+  std::string verb;
+  Json arguments = Json::object();  ///< without "do"
+
+  bool has(const char* name) const { return arguments.contains(name); }
+  double number(const char* name, double otherwise = 0) const { return arguments.value(name, otherwise); }
+  bool boolean(const char* name, bool otherwise) const { return arguments.value(name, otherwise); }
+  std::string text(const char* name) const { return arguments.value(name, std::string()); }
+};
+
+/// Reads a command from the object that a script line holds; "at_s" is left out.
+/// @throws Error (bad_input) that names the verb or argument that is unknown, missing or of another type
+Command parseCommand(const Json& object);
+/// The same from a text.
+Command parseCommand(const std::string& text);
+/// The text that parseCommand() reads back.
+std::string toString(const Command& command);
+
+}  // namespace emscape::view
