@@ -71,6 +71,32 @@ void drawFooter(Canvas& canvas, const Style& style, const SceneBox& box, const A
   taken.push_back({left, bottom - extent.height / 2, extent.width, extent.height});
 }
 
+void drawBehind(Canvas& canvas, const Style& style, const Projector& projector,
+                const Annotations& annotations) {
+  canvas.gradient(style.background_top, style.background_bottom);
+  if (annotations.axes) drawFarEdges(canvas, style, projector);
+}
+
+void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
+                 const Annotations& annotations, const HiddenTest& hidden) {
+  std::vector<Rect> taken;
+  if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
+  if (annotations.georeferenced) {
+    const double reach = (kMargin + kCompassRadius + 10) * style.unit;
+    const Point2 center{reach, canvas.size().height - reach - 14 * style.unit};
+    drawCompass(canvas, style, projector.camera, center, kCompassRadius * style.unit);
+    taken.push_back({center.x - reach / 2, center.y - reach / 2, reach, reach});
+  }
+  drawFooter(canvas, style, projector.box, annotations, taken);
+  if (annotations.legend) {
+    drawLegend(canvas, style, *annotations.legend);
+    const double width = legendWidth(style, *annotations.legend);
+    taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
+  }
+  drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
+  drawTexts(canvas, style, annotations);
+}
+
 }  // namespace
 
 Theme parseTheme(const std::string& name) {
@@ -125,26 +151,21 @@ Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, con
   const Style style(cast.size, annotations.theme);
   const Projector projector{camera, box, cast.size};
   Canvas canvas(cast.size);
-  canvas.gradient(style.background_top, style.background_bottom);
-  if (annotations.axes) drawFarEdges(canvas, style, projector);
+  drawBehind(canvas, style, projector, annotations);
   canvas.setPixels(castOver(cast, canvas.pixels()));
-  std::vector<Rect> taken;
-  if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
-  if (annotations.georeferenced) {
-    const double reach = (kMargin + kCompassRadius + 10) * style.unit;
-    const Point2 center{reach, canvas.size().height - reach - 14 * style.unit};
-    drawCompass(canvas, style, camera, center, kCompassRadius * style.unit);
-    taken.push_back({center.x - reach / 2, center.y - reach / 2, reach, reach});
-  }
-  drawFooter(canvas, style, box, annotations, taken);
-  if (annotations.legend) {
-    drawLegend(canvas, style, *annotations.legend);
-    const double width = legendWidth(style, *annotations.legend);
-    taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
-  }
-  drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
-  drawTexts(canvas, style, annotations);
+  drawInFront(canvas, style, projector, annotations, hidden);
   return canvas.pixels();
+}
+
+OverlayLayers overlayLayers(ImageSize size, const Camera& camera, const SceneBox& box,
+                            const Annotations& annotations, const HiddenTest& hidden) {
+  const Style style(size, annotations.theme);
+  const Projector projector{camera, box, size};
+  Canvas behind(size);
+  drawBehind(behind, style, projector, annotations);
+  Canvas in_front(size);
+  drawInFront(in_front, style, projector, annotations, hidden);
+  return {behind.pixels(), in_front.pixels()};
 }
 
 }  // namespace emscape::render

@@ -87,6 +87,30 @@ TEST(Overlay, EveryAnnotationIsSeen) {
   EXPECT_GT(without([](Annotations& a) { a.theme = Theme::light; }), 100000);
 }
 
+TEST(Overlay, LayersMakeTheComposedPicture) {
+  const ImageSize size{320, 240};
+  Image cast(size);
+  for (int y = 60; y < 160; ++y) {
+    for (int x = 40; x < 260; ++x) cast.at(x, y) = {0.3F, 0.2F, 0.1F, 0.5F};
+  }
+  const Annotations annotations = everything(testing::fog(0.5));
+  const Camera camera = makeCamera({}, kBox, size, overlayMargins(size, annotations));
+  const Image8 whole = compose(cast, camera, kBox, annotations);
+  const OverlayLayers layers = overlayLayers(size, camera, kBox, annotations);
+  const Image8 middle = quantize(cast);
+  const auto over = [](int front, int front_alpha, double back) {
+    return front + back * (255 - front_alpha) / 255;
+  };
+  int max_difference = 0;
+  for (std::size_t i = 0; i < whole.rgba.size(); ++i) {
+    const std::size_t alpha = i / 4 * 4 + 3;
+    const double below = over(middle.rgba[i], middle.rgba[alpha], layers.behind.rgba[i]);
+    const double shown = over(layers.in_front.rgba[i], layers.in_front.rgba[alpha], below);
+    max_difference = std::max(max_difference, static_cast<int>(std::abs(shown - whole.rgba[i]) + 0.5));
+  }
+  EXPECT_LE(max_difference, 2);  // levels: each layer is rounded on its own
+}
+
 TEST(Overlay, HiddenMarkersLookDifferent) {
   const ImageSize size{640, 360};
   const Annotations all = everything(testing::fog(0.5));

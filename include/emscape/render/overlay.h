@@ -54,4 +54,13 @@ using HiddenTest = std::function<bool(const Vec3d& frame_m)>;
 Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
                const HiddenTest& hidden = {});
 
+/// What compose() draws behind and in front of the cast picture, for programs that put the three together
+/// themselves: cast over behind, in_front over both.
+struct OverlayLayers {
+  Image8 behind;    ///< opaque
+  Image8 in_front;  ///< premultiplied
+};
+OverlayLayers overlayLayers(ImageSize size, const Camera& camera, const SceneBox& box,
+                            const Annotations& annotations, const HiddenTest& hidden = {});
+
 }  // namespace emscape::render
