@@ -5,6 +5,8 @@ set(EMSCAPE_SANITIZE "" CACHE STRING "Sanitizer of every target: address, thread
 set_property(CACHE EMSCAPE_SANITIZE PROPERTY STRINGS "" address thread)
 set(EMSCAPE_CUDA AUTO CACHE STRING "Device code: AUTO (where CUDA is found), ON (required) or OFF")
 set_property(CACHE EMSCAPE_CUDA PROPERTY STRINGS AUTO ON OFF)
+set(EMSCAPE_VIEW AUTO CACHE STRING "The window, emscape-view: AUTO (where its libraries are found), ON (required) or OFF")
+set_property(CACHE EMSCAPE_VIEW PROPERTY STRINGS AUTO ON OFF)
 
 set(CMAKE_CXX_STANDARD 17)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)

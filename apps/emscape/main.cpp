@@ -120,6 +120,7 @@ int emscapeMain(int argc, char** argv) {
   addInfo(app, global, action);
   addSimulate(app, global, action);
   addRender(app, global, action);
+  addView(app, global, action);
   addProfile(app, global, action);
   addCheck(app, global, action);
   addBench(app, global, action);

@@ -11,7 +11,8 @@ namespace emscape::view {
 
 const std::vector<Action>& actions() {
   static const std::vector<Action> all{
-      {"File", "Save the changed scenario", "Ctrl+S", R"({"do":"save"})", "--set PATH=VALUE with any subcommand"},
+      {"File", "Save the changed scenario", "Ctrl+S", R"({"do":"save"})",
+       "--set PATH=VALUE with any subcommand"},
       {"File", "Copy as command", "Ctrl+Shift+C", R"({"do":"copy_command"})", "the copied command itself"},
       {"File", "Screenshot", "F12", R"({"do":"screenshot"})", "emscape render INPUT -o NAME.png"},
       {"File", "Quit", "Ctrl+Q", R"({"do":"quit"})", "Ctrl-C in the terminal"},
@@ -31,11 +32,16 @@ const std::vector<Action>& actions() {
       {"Time", "Go to time", "G", R"({"do":"panel","name":"time"})", "--times T"},
 
       {"Camera", "Reset", "R", R"({"do":"reset_view"})", "--camera orbit"},
-      {"Camera", "Focus the next emitter", "F", R"({"do":"focus"})", "--camera orbit:target_x_m=..,..,distance=.."},
-      {"Camera", "Turn left", "Ctrl+Left", R"({"do":"orbit","azimuth_deg":10})", "--camera orbit:azimuth_deg=.."},
-      {"Camera", "Turn right", "Ctrl+Right", R"({"do":"orbit","azimuth_deg":-10})", "--camera orbit:azimuth_deg=.."},
-      {"Camera", "Higher", "Ctrl+Up Up", R"({"do":"orbit","elevation_deg":5})", "--camera orbit:elevation_deg=.."},
-      {"Camera", "Lower", "Ctrl+Down Down", R"({"do":"orbit","elevation_deg":-5})", "--camera orbit:elevation_deg=.."},
+      {"Camera", "Focus the next emitter", "F", R"({"do":"focus"})",
+       "--camera orbit:target_x_m=..,..,distance=.."},
+      {"Camera", "Turn left", "Ctrl+Left", R"({"do":"orbit","azimuth_deg":10})",
+       "--camera orbit:azimuth_deg=.."},
+      {"Camera", "Turn right", "Ctrl+Right", R"({"do":"orbit","azimuth_deg":-10})",
+       "--camera orbit:azimuth_deg=.."},
+      {"Camera", "Higher", "Ctrl+Up Up", R"({"do":"orbit","elevation_deg":5})",
+       "--camera orbit:elevation_deg=.."},
+      {"Camera", "Lower", "Ctrl+Down Down", R"({"do":"orbit","elevation_deg":-5})",
+       "--camera orbit:elevation_deg=.."},
       {"Camera", "Closer", "+", R"({"do":"dolly","factor":0.8})", "--camera orbit:distance=.."},
       {"Camera", "Further", "-", R"({"do":"dolly","factor":1.25})", "--camera orbit:distance=.."},
       {"Camera", "From above", "V", R"({"do":"camera","spec":"orbit:azimuth_deg=180,elevation_deg=89"})",
@@ -45,7 +51,8 @@ const std::vector<Action>& actions() {
       {"View", "Isosurface", "I", R"({"do":"iso"})", "--mode iso"},
       {"View", "Shading", "S", R"({"do":"shading"})", "--shading"},
       {"View", "Next pattern of rays", "X", R"({"do":"pattern"})", "--rays auto|full|columns|.."},
-      {"View", "Range of the start", "Shift+R", R"({"do":"range"})", "--range MIN:MAX"},
+      {"View", "Fit colours to this step", "Shift+F", R"({"do":"fit_step"})", "the default of --range"},
+      {"View", "Fit colours to the series", "Shift+R", R"({"do":"fit_series"})", "--range MIN:MAX"},
       {"View", "More opaque", "Shift+Up", R"({"do":"opacity","factor":1.25})", "--transfer FILE"},
       {"View", "Less opaque", "Shift+Down", R"({"do":"opacity","factor":0.8})", "--transfer FILE"},
       {"View", "Ground", "B", R"({"do":"terrain"})", "--terrain on|off"},
@@ -53,9 +60,11 @@ const std::vector<Action>& actions() {
       {"View", "Dark or light", "D", R"({"do":"theme"})", "--theme dark|light"},
 
       {"Panels", "Scenario: what if", "W", R"({"do":"panel","name":"scenario"})", "--set PATH=VALUE"},
-      {"Panels", "Colours and opacity", "T", R"({"do":"panel","name":"colors"})", "--transfer FILE, --range MIN:MAX"},
+      {"Panels", "Colours and opacity", "T", R"({"do":"panel","name":"colors"})",
+       "--transfer FILE, --range MIN:MAX"},
       {"Panels", "Timeline", "Shift+T", R"({"do":"panel","name":"timeline"})", "--times BEGIN:END:STEP"},
-      {"Panels", "Hide or show all", "Tab", R"({"do":"panel","name":"all"})", "emscape render draws no panels"},
+      {"Panels", "Hide or show all", "Tab", R"({"do":"panel","name":"all"})",
+       "emscape render draws no panels"},
       {"Panels", "Larger texts", "Ctrl++", R"({"do":"scale","change":1})", "emscape view --scale F"},
       {"Panels", "Smaller texts", "Ctrl+-", R"({"do":"scale","change":-1})", "emscape view --scale F"},
       {"Panels", "Help", "F1 ?", R"({"do":"panel","name":"help"})", "emscape view --help"},
@@ -87,7 +96,8 @@ KeyChord parseChord(const std::string& text) {
     chord.shift |= shift;
     more = control || shift;
   }
-  if (rest.empty()) throw Error(ErrorCode::bad_input, fmt::format("key '{}': expected [Ctrl+][Shift+]KEY", text));
+  if (rest.empty())
+    throw Error(ErrorCode::bad_input, fmt::format("key '{}': expected [Ctrl+][Shift+]KEY", text));
   chord.key = rest;
   return chord;
 }
@@ -138,10 +148,12 @@ std::string manualTables() {
     for (std::size_t at = 0; (at = command_line.find('|', at)) != std::string::npos; at += 2) {
       command_line.insert(at, "\\");
     }
-    text += fmt::format("| {} | {} | {} | `{}` | {} |\n", action.menu, action.name, keys, action.command, command_line);
+    text += fmt::format("| {} | {} | {} | `{}` | {} |\n", action.menu, action.name, keys, action.command,
+                        command_line);
   }
   text += "\n| mouse and digits | |\n|---|---|\n";
-  for (const Gesture& gesture : gestures()) text += fmt::format("| {} | {} |\n", gesture.gesture, gesture.does);
+  for (const Gesture& gesture : gestures())
+    text += fmt::format("| {} | {} |\n", gesture.gesture, gesture.does);
   text += "\n| verb | arguments | does |\n|---|---|---|\n";
   for (const Verb& verb : verbs()) {
     std::string arguments;

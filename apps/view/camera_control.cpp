@@ -53,13 +53,11 @@ void CameraControl::settle(const Viewport& viewport) {
   orbit.azimuth_deg = wrapped_deg(radToDeg(std::atan2(back.x, back.y)));
   orbit.target_m = viewport.box.toFrame(pose.target_m);
   // A fitted camera shifts its lens; from now on the target moves instead.
-  const render::Camera unshifted =
-      render::makeCamera(orbit, viewport.box, viewport.size, viewport.margins);
+  const render::Camera unshifted = render::makeCamera(orbit, viewport.box, viewport.size, viewport.margins);
   const double per_half_height_m = pose.metresPerPixel(viewport.size) * viewport.size.height / 2;
   const double right = (pose.camera.shift_x - unshifted.shift_x) * per_half_height_m;
   const double up = (pose.camera.shift_y - unshifted.shift_y) * per_half_height_m;
-  orbit.target_m =
-      viewport.box.toFrame(pose.target_m + pose.camera.right * right + pose.camera.up * up);
+  orbit.target_m = viewport.box.toFrame(pose.target_m + pose.camera.right * right + pose.camera.up * up);
   spec_ = orbit;
 }
 

@@ -28,7 +28,8 @@ class CameraControl {
   /// Moves the scene with the cursor, parallel to the picture.
   /// @param right_px, down_px  how far the cursor moved
   void pan(double right_px, double down_px, const Viewport& viewport);
-  /// Moves towards the target, which itself moves such that what lies in its plane under the cursor stays there.
+  /// Moves towards the target, which itself moves such that what lies in its plane under the cursor stays
+  /// there.
   /// @param factor  of the distance, > 0: 0.5 halves it
   /// @param x, y    cursor in pixels of the picture
   void dolly(double factor, double x, double y, const Viewport& viewport);

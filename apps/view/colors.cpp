@@ -8,7 +8,8 @@
 
 namespace emscape::view {
 
-render::TransferFunction adjusted(const render::TransferFunction& function, const ColorAdjustment& adjustment) {
+render::TransferFunction adjusted(const render::TransferFunction& function,
+                                  const ColorAdjustment& adjustment) {
   render::TransferFunction result = function;
   if (function.categorical || adjustment.empty()) return result;
   const double lowest = function.lowest();
@@ -26,7 +27,8 @@ render::TransferFunction adjusted(const render::TransferFunction& function, cons
   if (adjustment.range) {
     const double min = adjustment.range->min;
     const double max = adjustment.range->max;
-    if (!(min < max)) throw Error(ErrorCode::bad_input, fmt::format("range {:g}..{:g}: expected MIN below MAX", min, max));
+    if (!(min < max))
+      throw Error(ErrorCode::bad_input, fmt::format("range {:g}..{:g}: expected MIN below MAX", min, max));
     const auto moved = [&](double at) { return min + (at - lowest) / (highest - lowest) * (max - min); };
     for (auto& point : result.colors) point.at = moved(point.at);
     for (auto& point : result.opacities) point.at = moved(point.at);

@@ -20,6 +20,7 @@ struct ColorAdjustment {
 
 /// A function with the changes. Categorical functions stay as they are.
 /// @throws Error (bad_input) for an unknown colour map or an empty range
-render::TransferFunction adjusted(const render::TransferFunction& function, const ColorAdjustment& adjustment);
+render::TransferFunction adjusted(const render::TransferFunction& function,
+                                  const ColorAdjustment& adjustment);
 
 }  // namespace emscape::view

@@ -35,6 +35,8 @@ bool fits(const Json& value, ArgumentType type) {
       return value.is_string();
     case ArgumentType::boolean:
       return value.is_boolean();
+    case ArgumentType::any:
+      return value.is_primitive();
   }
   return false;
 }
@@ -47,6 +49,8 @@ const char* nameOf(ArgumentType type) {
       return "a text";
     case ArgumentType::boolean:
       return "true or false";
+    case ArgumentType::any:
+      return "a number, a text, true or false";
   }
   return "";
 }
@@ -75,13 +79,19 @@ const std::vector<Verb>& verbs() {
       {"focus", {{"emitter", kText, false}}, "Looks at an emitter; without a name at the next one"},
       {"bookmark", {{"number"}}, "Stores camera and time under a number, 1..9"},
       {"recall", {{"number"}}, "Shows a bookmark"},
-      {"set", {{"path", kText}, {"value", kText}}, "Changes a value of the scenario, as `--set PATH=VALUE` does"},
+      {"set",
+       {{"path", kText}, {"value", kText}},
+       "Changes a value of the scenario, as `--set PATH=VALUE` does"},
       {"undo", {}, "Takes the last change of the scenario back"},
       {"redo", {}, "Makes the change that was taken back again"},
       {"copy_command", {}, "Puts the command that draws this picture on the clipboard"},
-      {"save", {{"file", kText, false}}, "Writes the changed scenario; default: NAME.edited.yaml beside the input"},
+      {"save",
+       {{"file", kText, false}},
+       "Writes the changed scenario; default: NAME.edited.yaml beside the input"},
       {"mode", {{"mode", kText, false}}, "dvr, mida, mip or iso; without a name the next one"},
-      {"iso", {{"value", kNumber, false}}, "Value of the isosurface; without one: shows it, or the fog again"},
+      {"iso",
+       {{"value", kNumber, false}},
+       "Value of the isosurface; without one: shows it, or the fog again"},
       {"shading", {{"on", kBoolean, false}}, "Light on the fog"},
       {"exaggeration", {{"factor"}}, "Vertical exaggeration; 0: chosen from the box"},
       {"step_voxels", {{"value"}}, "Distance of samples in voxels, 0.05..10"},
@@ -92,7 +102,9 @@ const std::vector<Verb>& verbs() {
       {"opacity", {{"factor"}}, "Multiplies the opacity of the fitted transfer function, 0.001..1000"},
       {"range",
        {{"min", kNumber, false}, {"max", kNumber, false}},
-       "Range of the colours; without numbers that of the start"},
+       "Range of the colours; without numbers the fitted one"},
+      {"fit_step", {}, "Fits the colours to the step on screen"},
+      {"fit_series", {}, "Fits the colours to the range of the whole series"},
       {"pattern", {{"pattern", kText, false}}, "auto or a pattern of rays; without a name the next one"},
       {"terrain", {{"on", kBoolean, false}}, "Draws the ground"},
       {"emitters", {{"on", kBoolean, false}}, "Draws the emitters"},
@@ -100,7 +112,9 @@ const std::vector<Verb>& verbs() {
       {"panel",
        {{"name", kText}, {"open", kBoolean, false}},
        "Opens or closes a panel: scenario, colors, timeline, help, time, all"},
-      {"scale", {{"factor", kNumber, false}, {"change", kNumber, false}}, "Size of texts and controls, 0.5..4"},
+      {"scale",
+       {{"factor", kNumber, false}, {"change", kNumber, false}},
+       "Size of texts and controls, 0.5..4"},
       {"resize", {{"width"}, {"height"}}, "Size of the window in pixels"},
       {"screenshot", {{"file", kText, false}}, "Writes the window as PNG; default: a new emscape-NNNN.png"},
       {"back", {}, "Closes what is open"},
@@ -120,7 +134,7 @@ const std::vector<Verb>& verbs() {
         {"wheel", kNumber, false}},
        "Moves the cursor; with `button` (left, middle, right) clicks, or drags to `to_x`, `to_y`"},
       {"expect",
-       {{"key", kText}, {"op", kText}, {"value", kText, false}, {"number", kNumber, false}, {"is", kBoolean, false}},
+       {{"key", kText}, {"op", kText}, {"value", ArgumentType::any}},
        "Compares a value of the log (== != < <= > >=); the program ends with status 5 if it is another"}};
   return all;
 }
@@ -139,8 +153,8 @@ Command parseCommand(const Json& object) {
       throw Error(ErrorCode::bad_input, fmt::format("{}: unknown argument '{}'", verb.name, name));
     }
     if (!fits(value, argument->type)) {
-      throw Error(ErrorCode::bad_input, fmt::format("{}: {} is {}: expected {}", verb.name, name, value.dump(),
-                                                    nameOf(argument->type)));
+      throw Error(ErrorCode::bad_input, fmt::format("{}: {} is {}: expected {}", verb.name, name,
+                                                    value.dump(), nameOf(argument->type)));
     }
     command.arguments[name] = value;
   }

@@ -1,4 +1,5 @@
-/// What the window can be told to do: verbs with arguments, as scripts write them and as keys and menus send them.
+/// What the window can be told to do: verbs with arguments, as scripts write them and as keys and menus send
+/// them.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,7 +10,7 @@ namespace emscape::view {
 
 using Json = nlohmann::ordered_json;
 
-enum class ArgumentType { number, text, boolean };
+enum class ArgumentType { number, text, boolean, any };
 
 struct Argument {
   const char* name;

@@ -85,9 +85,8 @@ void Playhead::advance(double elapsed_s) {
 std::optional<double> Playhead::untilNextStep_s() const {
   if (!playing_) return std::nullopt;
   const std::size_t next = static_cast<std::size_t>(step()) + 1;
-  const double due_s = next < times_s_.size()
-                           ? times_s_[next]
-                           : 2 * times_s_.back() - times_s_[times_s_.size() - 2];
+  const double due_s =
+      next < times_s_.size() ? times_s_[next] : 2 * times_s_.back() - times_s_[times_s_.size() - 2];
   return std::max(0.0, due_s - time_s_) / rate_;
 }
 

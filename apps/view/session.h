@@ -15,6 +15,7 @@
 #include "apps/view/playhead.h"
 #include "apps/view/view_options.h"
 #include "apps/view/window_control.h"
+#include "emscape/playback/edit_history.h"
 #include "emscape/playback/live_view.h"
 
 namespace emscape::view {
@@ -41,14 +42,14 @@ struct Bookmark {
 class Session {
  public:
   /// @param wake  called from any thread when there is something new to see
-  Session(const ViewOptions& options, const playback::ComputeTarget& target, WindowControl& window, EventLog& log,
-          std::function<void()> wake);
+  Session(const ViewOptions& options, const playback::ComputeTarget& target, WindowControl& window,
+          EventLog& log, std::function<void()> wake);
 
   /// Carries a command out. Faults become the notice. Waiting, keys, mouse and expect are the script's.
   void perform(const Command& command);
   /// The same with a new value at a path of the scenario while a control is dragged: one step to be undone.
   void dragValue(const std::string& path, const std::string& value);
-  void endDrag() { dragging_.clear(); }
+  void endDrag();
 
   /// Lets time pass and takes what is new. @return whether the window is to be drawn
   bool update();
@@ -77,6 +78,8 @@ class Session {
   void setSettings(const render::RenderSettings& settings);
   const ColorAdjustment& colors() const { return colors_; }
   void setColors(const ColorAdjustment& colors);
+  /// Colours fitted anew, to the step on screen or to the whole series, without adjustments.
+  void fitColors(bool to_series);
   /// The function that the adjustments start from; null before the first picture.
   const render::TransferFunction* fittedColors() const { return fitted_ ? &*fitted_ : nullptr; }
   render::Theme theme() const { return theme_; }
@@ -84,9 +87,10 @@ class Session {
   std::optional<render::Pattern> pattern() const { return pattern_; }
   bool showsTerrain() const { return show_terrain_; }
   bool showsEmitters() const { return show_emitters_; }
-  const std::shared_ptr<const scenario::Scenario>& scenario() const { return scenario_; }
-  bool canUndo() const { return history_at_ > 0; }
-  bool canRedo() const { return history_at_ + 1 < history_.size(); }
+  /// As edited; null for volumes alone, and before the input is open.
+  playback::ScenarioPtr scenario() const { return edits_ ? edits_->scenario() : nullptr; }
+  bool canUndo() const { return edits_ && edits_->canUndo(); }
+  bool canRedo() const { return edits_ && edits_->canRedo(); }
   const std::vector<std::optional<Bookmark>>& bookmarks() const { return bookmarks_; }
   const Notice& notice() const { return notice_; }
   void tell(const std::string& text, bool is_error = false);
@@ -127,6 +131,8 @@ class Session {
   void transfer(const Command&);
   void opacity(const Command&);
   void range(const Command&);
+  void fitStep(const Command&);
+  void fitSeries(const Command&);
   void showPattern(const Command&);
   void terrain(const Command&);
   void emitters(const Command&);
@@ -141,8 +147,8 @@ class Session {
   void askTime();
   void takeScenario();
   void takePicture();
-  void useHistory(std::size_t index);
-  void changeScenario(const std::string& path, const std::string& value, bool merge);
+  void showScenario();
+  void changeScenario(const std::vector<scenario::Edit>& edits);
 
   const ViewOptions options_;
   WindowControl& window_;
@@ -160,6 +166,7 @@ class Session {
   render::RenderSettings settings_;
   render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // that I goes back to
   std::optional<render::TransferFunction> fitted_;
+  bool fitting_ = true;  // the next pictures say what fitted_ is
   ColorAdjustment colors_;
   render::Theme theme_;
   std::string quantity_;
@@ -168,10 +175,8 @@ class Session {
   std::size_t focused_ = 0;
   std::vector<std::optional<Bookmark>> bookmarks_{9};
 
-  std::shared_ptr<const scenario::Scenario> scenario_;  // as edited
-  std::vector<std::shared_ptr<const scenario::Scenario>> history_;
-  std::size_t history_at_ = 0;
-  std::string dragging_;  // path whose value the last step of the history changed
+  std::optional<playback::EditHistory> edits_;
+  bool dragging_ = false;
   Notice notice_;
 };
 

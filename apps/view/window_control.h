@@ -11,10 +11,10 @@ namespace emscape::view {
 struct InputEvent {
   enum class Kind { key, text, button, cursor, wheel, left_window };
   Kind kind = Kind::cursor;
-  int code = 0;       ///< GLFW's key or button; text: the Unicode code point
-  int scancode = 0;   ///< key
-  int action = 0;     ///< key, button: GLFW_PRESS, GLFW_RELEASE or GLFW_REPEAT
-  int modifiers = 0;  ///< key, button: GLFW_MOD_...
+  int code = 0;         ///< GLFW's key or button; text: the Unicode code point
+  int scancode = 0;     ///< key
+  int action = 0;       ///< key, button: GLFW_PRESS, GLFW_RELEASE or GLFW_REPEAT
+  int modifiers = 0;    ///< key, button: GLFW_MOD_...
   double x = 0, y = 0;  ///< cursor: position; wheel: offsets
 };
 

@@ -1,0 +1,32 @@
+/// Events of keyboard and mouse in the order in which they came, dealt out to frames.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <set>
+#include <vector>
+
+#include "apps/view/window_control.h"
+
+namespace emscape::view {
+
+/// A GUI that reads the state of keys once per frame misses a key that is pressed and released within one. So
+/// a frame takes events only until a key or button would change for the second time; the others wait for the
+/// next frame.
+class InputQueue {
+ public:
+  void push(const InputEvent& event) { events_.push_back(event); }
+  bool empty() const { return events_.empty(); }
+  /// The events of the next frame.
+  std::vector<InputEvent> takeFrame();
+
+ private:
+  std::deque<InputEvent> events_;
+};
+
+/// The chord of a key event, as the table of actions writes it; an empty key where it has none.
+KeyChord chordOf(const InputEvent& event);
+/// Press and release of a chord. @throws Error (bad_input) for an unknown key
+std::array<InputEvent, 2> eventsOf(const KeyChord& chord);
+
+}  // namespace emscape::view

@@ -1,0 +1,58 @@
+/// emscape-view: the window; started by `emscape view`.
+#include <cstdio>
+#include <exception>
+#include <memory>
+#include <new>
+
+#include "apps/view/app.h"
+#include "emscape/base/backend.h"
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
+#include "emscape/base/parallel.h"
+#include "emscape/playback/inputs.h"
+
+namespace emscape::view {
+namespace {
+
+int fail(ErrorCode code, const std::string& message) {
+  std::fprintf(stderr, "emscape-view: error: %s\n", message.c_str());
+  return static_cast<int>(code);
+}
+
+void show(const ViewOptions& options) {
+  setLogSink([quiet = options.quiet](LogLevel level, const std::string& line) {
+    if (level == LogLevel::warning || (level == LogLevel::info && !quiet))
+      std::fprintf(stderr, "%s\n", line.c_str());
+  });
+  setThreadLimit(options.threads);
+  playback::inputKindOf(options.input);  // a wrong name is told before a window appears
+  const std::unique_ptr<App> app = withBackendFallback(
+      parseBackend(options.backend),
+      [&](const ResolvedBackend& choice) {
+        return std::make_unique<App>(options,
+                                     playback::ComputeTarget{choice, volume::VoxelPrecision::float32});
+      },
+      [](const std::string& line) { logInfo(line); });
+  app->run();
+}
+
+}  // namespace
+
+int viewMain(int argc, char** argv) {
+  try {
+    if (const std::optional<ViewOptions> options = parseOptions(argc, argv)) show(*options);
+    return 0;
+  } catch (const Error& error) {
+    return fail(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::other, "out of memory");
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::other, error.what());
+  }
+}
+
+}  // namespace emscape::view
+
+int main(int argc, char** argv) {
+  return emscape::view::viewMain(argc, argv);
+}

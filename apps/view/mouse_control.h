@@ -1,0 +1,30 @@
+/// The mouse and the keys of flying, on the picture.
+#pragma once
+
+#include <vector>
+
+#include "apps/view/panels.h"
+#include "apps/view/window.h"
+
+namespace emscape::view {
+
+/// Turns events over the picture into movements of the session's camera.
+class MouseControl {
+ public:
+  /// @param panels_want_mouse  the cursor is over a panel, or drags something of one
+  void handle(const std::vector<InputEvent>& events, const Area& picture, bool panels_want_mouse,
+              Session& session);
+  /// Flies while the right button and keys are held. @param elapsed_s  since the last frame
+  /// @return whether it flies
+  bool fly(const Window& window, double elapsed_s, Session& session);
+
+ private:
+  enum class Drag { none, orbit, pan, look };
+  Drag drag_ = Drag::none;
+  int button_ = 0;
+  double x_ = 0, y_ = 0;
+  double clicked_at_s_ = -1;
+  double clicked_x_ = 0, clicked_y_ = 0;
+};
+
+}  // namespace emscape::view

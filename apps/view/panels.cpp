@@ -1,0 +1,255 @@
+#include "apps/view/panels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/view/theme.h"
+#include "emscape/render/legend.h"
+
+namespace emscape::view {
+namespace {
+
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
+                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
+
+void place(const Area& area) {
+  ImGui::SetNextWindowPos({area.x, area.y});
+  ImGui::SetNextWindowSize({area.width, area.height});
+}
+
+bool isChecked(const Session& session, const std::string& name) {
+  const Panels& panels = session.panels;
+  if (name == "Loop") return session.playhead().loop();
+  if (name == "Play or pause") return session.playhead().playing();
+  if (name == "Ground") return session.showsTerrain();
+  if (name == "Emitters") return session.showsEmitters();
+  if (name == "Shading") return session.settings().shading;
+  if (name == "Isosurface") return session.settings().mode == render::CompositingMode::iso;
+  if (name == "Scenario: what if") return panels.scenario && !panels.hidden;
+  if (name == "Colours and opacity") return panels.colors && !panels.hidden;
+  if (name == "Timeline") return panels.timeline && !panels.hidden;
+  return name == "Help" && panels.help;
+}
+
+bool isEnabled(const Session& session, const std::string& name) {
+  if (name == "Undo") return session.canUndo();
+  if (name == "Redo") return session.canRedo();
+  if (name == "Save the changed scenario") return session.scenario() != nullptr;
+  return true;
+}
+
+}  // namespace
+
+Layout layoutOf(const Session& session, float width, float height, float scale) {
+  const Panels& panels = session.panels;
+  Layout layout;
+  if (panels.hidden) {
+    layout.picture = {0, 0, width, height};
+    return layout;
+  }
+  const float status_height = 30 * scale;
+  const bool has_side = panels.scenario || panels.colors;
+  const float side_width = has_side ? std::min(340 * scale, 0.45F * width) : 0;
+  const float timeline_height = panels.timeline ? std::min(112 * scale, 0.4F * height) : 0;
+  layout.menu_height = ImGui::GetFrameHeight();
+  layout.status = {0, height - status_height, width, status_height};
+  layout.timeline = {0, layout.status.y - timeline_height, width, timeline_height};
+  const float middle = std::max(1.0F, layout.timeline.y - layout.menu_height);
+  layout.side = {width - side_width, layout.menu_height, side_width, middle};
+  layout.picture = {0, layout.menu_height, std::max(1.0F, width - side_width), middle};
+  return layout;
+}
+
+void perform(PanelContext& context, const char* command) {
+  context.session.perform(parseCommand(std::string(command)));
+}
+
+void drawMenuBar(PanelContext& context) {
+  if (!ImGui::BeginMainMenuBar()) return;
+  for (const std::string& menu : menuNames()) {
+    if (!ImGui::BeginMenu(menu.c_str())) continue;
+    for (const Action& action : actions()) {
+      if (menu != action.menu) continue;
+      const std::string key = toString(chordsOf(action).front());
+      if (ImGui::MenuItem(action.name, key.c_str(), isChecked(context.session, action.name),
+                          isEnabled(context.session, action.name))) {
+        perform(context, action.command);
+      }
+    }
+    ImGui::EndMenu();
+  }
+  ImGui::EndMainMenuBar();
+}
+
+void drawSidePanel(PanelContext& context, const Area& area) {
+  if (area.width < 1) return;
+  place(area);
+  ImGui::Begin("side", nullptr, kFixed);
+  const Panels& panels = context.session.panels;
+  const float height = ImGui::GetContentRegionAvail().y;
+  if (panels.colors) {
+    const bool both = panels.scenario;
+    ImGui::BeginChild("colors", {0, both ? std::min(height / 2, 330 * context.scale) : 0});
+    drawColorsPanel(context);
+    ImGui::EndChild();
+    if (both) ImGui::Separator();
+  }
+  if (panels.scenario) {
+    ImGui::BeginChild("scenario");
+    drawScenarioPanel(context);
+    ImGui::EndChild();
+  }
+  ImGui::End();
+}
+
+void drawStatusBar(PanelContext& context, const Area& area) {
+  const Session& session = context.session;
+  const playback::LiveStatus& status = session.status();
+  const float s = context.scale;
+  place(area);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(12 * s, 5 * s));
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg));
+  ImGui::Begin("status", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
+  const char* name = session.picture() ? render::toString(status.state) : "OPENING";
+  const ImVec4 color = session.picture() ? stateColor(status.state) : mutedColor(session.theme());
+  // The badge: state on its colour.
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const ImVec2 text = ImGui::CalcTextSize(name);
+  const float badge_width = ImGui::CalcTextSize("RESTORE").x + 16 * s;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled({at.x, at.y - s}, {at.x + badge_width, at.y + text.y + 2 * s},
+                     ImGui::ColorConvertFloat4ToU32(color), 4 * s);
+  list.AddText({at.x + (badge_width - text.x) / 2, at.y}, IM_COL32(16, 20, 27, 255), name);
+  ImGui::Dummy({badge_width, text.y});
+  if (session.picture()) {
+    ImGui::SameLine(0, 12 * s);
+    std::string left = session.exact() ? "exact" : "approximate";
+    left += fmt::format("   ·   {}{}, {:.0f} % of rays   ·   cast {:.0f} ms",
+                        session.pattern() ? "" : "auto: ", render::toString(status.pattern),
+                        100 * status.rays_fraction, status.cast_ms);
+    if (status.field_ms > 0) left += fmt::format("   ·   field {:.0f} ms", status.field_ms);
+    left += "   ·   " + status.device;
+    ImGui::TextUnformatted(left.c_str());
+    const std::string right = status.shown_s == status.asked_s
+                                  ? fmt::format("t = {:g} s", status.shown_s)
+                                  : fmt::format("asked {:g} s, shown {:g} s", status.asked_s, status.shown_s);
+    const float width = ImGui::CalcTextSize(right.c_str()).x;
+    ImGui::SameLine(std::max(ImGui::GetCursorPosX(), area.width - width - 12 * s));
+    if (status.shown_s == status.asked_s) {
+      ImGui::TextUnformatted(right.c_str());
+    } else {
+      ImGui::TextColored(stateColor(render::ControllerState::busy), "%s", right.c_str());
+    }
+  }
+  ImGui::End();
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
+}
+
+void drawNotice(PanelContext& context, const Area& picture) {
+  const Session& session = context.session;
+  const float s = context.scale;
+  std::string text = session.notice().text;
+  ImVec4 color =
+      session.notice().is_error ? errorColor(session.theme()) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
+  if (text.empty() && !session.picture()) {
+    text = "opening …";
+    color = mutedColor(session.theme());
+  }
+  if (text.empty()) return;
+  const float wrap = std::max(120 * s, std::min(picture.width - 60 * s, 760 * s));
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height - 24 * s},
+                          ImGuiCond_Always, {0.5F, 1.0F});
+  ImGui::SetNextWindowSize({size.x + 32 * s, size.y + 20 * s});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(16 * s, 10 * s));
+  ImGui::SetNextWindowBgAlpha(0.94F);
+  ImGui::Begin("notice", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  ImGui::PushTextWrapPos(wrap + 16 * s);
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::PopStyleColor();
+  ImGui::End();
+  ImGui::PopStyleVar(2);
+}
+
+void drawHelp(PanelContext& context) {
+  if (!context.session.panels.help) return;
+  const float s = context.scale;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const ImVec2 size{std::min(780 * s, 0.94F * screen.x), std::min(640 * s, 0.9F * screen.y)};
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
+  ImGui::SetNextWindowSize(size, ImGuiCond_Appearing);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  if (ImGui::Begin("Help", &context.session.panels.help,
+                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
+    if (ImGui::BeginTable("keys", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
+      for (const Gesture& gesture : gestures()) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(gesture.gesture);
+        ImGui::TableNextColumn();
+        ImGui::TextWrapped("%s", gesture.does);
+        ImGui::TableNextColumn();
+      }
+      for (const std::string& menu : menuNames()) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextColored(accentColor(context.session.theme()), "%s", menu.c_str());
+        for (const Action& action : actions()) {
+          if (menu != action.menu) continue;
+          std::string keys;
+          for (const KeyChord& chord : chordsOf(action)) keys += (keys.empty() ? "" : ", ") + toString(chord);
+          ImGui::TableNextRow();
+          ImGui::TableNextColumn();
+          ImGui::TextUnformatted(keys.c_str());
+          ImGui::TableNextColumn();
+          ImGui::TextUnformatted(action.name);
+          ImGui::TableNextColumn();
+          ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
+          ImGui::TextWrapped("%s", action.command_line);
+          ImGui::PopStyleColor();
+        }
+      }
+      ImGui::EndTable();
+    }
+  }
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
+void drawGoToTime(PanelContext& context) {
+  Session& session = context.session;
+  if (!session.panels.time) return;
+  static double typed_s = 0;
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * context.scale);
+  ImGui::Begin(
+      "Go to time", &session.panels.time,
+      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+  if (ImGui::IsWindowAppearing()) {
+    typed_s = session.playhead().step_s();
+    ImGui::SetKeyboardFocusHere();
+  }
+  ImGui::SetNextItemWidth(160 * context.scale);
+  const bool entered =
+      ImGui::InputDouble("seconds", &typed_s, 0, 0, "%.6g",
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  ImGui::SameLine();
+  if (ImGui::Button("Go") || entered) {
+    session.perform({"seek", {{"time_s", typed_s}}});
+    session.panels.time = false;
+  }
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
+}  // namespace emscape::view

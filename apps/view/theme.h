@@ -1,0 +1,22 @@
+/// How panels look, dark and light.
+#pragma once
+
+#include <imgui.h>
+
+#include "emscape/render/camera.h"
+#include "emscape/render/frame_controller.h"
+#include "emscape/render/overlay.h"
+
+namespace emscape::view {
+
+/// @param scale  of all lengths
+ImGuiStyle styleOf(render::Theme theme, float scale);
+/// Amber while it changes, blue while it is being made exact, green when it stands: told apart by brightness
+/// too.
+ImVec4 stateColor(render::ControllerState state);
+ImVec4 markerColor(render::MarkerKind kind);
+ImVec4 accentColor(render::Theme theme);
+ImVec4 mutedColor(render::Theme theme);
+ImVec4 errorColor(render::Theme theme);
+
+}  // namespace emscape::view

@@ -1,0 +1,278 @@
+#include "apps/view/window.h"
+
+#include <epoxy/gl.h>
+// epoxy first
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <filesystem>
+#include <mutex>
+
+#include "apps/view/theme.h"
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+namespace {
+
+constexpr double kMinScale = 0.5, kMaxScale = 4;
+constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr float kFont_px = 14.5F;
+
+std::string last_error;
+std::mutex alive_mutex;
+bool alive = false;
+std::atomic<bool> woken{false};
+
+void keepError(int, const char* text) {
+  last_error = text;
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorCode::device, what + (last_error.empty() ? "" : ": " + last_error) +
+                                     "; 'emscape render' draws pictures and videos without a window");
+}
+
+Window& windowOf(GLFWwindow* window) {
+  return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+void pushEvent(GLFWwindow* window, const InputEvent& event) {
+  windowOf(window).input().push(event);
+}
+
+void installCallbacks(GLFWwindow* window) {
+  using Kind = InputEvent::Kind;
+  glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int modifiers) {
+    pushEvent(w, {Kind::key, key, scancode, action, modifiers, 0, 0});
+  });
+  glfwSetCharCallback(window, [](GLFWwindow* w, unsigned code) {
+    pushEvent(w, {Kind::text, static_cast<int>(code), 0, 0, 0, 0, 0});
+  });
+  glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int modifiers) {
+    pushEvent(w, {Kind::button, button, 0, action, modifiers, 0, 0});
+  });
+  glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+    pushEvent(w, {Kind::cursor, 0, 0, 0, 0, x, y});
+  });
+  glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) {
+    pushEvent(w, {Kind::wheel, 0, 0, 0, 0, x, y});
+  });
+  glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int entered) {
+    if (entered == 0) pushEvent(w, {Kind::left_window, 0, 0, 0, 0, 0, 0});
+  });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow*) { woken = true; });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow*, int, int) { woken = true; });
+  glfwSetWindowCloseCallback(window, [](GLFWwindow*) { woken = true; });
+  glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
+    ImGui_ImplGlfw_WindowFocusCallback(w, focused);
+    woken = true;
+  });
+}
+
+}  // namespace
+
+Window::Window(const std::string& title, render::ImageSize size, double scale) {
+  last_error.clear();
+  glfwSetErrorCallback(keepError);
+  if (glfwInit() == GLFW_FALSE) refuse("no window can be opened");
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_SRGB_CAPABLE, GLFW_FALSE);
+  glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+  if (!window_) {
+    glfwTerminate();
+    refuse("no window with OpenGL 3.3 can be opened");
+  }
+  float content_x = 1, content_y = 1;
+  glfwGetWindowContentScale(window_, &content_x, &content_y);
+  setScale(scale > 0 ? scale : content_x);
+  glfwSetWindowUserPointer(window_, this);
+  glfwMakeContextCurrent(window_);
+  glfwSwapInterval(1);
+  IMGUI_CHECKVERSION();
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui_ImplGlfw_InitForOpenGL(window_, false);
+  ImGui_ImplOpenGL3_Init("#version 330");
+  installCallbacks(window_);
+  const std::lock_guard lock(alive_mutex);
+  alive = true;
+}
+
+Window::~Window() {
+  {
+    const std::lock_guard lock(alive_mutex);
+    alive = false;
+  }
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+void Window::wake() {
+  woken = true;
+  const std::lock_guard lock(alive_mutex);
+  if (alive) glfwPostEmptyEvent();
+}
+
+void Window::waitEvents(double timeout_s) {
+  if (timeout_s == 0 || woken || !input_.empty()) {
+    glfwPollEvents();
+  } else if (timeout_s < 0) {
+    glfwWaitEvents();
+  } else {
+    glfwWaitEventsTimeout(timeout_s);
+  }
+}
+
+bool Window::takeDirty() {
+  const bool happened = woken.exchange(false) || !input_.empty() || dirty_;
+  dirty_ = false;
+  return happened;
+}
+
+bool Window::closeRequested() const {
+  return glfwWindowShouldClose(window_) != 0;
+}
+
+render::ImageSize Window::framebufferSize() const {
+  if (glfwGetWindowAttrib(window_, GLFW_ICONIFIED) != 0) return {0, 0};
+  int width = 0, height = 0;
+  glfwGetFramebufferSize(window_, &width, &height);
+  return {width, height};
+}
+
+void Window::resize(int width, int height) {
+  glfwSetWindowSize(window_, std::max(1, width), std::max(1, height));
+  dirty_ = true;
+}
+
+void Window::setTitle(const std::string& title) {
+  glfwSetWindowTitle(window_, title.c_str());
+}
+
+void Window::setClipboard(const std::string& text) {
+  glfwSetClipboardString(window_, text.c_str());
+}
+
+void Window::setScale(double scale) {
+  scale_ = std::clamp(scale, kMinScale, kMaxScale);
+  style_changed_ = dirty_ = true;
+}
+
+void Window::setTheme(render::Theme theme) {
+  if (theme == theme_) return;
+  theme_ = theme;
+  style_changed_ = dirty_ = true;
+}
+
+void Window::applyStyle() {
+  style_changed_ = false;
+  ImGuiIO& io = ImGui::GetIO();
+  ImGui::GetStyle() = styleOf(theme_, static_cast<float>(scale_));
+  static const ImWchar kGlyphs[] = {0x20,   0xFF,   0x370,  0x3FF,  0x2010, 0x2044, 0x2070, 0x209F, 0x2190,
+                                    0x21FF, 0x2200, 0x22FF, 0x2300, 0x23FF, 0x25A0, 0x25FF, 0};
+  io.Fonts->Clear();
+  const float size_px = std::max(8.0F, std::round(kFont_px * static_cast<float>(scale_)));
+  std::error_code ignored;
+  if (std::filesystem::exists(kFont, ignored)) {
+    io.Fonts->AddFontFromFileTTF(kFont, size_px, nullptr, kGlyphs);
+  } else {
+    ImFontConfig config;
+    config.SizePixels = size_px;
+    io.Fonts->AddFontDefault(&config);
+  }
+  io.Fonts->Build();
+  ImGui_ImplOpenGL3_DestroyFontsTexture();
+  ImGui_ImplOpenGL3_CreateFontsTexture();
+}
+
+void Window::forward(const InputEvent& event) {
+  switch (event.kind) {
+    case InputEvent::Kind::key:
+      if (event.code >= 0 && event.code < 512) keys_[event.code] = event.action != GLFW_RELEASE;
+      ImGui_ImplGlfw_KeyCallback(window_, event.code, event.scancode, event.action, event.modifiers);
+      // The backend asks GLFW for modifiers, which knows nothing of keys that a script presses.
+      ImGui::GetIO().KeyCtrl = (event.modifiers & GLFW_MOD_CONTROL) != 0;
+      ImGui::GetIO().KeyShift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
+      break;
+    case InputEvent::Kind::text:
+      ImGui_ImplGlfw_CharCallback(window_, static_cast<unsigned>(event.code));
+      break;
+    case InputEvent::Kind::button:
+      if (event.code >= 0 && event.code < 8) buttons_[event.code] = event.action == GLFW_PRESS;
+      break;
+    case InputEvent::Kind::cursor:
+      cursor_x_ = event.x;
+      cursor_y_ = event.y;
+      break;
+    case InputEvent::Kind::wheel:
+      ImGui_ImplGlfw_ScrollCallback(window_, event.x, event.y);
+      break;
+    case InputEvent::Kind::left_window:
+      break;
+  }
+}
+
+std::vector<InputEvent> Window::beginFrame() {
+  if (style_changed_) applyStyle();
+  std::vector<InputEvent> events = input_.takeFrame();
+  for (const InputEvent& event : events) forward(event);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  // The backend's own view of the mouse is that of the moment; this one is that of the events.
+  ImGuiIO& io = ImGui::GetIO();
+  io.MousePos = {static_cast<float>(cursor_x_), static_cast<float>(cursor_y_)};
+  for (int i = 0; i < 5; ++i) io.MouseDown[i] = buttons_[i];
+  ImGui::NewFrame();
+  return events;
+}
+
+void Window::endFrame() {
+  ImGui::Render();
+  const render::ImageSize size = framebufferSize();
+  glViewport(0, 0, size.width, size.height);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Window::swap() {
+  glfwSwapBuffers(window_);
+}
+
+render::Image8 Window::readPixels() const {
+  render::Image8 image;
+  image.size = framebufferSize();
+  image.rgba.resize(static_cast<std::size_t>(image.size.count()) * 4);
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glReadBuffer(GL_BACK);
+  glReadPixels(0, 0, image.size.width, image.size.height, GL_RGBA, GL_UNSIGNED_BYTE, image.rgba.data());
+  const std::size_t row = static_cast<std::size_t>(image.size.width) * 4;
+  for (std::size_t top = 0, bottom = static_cast<std::size_t>(image.size.height); top + 1 < bottom; ++top) {
+    --bottom;
+    std::swap_ranges(image.rgba.begin() + static_cast<std::ptrdiff_t>(top * row),
+                     image.rgba.begin() + static_cast<std::ptrdiff_t>((top + 1) * row),
+                     image.rgba.begin() + static_cast<std::ptrdiff_t>(bottom * row));
+  }
+  for (std::size_t i = 3; i < image.rgba.size(); i += 4) image.rgba[i] = 255;
+  return image;
+}
+
+std::string Window::renderer() const {
+  const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  return name ? name : "";
+}
+
+bool Window::keyDown(int key) const {
+  return key >= 0 && key < 512 && keys_[key];
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,74 @@
+/// The window: GLFW, its OpenGL context and Dear ImGui on it.
+#pragma once
+
+#include <string>
+
+#include "apps/view/input_queue.h"
+#include "emscape/render/image.h"
+#include "emscape/render/overlay.h"
+
+struct GLFWwindow;
+
+namespace emscape::view {
+
+/// One at a time. The thread that makes it uses it, but for wake().
+class Window {
+ public:
+  /// @param scale  of texts and controls; 0: that of the screen
+  /// @throws Error (device) that says why there is no window
+  Window(const std::string& title, render::ImageSize size, double scale);
+  ~Window();
+  Window(const Window&) = delete;
+  Window& operator=(const Window&) = delete;
+
+  /// Makes waitEvents() return; from any thread, also before and after the window's life.
+  static void wake();
+  /// Waits for an event, at most so long. @param timeout_s  0: does not wait; < 0: without end
+  void waitEvents(double timeout_s);
+  /// Whether something happened since the last call that asks for a new frame.
+  bool takeDirty();
+  bool closeRequested() const;
+
+  /// 0x0 while it is minimised.
+  render::ImageSize framebufferSize() const;
+  void resize(int width, int height);
+  void setTitle(const std::string& title);
+  void setClipboard(const std::string& text);
+
+  double scale() const { return scale_; }
+  /// Clamped to 0.5..4; takes effect with the next frame.
+  void setScale(double scale);
+  void setTheme(render::Theme theme);
+
+  InputQueue& input() { return input_; }
+  /// Begins a frame of Dear ImGui with the events that are due; returns them.
+  std::vector<InputEvent> beginFrame();
+  /// Draws what Dear ImGui was told.
+  void endFrame();
+  void swap();
+  /// What was drawn since the last swap().
+  render::Image8 readPixels() const;
+  /// Name of the OpenGL renderer.
+  std::string renderer() const;
+
+  double cursorX() const { return cursor_x_; }
+  double cursorY() const { return cursor_y_; }
+  bool buttonDown(int button) const { return buttons_[button]; }
+  bool keyDown(int key) const;
+
+ private:
+  void applyStyle();
+  void forward(const InputEvent& event);
+
+  GLFWwindow* window_ = nullptr;
+  InputQueue input_;
+  double cursor_x_ = -1e9, cursor_y_ = -1e9;
+  bool buttons_[8]{};
+  bool keys_[512]{};
+  double scale_ = 1;
+  render::Theme theme_ = render::Theme::dark;
+  bool style_changed_ = true;
+  bool dirty_ = true;
+};
+
+}  // namespace emscape::view
