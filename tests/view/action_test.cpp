@@ -1,0 +1,71 @@
+#include "apps/view/action.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "apps/view/input_queue.h"
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+namespace {
+
+TEST(Action, EveryActionHasKeyCommandAndCommandLine) {
+  for (const Action& action : actions()) {
+    EXPECT_STRNE(action.menu, "") << action.name;
+    EXPECT_STRNE(action.command_line, "") << action.name;
+    EXPECT_FALSE(chordsOf(action).empty()) << action.name;
+    EXPECT_NO_THROW(parseCommand(std::string(action.command))) << action.name;
+  }
+}
+
+TEST(Action, NoKeyAndNoNameIsUsedTwice) {
+  std::set<std::string> keys, names;
+  for (const Action& action : actions()) {
+    EXPECT_TRUE(names.insert(std::string(action.menu) + "/" + action.name).second) << action.name;
+    for (const KeyChord& chord : chordsOf(action)) {
+      EXPECT_TRUE(keys.insert(toString(chord)).second) << action.name << ": " << toString(chord);
+    }
+  }
+}
+
+TEST(Action, EveryKeyCanBePressedAndFindsItsAction) {
+  for (const Action& action : actions()) {
+    for (const KeyChord& chord : chordsOf(action)) {
+      const auto events = eventsOf(chord);
+      EXPECT_EQ(actionOf(chordOf(events[0])), &action) << toString(chord);
+    }
+  }
+}
+
+TEST(Action, KeysWithoutAnActionHaveNone) {
+  EXPECT_EQ(actionOf(parseChord("Ctrl+Shift+X")), nullptr);
+}
+
+TEST(Action, MenusAreListedOnce) {
+  EXPECT_THAT(menuNames(), testing::ElementsAre("File", "Edit", "Time", "Camera", "View", "Panels"));
+}
+
+TEST(Action, ChordsAreReadAndWritten) {
+  const KeyChord chord = parseChord("Ctrl+Shift+Z");
+  EXPECT_TRUE(chord.control);
+  EXPECT_TRUE(chord.shift);
+  EXPECT_EQ(chord.key, "Z");
+  EXPECT_EQ(toString(chord), "Ctrl+Shift+Z");
+  EXPECT_EQ(parseChord("Ctrl++").key, "+");
+  EXPECT_THROW(parseChord(""), Error);
+}
+
+TEST(Action, TheManualHoldsTheTables) {
+  std::ifstream in(EMSCAPE_SOURCE_DIR "/docs/viewer.md");
+  std::ostringstream manual;
+  manual << in.rdbuf();
+  EXPECT_NE(manual.str().find(manualTables()), std::string::npos)
+      << "docs/viewer.md: put the output of `emscape-view --manual-tables` there";
+}
+
+}  // namespace
+}  // namespace emscape::view
