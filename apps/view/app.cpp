@@ -100,10 +100,11 @@ void App::run() {
     if (session_.update()) frames_left_ = std::max(frames_left_, 1);
     failIfNothingOpens();
     if (ImGui::GetIO().WantTextInput) frames_left_ = std::max(frames_left_, 1);
-    const bool script_runs = !script_.finished();
-    if (script_runs) script_.run(session_, *this, log_.now_s());
-    if (!window_.input().empty() || screenshot_ || script_runs || flies_)
+    if (!script_.finished()) script_.run(session_, *this, log_.now_s());
+    const bool script_waits_for_frames = script_.nextRun_s() == 0.0;
+    if (!window_.input().empty() || screenshot_ || script_waits_for_frames || flies_) {
       frames_left_ = std::max(frames_left_, 1);
+    }
     if (frames_left_ <= 0) continue;
     --frames_left_;
     frame();

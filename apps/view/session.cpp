@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "emscape/base/error.h"
 #include "emscape/render/overlay.h"
@@ -109,7 +110,8 @@ bool Session::update() {
   }
   const bool notice_ends = !notice_.text.empty() && now_s - notice_.since_s > (notice_.is_error ? 12 : 4);
   if (notice_ends) notice_ = {};
-  return notice_ends || picture_ != old_picture || status_.state != before.state ||
+  const bool touched = std::exchange(touched_, false);
+  return touched || notice_ends || picture_ != old_picture || status_.state != before.state ||
          status_.computing != before.computing || status_.cached_steps != before.cached_steps ||
          playhead_.playing();
 }

@@ -177,6 +177,7 @@ class Session {
 
   std::optional<playback::EditHistory> edits_;
   bool dragging_ = false;
+  bool touched_ = false;  // by a command since the last update()
   Notice notice_;
 };
 

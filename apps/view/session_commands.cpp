@@ -72,6 +72,7 @@ void Session::perform(const Command& command) {
   Json fields{{"do", command.verb}};
   fields.update(command.arguments);
   log_.write("command", fields);
+  touched_ = true;
   const Handler handler = handlerOf(command.verb);
   if (!handler) throw Error(ErrorCode::bad_input, command.verb + ": only a script can do that");
   try {

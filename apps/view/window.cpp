@@ -65,12 +65,12 @@ void installCallbacks(GLFWwindow* window) {
   glfwSetCursorEnterCallback(window, [](GLFWwindow* w, int entered) {
     if (entered == 0) pushEvent(w, {Kind::left_window, 0, 0, 0, 0, 0, 0});
   });
-  glfwSetWindowRefreshCallback(window, [](GLFWwindow*) { woken = true; });
-  glfwSetFramebufferSizeCallback(window, [](GLFWwindow*, int, int) { woken = true; });
-  glfwSetWindowCloseCallback(window, [](GLFWwindow*) { woken = true; });
+  glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { windowOf(w).markDirty(); });
+  glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { windowOf(w).markDirty(); });
+  glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { windowOf(w).markDirty(); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
     ImGui_ImplGlfw_WindowFocusCallback(w, focused);
-    woken = true;
+    windowOf(w).markDirty();
   });
 }
 
@@ -125,7 +125,7 @@ void Window::wake() {
 }
 
 void Window::waitEvents(double timeout_s) {
-  if (timeout_s == 0 || woken || !input_.empty()) {
+  if (woken.exchange(false) || timeout_s == 0 || !input_.empty()) {
     glfwPollEvents();
   } else if (timeout_s < 0) {
     glfwWaitEvents();
@@ -135,7 +135,7 @@ void Window::waitEvents(double timeout_s) {
 }
 
 bool Window::takeDirty() {
-  const bool happened = woken.exchange(false) || !input_.empty() || dirty_;
+  const bool happened = dirty_ || !input_.empty();
   dirty_ = false;
   return happened;
 }

@@ -25,8 +25,9 @@ class Window {
   static void wake();
   /// Waits for an event, at most so long. @param timeout_s  0: does not wait; < 0: without end
   void waitEvents(double timeout_s);
-  /// Whether something happened since the last call that asks for a new frame.
+  /// Whether the user or the display asked for a new frame since the last call.
   bool takeDirty();
+  void markDirty() { dirty_ = true; }
   bool closeRequested() const;
 
   /// 0x0 while it is minimised.
