@@ -190,7 +190,10 @@ void drawHelp(PanelContext& context) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   if (ImGui::Begin("Help", &context.session.panels.help,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-    if (ImGui::BeginTable("keys", 3, ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingStretchProp)) {
+    if (ImGui::BeginTable("help", 3, ImGuiTableFlags_RowBg)) {
+      ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.34F);
+      ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch, 0.33F);
+      ImGui::TableSetupColumn("command line", ImGuiTableColumnFlags_WidthStretch, 0.33F);
       for (const Gesture& gesture : gestures()) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();

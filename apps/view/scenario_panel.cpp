@@ -24,18 +24,6 @@ std::string numberText(double value) {
   return fmt::format("{:.10g}", value);
 }
 
-render::MarkerKind markerKindOf(scenario::EmitterKind kind) {
-  switch (kind) {
-    case scenario::EmitterKind::radar:
-      return render::MarkerKind::radar;
-    case scenario::EmitterKind::transmitter:
-      return render::MarkerKind::transmitter;
-    case scenario::EmitterKind::jammer:
-      break;
-  }
-  return render::MarkerKind::jammer;
-}
-
 /// Rows of a name and a control.
 class Form {
  public:
@@ -128,7 +116,7 @@ void drawEmitter(PanelContext& context, const scenario::Scenario& scenario,
     const double never_s = scenario.clock.duration_s + scenario.clock.step_s + 1;
     form.change(path + "active_s", on ? fmt::format("[[{:g}, {:g}]]", never_s, never_s + 1) : "null");
   }
-  form.slider("power", path + "power_w", emitter.power_w, 1e-2, 1e7, "%.4g W", true);
+  form.slider("power", path + "power_w", emitter.power_w, 1e-2, 1e7, "%.6g W", true);
   form.number("frequency, MHz", path + "frequency_hz", emitter.frequency_hz, 1e6, "%.6g");
   form.slider("losses", path + "losses_db", emitter.losses_db, 0, 30, "%.1f dB");
   if (emitter.scan.kind == scenario::ScanKind::rotate) {
@@ -223,7 +211,7 @@ void drawScenarioPanel(PanelContext& context) {
   ImGui::Spacing();
   bool is_first = true;
   for (const scenario::Emitter& emitter : scenario->emitters) {
-    if (section(emitter.name, "emitter", markerColor(markerKindOf(emitter.kind)), is_first, s)) {
+    if (section(emitter.name, "emitter", emitterColor(emitter.kind, session.theme()), is_first, s)) {
       drawEmitter(context, *scenario, emitter);
     }
     is_first = false;

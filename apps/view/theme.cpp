@@ -34,20 +34,17 @@ ImVec4 stateColor(render::ControllerState state) {
   return rgb(0x9BE07A);
 }
 
-ImVec4 markerColor(render::MarkerKind kind) {
+ImVec4 emitterColor(scenario::EmitterKind kind, render::Theme theme) {
+  const bool dark = theme == render::Theme::dark;
   switch (kind) {
-    case render::MarkerKind::radar:
-      return rgb(0xE6EBF1);
-    case render::MarkerKind::transmitter:
-      return rgb(0x9FE0FF);
-    case render::MarkerKind::jammer:
-      return rgb(0xFF6B6B);
-    case render::MarkerKind::receiver:
-      return rgb(0xFFD166);
-    case render::MarkerKind::platform:
+    case scenario::EmitterKind::radar:
+      return dark ? rgb(0xE6EBF1) : rgb(0x4A5563);
+    case scenario::EmitterKind::transmitter:
+      return dark ? rgb(0x9FE0FF) : rgb(0x2F8FC4);
+    case scenario::EmitterKind::jammer:
       break;
   }
-  return rgb(0xD0D7DE);
+  return dark ? rgb(0xFF6B6B) : rgb(0xD64545);
 }
 
 ImGuiStyle styleOf(render::Theme theme, float scale) {
@@ -73,7 +70,7 @@ ImGuiStyle styleOf(render::Theme theme, float scale) {
   style.ScrollbarRounding = 6;
   style.WindowBorderSize = 0;
   style.PopupBorderSize = 1;
-  style.FrameBorderSize = dark ? 0.0F : 1.0F;
+  style.FrameBorderSize = 1;
   const ImVec4 accent = accentColor(theme);
   const auto faded = [&accent](float alpha) { return ImVec4(accent.x, accent.y, accent.z, alpha); };
   ImVec4* c = style.Colors;
@@ -83,6 +80,8 @@ ImGuiStyle styleOf(render::Theme theme, float scale) {
   c[ImGuiCol_ChildBg] = rgb(0, 0);
   c[ImGuiCol_PopupBg] = dark ? rgb(0x202732) : rgb(0xFFFFFF);
   c[ImGuiCol_MenuBarBg] = dark ? rgb(0x12161C) : rgb(0xE6EAEF);
+  c[ImGuiCol_TitleBg] = c[ImGuiCol_TitleBgActive] = c[ImGuiCol_MenuBarBg];
+  c[ImGuiCol_TableRowBgAlt] = dark ? rgb(0xFFFFFF, 0.03F) : rgb(0x000000, 0.035F);
   c[ImGuiCol_Border] = dark ? rgb(0x364050) : rgb(0xC3CBD5);
   c[ImGuiCol_FrameBg] = dark ? rgb(0x262E3A) : rgb(0xFFFFFF);
   c[ImGuiCol_FrameBgHovered] = dark ? rgb(0x303A49) : rgb(0xEDF2F8);
@@ -94,7 +93,7 @@ ImGuiStyle styleOf(render::Theme theme, float scale) {
   c[ImGuiCol_HeaderHovered] = dark ? rgb(0x323D4D) : rgb(0xD3DCE6);
   c[ImGuiCol_HeaderActive] = faded(0.6F);
   c[ImGuiCol_CheckMark] = accent;
-  c[ImGuiCol_SliderGrab] = accent;
+  c[ImGuiCol_SliderGrab] = faded(0.55F);
   c[ImGuiCol_SliderGrabActive] = accent;
   c[ImGuiCol_Separator] = dark ? rgb(0x2E3743) : rgb(0xCDD4DC);
   c[ImGuiCol_ScrollbarBg] = rgb(0, 0);

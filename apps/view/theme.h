@@ -6,6 +6,7 @@
 #include "emscape/render/camera.h"
 #include "emscape/render/frame_controller.h"
 #include "emscape/render/overlay.h"
+#include "emscape/scenario/emitter.h"
 
 namespace emscape::view {
 
@@ -14,7 +15,8 @@ ImGuiStyle styleOf(render::Theme theme, float scale);
 /// Amber while it changes, blue while it is being made exact, green when it stands: told apart by brightness
 /// too.
 ImVec4 stateColor(render::ControllerState state);
-ImVec4 markerColor(render::MarkerKind kind);
+/// As the overlay of the picture has them; darker on light ground.
+ImVec4 emitterColor(scenario::EmitterKind kind, render::Theme theme);
 ImVec4 accentColor(render::Theme theme);
 ImVec4 mutedColor(render::Theme theme);
 ImVec4 errorColor(render::Theme theme);

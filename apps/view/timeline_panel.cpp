@@ -132,11 +132,7 @@ void drawActivity(ImDrawList& list, const TimeAxis& axis, const Session& session
   const float row = height / static_cast<float>(scenario->emitters.size());
   float y = top;
   for (const scenario::Emitter& emitter : scenario->emitters) {
-    const render::MarkerKind kind = emitter.kind == scenario::EmitterKind::radar ? render::MarkerKind::radar
-                                    : emitter.kind == scenario::EmitterKind::transmitter
-                                        ? render::MarkerKind::transmitter
-                                        : render::MarkerKind::jammer;
-    const ImU32 ink = colorOf(markerColor(kind), 0.8F);
+    const ImU32 ink = colorOf(emitterColor(emitter.kind, session.theme()), 0.8F);
     const auto bar = [&](double begin_s, double end_s) {
       begin_s = std::clamp(begin_s, axis.begin_s, axis.end_s);
       end_s = std::clamp(end_s, axis.begin_s, axis.end_s);
