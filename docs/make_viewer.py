@@ -12,10 +12,11 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+BEGIN = [{"do": "seek", "time_s": 90}, {"do": "orbit", "azimuth_deg": 20, "elevation_deg": 4},
+         {"do": "panel", "name": "colors", "open": True}]
 PICTURES = {
-    "view_dark": (["--size", "1280x860"], [{"do": "seek", "time_s": 90}, {"do": "orbit", "azimuth_deg": 20, "elevation_deg": 4}]),
-    "view_light": (["--size", "1280x860", "--theme", "light"],
-                   [{"do": "panel", "name": "colors", "open": True}, {"do": "seek", "time_s": 90}]),
+    "view_dark": (["--size", "1280x860"], BEGIN),
+    "view_light": (["--size", "1280x860", "--theme", "light"], [*BEGIN, {"do": "panel", "name": "help", "open": True}]),
 }
 
 
@@ -30,7 +31,7 @@ def picture(programs, display, name, options, commands):
         subprocess.run([programs / "emscape", "view", ROOT / "scenarios" / "jacksboro.yaml", "--backend", "cpu", "--quiet", "--script", script, *options],
                        check=True, env={**os.environ, "DISPLAY": display, "LP_NUM_THREADS": "1"})
         subprocess.run(["ffmpeg", "-loglevel", "error", "-y", "-i", full, "-vf",
-                        "split[a][b];[a]palettegen=max_colors=128[p];[b][p]paletteuse=dither=none", target], check=True)
+                        "split[a][b];[a]palettegen=max_colors=256[p];[b][p]paletteuse=dither=bayer:bayer_scale=4", target], check=True)
     print(f"{target.relative_to(ROOT)}: {target.stat().st_size / 1024:.1f} KiB")
 
 

@@ -10,6 +10,7 @@
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
 #include "emscape/playback/inputs.h"
+#include "emscape/scenario/scenario_file.h"
 
 namespace emscape::view {
 namespace {
@@ -25,7 +26,11 @@ void show(const ViewOptions& options) {
       std::fprintf(stderr, "%s\n", line.c_str());
   });
   setThreadLimit(options.threads);
-  playback::inputKindOf(options.input);  // a wrong name is told before a window appears
+  // A wrong name, and all faults of a scenario, are told before a window appears.
+  if (playback::inputKindOf(options.input) == playback::InputKind::scenario &&
+      !scenario::parseScenario(options.input, options.edits).scenario) {
+    scenario::loadScenario(options.input, options.edits);
+  }
   const std::unique_ptr<App> app = withBackendFallback(
       parseBackend(options.backend),
       [&](const ResolvedBackend& choice) {

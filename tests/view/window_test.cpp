@@ -175,7 +175,7 @@ TEST_F(Window, KeysRunTheirActions) {
 }
 
 TEST_F(Window, EditsAreComputedUndoneAndRedone) {
-  const std::string emitter = "emitters.0.power_w";
+  const std::string emitter = "emitters.radar.power_w";
   const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
 {"do":"set","path":")" + emitter + R"(","value":"5"}
 {"do":"wait_state","state":"exact"}
