@@ -173,7 +173,7 @@ void LiveCaster::applyView(const ViewRequest& request) {
   }
   if (request.show_emitters.version != before.show_emitters.version) {
     painter_.showEmitters(request.show_emitters.value);
-    is_labels_only_ = true;
+    changeLabels();
   }
   if (request.pattern.version != before.pattern.version) {
     controller_options_.pattern = request.pattern.value;
@@ -192,7 +192,7 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
       !is_first && !is_other_ground && sameValues(field_->frame.volume, delivery.frame.volume);
   painter_.setScene(delivery.title, delivery.scene ? &*delivery.scene : nullptr);
   field_ = delivery;
-  is_labels_only_ = true;
+  changeLabels();
   if (!is_same_field) raise(is_other_grid ? SceneEvent::resized : SceneEvent::field);
   std::exception_ptr refused;
   try {
@@ -255,11 +255,20 @@ void LiveCaster::attempt(const std::function<void()>& change) {
 
 void LiveCaster::raise(SceneEvent event) {
   is_raised_ = true;
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    status_.complete = false;
-  }
+  progress_.complete = false;
+  countScene();
   if (canDraw()) controller_.event(event, now_ms());
+}
+
+void LiveCaster::countScene() {
+  ++progress_.scene;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status_.scene = progress_.scene;
+}
+
+void LiveCaster::changeLabels() {
+  is_labels_only_ = true;
+  countScene();
 }
 
 void LiveCaster::noteInput(Time since) {
@@ -303,10 +312,7 @@ void LiveCaster::drawFrame(const render::FramePlan& plan) {
   inArena([&] { drawn_ = painter_.draw(plan, &closing_); });
   has_image_ = drawn_.complete;
   if (drawn_.complete) {
-    if (drawn_.pattern == render::Pattern::full) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      status_.complete = true;
-    }
+    progress_.complete = drawn_.pattern == render::Pattern::full;
     publish();
   }
   const double other_ms =
@@ -326,10 +332,7 @@ void LiveCaster::restore() {
   is_drawing_ = false;
   has_image_ = restored.complete;
   if (controller_.restoreDone(restored.complete)) {
-    {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      status_.complete = true;
-    }
+    progress_.complete = true;
     publishState();
     publish();
   }
@@ -361,7 +364,7 @@ void LiveCaster::publish() {
     status.input_to_frame_ms = input_to_frame_ms_;
   }
   shown_input_.reset();
-  events_.publish(std::move(picture));
+  events_.publish(std::move(picture), progress_);
 }
 
 void LiveCaster::publishState() {

@@ -61,19 +61,26 @@ struct ViewRequest {
 struct CasterStatus {
   render::ControllerState state = render::ControllerState::idle;
   std::string reason;
-  bool complete = false;        ///< the picture shows the scene as it is here, and all of its pixels are cast
+  long long scene = 0;          ///< counts changes of what there is to be shown
   long long view_revision = 0;  ///< of the last requests that were taken
   long long field_revision = 0;
   std::string error;
   long long wake_ups = 0;
 };
 
+/// How far a picture is.
+struct PictureProgress {
+  long long scene = 0;    ///< that it shows
+  bool complete = false;  ///< all of its pixels are cast
+};
+
 /// Draws what was asked for last: the state machine of render::FrameController on a thread of its own.
 class LiveCaster {
  public:
   struct Events {
-    std::function<void(LivePicture)> publish;  ///< its status says what this thread knows
-    std::function<void()> changed;             ///< of the status
+    /// Its status says what this thread knows.
+    std::function<void(LivePicture, PictureProgress)> publish;
+    std::function<void()> changed;  ///< of the status
   };
 
   /// @param first    the request that `style` stands for
@@ -111,6 +118,8 @@ class LiveCaster {
   /// Makes a change; what it throws becomes the error of the status.
   void attempt(const std::function<void()>& change);
   void raise(render::SceneEvent event);
+  void changeLabels();
+  void countScene();
   void noteInput(Time since);
   // What the controller asks for
   bool canDraw() const;
@@ -141,6 +150,7 @@ class LiveCaster {
   ViewRequest view_;
   std::optional<FieldDelivery> field_;
   std::optional<ValueRange> range_;
+  PictureProgress progress_;     // of the picture
   bool is_labels_only_ = false;  // the next picture has other labels on what was cast
   bool is_raised_ = false;       // an event since the last frame was begun
   std::optional<Time> input_;    // the oldest that no picture shows yet

@@ -110,8 +110,8 @@ void LiveFields::serve() {
     const bool is_changed = applyChanges();
     const int index = source_->nearestIndex(wanted_.time_s);
     const Frame* frame = cache_.find(index);
-    if (!frame && !is_changed) {
-      const Time may_begin = field_begin_ + milliseconds(options_.min_seek_interval_ms);
+    if (!frame && !is_changed && field_begin_) {
+      const Time may_begin = *field_begin_ + milliseconds(options_.min_seek_interval_ms);
       if (SteadyClock::now() < may_begin) return waitUntil(may_begin);
     }
     if (index != index_) is_playing_ = index == index_ + 1;

@@ -125,9 +125,9 @@ class LiveFields {
   bool is_due_ = false;
   std::shared_ptr<const scenario::Scenario> scenario_;  // that the source has, if it is not the opened one
   std::string quantity_;
-  int index_ = 0;            // of the step asked for last, in the source
-  bool is_playing_ = false;  // steps are asked for one after another
-  Time field_begin_{};
+  int index_ = 0;                    // of the step asked for last, in the source
+  bool is_playing_ = false;          // steps are asked for one after another
+  std::optional<Time> field_begin_;  // of the last field
   Time quiet_from_{};
   long long fit_ = 0;          // the last that was begun
   std::vector<int> fit_left_;  // steps, the next one last

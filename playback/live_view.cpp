@@ -58,6 +58,7 @@ struct LiveView::Impl {
   ViewRequest view;          // as asked for last
   FieldRequest field;        // the same
   std::shared_ptr<const LivePicture> picture;
+  PictureProgress progress;  // of the picture
 
   LiveCaster caster;
   LiveFields fields;
@@ -69,7 +70,8 @@ struct LiveView::Impl {
         view(viewOf(style, options)),
         field(fieldOf(options)),
         caster(style, view, options.target, options.controller, options.cast_threads,
-               {[this](LivePicture made) { publish(std::move(made)); }, [this] { tell(); }}),
+               {[this](LivePicture made, PictureProgress of_made) { publish(std::move(made), of_made); },
+                [this] { tell(); }}),
         fields(
             [selection = selectionOf(input, scenario, options), target = options.target](
                 const StopFlag& stop) { return openFrameSource(selection, target, {}, &stop); },
@@ -92,9 +94,10 @@ struct LiveView::Impl {
     if (wake) wake();
   }
 
-  void publish(LivePicture made) {
+  void publish(LivePicture made, PictureProgress of_made) {
     {
       const std::lock_guard<std::mutex> lock(mutex);
+      progress = of_made;
       made.status.frame = picture ? picture->status.frame + 1 : 1;
       made.status = completed(made.status);
       picture = std::make_shared<const LivePicture>(std::move(made));
@@ -111,8 +114,8 @@ struct LiveView::Impl {
     status.state = cast.state;
     status.reason = cast.reason;
     status.computing = !is_field_shown && !has_failed;
-    status.exact =
-        status.frame > 0 && cast.complete && cast.view_revision == view.revision && !status.computing;
+    status.exact = progress.complete && progress.scene == cast.scene && cast.view_revision == view.revision &&
+                   !status.computing;
     status.asked_s = nearestOf(solve.times_s, field.time_s);
     status.fitting = solve.fitting;
     status.field_ms = solve.field_ms;

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <utility>
+
 #include "emscape/playback/scene.h"
 
 namespace emscape::playback {
@@ -38,7 +40,7 @@ void Painter::setFrame(const Frame& frame) {
   setLegend();
   if (is_other_grid) setGround(nullptr);
   setGround();
-  if (is_other_grid) fitCamera();  // after the legend, which takes space
+  if (is_other_grid) fitCamera();
   if (is_first_of_colors && style_.settings.mode == render::CompositingMode::iso) {
     render::checkIsoValue(renderer_.isoValue(), *frame.volume.host());
   }
@@ -173,6 +175,8 @@ void Painter::setLegend() {
   if (scene_ && frame_->volume.info().categorical) {
     annotations_.legend->categories = categoriesOf(*scene_->scenario);
   }
+  const double space = render::overlayMargins(style_.size, annotations_).right;
+  if (std::exchange(legend_space_, space) != space) fitCamera();
 }
 
 }  // namespace emscape::playback

@@ -90,6 +90,7 @@ class Painter {
   void setGround();
   void setGround(const scenario::TerrainPtr& ground);
   void setMarkers();
+  /// Fits the camera anew where the legend takes more or less space than before.
   void setLegend();
   render::Camera cameraOf(const render::CameraSpec& spec) const;
   void fitCamera();
@@ -104,6 +105,7 @@ class Painter {
   render::Image image_;
   bool fetched_ = false;  ///< image_ is what was drawn last
   bool has_colors_ = false;
+  double legend_space_ = 0;  ///< part of the width
 };
 
 }  // namespace emscape::playback
