@@ -67,32 +67,38 @@ class Live {
     return std::exchange(states_, {});
   }
 
-  /// Threads of the view wait in their next call of wake() until pass().
-  void hold() {
+  /// Threads of the view wait in their next call of wake() until pass(). @param state  in this state alone
+  void hold(std::optional<ControllerState> state = {}) {
     const std::lock_guard<std::mutex> lock(mutex_);
     holds_ = true;
+    held_state_ = state;
   }
   void waitUntilHeld() {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [this] { return held_ > 0; });
   }
-  void pass() {
+  /// Those that wait go on. @param next  they wait again in this state
+  void pass(std::optional<ControllerState> next = {}) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    holds_ = false;
+    ++passed_;
+    held_ = 0;
+    holds_ = next.has_value();
+    held_state_ = next;
     changed_.notify_all();
   }
 
  private:
   void wake() {
     std::unique_lock<std::mutex> lock(mutex_);
-    if (has_view_) {
-      const ControllerState state = view->status().state;
-      if (states_.empty() || states_.back() != state) states_.push_back(state);
-    }
+    changed_.notify_all();
+    if (!has_view_) return;
+    const ControllerState state = view->status().state;
+    if (states_.empty() || states_.back() != state) states_.push_back(state);
+    if (held_state_ && held_state_ != state) return;
+    if (!holds_) return;
     ++held_;
     changed_.notify_all();
-    changed_.wait(lock, [this] { return !holds_; });
-    --held_;
+    changed_.wait(lock, [this, passed = passed_] { return passed_ != passed; });
   }
 
   std::mutex mutex_;
@@ -100,7 +106,9 @@ class Live {
   std::vector<ControllerState> states_;
   bool has_view_ = false;
   bool holds_ = false;
+  std::optional<ControllerState> held_state_;
   int held_ = 0;
+  int passed_ = 0;
 
  public:
   std::unique_ptr<LiveView> view;
@@ -207,11 +215,20 @@ TEST(LiveView, AnEventStopsARestorationAndThePictureThatSettlesShowsIt) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
   Live live(expected.input);
-  for (int round = 0; round < 5; ++round) {
-    live.waitUntil([](const LiveStatus& status) { return status.state == ControllerState::restore; });
+  live.settled();
+  for (int round = 0; round < 3; ++round) {
+    live.hold(ControllerState::restore);
     expected.style.camera.azimuth_deg += 30;
     live.view->setCamera(expected.style.camera);
+    live.waitUntilHeld();
+    const auto interpolated = live.view->picture();
+    expected.style.camera.azimuth_deg += 30;
+    live.view->setCamera(expected.style.camera);
+    live.pass(ControllerState::busy);  // until the restoration has been stopped
+    live.waitUntilHeld();
+    EXPECT_EQ(live.view->picture(), interpolated) << "a stopped restoration is not shown";
     EXPECT_FALSE(live.view->status().exact);
+    live.pass();
   }
   expectSame(live.settled(), expected);
 }
