@@ -85,7 +85,7 @@ bool sameBeam(const EmitterBeam& a, const EmitterBeam& b) {
          steer_v == b.steer_v && eirp_over_4pi_w == b.eirp_over_4pi_w;
 }
 
-bool sameTable(const float* a, const float* b, int count) {
+bool sameTable(const float* a, const float* b, long long count) {
   if (a == nullptr || b == nullptr) return a == b;
   return std::equal(a, a + count, b);
 }
@@ -99,7 +99,7 @@ bool samePattern(const PatternView& a, const PatternView& b) {
          elevation_count == b.elevation_count && element_exponent == b.element_exponent &&
          sameTable(azimuth_table, b.azimuth_table, azimuth_count) &&
          sameTable(elevation_table, b.elevation_table, elevation_count) &&
-         sameTable(grid_table, b.grid_table, azimuth_count * elevation_count);
+         sameTable(grid_table, b.grid_table, static_cast<long long>(azimuth_count) * elevation_count);
 }
 
 /// The gain is in the beam's EIRP.
