@@ -1,4 +1,4 @@
-#include "emscape/base/utc.h"
+#include "base/utc.h"
 
 #include <fmt/format.h>
 

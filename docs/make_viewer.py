@@ -12,11 +12,25 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BEGIN = [{"do": "seek", "time_s": 90}, {"do": "orbit", "azimuth_deg": 20, "elevation_deg": 4},
-         {"do": "panel", "name": "colors", "open": True}]
+BEGIN = [{"do": "seek", "time_s": 90}, {"do": "orbit", "azimuth_deg": 20, "elevation_deg": 4}]
+CLOSED = {"do": "panel", "name": "scenario", "open": False}
+
+
+def opened(name):
+    return {"do": "panel", "name": name, "open": True}
+
+
+# Per picture: more options, and what is done before it is taken.
 PICTURES = {
-    "view_dark": (["--size", "1280x860"], BEGIN),
-    "view_light": (["--size", "1280x860", "--theme", "light"], [*BEGIN, {"do": "panel", "name": "help", "open": True}]),
+    "view_dark": ([], [*BEGIN, opened("colors")]),
+    "view_light": (["--theme", "light"], [*BEGIN, opened("help")]),
+    "view_what_if": ([], [*BEGIN, {"do": "set", "path": "emitters.search radar.frequency_hz", "value": "9.4e9"},
+                          {"do": "set", "path": "emitters.search radar.power_w", "value": "-3"}]),
+    "view_colors": ([], [*BEGIN, CLOSED, opened("colors"), {"do": "opacity_preset", "name": "shell"}]),
+    "view_probe": ([], [*BEGIN, CLOSED, opened("probe"), {"do": "probe", "latitude_deg": 36.33, "longitude_deg": -84.27, "height_agl_m": 50}, {"do": "wait_s", "seconds": 1},
+                      {"do": "mouse", "x": 210, "y": 314, "button": "left"}, {"do": "mouse", "x": 400, "y": 850}]),
+    "view_planes": ([], [*BEGIN, CLOSED, opened("planes"), {"do": "key", "key": "H"}, {"do": "key", "key": "Shift+H"}]),
+    "view_compare": ([], [*BEGIN, {"do": "set", "path": "emitters.jammer.power_w", "value": "15000"}, {"do": "key", "key": "C"}]),
 }
 
 
@@ -26,9 +40,9 @@ def picture(programs, display, name, options, commands):
         full = pathlib.Path(folder) / "full.png"
         script = pathlib.Path(folder) / "script.jsonl"
         settled = {"do": "wait_state", "state": "exact", "timeout_s": 120}
-        steps = [settled, *commands, settled, {"do": "wait_s", "seconds": 5}, {"do": "screenshot", "file": str(full)}, {"do": "quit"}]
+        steps = [settled, {"do": "mouse", "x": 400, "y": 850}, *commands, settled, {"do": "wait_s", "seconds": 5}, {"do": "screenshot", "file": str(full)}, {"do": "quit"}]
         script.write_text("".join(json.dumps(step) + "\n" for step in steps))
-        subprocess.run([programs / "emscape", "view", ROOT / "scenarios" / "jacksboro.yaml", "--backend", "cpu", "--quiet", "--script", script, *options],
+        subprocess.run([programs / "emscape", "view", ROOT / "scenarios" / "jacksboro.yaml", "--backend", "cpu", "--quiet", "--script", script, "--size", "1280x860", *options],
                        check=True, env={**os.environ, "DISPLAY": display, "LP_NUM_THREADS": "1"})
         subprocess.run(["ffmpeg", "-loglevel", "error", "-y", "-i", full, "-vf",
                         "split[a][b];[a]palettegen=max_colors=256[p];[b][p]paletteuse=dither=bayer:bayer_scale=4", target], check=True)

@@ -9,8 +9,8 @@
 #include <numeric>
 #include <set>
 
+#include "base/utc.h"
 #include "document/text_file.h"
-#include "emscape/base/utc.h"
 
 namespace emscape::document {
 

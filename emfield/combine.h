@@ -130,6 +130,10 @@ struct CombineEmitter {
   EmitterBeam beam;
   int emitter_index = 0;
   std::vector<ChannelShare> shares;
+  /// Power density (W/m2) at every voxel, dense order, excess loss included: written by the pass, or read by
+  /// it in place of being computed. Null: neither.
+  float* power_wm2 = nullptr;
+  bool power_is_known = false;
 };
 
 /// One pass over the grid.
@@ -143,6 +147,14 @@ struct CombineTask {
   std::vector<ConstAccumulator> initial;  ///< where each accumulator starts; value null: from nothing
   bool keep = false;                      ///< true: go on from what the accumulators hold
 };
+
+/// Whether a pass adds an emitter to any of its accumulators; radars' echoes are not added by it.
+inline bool takesPart(const CombineTask& task, const CombineEmitter& emitter) {
+  for (const ChannelShare& share : emitter.shares) {
+    if (task.accumulators[static_cast<std::size_t>(share.channel)].value != nullptr) return true;
+  }
+  return false;
+}
 
 /// Runs a pass on the CPU, rows of x in SIMD. Voxels below first_row_k are left as they are.
 void combineCpu(const CombineTask& task);

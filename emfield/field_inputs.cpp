@@ -102,11 +102,6 @@ bool samePattern(const PatternView& a, const PatternView& b) {
          sameTable(grid_table, b.grid_table, static_cast<long long>(azimuth_count) * elevation_count);
 }
 
-/// The gain is in the beam's EIRP.
-bool sameAntenna(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
-  return a == b || samePattern(a->view(), b->view());
-}
-
 bool sameChannelShare(const ChannelShare& a, const ChannelShare& b) {
   const auto& [channel, weight] = a;
   return channel == b.channel && weight == b.weight;
@@ -120,6 +115,10 @@ const Share* shareIn(const std::vector<Share>& shares, int channel) {
 }
 
 }  // namespace
+
+bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
+  return a == b || samePattern(a->view(), b->view());
+}
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const scenario::EmitterState& state) {
   // Who reads a member: nothing but the listed inputs enters geometry. What is not named below enters the
@@ -173,7 +172,7 @@ bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, 
   }
   const EmitterBeam& old_beam = before->member.emitter.beam;
   const EmitterBeam& beam = now->member.emitter.beam;
-  if (!sameAntenna(before->antenna, now->antenna) || old_beam.eirp_over_4pi_w != beam.eirp_over_4pi_w) {
+  if (!samePattern(before->antenna, now->antenna) || old_beam.eirp_over_4pi_w != beam.eirp_over_4pi_w) {
     return markAll(*now);
   }
   bool is_any = false;

@@ -41,6 +41,9 @@ struct CombineInputs {
   scenario::AntennaPtr antenna;
 };
 
+/// Whether two antennas, not null, have the same pattern; their gains may differ.
+bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b);
+
 /// Marks the channels in which an emitter's part is another one.
 /// @param before    of the last update; null: it was not active
 /// @param now       null: it is not active

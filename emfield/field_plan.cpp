@@ -1,35 +1,13 @@
 #include "emfield/field_plan.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "emfield/model_check.h"
 #include "emscape/base/units.h"
 
 namespace emscape::emfield {
-namespace {
 
 using scenario::Emitter;
-using scenario::ScanKind;
-
-/// How an emitter changes over time: 0 never, 1 at single moments, 2 all the time.
-int changesOverTime(const scenario::Scenario& scenario, const Emitter& emitter) {
-  const bool moves = scenario.platforms[static_cast<std::size_t>(emitter.platform)].track.size() > 1;
-  switch (emitter.scan.kind) {
-    case ScanKind::rotate:
-    case ScanKind::sector:
-    case ScanKind::raster:
-      return 2;
-    case ScanKind::dwell_list:
-      return moves ? 2 : 1;
-    case ScanKind::fixed:
-      break;
-  }
-  if (moves) return 2;
-  return emitter.active_s.empty() ? 0 : 1;
-}
-
-}  // namespace
 
 FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
                    const std::vector<std::string>& quantities, const FieldPlan* previous) {
@@ -52,11 +30,6 @@ FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
     const double dimension_m = emitter.antenna->apertureDimension_m(wavelength);
     plan.far_field_m.push_back(2 * dimension_m * dimension_m / wavelength);
   }
-  plan.order.resize(emitters.size());
-  std::iota(plan.order.begin(), plan.order.end(), 0);
-  std::stable_sort(plan.order.begin(), plan.order.end(), [&](int a, int b) {
-    return changesOverTime(*plan.scenario, emitters[a]) < changesOverTime(*plan.scenario, emitters[b]);
-  });
   return plan;
 }
 

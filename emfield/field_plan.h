@@ -1,4 +1,4 @@
-/// What a solver derives from a scenario alone: channels, how each is made, and the order of summation.
+/// What a solver derives from a scenario alone: channels, and how each is made.
 #pragma once
 
 #include <memory>
@@ -15,12 +15,7 @@ struct FieldPlan {
   std::vector<Channel> channels;
   std::vector<ChannelRecipe> recipes;  ///< one per channel
   std::vector<double> far_field_m;     ///< of each emitter: 2 D^2 / lambda
-  /// Indices of the emitters in the order in which every channel adds them up: those that never change over
-  /// time first, then those that change at single moments, then those that move or scan. The order is a
-  /// function of the scenario alone, so that sums of floats do not depend on earlier updates, and sums of the
-  /// emitters that come first serve many updates.
-  std::vector<int> order;
-  std::vector<std::string> warnings;  ///< of the models, on values of the scenario
+  std::vector<std::string> warnings;   ///< of the models, on values of the scenario
 };
 
 /// @param quantities  names; empty: the scenario's

@@ -38,7 +38,7 @@ struct FieldSolver::Impl {
   std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
   std::vector<volume::Volume> volumes;
 
-  /// So many emitters, in the order of the plan, have their sum in the engine's resting accumulators.
+  /// So many emitters, the first ones, have their sum in the engine's resting accumulators.
   int resting = 0;
   /// Emitters combined again though they had not changed, since the resting sum was last made.
   int wasted = 0;
@@ -57,7 +57,6 @@ struct FieldSolver::Impl {
   struct Changes {
     FieldChanged report;
     bool all = false;                   ///< everything is computed anew
-    bool all_sums = false;              ///< every channel is added up anew
     bool is_edited = false;             ///< by another scenario
     const FieldPlan* before = nullptr;  ///< the plan before an edit
     std::vector<bool> emitters;         ///< whose part in some channel is another one

@@ -60,13 +60,12 @@ void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
   }
 }
 
-/// Emitters that do not change are summed once: those that come before the first that changed in the plan's
-/// order, so that every sum is added up in that order. The resting sum is made anew when the emitters
-/// combined in vain since it was last made would have paid for it.
+/// Emitters that do not change are summed once: those before the first that changed, so that every sum is
+/// added up in the order of the scenario and does not depend on earlier updates. The resting sum is made anew
+/// when the emitters combined in vain since it was last made would have paid for it.
 void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
-  const std::vector<int>& order = setup.order;
-  const auto first_changed = static_cast<int>(
-      std::find_if(order.begin(), order.end(), [&](int e) { return changed[e]; }) - order.begin());
+  const auto first_changed =
+      static_cast<int>(std::find(changed.begin(), changed.end(), true) - changed.begin());
   int chosen = resting;
   if (resting > first_changed) {
     chosen = 0;
@@ -80,9 +79,8 @@ void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
   resting = chosen;
   std::vector<bool> has_resting;
   for (const Channel& channel : setup.channels) {
-    has_resting.push_back(std::any_of(order.begin(), order.begin() + resting, [&](int e) {
-      return std::find(channel.emitters.begin(), channel.emitters.end(), e) != channel.emitters.end();
-    }));
+    has_resting.push_back(
+        std::any_of(channel.emitters.begin(), channel.emitters.end(), [&](int e) { return e < resting; }));
   }
   engine->setResting(has_resting);
   if (resting > 0) combine(0, resting, has_resting, true);
@@ -114,7 +112,7 @@ CombineInputs FieldSolver::Impl::combineInputs(int e) const {
   return inputs;
 }
 
-/// Combines the active emitters begin..end - 1 of the plan's order: cached ones in one pass over the grid, as
+/// Combines the active emitters begin..end - 1: cached ones in one pass over the grid, as
 /// many as follow each other, each of the others in a pass of its own.
 void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& channel_chosen,
                                 bool into_resting) {
@@ -131,8 +129,7 @@ void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& cha
     pass.keep = true;
     pass.members.clear();
   };
-  for (int n = begin; n < end; ++n) {
-    const int e = setup.order[static_cast<std::size_t>(n)];
+  for (int e = begin; e < end; ++e) {
     const EmitterCache& cache = emitters[e];
     if (!cache.combined || !enters(cache.combined->member)) continue;
     if (!cache.is_cached) {

@@ -44,7 +44,6 @@ FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::
   try {
     if (edited) {
       changes.report.channels = changes.all || !haveSameChannels(setup, *edited);
-      changes.all_sums = setup.order != edited->order;
       before = std::exchange(static_cast<FieldPlan&>(setup), std::move(*edited));
       changes.before = &before;
     }
@@ -94,7 +93,7 @@ void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& cha
   computeGeometry(recomputed, false);
   if (isAny(changes.sums)) {
     chooseResting(changes.emitters);
-    combine(resting, static_cast<int>(setup.order.size()), changes.sums, false);
+    combine(resting, static_cast<int>(emitters.size()), changes.sums, false);
   }
   makeVolumes(snapshot, changes);
 }
@@ -127,7 +126,7 @@ void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& c
 /// Emitters whose part in some channel changed, and those channels.
 void FieldSolver::Impl::findCombined(Changes& changes) {
   FieldChanged& report = changes.report;
-  const bool is_all = changes.all || changes.all_sums || report.channels;
+  const bool is_all = changes.all || report.channels;
   changes.emitters.assign(emitters.size(), is_all);
   changes.sums.assign(setup.channels.size(), is_all);
   std::vector<bool> told(emitters.size());

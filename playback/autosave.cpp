@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "base/utc.h"
 #include "document/text_file.h"
 #include "emscape/base/error.h"
-#include "emscape/base/utc.h"
 #include "playback/file_names.h"
 
 namespace emscape::playback {

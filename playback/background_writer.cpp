@@ -1,4 +1,4 @@
-#include "emscape/playback/background_writer.h"
+#include "playback/background_writer.h"
 
 namespace emscape::playback {
 

@@ -4,31 +4,23 @@
 #include <utility>
 
 namespace emscape::playback {
-namespace {
 
-/// A word as a POSIX shell takes it unchanged.
-std::string shellWord(const std::string& text) {
-  const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           (c != '\0' && std::string("_-./,:=+@%").find(c) != std::string::npos);
-  });
-  if (is_plain) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
+ScenarioPtr edited(const ScenarioPtr& scenario, const std::vector<scenario::Edit>& edits) {
+  auto result = std::make_shared<scenario::Scenario>(*scenario);
+  result->set(edits);
+  // The hash is that of the text.
+  return result->hash == scenario->hash ? scenario : result;
 }
-
-}  // namespace
 
 EditHistory::EditHistory(ScenarioPtr scenario)
     : stack_(std::move(scenario)), saved_hash_(stack_.state()->hash) {}
 
 void EditHistory::set(const std::vector<scenario::Edit>& edits) {
-  auto edited = std::make_shared<scenario::Scenario>(*scenario());
-  edited->set(edits);
-  // The hash is that of the text.
-  if (edited->hash == scenario()->hash) return;
-  stack_.set(std::move(edited));
+  adopt(edited(scenario(), edits));
+}
+
+void EditHistory::adopt(ScenarioPtr edited) {
+  if (edited != scenario()) stack_.set(std::move(edited));
 }
 
 void EditHistory::endDrag() {
@@ -48,6 +40,17 @@ void EditHistory::redo() {
 
 bool EditHistory::isModified() const {
   return scenario()->hash != saved_hash_;
+}
+
+std::string shellWord(const std::string& text) {
+  const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           (c != '\0' && std::string("_-./,:=+@%").find(c) != std::string::npos);
+  });
+  if (is_plain) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
 }
 
 std::string commandText(const std::string& subcommand, const scenario::Scenario& scenario) {

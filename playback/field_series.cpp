@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/error.h"
+#include "emscape/emfield/quantities.h"
 #include "emscape/playback/stop.h"
+#include "emscape/volume/difference.h"
+#include "playback/difference_source.h"
 
 namespace emscape::playback {
 
@@ -51,6 +55,42 @@ void FieldSeries::setScenario(LoadedScenario input, std::vector<double> times_s)
   updated_step_ = -1;
 }
 
+void FieldSeries::compareWith(const LoadedScenario& reference, const std::string& name) {
+  emfield::FieldOptions options = options_;
+  options.move_tolerance_m = 0;  // else what a step shows depends on the steps before
+  auto series = std::make_unique<FieldSeries>(reference, times_s_, options, stop_);
+  const std::vector<emfield::Channel>& own = solver_.channels();
+  const std::vector<emfield::Channel>& others = series->channels();
+  const auto sameName = [](const emfield::Channel& a, const emfield::Channel& b) { return a.name == b.name; };
+  if (!std::equal(own.begin(), own.end(), others.begin(), others.end(), sameName)) {
+    throw Error(ErrorCode::bad_input, "the compared scenarios have other quantities or emitters in them");
+  }
+  std::vector<emfield::Channel> channels = own;
+  for (emfield::Channel& channel : channels) {
+    const emfield::QuantityInfo& quantity = emfield::info(channel.quantity);
+    volume::requireDifference(channel.name, quantity.categorical);
+    volume::VolumeInfo info;
+    info.quantity = channel.name;
+    info.unit = quantity.unit;
+    channel.name = volume::differenceInfo(info).quantity;
+  }
+  reference_ = std::move(series);
+  reference_name_ = name;
+  difference_channels_ = std::move(channels);
+}
+
+void FieldSeries::rehearse() {
+  update(0);
+  if (reference_) reference_->rehearse();
+}
+
+std::vector<std::string> FieldSeries::warnings() const {
+  std::vector<std::string> all = solver_.warnings();
+  if (!reference_) return all;
+  for (const std::string& warning : reference_->warnings()) all.push_back(reference_name_ + ": " + warning);
+  return all;
+}
+
 void FieldSeries::update(int step) {
   throwIfStopped(stop_);
   if (step == updated_step_) return;
@@ -83,6 +123,12 @@ std::vector<volume::Volume> FieldSeries::compute(int step) {
     info.time_utc = now.time_utc;
     volume.setInfo(std::move(info));
   }
+  if (!reference_) return volumes;
+  const std::vector<volume::Volume> others = reference_->compute(step);
+  for (std::size_t c = 0; c < volumes.size(); ++c) {
+    volumes[c] = differenceOf(volumes[c], others[c], reference_name_);
+  }
+  changed_ = changed_ || reference_->changed();
   return volumes;
 }
 

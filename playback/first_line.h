@@ -1,12 +1,23 @@
-/// Messages of several lines in places of one. Internal to the module.
+/// Failures as a status tells them. Internal to the module.
 #pragma once
 
+#include <exception>
 #include <string>
+
+#include "emscape/base/error.h"
 
 namespace emscape::playback {
 
-inline std::string firstLine(const std::string& text) {
-  return text.substr(0, text.find('\n'));
+inline ErrorCode codeOf(const std::exception& failure) {
+  const auto* error = dynamic_cast<const Error*>(&failure);
+  return error != nullptr ? error->code() : ErrorCode::other;
+}
+
+/// The first line of what has failed; where a device has failed, what can be done.
+inline std::string failureLine(const std::exception& failure) {
+  const std::string what = failure.what();
+  const char* help = codeOf(failure) == ErrorCode::device ? "; --backend cpu computes without the GPU" : "";
+  return what.substr(0, what.find('\n')) + help;
 }
 
 }  // namespace emscape::playback

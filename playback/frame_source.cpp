@@ -11,6 +11,8 @@
 #include "emscape/playback/stop.h"
 #include "emscape/playback/volume_input.h"
 #include "emscape/volume/file.h"
+#include "playback/difference_source.h"
+#include "playback/platform_tracks.h"
 
 namespace emscape::playback {
 namespace {
@@ -63,8 +65,9 @@ class ComputedFrames : public FrameSource {
     std::vector<volume::Volume> chosen{volumes[channelOf(series_->channels(), selection_.quantity)]};
     if (range_) setRanges(chosen, {*range_});
     const volume::Volume& volume = chosen.front();
-    return {volume, markersOf(series_->snapshot(index), series_->input().terrain.get(), volume.grid()),
-            series_->changed()};
+    const LoadedScenario& input = series_->input();
+    return {volume, markersOf(series_->snapshot(index), input.terrain.get(), volume.grid()),
+            tracks_.at(series_->time_s(index), input, volume.grid()), series_->changed()};
   }
   std::string name() const override { return series_->input().scenario->name; }
   const LoadedScenario* scene() const override { return &series_->input(); }
@@ -96,6 +99,7 @@ class ComputedFrames : public FrameSource {
   FrameSelection selection_;
   std::unique_ptr<FieldSeries> series_;
   std::optional<ValueRange> range_;
+  PlatformTracks tracks_;
 };
 
 /// Volumes from files.
@@ -106,7 +110,8 @@ class StoredFrames : public FrameSource {
     if (!selection.scenario.empty()) {
       scene_ = loadScenarioWithTerrain(selection.scenario, selection.edits);
     } else if (!selection.edits.empty()) {
-      throw Error(ErrorCode::usage, "edits change a scenario; volumes have none unless one is named beside them");
+      throw Error(ErrorCode::usage,
+                  "edits change a scenario; volumes have none unless one is named beside them");
     }
     namespace fs = std::filesystem;
     const fs::path input = selection.input;
@@ -125,11 +130,12 @@ class StoredFrames : public FrameSource {
       info.range_min = selection_.range->min;
       info.range_max = selection_.range->max;
     }
-    Frame frame{{volume, info}, {}, true};
+    Frame frame{{volume, info}, {}, {}, true};
     if (scene_ && volume->grid.georeferenced) {
       const scenario::Snapshot snapshot =
           scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), volume->info.time_s);
       frame.markers = markersOf(snapshot, scene_->terrain.get(), volume->grid);
+      frame.tracks = tracks_.at(volume->info.time_s, *scene_, volume->grid);
     }
     return frame;
   }
@@ -188,12 +194,17 @@ class StoredFrames : public FrameSource {
   std::vector<VolumeFile> files_;
   std::optional<LoadedScenario> scene_;
   std::string name_;
+  PlatformTracks tracks_;
 };
 
 }  // namespace
 
 void FrameSource::setScenario(std::shared_ptr<const scenario::Scenario> /*scenario*/) {
   throw Error(ErrorCode::usage, name() + ": volumes without a scenario cannot be edited");
+}
+
+void FrameSource::setComparison(bool on) {
+  if (on) throw Error(ErrorCode::usage, name() + ": there is nothing to compare with");
 }
 
 void FrameSource::setQuantity(const std::string& quantity) {
@@ -209,8 +220,10 @@ int FrameSource::nearestIndex(double time_s) const {
   return std::abs(this->time_s(last) - time_s) < std::abs(this->time_s(first) - time_s) ? last : first;
 }
 
-std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const ComputeTarget& target,
-                                             const ProgressSink& progress, const StopFlag* stop) {
+namespace {
+
+std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const ComputeTarget& target,
+                                       const ProgressSink& progress, const StopFlag* stop) {
   switch (inputKindOf(selection.input)) {
     case InputKind::scenario:
       return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input, selection.edits),
@@ -220,6 +233,56 @@ std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, co
     default:
       throw Error(ErrorCode::usage, selection.input + " is neither a scenario nor a volume");
   }
+}
+
+/// What frames of a selection are compared with.
+FrameSelection referenceOf(const FrameSelection& selection) {
+  FrameSelection reference = selection;
+  reference.scenario.clear();
+  reference.edits.clear();
+  if (selection.compare.empty() || selection.compare == kOriginal) {
+    if (inputKindOf(selection.input) != InputKind::scenario) {
+      throw Error(ErrorCode::usage, selection.input +
+                                        ": volumes have no original to compare with; name the other volumes "
+                                        "in its place");
+    }
+    return reference;
+  }
+  reference.input = selection.compare;
+  return reference;
+}
+
+std::unique_ptr<DifferenceSource> openComparison(const FrameSelection& selection, const ComputeTarget& target,
+                                                 const StopFlag* stop) {
+  FrameSelection field = selection;
+  field.independent = true;
+  const bool compares = !selection.compare.empty();
+  if (compares) {
+    field.range.reset();  // a range is that of the differences
+    referenceOf(field);   // what is wrong with it is told now
+  }
+  const auto openReference = [field, target, stop] {
+    return openField(referenceOf(field), target, {}, stop);
+  };
+  const std::string name =
+      !compares || selection.compare == kOriginal ? "the original scenario" : selection.compare;
+  return std::make_unique<DifferenceSource>(openField(field, target, {}, stop), openReference, name,
+                                            compares);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const ComputeTarget& target,
+                                             const ProgressSink& progress, const StopFlag* stop) {
+  if (selection.compare.empty() && !selection.independent)
+    return openField(selection, target, progress, stop);
+  std::unique_ptr<DifferenceSource> source = openComparison(selection, target, stop);
+  if (selection.range && !selection.compare.empty()) {
+    source->setRange(*selection.range);
+  } else if (!selection.independent && source->count() > 1) {
+    source->findRange(progress);
+  }
+  return source;
 }
 
 }  // namespace emscape::playback

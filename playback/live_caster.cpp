@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+#include "emscape/playback/picture_series.h"
 #include "playback/first_line.h"
 
 namespace emscape::playback {
@@ -13,6 +16,8 @@ namespace {
 using render::ControllerAction;
 using render::SceneEvent;
 using SteadyClock = std::chrono::steady_clock;
+
+constexpr std::size_t kMaxStateChanges = 1000;
 
 double between_ms(SteadyClock::time_point begin, SteadyClock::time_point end) {
   return std::chrono::duration<double, std::milli>(end - begin).count();
@@ -28,23 +33,12 @@ PictureStyle drawableStyle(PictureStyle style) {
   return style;
 }
 
-/// Which of the markers the ground hides, as a test of their positions that needs no renderer.
-render::HiddenTest hiddenAmong(const std::vector<render::Marker>& markers, const render::Renderer& renderer) {
-  std::vector<Vec3d> hidden_m;
-  for (const render::Marker& marker : markers) {
-    if (renderer.isHidden(marker.position_m)) hidden_m.push_back(marker.position_m);
-  }
-  return [hidden_m = std::move(hidden_m)](const Vec3d& position_m) {
-    return std::find(hidden_m.begin(), hidden_m.end(), position_m) != hidden_m.end();
-  };
-}
-
 }  // namespace
 
 LiveCaster::LiveCaster(const PictureStyle& style, const ViewRequest& first, const ComputeTarget& target,
-                       const render::ControllerOptions& controller, int threads, Events events)
+                       const render::ControllerOptions& controller, int threads, int niceness, Events events)
     : events_(std::move(events)),
-      arena_(threads > 0 ? std::make_unique<ThreadArena>(threads) : nullptr),
+      arena_(threads > 0 ? threads : threadCount(), niceness),
       painter_(drawableStyle(style), target),
       controller_options_(controller),
       controller_(controller),
@@ -71,11 +65,6 @@ void LiveCaster::deliver(FieldDelivery delivery, Mailbox<FieldDelivery>::Time as
   stop_restoration_ = true;
 }
 
-void LiveCaster::setSeriesRange(SeriesRange range) {
-  range_box_.put(range);
-  stop_restoration_ = true;
-}
-
 void LiveCaster::stop() {
   closing_ = true;
   stop_restoration_ = true;
@@ -85,6 +74,11 @@ void LiveCaster::stop() {
 CasterStatus LiveCaster::status() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return status_;
+}
+
+std::vector<StateChange> LiveCaster::takeStateChanges() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(state_changes_, {});
 }
 
 void LiveCaster::run() {
@@ -97,21 +91,20 @@ void LiveCaster::run() {
       controller_ = render::FrameController(controller_options_);
       is_drawing_ = false;
       has_image_ = false;
-      fail(error.what());
+      fail(failureLine(error));
     }
   }
 }
 
 bool LiveCaster::hasMail() const {
-  return !view_box_.isEmpty() || !field_box_.isEmpty() || !range_box_.isEmpty();
+  return !view_box_.isEmpty() || !field_box_.isEmpty();
 }
 
 void LiveCaster::takeMail() {
   Stopwatch watch;
   auto view = view_box_.take();
   auto field = field_box_.take();
-  const auto range = range_box_.take();
-  if (!view && !field && !range) return;
+  if (!view && !field) return;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.error.clear();
@@ -125,7 +118,6 @@ void LiveCaster::takeMail() {
     noteInput(view->since);
     applyView(view->value);
   }
-  if (range) applySeriesRange(range->value);
   prepare_ms_ += watch.lap_ms();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -175,6 +167,10 @@ void LiveCaster::applyView(const ViewRequest& request) {
     painter_.showEmitters(request.show_emitters.value);
     changeLabels();
   }
+  if (request.theme.version != before.theme.version) {
+    painter_.setTheme(request.theme.value);
+    changeLabels();
+  }
   if (request.pattern.version != before.pattern.version) {
     controller_options_.pattern = request.pattern.value;
     controller_.setOptions(controller_options_, now_ms());
@@ -184,7 +180,9 @@ void LiveCaster::applyView(const ViewRequest& request) {
 
 void LiveCaster::applyField(const FieldDelivery& delivery) {
   const bool is_first = !field_;
-  const bool is_other_quantity = field_ && field_->quantity != delivery.quantity;
+  const auto nameOf = [](const FieldDelivery& of) { return of.frame.volume.info().quantity; };
+  const bool is_other_quantity =
+      field_ && (field_->quantity != delivery.quantity || nameOf(*field_) != nameOf(delivery));
   const bool is_other_grid = field_ && field_->frame.volume.grid() != delivery.frame.volume.grid();
   const scenario::TerrainPtr ground = field_ && field_->scene ? field_->scene->terrain : nullptr;
   const bool is_other_ground = ground != (delivery.scene ? delivery.scene->terrain : nullptr);
@@ -213,15 +211,9 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
   if (refused) std::rethrow_exception(refused);
 }
 
-void LiveCaster::applySeriesRange(const SeriesRange& range) {
-  if (view_.colors.value.kind != ColorOrder::Kind::series || range.fit != view_.colors.version) return;
-  if (!range.range.empty()) attempt([&] { fitColorsTo(range.range); });
-}
-
 void LiveCaster::applyColors(const ColorOrder& order) {
   switch (order.kind) {
     case ColorOrder::Kind::first_step:
-    case ColorOrder::Kind::series:
       break;
     case ColorOrder::Kind::step:
       painter_.fitColors();
@@ -249,7 +241,7 @@ void LiveCaster::attempt(const std::function<void()>& change) {
   try {
     change();
   } catch (const std::exception& error) {
-    fail(error.what());
+    fail(failureLine(error));
   }
 }
 
@@ -280,6 +272,8 @@ bool LiveCaster::canDraw() const {
 }
 
 void LiveCaster::act(const ControllerAction& action) {
+  const bool settles = controller_.state() == render::ControllerState::idle && progress_.complete;
+  if (settles && has_image_ && !finished_is_exact_) publish();
   publishState();
   switch (action.kind) {
     case ControllerAction::Kind::draw:
@@ -309,7 +303,7 @@ void LiveCaster::drawFrame(const render::FramePlan& plan) {
   is_raised_ = false;
   shown_input_ = std::exchange(input_, std::nullopt);
   input_to_frame_ms_ = shown_input_ ? between_ms(*shown_input_, begin) : 0;
-  inArena([&] { drawn_ = painter_.draw(plan, &closing_); });
+  arena_.run([&] { drawn_ = painter_.draw(plan, &closing_); });
   has_image_ = drawn_.complete;
   if (drawn_.complete) {
     progress_.complete = drawn_.pattern == render::Pattern::full;
@@ -328,7 +322,7 @@ void LiveCaster::restore() {
   // Requests are put before the flag is set: one that came before the line above is in its box.
   if (hasMail() || closing_) stop_restoration_ = true;
   render::FrameReport restored;
-  inArena([&] { restored = painter_.restore(&stop_restoration_); });
+  arena_.run([&] { restored = painter_.restore(&stop_restoration_); });
   is_drawing_ = false;
   has_image_ = restored.complete;
   if (controller_.restoreDone(restored.complete)) {
@@ -339,13 +333,22 @@ void LiveCaster::restore() {
 }
 
 void LiveCaster::publish() {
+  Stopwatch watch;
   LivePicture picture;
-  inArena([&] { painter_.fetch(picture.image); });
+  arena_.run([&] {
+    painter_.fetch(picture.image);
+    const render::Pattern pattern = progress_.complete ? render::Pattern::full : drawn_.pattern;
+    const std::string note = pictureNote(painter_.renderer().settings(), pattern);
+    // The picture as it was cast takes a GPU longer to send: while it is busy the quantised one will do.
+    finished_is_exact_ = progress_.complete && (controller_.state() != render::ControllerState::busy ||
+                                                painter_.renderer().backend() == Backend::cpu);
+    picture.finished = finished_is_exact_ ? painter_.picture(note) : painter_.annotated(picture.image, note);
+  });
+  const double labels_ms = watch.lap_ms();
   const render::Renderer& renderer = painter_.renderer();
   picture.camera = renderer.camera();
   picture.box = renderer.sceneBox();
   picture.annotations = painter_.annotations();
-  picture.hidden = hiddenAmong(picture.annotations.markers, renderer);
   picture.transfer = renderer.transferFunction();
   picture.settings = renderer.settings();
   picture.range = range_;
@@ -354,10 +357,12 @@ void LiveCaster::publish() {
     picture.scenario = field_->scene->scenario;
     picture.terrain = field_->scene->terrain;
   }
+  picture.ground = painter_.heightField();
   LiveStatus& status = picture.status;
   status.pattern = drawn_.pattern;
   status.rays_fraction = static_cast<double>(drawn_.rays) / static_cast<double>(picture.image.size.count());
   status.cast_ms = drawn_.total_ms();
+  status.labels_ms = labels_ms;
   status.shown_s = picture.volume.info().time_s;
   if (shown_input_) {
     status.input_to_picture_ms = between_ms(*shown_input_, SteadyClock::now());
@@ -372,29 +377,23 @@ void LiveCaster::publishState() {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (status_.state == controller_.state()) return;
     status_.state = controller_.state();
+    if (state_changes_.size() >= kMaxStateChanges) state_changes_.erase(state_changes_.begin());
+    state_changes_.push_back({status_.state, SteadyClock::now()});
     status_.reason = controller_.reason();
   }
   events_.changed();
 }
 
-void LiveCaster::fail(const char* what) {
+void LiveCaster::fail(const std::string& what) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    status_.error = firstLine(what);
+    status_.error = what;
   }
   events_.changed();
 }
 
 double LiveCaster::now_ms() const {
   return between_ms(start_, SteadyClock::now());
-}
-
-void LiveCaster::inArena(const std::function<void()>& work) {
-  if (arena_) {
-    arena_->run(work);
-  } else {
-    work();
-  }
 }
 
 }  // namespace emscape::playback

@@ -10,13 +10,13 @@
 #include <string>
 #include <thread>
 
-#include "emscape/base/thread_arena.h"
+#include "base/thread_arena.h"
 #include "emscape/playback/async_task.h"
 #include "emscape/playback/live_view.h"
-#include "emscape/playback/mailbox.h"
 #include "emscape/playback/painter.h"
 #include "emscape/render/frame_controller.h"
 #include "playback/live_fields.h"
+#include "playback/mailbox.h"
 
 namespace emscape::playback {
 
@@ -37,7 +37,6 @@ struct ColorOrder {
   enum class Kind {
     first_step,  ///< fitted to the first step that is drawn, or as the style says
     step,        ///< fitted to the step on screen
-    series,      ///< over the range of the series, as soon as that is known
     range,
     function
   };
@@ -56,6 +55,7 @@ struct ViewRequest {
   Versioned<ColorOrder> colors;
   Versioned<bool> show_terrain;
   Versioned<bool> show_emitters;
+  Versioned<render::Theme> theme;
 };
 
 struct CasterStatus {
@@ -84,10 +84,11 @@ class LiveCaster {
   };
 
   /// @param first    the request that `style` stands for
-  /// @param threads  of loops; 0: all
+  /// @param threads   of loops; 0: all
+  /// @param niceness  of the threads
   /// @throws Error (bad_input, device)
   LiveCaster(const PictureStyle& style, const ViewRequest& first, const ComputeTarget& target,
-             const render::ControllerOptions& controller, int threads, Events events);
+             const render::ControllerOptions& controller, int threads, int niceness, Events events);
   ~LiveCaster();
   LiveCaster(const LiveCaster&) = delete;
   LiveCaster& operator=(const LiveCaster&) = delete;
@@ -95,13 +96,14 @@ class LiveCaster {
   /// Any thread calls these.
   void request(ViewRequest request);
   void deliver(FieldDelivery delivery, Mailbox<FieldDelivery>::Time asked);
-  void setSeriesRange(SeriesRange range);
   /// Ends what is under way soon.
   void stop();
   /// stop(), and waits for the end.
   void close();
   bool isDrawing() const { return is_drawing_; }
   CasterStatus status() const;
+  /// See LiveView.
+  std::vector<StateChange> takeStateChanges();
 
  private:
   using Time = std::chrono::steady_clock::time_point;
@@ -112,7 +114,6 @@ class LiveCaster {
   void takeMail();
   void applyView(const ViewRequest& request);
   void applyField(const FieldDelivery& delivery);
-  void applySeriesRange(const SeriesRange& range);
   void applyColors(const ColorOrder& order);
   void fitColorsTo(const ValueRange& range);
   /// Makes a change; what it throws becomes the error of the status.
@@ -128,22 +129,20 @@ class LiveCaster {
   void restore();
   void publish();
   void publishState();
-  void fail(const char* what);
+  void fail(const std::string& what);
   double now_ms() const;
-  void inArena(const std::function<void()>& work);
 
   const Events events_;
   Event event_;
   Mailbox<ViewRequest> view_box_{event_};
   Mailbox<FieldDelivery> field_box_{event_};
-  Mailbox<SeriesRange> range_box_{event_};
   StopFlag stop_restoration_{false};
   StopFlag closing_{false};
   std::atomic<bool> is_drawing_{false};
 
   // Of the thread
   const Time start_ = std::chrono::steady_clock::now();
-  std::unique_ptr<ThreadArena> arena_;  // null: all threads
+  ThreadArena arena_;
   Painter painter_;
   render::ControllerOptions controller_options_;
   render::FrameController controller_;
@@ -155,13 +154,15 @@ class LiveCaster {
   bool is_raised_ = false;       // an event since the last frame was begun
   std::optional<Time> input_;    // the oldest that no picture shows yet
   double input_to_frame_ms_ = 0;
-  double prepare_ms_ = 0;            // since the last frame
-  render::FrameReport drawn_;        // the busy frame
-  bool has_image_ = false;           // what was cast last can be shown again
+  double prepare_ms_ = 0;          // since the last frame
+  render::FrameReport drawn_;      // the busy frame
+  bool has_image_ = false;         // what was cast last can be shown again
+  bool finished_is_exact_ = true;  // the picture that was published last was not quantised before its labels
   std::optional<Time> shown_input_;  // that the next picture is the first to show
 
   mutable std::mutex mutex_;
   CasterStatus status_;
+  std::vector<StateChange> state_changes_;
 
   std::thread thread_;
 };

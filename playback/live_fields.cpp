@@ -34,9 +34,11 @@ LiveFields::LiveFields(Open open, FieldRequest first, const Options& options, Ev
     : open_(std::move(open)),
       options_(options),
       events_(std::move(events)),
-      arena_(std::make_unique<ThreadArena>(options.threads > 0 ? options.threads : threadCount() - 1)),
+      arena_(options.threads > 0 ? options.threads : threadCount(), options.niceness),
+      narrow_arena_(threadCount() - 1, options.niceness),
       cache_(options.cache_bytes) {
   quantity_ = first.quantity;
+  compares_ = first.compares;
   box_.put(std::move(first));
   thread_ = std::thread([this] { run(); });
 }
@@ -88,7 +90,8 @@ void LiveFields::open() {
   } catch (const std::exception& error) {
     source_ = nullptr;
     const std::lock_guard<std::mutex> lock(mutex_);
-    status_.error = firstLine(error.what());
+    status_.error = failureLine(error);
+    status_.error_code = codeOf(error);
   }
 }
 
@@ -97,13 +100,13 @@ void LiveFields::accept(Mailbox<FieldRequest>::Letter letter) {
   wanted_ = std::move(letter.value);
   is_due_ = true;
   quiet_from_ = SteadyClock::now() + milliseconds(kQuiet_ms);
-  if (wanted_.fit != fit_) beginFit();
+  if (wanted_.search != search_) beginSearch();
 }
 
 void LiveFields::serve() {
   if (!source_) {  // why is told already
-    const std::string error = status().error;
-    fail(error.c_str());
+    const FieldsStatus told = status();
+    fail(told.error, told.error_code);
     return;
   }
   try {
@@ -119,7 +122,7 @@ void LiveFields::serve() {
     deliver(frame ? *frame : compute(index));
   } catch (const Stopped&) {
   } catch (const std::exception& error) {
-    fail(error.what());
+    fail(failureLine(error), codeOf(error));
   }
 }
 
@@ -128,7 +131,8 @@ void LiveFields::serve() {
 bool LiveFields::applyChanges() {
   const bool is_edited = wanted_.scenario != scenario_;
   const bool is_other_quantity = wanted_.quantity != quantity_;
-  if (!is_edited && !is_other_quantity) return false;
+  const bool is_other_comparison = wanted_.compares != compares_;
+  if (!is_edited && !is_other_quantity && !is_other_comparison) return false;
   if (is_edited) {
     source_->setScenario(wanted_.scenario);
     scenario_ = wanted_.scenario;
@@ -139,7 +143,12 @@ bool LiveFields::applyChanges() {
     quantity_ = wanted_.quantity;
     cache_.clear();
   }
-  if (!fit_left_.empty()) beginFit();
+  if (is_other_comparison) {
+    source_->setComparison(wanted_.compares);
+    compares_ = wanted_.compares;
+    cache_.clear();
+  }
+  if (!search_left_.empty()) beginSearch();
   const std::lock_guard<std::mutex> lock(mutex_);
   status_.times_s = timesOf(*source_);
   status_.cached_steps.clear();
@@ -152,11 +161,8 @@ Frame LiveFields::compute(int index) {
   const FieldsStatus before = status();
   const bool shares = (events_.is_shared && events_.is_shared()) || before.field_ms > kLongField_ms;
   Frame frame;
-  if (options_.threads > 0 || (shares && before.fields_computed > 0)) {
-    arena_->run([&] { frame = source_->frame(index); });
-  } else {
-    frame = source_->frame(index);
-  }
+  const bool leaves_a_core = options_.threads == 0 && shares && before.fields_computed > 0;
+  (leaves_a_core ? narrow_arena_ : arena_).run([&] { frame = source_->frame(index); });
   cache_.keep(index, frame, distance());
   const std::lock_guard<std::mutex> lock(mutex_);
   status_.field_ms = watch.lap_ms();
@@ -177,29 +183,32 @@ void LiveFields::deliver(const Frame& frame) {
   events_.changed();
 }
 
-void LiveFields::fail(const char* what) {
+void LiveFields::fail(const std::string& line, ErrorCode code) {
   is_due_ = false;
-  fit_left_.clear();
+  search_left_.clear();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    status_.error = firstLine(what);
+    status_.error = line;
+    status_.error_code = code;
     status_.failed_revision = wanted_.revision;
-    status_.fitting = false;
+    if (status_.series.search != search_) status_.series = {search_, {}};
   }
   events_.changed();
 }
 
-void LiveFields::beginFit() {
-  fit_ = wanted_.fit;
-  fit_left_.clear();
-  fit_range_ = {};
-  if (source_) {
-    const int stride = rangeSearchStride(source_->count());
-    for (int index = 0; index < source_->count(); index += stride) fit_left_.push_back(index);
-    std::reverse(fit_left_.begin(), fit_left_.end());
-  }
+void LiveFields::beginSearch() {
+  search_ = wanted_.search;
+  search_left_.clear();
+  search_range_ = {};
+  if (!source_) return endSearch({});
+  const int stride = rangeSearchStride(source_->count());
+  for (int index = 0; index < source_->count(); index += stride) search_left_.push_back(index);
+  std::reverse(search_left_.begin(), search_left_.end());
+}
+
+void LiveFields::endSearch(const ValueRange& range) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  status_.fitting = !fit_left_.empty();
+  status_.series = {search_, range};
 }
 
 std::optional<int> LiveFields::idleStep() const {
@@ -210,7 +219,7 @@ std::optional<int> LiveFields::idleStep() const {
       if (!cache_.find(index) && cache_.wouldKeep(index, distance())) return index;
     }
   }
-  if (!fit_left_.empty()) return fit_left_.back();
+  if (!search_left_.empty()) return search_left_.back();
   return std::nullopt;
 }
 
@@ -218,22 +227,16 @@ void LiveFields::doIdleWork(int index) {
   try {
     const Frame* cached = cache_.find(index);
     const Frame frame = cached ? *cached : compute(index);
-    if (!fit_left_.empty() && index == fit_left_.back()) {
-      fit_range_.add({frame.volume.info().range_min, frame.volume.info().range_max});
-      fit_left_.pop_back();
-      if (fit_left_.empty()) {
-        {
-          const std::lock_guard<std::mutex> lock(mutex_);
-          status_.fitting = false;
-        }
-        if (events_.fitted) events_.fitted({fit_, fit_range_});
-      }
+    if (!search_left_.empty() && index == search_left_.back()) {
+      search_range_.add({frame.volume.info().range_min, frame.volume.info().range_max});
+      search_left_.pop_back();
+      if (search_left_.empty()) endSearch(search_range_);
     }
     events_.changed();
   } catch (const Stopped&) {
   } catch (const std::exception& error) {
     is_playing_ = false;
-    fail(error.what());
+    fail(failureLine(error), codeOf(error));
   }
 }
 

@@ -10,11 +10,12 @@
 #include <thread>
 #include <vector>
 
-#include "emscape/base/thread_arena.h"
+#include "base/thread_arena.h"
+#include "emscape/base/error.h"
 #include "emscape/playback/async_task.h"
 #include "emscape/playback/frame_source.h"
-#include "emscape/playback/mailbox.h"
 #include "playback/frame_cache.h"
+#include "playback/mailbox.h"
 
 namespace emscape::playback {
 
@@ -24,7 +25,8 @@ struct FieldRequest {
   double time_s = 0;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
   std::string quantity;
-  long long fit = 0;  ///< number of the search of the series' range that is asked for; 0: none
+  bool compares = false;  ///< with the reference: FrameSource::setComparison()
+  long long search = 0;   ///< number of the search of the series' range that is asked for; 0: none
 };
 
 /// A field and what belongs to it.
@@ -38,8 +40,8 @@ struct FieldDelivery {
 
 /// The range of the values of a series.
 struct SeriesRange {
-  long long fit = 0;  ///< of the request
-  ValueRange range;
+  long long search = 0;  ///< of the request
+  ValueRange range;      ///< empty: it was not found
 };
 
 struct FieldsStatus {
@@ -50,7 +52,8 @@ struct FieldsStatus {
   long long fields_computed = 0;
   long long failed_revision = 0;  ///< the last request that failed
   std::string error;              ///< why; empty once another request succeeded
-  bool fitting = false;
+  ErrorCode error_code = ErrorCode::other;
+  SeriesRange series;  ///< of the last search that ended
   long long wake_ups = 0;
 };
 
@@ -64,11 +67,11 @@ class LiveFields {
     double min_seek_interval_ms = 0;
     int steps_ahead = 0;
     int threads = 0;  ///< 0: one fewer than there are while others need them
+    int niceness = 0;
   };
   /// Called on the thread of this object. `deliver` and `changed` are required.
   struct Events {
     std::function<void(FieldDelivery, Mailbox<FieldRequest>::Time asked)> deliver;
-    std::function<void(SeriesRange)> fitted;
     std::function<void()> changed;    ///< of the status
     std::function<bool()> is_shared;  ///< whether others need the processor now; empty: no
   };
@@ -100,8 +103,9 @@ class LiveFields {
   bool applyChanges();
   Frame compute(int index);
   void deliver(const Frame& frame);
-  void fail(const char* what);
-  void beginFit();
+  void fail(const std::string& line, ErrorCode code);
+  void beginSearch();
+  void endSearch(const ValueRange& range);
   /// @return the step to be computed when nothing is asked for; none: there is nothing to do
   std::optional<int> idleStep() const;
   void doIdleWork(int index);
@@ -118,20 +122,22 @@ class LiveFields {
 
   // Of the thread
   std::unique_ptr<FrameSource> source_;
-  std::unique_ptr<ThreadArena> arena_;
+  ThreadArena arena_;         // of Options::threads; 0: all
+  ThreadArena narrow_arena_;  // leaves a core to others
   FrameCache cache_;
   FieldRequest wanted_;
   Time asked_;  // when
   bool is_due_ = false;
   std::shared_ptr<const scenario::Scenario> scenario_;  // that the source has, if it is not the opened one
   std::string quantity_;
+  bool compares_ = false;
   int index_ = 0;                    // of the step asked for last, in the source
   bool is_playing_ = false;          // steps are asked for one after another
   std::optional<Time> field_begin_;  // of the last field
   Time quiet_from_{};
-  long long fit_ = 0;          // the last that was begun
-  std::vector<int> fit_left_;  // steps, the next one last
-  ValueRange fit_range_;
+  long long search_ = 0;          // of the series' range: the last that was begun
+  std::vector<int> search_left_;  // steps, the next one last
+  ValueRange search_range_;
 
   mutable std::mutex mutex_;
   FieldsStatus status_;

@@ -25,7 +25,14 @@ ViewRequest viewOf(const PictureStyle& style, const LiveOptions& options) {
   view.pattern.value = options.controller.pattern;
   view.show_terrain.value = style.show_terrain;
   view.show_emitters.value = style.show_emitters;
+  view.theme.value = style.theme;
   return view;
+}
+
+/// Pictures of what there is come before fields.
+int solveNiceness(const LiveOptions& options) {
+  constexpr int kBehindPictures = 4;
+  return options.niceness > 0 ? options.niceness + kBehindPictures : 0;
 }
 
 FieldRequest fieldOf(const LiveOptions& options) {
@@ -33,6 +40,7 @@ FieldRequest fieldOf(const LiveOptions& options) {
   field.revision = 1;
   field.time_s = options.time_s;
   field.quantity = options.quantity;
+  field.compares = !options.compare.empty();
   return field;
 }
 
@@ -43,6 +51,7 @@ FrameSelection selectionOf(const std::string& input, const std::string& scenario
   selection.scenario = scenario;
   selection.quantity = options.quantity;
   selection.edits = options.edits;
+  selection.compare = options.compare;
   selection.allow_missing_terrain = options.allow_missing_terrain;
   selection.independent = true;
   return selection;
@@ -69,19 +78,18 @@ struct LiveView::Impl {
         device(options.target.device()),
         view(viewOf(style, options)),
         field(fieldOf(options)),
-        caster(style, view, options.target, options.controller, options.cast_threads,
+        caster(style, view, options.target, options.controller, options.cast_threads, options.niceness,
                {[this](LivePicture made, PictureProgress of_made) { publish(std::move(made), of_made); },
                 [this] { tell(); }}),
-        fields(
-            [selection = selectionOf(input, scenario, options), target = options.target](
-                const StopFlag& stop) { return openFrameSource(selection, target, {}, &stop); },
-            field,
-            {options.cache_bytes, options.min_seek_interval_ms, options.steps_ahead, options.solve_threads},
-            {[this](FieldDelivery delivery, Mailbox<FieldRequest>::Time asked) {
-               caster.deliver(std::move(delivery), asked);
-             },
-             [this](SeriesRange range) { caster.setSeriesRange(range); }, [this] { tell(); },
-             [this] { return caster.isDrawing(); }}) {}
+        fields([selection = selectionOf(input, scenario, options), target = options.target](
+                   const StopFlag& stop) { return openFrameSource(selection, target, {}, &stop); },
+               field,
+               {options.cache_bytes, options.min_seek_interval_ms, options.steps_ahead, options.solve_threads,
+                solveNiceness(options)},
+               {[this](FieldDelivery delivery, Mailbox<FieldRequest>::Time asked) {
+                  caster.deliver(std::move(delivery), asked);
+                },
+                [this] { tell(); }, [this] { return caster.isDrawing(); }}) {}
 
   /// Each thread calls the object of the other one: both end before either object goes.
   ~Impl() {
@@ -117,11 +125,13 @@ struct LiveView::Impl {
     status.exact = progress.complete && progress.scene == cast.scene && cast.view_revision == view.revision &&
                    !status.computing;
     status.asked_s = nearestOf(solve.times_s, field.time_s);
-    status.fitting = solve.fitting;
+    status.searching = solve.series.search != field.search;
+    if (!status.searching && !solve.series.range.empty()) status.series_range = solve.series.range;
     status.field_ms = solve.field_ms;
     status.fields_computed = solve.fields_computed;
     status.cached_steps = std::move(solve.cached_steps);
     status.error = solve.error.empty() ? cast.error : solve.error;
+    status.error_code = solve.error.empty() ? ErrorCode::other : solve.error_code;
     status.wake_ups = cast.wake_ups + solve.wake_ups;
     status.device = device;
     return status;
@@ -177,6 +187,10 @@ void LiveView::setQuantity(const std::string& quantity) {
   impl_->askField([&](FieldRequest& field) { field.quantity = quantity; });
 }
 
+void LiveView::setComparison(bool on) {
+  impl_->askField([&](FieldRequest& field) { field.compares = on; });
+}
+
 void LiveView::setCamera(const render::CameraSpec& camera) {
   impl_->askView([&](ViewRequest& view) { view.camera.set(camera); });
 }
@@ -205,17 +219,16 @@ void LiveView::showEmitters(bool show) {
   impl_->askView([&](ViewRequest& view) { view.show_emitters.set(show); });
 }
 
+void LiveView::setTheme(render::Theme theme) {
+  impl_->askView([&](ViewRequest& view) { view.theme.set(theme); });
+}
+
 void LiveView::fitToStep() {
   impl_->askView([](ViewRequest& view) { view.colors.set({ColorOrder::Kind::step, {}, {}}); });
 }
 
-void LiveView::fitToSeries() {
-  long long fit = 0;
-  impl_->askView([&](ViewRequest& view) {
-    view.colors.set({ColorOrder::Kind::series, {}, {}});
-    fit = view.colors.version;
-  });
-  impl_->askField([fit](FieldRequest& field) { field.fit = fit; });
+void LiveView::searchSeriesRange() {
+  impl_->askField([](FieldRequest& field) { ++field.search; });
 }
 
 void LiveView::setRange(const volume::ValueRange& range) {
@@ -230,6 +243,10 @@ std::shared_ptr<const LivePicture> LiveView::picture() const {
 LiveStatus LiveView::status() const {
   const std::lock_guard<std::mutex> lock(impl_->mutex);
   return impl_->completed(impl_->picture ? impl_->picture->status : LiveStatus{});
+}
+
+std::vector<StateChange> LiveView::takeStateChanges() {
+  return impl_->caster.takeStateChanges();
 }
 
 std::vector<double> LiveView::times_s() const {

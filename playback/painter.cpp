@@ -5,8 +5,18 @@
 #include <utility>
 
 #include "emscape/playback/scene.h"
+#include "playback/difference_source.h"
 
 namespace emscape::playback {
+namespace {
+
+/// Below the title: that a difference is shown, and to what.
+std::string subtitleOf(const volume::VolumeInfo& info) {
+  const auto reference = info.extra.find(kDifferenceToKey);
+  return reference == info.extra.end() ? "" : "difference to " + reference->second;
+}
+
+}  // namespace
 
 Painter::Painter(const PictureStyle& style, const FrameSource& source, const ComputeTarget& target)
     : Painter(style, target) {
@@ -35,6 +45,7 @@ void Painter::setFrame(const Frame& frame) {
   frame_ = frame;
   annotations_.time = fmt::format("t = {:g} s", frame.volume.info().time_s);
   annotations_.time_utc = frame.volume.info().time_utc;
+  annotations_.subtitle = subtitleOf(frame.volume.info());
   annotations_.georeferenced = frame.volume.grid().georeferenced;
   setMarkers();
   setLegend();
@@ -134,6 +145,12 @@ render::Image8 Painter::picture(const std::string& note) {
                          [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
 }
 
+render::Image8 Painter::annotated(const render::Image8& fetched, const std::string& note) {
+  annotations_.note = note;
+  return render::compose(fetched, renderer_.camera(), renderer_.sceneBox(), annotations_,
+                         [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
+}
+
 render::TransferFunction Painter::functionFor(const volume::Volume& volume) const {
   if (!style_.transfer.empty()) return render::readTransferFunction(style_.transfer, volume.info());
   if (style_.function && !volume.info().categorical) {
@@ -159,12 +176,15 @@ void Painter::setGround() {
 
 void Painter::setGround(const scenario::TerrainPtr& ground) {
   if (ground == ground_) return;
-  renderer_.setHeightField(ground ? heightFieldOf(*ground, frame_->volume.grid()) : nullptr);
+  height_field_ = ground ? heightFieldOf(*ground, frame_->volume.grid()) : nullptr;
+  renderer_.setHeightField(height_field_);
   ground_ = ground;
 }
 
 void Painter::setMarkers() {
-  annotations_.markers = style_.show_emitters && frame_ ? frame_->markers : std::vector<render::Marker>{};
+  const bool shows = style_.show_emitters && frame_;
+  annotations_.markers = shows ? frame_->markers : std::vector<render::Marker>{};
+  annotations_.tracks = shows ? frame_->tracks : std::vector<render::Track>{};
 }
 
 void Painter::setLegend() {

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "emscape/base/error.h"
+#include "emscape/base/units.h"
 #include "emscape/render/legend.h"
 #include "emscape/scenario/snapshot.h"
 
@@ -25,9 +26,9 @@ struct Ray {
   Vec3d at(double t) const { return origin_m + direction * t; }
 };
 
-/// @return none where the ray passes the box by, or the box lies behind the eye
-std::optional<Ray> rayThrough(const render::Camera& camera, const render::SceneBox& box,
-                              render::ImageSize size, double x, double y) {
+/// The whole ray before the camera.
+Ray rayOf(const render::Camera& camera, const render::SceneBox& box, render::ImageSize size, double x,
+          double y) {
   const Vec3d on_plane = camera.right * (camera.planeX(x, size) * camera.half_height) +
                          camera.up * (camera.planeY(y, size) * camera.half_height);
   const bool is_perspective = camera.projection == render::Projection::perspective;
@@ -35,7 +36,13 @@ std::optional<Ray> rayThrough(const render::Camera& camera, const render::SceneB
   const Vec3d drawn = is_perspective ? camera.forward + on_plane : camera.forward;
   // toFrame() is affine: a line stays a line.
   const Vec3d origin = box.toFrame(eye);
-  Ray ray{origin, box.toFrame(eye + drawn) - origin, 0, std::numeric_limits<double>::infinity()};
+  return {origin, box.toFrame(eye + drawn) - origin, 0, std::numeric_limits<double>::infinity()};
+}
+
+/// @return none where the ray passes the box by, or the box lies behind the eye
+std::optional<Ray> rayThrough(const render::Camera& camera, const render::SceneBox& box,
+                              render::ImageSize size, double x, double y) {
+  Ray ray = rayOf(camera, box, size, x, y);
   const std::array<std::array<double, 4>, 3> axes{
       {{ray.origin_m.x, ray.direction.x, box.lower_m.x, box.upper_m.x},
        {ray.origin_m.y, ray.direction.y, box.lower_m.y, box.upper_m.y},
@@ -51,6 +58,58 @@ std::optional<Ray> rayThrough(const render::Camera& camera, const render::SceneB
   }
   if (!(ray.begin < ray.end)) return std::nullopt;
   return ray;
+}
+
+/// What a plane keeps: dot(outward, position) <= offset, in frame metres.
+struct HalfSpace {
+  Vec3d outward;
+  double offset_m = 0;
+};
+
+HalfSpace halfSpaceOf(const render::CutPlane& plane, const render::SceneBox& box) {
+  using Side = render::CutPlane::Side;
+  HalfSpace kept{{0, 0, 1}, plane.altitude_m};
+  if (plane.kind == render::CutPlane::Kind::vertical) {
+    const double bearing_rad = degToRad(plane.bearing_deg);
+    kept.outward = {std::cos(bearing_rad), -std::sin(bearing_rad), 0};  // to the right of the line
+    const Vec3d point{plane.x_m.value_or((box.lower_m.x + box.upper_m.x) / 2),
+                      plane.y_m.value_or((box.lower_m.y + box.upper_m.y) / 2), 0};
+    kept.offset_m = dot(kept.outward, point) + plane.offset_m;
+  }
+  if (plane.keep == Side::above || plane.keep == Side::right) {
+    kept = {kept.outward * -1.0, -kept.offset_m};
+  }
+  return kept;
+}
+
+/// A ray that planes have clipped.
+struct ClippedRay {
+  Ray ray;
+  bool begins_at_plane = false, ends_at_plane = false;
+
+  bool isEmpty() const { return !(ray.begin < ray.end); }
+};
+
+/// @param of_ground  by the planes that cut the ground
+ClippedRay clipped(const Ray& ray, const std::vector<render::CutPlane>& planes, const render::SceneBox& box,
+                   bool of_ground) {
+  ClippedRay result{ray};
+  for (const render::CutPlane& plane : planes) {
+    if (!plane.on || (of_ground && plane.kind != render::CutPlane::Kind::vertical)) continue;
+    const HalfSpace kept = halfSpaceOf(plane, box);
+    const double rate = dot(kept.outward, ray.direction);
+    const double inside = kept.offset_m - dot(kept.outward, ray.origin_m);
+    if (rate == 0) {
+      if (inside < 0) result.ray.end = result.ray.begin;
+    } else if (rate < 0 && inside / rate > result.ray.begin) {
+      result.ray.begin = inside / rate;
+      result.begins_at_plane = true;
+    } else if (rate > 0 && inside / rate < result.ray.end) {
+      result.ray.end = inside / rate;
+      result.ends_at_plane = true;
+    }
+  }
+  return result;
 }
 
 /// Height of the ground (frame z, m), bilinear between posts; NaN over a hole.
@@ -194,17 +253,70 @@ std::vector<EmitterProbe> probeEmitters(const emfield::PathEnd& point, double ti
 
 std::optional<PickedPoint> pick(const render::Camera& camera, const render::SceneBox& box,
                                 render::ImageSize size, double x, double y, const DenseVolume& volume,
-                                const render::HeightField* ground) {
+                                const render::HeightField* ground,
+                                const std::vector<render::CutPlane>& planes) {
   const std::optional<Ray> ray = rayThrough(camera, box, size, x, y);
   if (!ray) return std::nullopt;
   using On = PickedPoint::On;
+  const ClippedRay kept = clipped(*ray, planes, box, /*of_ground=*/false);
+  std::optional<double> ground_t;
   if (ground != nullptr) {
-    if (const auto t = meetGround(*ray, *ground)) return PickedPoint{ray->at(*t), On::ground};
+    const ClippedRay over_ground = clipped(*ray, planes, box, /*of_ground=*/true);
+    if (!over_ground.isEmpty()) ground_t = meetGround(over_ground.ray, *ground);
   }
-  if (!volume.info.categorical) {
-    if (const auto t = strongestOn(*ray, volume)) return PickedPoint{ray->at(*t), On::strongest};
+  const auto shows = [&](bool is_section, double t) {
+    return is_section && !kept.isEmpty() && !(ground_t && *ground_t <= t) &&
+           sampleVolume(volume, ray->at(t)).kind == VolumeSample::Kind::value;
+  };
+  if (shows(kept.begins_at_plane, kept.ray.begin)) return PickedPoint{ray->at(kept.ray.begin), On::section};
+  if (shows(kept.ends_at_plane, kept.ray.end)) return PickedPoint{ray->at(kept.ray.end), On::section};
+  if (ground_t) return PickedPoint{ray->at(*ground_t), On::ground};
+  if (!volume.info.categorical && !kept.isEmpty()) {
+    if (const auto t = strongestOn(kept.ray, volume)) return PickedPoint{ray->at(*t), On::strongest};
   }
   return PickedPoint{ray->at(ray->begin), On::box};
+}
+
+Vec3d aboveGround(const Vec3d& ground_m, double height_agl_m, const DenseVolume& volume,
+                  const scenario::Terrain* terrain) {
+  if (!volume.grid.georeferenced || terrain == nullptr) return ground_m;
+  const GeoFrame frame(volume.grid.frame);
+  const GeodeticPosition below = frame.toGeodetic(ground_m);
+  const double ground_msl_m = terrain->heightMsl_m(below.latitude_deg, below.longitude_deg);
+  if (std::isnan(ground_msl_m)) return ground_m;
+  Vec3d position_m = ground_m;
+  position_m.z += ground_msl_m + height_agl_m - frame.heightMsl_m(ground_m);
+  // Into the lowest voxel above the ground: the one at this height may have its centre below it.
+  const VolumeSample sample = sampleVolume(volume, position_m);
+  if (sample.kind != VolumeSample::Kind::masked || volume.first_valid_k.empty()) return position_m;
+  const int first =
+      volume.first_valid_k[static_cast<std::size_t>(sample.voxel.y) * volume.grid.dims.x + sample.voxel.x];
+  if (first >= volume.grid.dims.z) return position_m;
+  position_m.z =
+      std::max(position_m.z, volume.grid.first_center_m.z + (first - 0.49) * volume.grid.spacing_m.z);
+  return position_m;
+}
+
+std::optional<Vec3d> pickGround(const render::Camera& camera, const render::SceneBox& box,
+                                render::ImageSize size, double x, double y, const render::HeightField& ground,
+                                const std::vector<render::CutPlane>& planes) {
+  const std::optional<Ray> ray = rayThrough(camera, box, size, x, y);
+  if (!ray) return std::nullopt;
+  const ClippedRay over_ground = clipped(*ray, planes, box, /*of_ground=*/true);
+  if (over_ground.isEmpty()) return std::nullopt;
+  const std::optional<double> t = meetGround(over_ground.ray, ground);
+  return t ? std::optional(ray->at(*t)) : std::nullopt;
+}
+
+std::optional<Vec3d> pickLevel(const render::Camera& camera, const render::SceneBox& box,
+                               render::ImageSize size, double x, double y, double z_m) {
+  const Ray ray = rayOf(camera, box, size, x, y);
+  const double t = (z_m - ray.origin_m.z) / ray.direction.z;
+  if (!(t > 0) || !std::isfinite(t)) return std::nullopt;
+  const Vec3d at = ray.at(t);
+  const bool is_inside =
+      at.x >= box.lower_m.x && at.x <= box.upper_m.x && at.y >= box.lower_m.y && at.y <= box.upper_m.y;
+  return is_inside ? std::optional(at) : std::nullopt;
 }
 
 VolumeSample sampleVolume(const DenseVolume& volume, const Vec3d& position_m) {

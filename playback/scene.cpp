@@ -31,7 +31,9 @@ double groundZ_m(const scenario::Terrain& terrain, const GeoFrame& frame, double
   return z_m;
 }
 
-render::MarkerKind markerKind(scenario::EmitterKind kind) {
+}  // namespace
+
+render::MarkerKind markerKindOf(scenario::EmitterKind kind) {
   switch (kind) {
     case scenario::EmitterKind::radar:
       return render::MarkerKind::radar;
@@ -42,8 +44,6 @@ render::MarkerKind markerKind(scenario::EmitterKind kind) {
   }
   return render::MarkerKind::transmitter;
 }
-
-}  // namespace
 
 std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
                                                          const volume::Grid& grid) {
@@ -80,7 +80,7 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
     render::Marker marker;
     marker.position_m = frame.toLocal(state.position);
     marker.label = emitter.name;
-    marker.kind = markerKind(emitter.kind);
+    marker.kind = markerKindOf(emitter.kind);
     marker.active = state.active;
     if (emitter.antenna->view().kind != scenario::PatternKind::isotropic) marker.beam = state.beam.forward;
     if (terrain) {

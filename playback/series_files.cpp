@@ -4,8 +4,8 @@
 
 #include "emscape/playback/series_writer.h"
 #include "emscape/volume/file.h"
-#include "emscape/volume/vti.h"
 #include "playback/file_names.h"
+#include "volume/vti.h"
 
 namespace emscape::playback {
 namespace {

@@ -58,15 +58,17 @@ Json recipeOf(const FieldSeries& series, const SeriesOptions& options) {
   }
   Json channels = Json::array();
   for (const emfield::Channel& channel : series.channels()) channels.push_back(channel.name);
-  return {{"scenario", scenario.name},
-          {"scenario hash", scenario.hash},
-          {"content of elevation files", elevations},
-          {"version of emscape", EMSCAPE_VERSION},
-          {"format", std::set<std::string>(options.formats.begin(), options.formats.end())},
-          {"quantity", channels},
-          {"range", options.range ? toJson(*options.range) : Json(nullptr)},
-          {"allow-missing-terrain", series.options().allow_missing_terrain},
-          {"times", series.times_s()}};
+  return {
+      {"scenario", scenario.name},
+      {"scenario hash", scenario.hash},
+      {"content of elevation files", elevations},
+      {"version of emscape", EMSCAPE_VERSION},
+      {"format", std::set<std::string>(options.formats.begin(), options.formats.end())},
+      {"quantity", channels},
+      {"range", options.range ? toJson(*options.range) : Json(nullptr)},
+      {"allow-missing-terrain", series.options().allow_missing_terrain},
+      {"compare", series.reference() != nullptr ? Json(series.reference()->scenario->hash) : Json(nullptr)},
+      {"times", series.times_s()}};
 }
 
 Json toJson(const ValueRange& range) {

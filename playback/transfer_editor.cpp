@@ -20,15 +20,27 @@ const TransferFunction& requireValues(const TransferFunction& function) {
   return function;
 }
 
+bool sameColors(const std::vector<TransferFunction::ColorPoint>& a,
+                const std::vector<TransferFunction::ColorPoint>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& p, const auto& q) {
+    return p.at == q.at && p.color.r == q.color.r && p.color.g == q.color.g && p.color.b == q.color.b;
+  });
+}
+
 bool same(const TransferFunction& a, const TransferFunction& b) {
   return a.name == b.name && a.unit == b.unit && a.categorical == b.categorical &&
-         std::equal(a.colors.begin(), a.colors.end(), b.colors.begin(), b.colors.end(),
-                    [](const auto& p, const auto& q) {
-                      return p.at == q.at && p.color.r == q.color.r && p.color.g == q.color.g &&
-                             p.color.b == q.color.b;
-                    }) &&
+         sameColors(a.colors, b.colors) &&
          std::equal(a.opacities.begin(), a.opacities.end(), b.opacities.begin(), b.opacities.end(),
                     [](const auto& p, const auto& q) { return p.at == q.at && p.opacity == q.opacity; });
+}
+
+std::vector<TransferFunction::ColorPoint> colorsOver(const render::ColorMap& map, double lowest,
+                                                     double highest) {
+  std::vector<TransferFunction::ColorPoint> colors;
+  for (const render::ColorMap::Point& point : map.points) {
+    colors.push_back({lowest + (highest - lowest) * point.at, point.color});
+  }
+  return colors;
 }
 
 }  // namespace
@@ -75,6 +87,7 @@ std::optional<int> TransferEditor::pointNear(double value, double position, doub
 
 int TransferEditor::add(double value, double opacity) {
   TransferFunction next = function();
+  value = std::clamp(value, next.lowest(), next.highest());
   const auto after = std::upper_bound(next.opacities.begin(), next.opacities.end(), value,
                                       [](double at, const auto& point) { return at < point.at; });
   const auto index = static_cast<int>(after - next.opacities.begin());
@@ -89,6 +102,7 @@ void TransferEditor::moveSelected(double value, double opacity) {
   TransferFunction next = function();
   const auto index = static_cast<std::size_t>(*selected_);
   auto& points = next.opacities;
+  value = std::clamp(value, next.lowest(), next.highest());
   if (index > 0) value = std::max(value, points[index - 1].at);
   if (index + 1 < points.size()) value = std::min(value, points[index + 1].at);
   points[index] = {value, std::clamp(opacity, 0.0, 1.0)};
@@ -105,32 +119,58 @@ void TransferEditor::removeSelected() {
   selected_ = std::min(*selected_, last);
 }
 
-void TransferEditor::setColorMap(const std::string& name) {
-  const render::ColorMap& map = render::colorMap(name);
+void TransferEditor::setOpacityPreset(const std::string& name, std::optional<double> at) {
   TransferFunction next = function();
-  const double lowest = next.lowest(), range = next.highest() - lowest;
-  next.colors.clear();
-  for (const render::ColorMap::Point& point : map.points) {
-    next.colors.push_back({lowest + range * point.at, point.color});
-  }
+  const double lowest = next.lowest(), highest = next.highest();
+  next.opacities = opacityPreset(name, lowest, highest, at.value_or(0.5 * (lowest + highest)));
+  selected_.reset();
   set(std::move(next));
 }
 
+void TransferEditor::scaleOpacities(double factor) {
+  TransferFunction next = function();
+  for (auto& point : next.opacities) point.opacity = std::clamp(point.opacity * factor, 0.0, 1.0);
+  set(std::move(next));
+}
+
+void TransferEditor::setColorMap(const std::string& name) {
+  const render::ColorMap& map = render::colorMap(name);
+  TransferFunction next = function();
+  next.colors = colorsOver(map, next.lowest(), next.highest());
+  set(std::move(next));
+}
+
+std::string TransferEditor::colorMap() const {
+  const double first = function().colors.front().at, range = function().colors.back().at - first;
+  for (const std::string& name : presets()) {
+    const auto& points = render::colorMap(name).points;
+    const auto isPoint = [&](const TransferFunction::ColorPoint& color,
+                             const render::ColorMap::Point& point) {
+      return std::abs(color.at - first - point.at * range) <= 1e-6 * range &&
+             color.color.r == point.color.r && color.color.g == point.color.g &&
+             color.color.b == point.color.b;
+    };
+    if (std::equal(function().colors.begin(), function().colors.end(), points.begin(), points.end(), isPoint))
+      return name;
+  }
+  return "";
+}
+
 void TransferEditor::fit(const volume::ValueRange& range) {
-  spread(range.min, range.max);
+  setInterval(range.min, range.max);
 }
 
 void TransferEditor::setLowest(double value) {
-  spread(value, function().highest());
+  setInterval(value, base().highest());
 }
 
 void TransferEditor::setHighest(double value) {
-  spread(function().lowest(), value);
+  setInterval(base().lowest(), value);
 }
 
-void TransferEditor::spread(double lowest, double highest) {
+void TransferEditor::setInterval(double lowest, double highest) {
   if (!(highest > lowest) || !std::isfinite(highest - lowest)) return;
-  TransferFunction next = function();
+  TransferFunction next = base();
   const double from = next.lowest(), to = next.highest();
   const auto moved = [&](double at) {
     // Ends are met exactly.
@@ -152,18 +192,25 @@ void TransferEditor::endDrag() {
 
 void TransferEditor::undo() {
   endDrag();
+  if (!stack_.canUndo()) return;
   stack_.undo();
+  ++changes_;
   checkSelection();
 }
 
 void TransferEditor::redo() {
   endDrag();
+  if (!stack_.canRedo()) return;
   stack_.redo();
+  ++changes_;
   checkSelection();
 }
 
 void TransferEditor::set(TransferFunction function) {
-  if (!same(function, this->function())) stack_.set(std::move(function));
+  if (!same(function, this->function())) {
+    stack_.set(std::move(function));
+    ++changes_;
+  }
   checkSelection();
 }
 

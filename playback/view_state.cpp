@@ -77,11 +77,13 @@ class ViewFormat {
          spec::optional("iso_value", value, ""),
          spec::optional("iso_opacity", spec::number().from(0).to(1), ""),
          spec::optional("vertical_exaggeration", spec::number().from(0).to(1000), ""),
+         spec::optional("planes", spec::listOf(text(1), 0, render::kMaxCutPlanes), ""),
          spec::optional("theme", spec::choice(kThemes), ""),
          spec::optional("show_terrain", boolean, ""),
          spec::optional("show_emitters", boolean, ""),
          spec::optional("size", spec::listOf(spec::simple(ValueType::integer).from(1).to(32768), 2, 2), ""),
          spec::optional("edits", spec::listOf(text(1), 0, kMaxItems), ""),
+         spec::optional("compare", text(), ""),
          spec::optional("open_panels", spec::listOf(text(1), 0, kMaxItems), "")}};
   }
   ViewFormat(const ViewFormat&) = delete;
@@ -117,6 +119,7 @@ class Reader {
           render::readTransferFunction(root.section("transfer"), format_.transfer(), nullptr, problems_);
     }
     readSettings(root, state.settings);
+    readTexts(root, "planes", render::parseCutPlane, state.settings.planes);
     if (root.has("theme")) state.theme = root.choice<render::Theme>("theme");
     read(root, "show_terrain", state.show_terrain);
     read(root, "show_emitters", state.show_emitters);
@@ -124,7 +127,8 @@ class Reader {
       const std::vector<double> size = root.numbers("size");
       state.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
     }
-    readEdits(root, state.edits);
+    readTexts(root, "edits", scenario::parseEdit, state.edits);
+    state.compare = root.text("compare");
     state.open_panels = root.texts("open_panels");
     return state;
   }
@@ -167,13 +171,16 @@ class Reader {
     read(root, "vertical_exaggeration", settings.vertical_exaggeration);
   }
 
-  void readEdits(const Section& root, std::vector<scenario::Edit>& edits) {
-    const std::vector<std::string> texts = root.texts("edits");
+  /// A list of texts that a function parses.
+  template <class Item>
+  void readTexts(const Section& root, const std::string& key, Item (*parse)(const std::string&),
+                 std::vector<Item>& items) {
+    const std::vector<std::string> texts = root.texts(key);
     for (std::size_t i = 0; i < texts.size(); ++i) {
       try {
-        edits.push_back(scenario::parseEdit(texts[i]));
+        items.push_back(parse(texts[i]));
       } catch (const Error& error) {
-        problems_.addError(root.placeOf("edits", i), error.message());
+        problems_.addError(root.placeOf(key, i), error.message());
       }
     }
   }
@@ -192,6 +199,13 @@ void refuseNewerVersion(const std::string& file, const DocumentNodePtr& root) {
       fmt::format("this view is of schema_version {}; this program reads {}", version->text, kVersion));
 }
 
+/// What is in the unit of what was shown before.
+void dropColors(ViewState& state) {
+  state.transfer.reset();
+  state.range.reset();
+  state.settings.iso_value = render::RenderSettings{}.iso_value;
+}
+
 void addCamera(const render::CameraSpec& camera, Json& json) {
   json["camera"] = toString(camera);
 }
@@ -205,6 +219,8 @@ void addSettings(const render::RenderSettings& settings, Json& json) {
   if (!std::isnan(settings.iso_value)) json["iso_value"] = settings.iso_value;
   json["iso_opacity"] = settings.iso_opacity;
   json["vertical_exaggeration"] = settings.vertical_exaggeration;
+  json["planes"] = Json::array();
+  for (const render::CutPlane& plane : settings.planes) json["planes"].push_back(toString(plane));
 }
 
 Json toJson(const std::vector<Bookmark>& bookmarks) {
@@ -262,6 +278,7 @@ std::string viewStateText(const ViewState& state) {
   json["size"] = {state.size.width, state.size.height};
   json["edits"] = Json::array();
   for (const scenario::Edit& edit : state.edits) json["edits"].push_back(toString(edit));
+  json["compare"] = state.compare;
   json["open_panels"] = state.open_panels;
   return document::jsonText(json);
 }
@@ -270,6 +287,22 @@ void writeViewState(const std::string& file, const ViewState& state) {
   const std::string text = viewStateText(state);
   parseViewState(text, file);
   writeWhole(file, [&text](std::ostream& out) { out << text; });
+}
+
+void changeQuantity(ViewState& state, const std::string& quantity) {
+  if (quantity == state.quantity) return;
+  state.quantity = quantity;
+  dropColors(state);
+}
+
+void changeComparison(ViewState& state, const std::string& compare) {
+  if (compare.empty() != state.compare.empty()) dropColors(state);
+  state.compare = compare;
+}
+
+void changeRange(ViewState& state, const volume::ValueRange& range) {
+  state.range = range;
+  state.transfer.reset();
 }
 
 PictureStyle pictureStyleOf(const ViewState& state) {

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <set>
-#include <string_view>
 #include <vector>
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "render/spec_text.h"
 
 namespace emscape::render {
 namespace {
@@ -58,27 +56,13 @@ const std::vector<NumberKey>& ownKeys(CameraSpec::Kind kind) {
   return kind == CameraSpec::Kind::orbit ? orbit : lookat;
 }
 
-[[noreturn]] void refuse(const std::string& text, const std::string& why) {
-  throw Error(ErrorCode::usage, fmt::format("camera '{}': {}", text, why));
-}
-
-Projection parseProjection(const std::string& text, const std::string& value) {
+Projection parseProjection(const SpecText& text, const std::string& value) {
   if (value == "perspective") return Projection::perspective;
   if (value == "orthographic") return Projection::orthographic;
-  refuse(text, fmt::format("projection '{}': expected perspective or orthographic", value));
+  text.refuse(fmt::format("projection '{}': expected perspective or orthographic", value));
 }
 
-std::vector<std::string> split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  std::size_t begin = 0;
-  for (std::size_t end = 0; end != std::string::npos; begin = end + 1) {
-    end = text.find(separator, begin);
-    parts.push_back(text.substr(begin, end == std::string::npos ? end : end - begin));
-  }
-  return parts;
-}
-
-void setKey(CameraSpec& spec, const std::string& text, const std::string& key, const std::string& value) {
+void setKey(CameraSpec& spec, const SpecText& text, const std::string& key, const std::string& value) {
   if (key == "projection") {
     spec.projection = parseProjection(text, value);
     return;
@@ -88,25 +72,18 @@ void setKey(CameraSpec& spec, const std::string& text, const std::string& key, c
     for (const NumberKey& known : *keys) {
       allowed += std::string(", ") + known.name;
       if (key != known.name) continue;
-      char* end = nullptr;
-      const double number = std::strtod(value.c_str(), &end);
-      if (value.empty() || *end != '\0' || !(number >= known.least && number <= known.largest)) {
-        refuse(text,
-               fmt::format("{} '{}': expected a number {}..{}", key, value, known.least, known.largest));
-      }
-      known.set(spec, number);
+      known.set(spec, text.number(key, value, known.least, known.largest));
       return;
     }
   }
-  refuse(text, fmt::format("unknown key '{}': expected {}", key, allowed));
+  text.refuseKey(key, allowed);
 }
 
-void requireWholePosition(const std::set<std::string>& keys, const std::string& text, const std::string& name,
-                          bool required) {
+void requireWholePosition(const SpecText& text, const std::string& name, bool required) {
   int given = 0;
-  for (const char* axis : {"_x_m", "_y_m", "_z_m"}) given += static_cast<int>(keys.count(name + axis));
+  for (const char* axis : {"_x_m", "_y_m", "_z_m"}) given += text.has(name + axis) ? 1 : 0;
   if (given != 3 && (required || given > 0)) {
-    refuse(text, fmt::format("{0}_x_m, {0}_y_m and {0}_z_m are needed together", name));
+    text.refuse(fmt::format("{0}_x_m, {0}_y_m and {0}_z_m are needed together", name));
   }
 }
 
@@ -240,27 +217,13 @@ SceneBox sceneBoxOf(const volume::Grid& grid, double vertical_exaggeration) {
 }
 
 CameraSpec parseCamera(const std::string& text) {
-  const std::size_t colon = text.find(':');
-  const std::string kind = text.substr(0, colon);
+  const SpecText parts("camera", text, {"orbit", "lookat"}, "orbit:KEY=VALUE,... or lookat:KEY=VALUE,...");
   CameraSpec spec;
-  if (kind == "lookat") {
-    spec.kind = CameraSpec::Kind::lookat;
-  } else if (kind != "orbit") {
-    refuse(text, "expected orbit:KEY=VALUE,... or lookat:KEY=VALUE,...");
-  }
-  std::set<std::string> seen;
-  if (colon != std::string::npos) {
-    for (const std::string& part : split(text.substr(colon + 1), ',')) {
-      const std::size_t equals = part.find('=');
-      if (equals == std::string::npos) refuse(text, fmt::format("'{}': expected KEY=VALUE", part));
-      const std::string key = part.substr(0, equals);
-      if (!seen.insert(key).second) refuse(text, fmt::format("{} is given twice", key));
-      setKey(spec, text, key, part.substr(equals + 1));
-    }
-  }
+  if (parts.kind() == "lookat") spec.kind = CameraSpec::Kind::lookat;
+  for (const auto& [key, value] : parts.entries()) setKey(spec, parts, key, value);
   const bool lookat = spec.kind == CameraSpec::Kind::lookat;
-  requireWholePosition(seen, text, "target", lookat);
-  if (lookat) requireWholePosition(seen, text, "eye", true);
+  requireWholePosition(parts, "target", lookat);
+  if (lookat) requireWholePosition(parts, "eye", true);
   return spec;
 }
 

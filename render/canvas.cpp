@@ -7,12 +7,14 @@
 #include <cstring>
 
 #include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 
 namespace emscape::render {
 namespace {
 
 constexpr const char* kFont = "DejaVu Sans";
+constexpr int kRowsAtOnce = 32;
 
 cairo_status_t append(void* text, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
@@ -71,32 +73,31 @@ Image8 Canvas::pixels() const {
   Image8 image;
   image.size = size_;
   image.rgba.resize(static_cast<std::size_t>(size_.count()) * 4);
-  std::uint8_t* out = image.rgba.data();
-  for (int y = 0; y < size_.height; ++y) {
-    for (int x = 0; x < size_.width; ++x, out += 4) {
-      std::uint32_t argb = 0;
-      std::memcpy(&argb, data + static_cast<std::ptrdiff_t>(y) * stride + 4 * x, 4);
-      out[0] = static_cast<std::uint8_t>(argb >> 16);
-      out[1] = static_cast<std::uint8_t>(argb >> 8);
-      out[2] = static_cast<std::uint8_t>(argb);
-      out[3] = static_cast<std::uint8_t>(argb >> 24);
+  parallelFor(size_.height, kRowsAtOnce, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      const auto* row =
+          reinterpret_cast<const std::uint32_t*>(data + static_cast<std::ptrdiff_t>(y) * stride);
+      std::uint8_t* out = &image.rgba[static_cast<std::size_t>(y) * size_.width * 4];
+      for (int x = 0; x < size_.width; ++x) {
+        const std::uint32_t argb = row[x];
+        // The bytes R, G, B, A in the order of memory.
+        const std::uint32_t rgba = (argb & 0xFF00FF00U) | (argb >> 16 & 0xFFU) | (argb & 0xFFU) << 16;
+        std::memcpy(out + 4 * x, &rgba, 4);
+      }
     }
-  }
+  });
   return image;
 }
 
-void Canvas::setPixels(const Image8& image) {
+void Canvas::changeRows(const std::function<void(int y, std::uint32_t* row)>& change) {
   cairo_surface_flush(surface_.get());
   unsigned char* data = cairo_image_surface_get_data(surface_.get());
   const int stride = cairo_image_surface_get_stride(surface_.get());
-  const std::uint8_t* in = image.rgba.data();
-  for (int y = 0; y < size_.height; ++y) {
-    for (int x = 0; x < size_.width; ++x, in += 4) {
-      const std::uint32_t argb = (std::uint32_t{in[3]} << 24) | (std::uint32_t{in[0]} << 16) |
-                                 (std::uint32_t{in[1]} << 8) | std::uint32_t{in[2]};
-      std::memcpy(data + static_cast<std::ptrdiff_t>(y) * stride + 4 * x, &argb, 4);
+  parallelFor(size_.height, kRowsAtOnce, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      change(y, reinterpret_cast<std::uint32_t*>(data + static_cast<std::ptrdiff_t>(y) * stride));
     }
-  }
+  });
   cairo_surface_mark_dirty(surface_.get());
 }
 

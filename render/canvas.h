@@ -1,6 +1,8 @@
 /// Drawing of lines, shapes and text on a picture: a thin hold on Cairo.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -53,9 +55,11 @@ class Canvas {
   /// Pixels as drawn so far, premultiplied.
   /// @pre not forSvg
   Image8 pixels() const;
-  /// Replaces all pixels.
+  /// Changes pixels one by one.
+  /// @param change  (y, row): row holds width() pixels 0xAARRGGBB, premultiplied; called for every row, on
+  /// any thread
   /// @pre not forSvg
-  void setPixels(const Image8& image);
+  void changeRows(const std::function<void(int y, std::uint32_t* row)>& change);
   /// The drawing as an SVG document. Nothing may be drawn after it.
   /// @pre forSvg
   std::string svg();

@@ -43,6 +43,8 @@ struct GroundView {
 
   /// The first point of the block on a ray between two distances.
   EMSCAPE_HD GroundHit firstHit(const Vec3d& origin, const Vec3d& direction, double begin, double end) const;
+  /// Colour of the block's inside, where it is cut. @param z  index space
+  EMSCAPE_HD Rgba cutColor(float z) const { return wallColor(z, 1.0F, 0.0F); }
 
  private:
   struct PostRay;  // the ray in post space from `begin` on

@@ -1,9 +1,11 @@
 #include <png.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <limits>
 
 #include "base/whole_file.h"
@@ -84,9 +86,11 @@ void writePng(const std::string& file, const Image8& image) {
   png.flags = PNG_IMAGE_FLAG_FAST;
   const std::vector<std::uint8_t> pixels = opaque ? withoutAlpha(image) : straightAlpha(image);
   const std::string partial = temporaryFor(file).string();
+  errno = 0;
   if (png_image_write_to_file(&png, partial.c_str(), 0, pixels.data(), 0, nullptr) == 0) {
+    const std::string cause = errno != 0 ? std::strerror(errno) : png.message;
     std::remove(partial.c_str());
-    throw Error(ErrorCode::other, "cannot write picture '" + file + "': " + png.message);
+    throw Error(ErrorCode::other, "cannot write picture '" + file + "': " + cause);
   }
   publish(partial, file);
 }

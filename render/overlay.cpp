@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
-#include "emscape/base/parallel.h"
 #include "render/names.h"
 #include "render/overlay_parts.h"
 #include "render/rgba.h"
@@ -21,26 +22,44 @@ constexpr double kTitle = 23;
 constexpr double kCompassRadius = 40;
 constexpr double kSmallestUnit = 0.62;
 
-/// The cast picture before a drawn one; the only quantisation of what was cast.
-Image8 castOver(const Image& cast, const Image8& behind) {
-  Image8 result;
-  result.size = cast.size;
-  result.rgba.resize(behind.rgba.size());
-  parallelFor(cast.size.height, 16, [&](int begin, int end) {
-    for (std::size_t i = static_cast<std::size_t>(begin) * cast.size.width;
-         i < static_cast<std::size_t>(end) * cast.size.width; ++i) {
-      const std::uint8_t* b = &behind.rgba[4 * i];
-      const Rgba back = Rgba{static_cast<float>(b[0]), static_cast<float>(b[1]), static_cast<float>(b[2]),
-                             static_cast<float>(b[3])} *
-                        (1.0F / 255.0F);
-      const Rgba pixel = over(cast.pixels[i], back);
-      result.rgba[4 * i] = quantized(pixel.r);
-      result.rgba[4 * i + 1] = quantized(pixel.g);
-      result.rgba[4 * i + 2] = quantized(pixel.b);
-      result.rgba[4 * i + 3] = quantized(pixel.a);
+/// What is seen of `back` behind `front`, of four premultiplied bytes each, rounded to nearest and clamped.
+std::uint32_t bytesOver(std::uint32_t front, std::uint32_t back) {
+  constexpr std::uint32_t kPair = 0x00FF00FFU;  // two bytes, each with room for carries
+  const std::uint32_t clear = 255 - (front >> 24);
+  const auto pairOver = [clear](std::uint32_t front_pair, std::uint32_t back_pair) {
+    std::uint32_t seen = back_pair * clear + 0x00800080U;
+    seen = (seen + (seen >> 8 & kPair)) >> 8 & kPair;  // divided by 255
+    const std::uint32_t sum = front_pair + seen;
+    return (sum | (sum >> 8 & 0x00010001U) * 255) & kPair;
+  };
+  return pairOver(front & kPair, back & kPair) | pairOver(front >> 8 & kPair, back >> 8 & kPair) << 8;
+}
+
+/// Puts a cast picture over what is drawn; the only quantisation of what was cast.
+void drawCast(Canvas& canvas, const Image& cast) {
+  canvas.changeRows([&](int y, std::uint32_t* row) {
+    const Rgba* pixels = &cast.pixels[static_cast<std::size_t>(y) * cast.size.width];
+    for (int x = 0; x < cast.size.width; ++x) {
+      const auto part = [drawn = row[x]](int shift) { return static_cast<float>(drawn >> shift & 0xFFU); };
+      const Rgba behind = Rgba{part(16), part(8), part(0), part(24)} * (1.0F / 255.0F);
+      const Rgba pixel = over(pixels[x], behind);
+      row[x] = std::uint32_t{quantized(pixel.a)} << 24 | std::uint32_t{quantized(pixel.r)} << 16 |
+               std::uint32_t{quantized(pixel.g)} << 8 | std::uint32_t{quantized(pixel.b)};
     }
   });
-  return result;
+}
+
+/// The same of a picture that is quantised.
+void drawCast(Canvas& canvas, const Image8& cast) {
+  canvas.changeRows([&](int y, std::uint32_t* row) {
+    const std::uint8_t* pixels = &cast.rgba[static_cast<std::size_t>(y) * cast.size.width * 4];
+    for (int x = 0; x < cast.size.width; ++x) {
+      std::uint32_t rgba = 0;
+      std::memcpy(&rgba, pixels + 4 * x, 4);
+      const std::uint32_t front = (rgba & 0xFF00FF00U) | (rgba >> 16 & 0xFFU) | (rgba & 0xFFU) << 16;
+      row[x] = bytesOver(front, row[x]);
+    }
+  });
 }
 
 void drawTexts(Canvas& canvas, const Style& style, const Annotations& annotations) {
@@ -93,8 +112,21 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     const double width = legendWidth(style, *annotations.legend);
     taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
   }
+  drawTracks(canvas, style, projector, annotations.tracks, hidden);
   drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
   drawTexts(canvas, style, annotations);
+}
+
+template <class AnyImage>
+Image8 composed(const AnyImage& cast, const Camera& camera, const SceneBox& box,
+                const Annotations& annotations, const HiddenTest& hidden) {
+  const Style style(cast.size, annotations.theme);
+  const Projector projector{camera, box, cast.size};
+  Canvas canvas(cast.size);
+  drawBehind(canvas, style, projector, annotations);
+  drawCast(canvas, cast);
+  drawInFront(canvas, style, projector, annotations, hidden);
+  return canvas.pixels();
 }
 
 }  // namespace
@@ -148,24 +180,12 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
 
 Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
                const HiddenTest& hidden) {
-  const Style style(cast.size, annotations.theme);
-  const Projector projector{camera, box, cast.size};
-  Canvas canvas(cast.size);
-  drawBehind(canvas, style, projector, annotations);
-  canvas.setPixels(castOver(cast, canvas.pixels()));
-  drawInFront(canvas, style, projector, annotations, hidden);
-  return canvas.pixels();
+  return composed(cast, camera, box, annotations, hidden);
 }
 
-OverlayLayers overlayLayers(ImageSize size, const Camera& camera, const SceneBox& box,
-                            const Annotations& annotations, const HiddenTest& hidden) {
-  const Style style(size, annotations.theme);
-  const Projector projector{camera, box, size};
-  Canvas behind(size);
-  drawBehind(behind, style, projector, annotations);
-  Canvas in_front(size);
-  drawInFront(in_front, style, projector, annotations, hidden);
-  return {behind.pixels(), in_front.pixels()};
+Image8 compose(const Image8& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
+               const HiddenTest& hidden) {
+  return composed(cast, camera, box, annotations, hidden);
 }
 
 }  // namespace emscape::render

@@ -13,22 +13,6 @@ constexpr double kRadius = 8;         // of a symbol, at 1200 x 900
 constexpr double kBeamLength = 0.14;  // in diagonals of the drawn box
 constexpr double kHiddenAlpha = 0.5;
 
-Rgb colorOf(MarkerKind kind) {
-  switch (kind) {
-    case MarkerKind::radar:
-      return parseColor("#ffffff");
-    case MarkerKind::transmitter:
-      return parseColor("#9fe0ff");
-    case MarkerKind::jammer:
-      return parseColor("#ff6b6b");
-    case MarkerKind::receiver:
-      return parseColor("#ffd166");
-    case MarkerKind::platform:
-      break;
-  }
-  return parseColor("#d0d7de");
-}
-
 std::vector<Point2> turned(const std::vector<Point2>& shape, const Point2& center, double radius) {
   std::vector<Point2> points;
   for (const Point2& p : shape) points.push_back(center + p * radius);
@@ -151,6 +135,22 @@ void drawLabel(Canvas& canvas, const Style& style, const PlacedMarker& placed, s
 }
 
 }  // namespace
+
+Rgb colorOf(MarkerKind kind) {
+  switch (kind) {
+    case MarkerKind::radar:
+      return parseColor("#ffffff");
+    case MarkerKind::transmitter:
+      return parseColor("#9fe0ff");
+    case MarkerKind::jammer:
+      return parseColor("#ff6b6b");
+    case MarkerKind::receiver:
+      return parseColor("#ffd166");
+    case MarkerKind::platform:
+      break;
+  }
+  return parseColor("#d0d7de");
+}
 
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
                  const std::vector<Marker>& markers, const HiddenTest& hidden, std::vector<Rect>& taken) {

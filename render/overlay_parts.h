@@ -42,9 +42,14 @@ double headerHeight(const Style& style);
 /// Width of the column that a legend takes, with its distance from the picture's edge (pixels).
 double legendWidth(const Style& style, const Legend& legend);
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend);
+/// Ways, as far as they lie above the box's bottom face and within its sides.
+void drawTracks(Canvas& canvas, const Style& style, const Projector& projector,
+                const std::vector<Track>& tracks, const HiddenTest& hidden);
 /// Stems, beams, symbols and names. Names avoid `taken`.
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
                  const std::vector<Marker>& markers, const HiddenTest& hidden, std::vector<Rect>& taken);
+/// Colour of a symbol and of what belongs to it.
+Rgb colorOf(MarkerKind kind);
 /// A compass rose lying on the ground as the camera sees it, centred at a point.
 void drawCompass(Canvas& canvas, const Style& style, const Camera& camera, const Point2& center,
                  double radius);

@@ -12,6 +12,7 @@
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "render/compositing.h"
+#include "render/cut.h"
 #include "render/ground.h"
 #include "render/isosurface.h"
 #include "render/ray_pieces.h"
@@ -90,6 +91,19 @@ EMSCAPE_HD inline RayIntervalOf<Real> clip(const RayOf<Real>& ray, const Vec3<Re
   return interval;
 }
 
+/// The ground where a ray meets it. What planes cut off of it shows a wall.
+EMSCAPE_HD inline GroundHit groundHit(const GroundView& ground, const CutView& cut, const Ray& ray) {
+  const RayInterval over_ground = clip(ray, ground.lower, ground.upper);
+  CutInterval left{over_ground.begin, over_ground.end};
+  cut.clip(ray.origin, ray.direction, true, left);
+  if (!(left.end > left.begin)) return {};
+  GroundHit hit = ground.firstHit(ray.origin, ray.direction, left.begin, left.end);
+  if (left.begins_at_plane && hit.found && hit.distance == left.begin) {
+    hit.color = ground.cutColor(static_cast<float>(ray.origin.z + ray.direction.z * left.begin));
+  }
+  return hit;
+}
+
 /// Colours of samples by their index in a transfer function's table, for RaycastTask::castVolume().
 struct TableColors {
   const Rgba* samples = nullptr;
@@ -103,6 +117,7 @@ struct RaycastTask {
   TransferView transfer;
   SkipView skip;
   GroundView ground;
+  CutView cut;
   ShadingView shading;
   IsoView iso;
   float step_voxels = 1;
@@ -114,18 +129,43 @@ struct RaycastTask {
 
   /// Where the ray of a pixel meets the ground.
   EMSCAPE_HD GroundHit groundAt(int x, int y) const {
-    if (ground.heights == nullptr) return {};
+    return ground.heights != nullptr ? groundHit(ground, cut, camera.ray(x, y)) : GroundHit{};
+  }
+
+  /// What the planes leave of a pixel's ray before the ground. Where they do not touch it: all that `limit`
+  /// allows. @param limit  where the ground is hit
+  template <class Sampler>
+  EMSCAPE_HD CutRay cutRay(int x, int y, float limit) const {
     const Ray ray = camera.ray(x, y);
-    const RayInterval over_ground = clip(ray, ground.lower, ground.upper);
-    if (!(over_ground.end > over_ground.begin)) return {};
-    return ground.firstHit(ray.origin, ray.direction, over_ground.begin, over_ground.end);
+    const RayInterval inside = clip(ray, volume.lower(), volume.upper());
+    CutInterval left{inside.begin, inside.end};
+    cut.clip(ray.origin, ray.direction, false, left);
+    if (limit < left.end) {
+      left.end = limit;
+      left.ends_at_plane = false;
+    }
+    if (!(left.end > left.begin)) return {{0.0F, 0.0F}, {}};
+    CutRay result{{0.0F, limit}, {}};
+    if (left.begins_at_plane) {
+      result.bounds.begin = static_cast<float>(left.begin);
+      result.section = sectionAt<Sampler>(ray, left.begin);
+      if (result.section.a > 0.0F) {
+        result.bounds.end = result.bounds.begin;
+        return result;
+      }
+    }
+    if (left.ends_at_plane) {
+      result.bounds.end = static_cast<float>(left.end);
+      result.section = sectionAt<Sampler>(ray, left.end);
+    }
+    return result;
   }
 
   /// The volume as a pixel shows it, premultiplied.
-  /// @param limit  no sample is taken beyond this distance from the ray's origin, where the ground is hit
+  /// @param bounds  the ground or a section ends the ray
   template <class Compositor, class Sampler>
-  EMSCAPE_HD Rgba castVolume(int x, int y, double limit) const {
-    return castVolume<Compositor, Sampler, true, 1>(x, y, limit, TableColors{transfer.samples},
+  EMSCAPE_HD Rgba castVolume(int x, int y, RayBounds bounds) const {
+    return castVolume<Compositor, Sampler, true, 1>(x, y, bounds, TableColors{transfer.samples},
                                                     volume_highest_f);
   }
 
@@ -134,9 +174,9 @@ struct RaycastTask {
   /// @param kBatch  so many samples are fetched before the first is composited, to wait for them once; what
   ///                comes out does not depend on it
   template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
-  EMSCAPE_HD Rgba castVolume(int x, int y, double limit, const Colors& colors, float highest_f) const {
+  EMSCAPE_HD Rgba castVolume(int x, int y, RayBounds bounds, const Colors& colors, float highest_f) const {
     Compositor compositor(opaque_enough, mida_gamma, highest_f);
-    const RayPieces pieces = piecesOf(x, y, limit);
+    const RayPieces pieces = piecesOf(x, y, bounds);
     constexpr int kHalves = Compositor::kParts == 1 ? 1 : kRayHalves;
     for (int half = 0; half < kHalves && pieces.count > 0; ++half) {
       Compositor next = compositor.behind();
@@ -177,18 +217,18 @@ struct RaycastTask {
                                                          compositor);
   }
 
-  /// The pieces of a pixel's ray in the volume, none where it does not meet it. @param limit  as above
-  EMSCAPE_HD RayPieces piecesOf(int x, int y, double limit) const {
+  /// The pieces of a pixel's ray in the volume, none where it does not meet it.
+  EMSCAPE_HD RayPieces piecesOf(int x, int y, RayBounds bounds) const {
     const Ray ray = camera.ray(x, y);
-    const RayInterval inside = insideOf(ray, limit);
+    const RayInterval inside = insideOf(ray, bounds);
     return piecesOf(ray, inside.end > inside.begin ? inside : RayInterval{});
   }
 
   /// The isosurface as a pixel shows it, premultiplied.
   template <class Sampler>
-  EMSCAPE_HD Rgba castSurface(int x, int y, double limit) const {
+  EMSCAPE_HD Rgba castSurface(int x, int y, RayBounds bounds) const {
     const Ray ray = camera.ray(x, y);
-    const RayInterval inside = insideOf(ray, limit);
+    const RayInterval inside = insideOf(ray, bounds);
     if (!(inside.end > inside.begin)) return {};
     const RayPieces pieces = piecesOf(ray, inside);
     const IsoHit hit = firstCrossing<Sampler>(volume, skip, pieces, iso.value, inside.begin > 0.0);
@@ -278,10 +318,17 @@ struct RaycastTask {
     return take(pieces.whole, quotient(pieces.last(), step_voxels), value, f, colorOf(f));
   }
 
-  EMSCAPE_HD RayInterval insideOf(const Ray& ray, double limit) const {
+  EMSCAPE_HD RayInterval insideOf(const Ray& ray, RayBounds bounds) const {
     RayInterval inside = clip(ray, volume.lower(), volume.upper());
-    if (limit < inside.end) inside.end = limit;
+    if (bounds.begin > inside.begin) inside.begin = bounds.begin;
+    if (bounds.end < inside.end) inside.end = bounds.end;
     return inside;
+  }
+  template <class Sampler>
+  EMSCAPE_HD Rgba sectionAt(const Ray& ray, double distance) const {
+    float value = 0;
+    const bool known = Sampler::sample(volume, vecCast<float>(ray.origin + ray.direction * distance), value);
+    return cut.color(transfer, known, value);
   }
   EMSCAPE_HD RayPieces piecesOf(const Ray& ray, const RayInterval& inside) const {
     return {vecCast<float>(ray.origin + ray.direction * inside.begin), vecCast<float>(ray.direction),

@@ -50,7 +50,7 @@ void Renderer::setVolume(const volume::Volume& volume) {
   } else {
     impl_->caster->setVolume(volume.dense());
   }
-  impl_->scene.setVolume(volume.grid(), volume.info().categorical);
+  impl_->scene.setVolume(volume.grid(), volume.info().categorical, volume.info().floor);
 }
 
 std::size_t Renderer::volumeBytes() const {

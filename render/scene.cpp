@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
+#include "emscape/base/units.h"
 
 namespace emscape::render {
 namespace {
@@ -45,6 +46,35 @@ CameraView viewOf(const Camera& camera, const IndexSpace& space, ImageSize size)
   return view;
 }
 
+/// Those that cut the ground.
+std::vector<CutPlane> planesOfGround(const std::vector<CutPlane>& planes) {
+  std::vector<CutPlane> cutting;
+  for (const CutPlane& plane : planes) {
+    if (plane.on && plane.kind == CutPlane::Kind::vertical) cutting.push_back(plane);
+  }
+  return cutting;
+}
+
+CutView::Plane viewOf(const CutPlane& plane, const volume::Grid& grid) {
+  // Outward of what is kept, in frame metres.
+  Vec3d outward{0, 0, 1};
+  Vec3d point_m{0, 0, plane.altitude_m};
+  const bool vertical = plane.kind == CutPlane::Kind::vertical;
+  if (vertical) {
+    const double bearing = degToRad(plane.bearing_deg);
+    const Vec3d right{std::cos(bearing), -std::sin(bearing), 0};
+    const Vec3d center_m = (grid.lower_m() + grid.upper_m()) * 0.5;
+    point_m = Vec3d{plane.x_m.value_or(center_m.x), plane.y_m.value_or(center_m.y), 0};
+    point_m = point_m + right * plane.offset_m;
+    outward = right;
+  }
+  if (plane.keep == CutPlane::Side::above || plane.keep == CutPlane::Side::right) outward = -outward;
+  const Vec3d normal{outward.x * grid.spacing_m.x, outward.y * grid.spacing_m.y,
+                     outward.z * grid.spacing_m.z};
+  const double scale = 1.0 / length(normal);
+  return {normal * scale, dot(outward, point_m - grid.first_center_m) * scale, vertical};
+}
+
 /// The light stands a little above and to the left of the viewer.
 ShadingView shadingOf(const Camera& camera, const IndexSpace& space) {
   constexpr double kLeft = 0.3, kAbove = 0.4;
@@ -57,10 +87,11 @@ ShadingView shadingOf(const Camera& camera, const IndexSpace& space) {
 
 }  // namespace
 
-void Scene::setVolume(const volume::Grid& grid, bool categorical) {
+void Scene::setVolume(const volume::Grid& grid, bool categorical, float floor) {
   if (!grid_ || *grid_ != grid) dropGround();
   grid_ = grid;
   categorical_ = categorical;
+  floor_ = floor;
 }
 
 void Scene::setHeightField(std::shared_ptr<const HeightField> height_field) {
@@ -85,6 +116,8 @@ void Scene::setSettings(const RenderSettings& settings) {
   requireRange("vertical exaggeration", settings.vertical_exaggeration, 0, 1000);
   requireRange("iso opacity", settings.iso_opacity, 0, 1);
   if (std::isinf(settings.iso_value)) throw Error(ErrorCode::bad_input, "iso value: must be finite");
+  checkCutPlanes(settings.planes);
+  if (planesOfGround(settings.planes) != planesOfGround(settings_.planes)) ++versions_.view;
   if (settings.step_voxels != settings_.step_voxels) table_.reset();
   if (settings.vertical_exaggeration != settings_.vertical_exaggeration) dropGround();
   if (settings.mode != settings_.mode || settings.iso_value != settings_.iso_value) ++versions_.levels;
@@ -119,10 +152,7 @@ bool Scene::isHidden(const Vec3d& frame_m) {
   const double distance = length(target - eye);
   if (!(distance > 0)) return false;
   const Ray ray{eye, (target - eye) / distance};
-  const GroundView view = ground_->view();
-  const RayInterval over_ground = clip(ray, view.lower, view.upper);
-  if (!(over_ground.end > over_ground.begin)) return false;
-  const GroundHit hit = view.firstHit(ray.origin, ray.direction, over_ground.begin, over_ground.end);
+  const GroundHit hit = groundHit(ground_->view(), cutView(), ray);
   // A marker that stands on the ground is not hidden by what it stands on.
   constexpr double kStandsOn_voxels = 0.5;
   return hit.found && hit.distance < distance - kStandsOn_voxels;
@@ -154,13 +184,35 @@ RaycastTask Scene::task(ImageSize size) const {
   task.iso = {static_cast<float>(iso_value), static_cast<float>(settings_.iso_opacity), color.r, color.g,
               color.b};
   if (ground_) task.ground = ground_->view();
+  task.cut = cutView();
+  task.cut.colors = table_->opaque().data();
   task.step_voxels = static_cast<float>(settings_.step_voxels);
   task.mida_gamma = static_cast<float>(settings_.mida_gamma);
   task.opaque_enough = settings_.exact ? kNeverOpaqueEnough : kOpaqueEnough;
   return task;
 }
 
+CutView Scene::cutView() const {
+  CutView view;
+  for (const CutPlane& plane : settings_.planes) {
+    if (plane.on) view.planes[view.count++] = viewOf(plane, grid());
+  }
+  // Interpolation may leave values a little apart from the floor.
+  constexpr double kNearFloor = 1e-3;  // of the transfer function's interval
+  view.floor = floor_;
+  view.near_floor = categorical_ || function_.opacities.empty()
+                        ? 0.5F
+                        : static_cast<float>(kNearFloor * (function_.highest() - function_.lowest()));
+  return view;
+}
+
+bool Scene::isCut() const {
+  const auto cuts = [](const CutPlane& plane) { return plane.on; };
+  return std::any_of(settings_.planes.begin(), settings_.planes.end(), cuts);
+}
+
 bool Scene::transparentShowsNothing() const {
+  if (isCut()) return false;
   return settings_.mode == CompositingMode::dvr ||
          (settings_.mode == CompositingMode::mida && settings_.mida_gamma <= 0);
 }

@@ -24,10 +24,11 @@ class Scene {
     unsigned table = 0;   ///< the transfer function's table
     unsigned levels = 0;  ///< what skipRule() says
     unsigned ground = 0;
-    unsigned view = 0;  ///< the camera, or the ground
+    unsigned view = 0;  ///< the camera, or the ground, or what planes cut off of it
   };
 
-  void setVolume(const volume::Grid& grid, bool categorical);
+  /// @param floor  value of voxels that hold no field
+  void setVolume(const volume::Grid& grid, bool categorical, float floor);
   /// @throws Error (bad_input) for an impossible field
   void setHeightField(std::shared_ptr<const HeightField> height_field);
   void setTransferFunction(const TransferFunction& function);
@@ -55,15 +56,19 @@ class Scene {
   /// To be cast with the values of the volume and its bricks: `volume`, `skip` and `volume_highest_f` are
   /// left open.
   RaycastTask task(ImageSize size) const;
+  /// Whether planes cut the volume.
+  bool isCut() const;
   /// Whether rays that meet transparent samples alone are transparent.
   bool transparentShowsNothing() const;
 
  private:
   void dropGround();
+  CutView cutView() const;
   void prepareGround();
 
   std::optional<volume::Grid> grid_;
   bool categorical_ = false;
+  float floor_ = 0;
   std::shared_ptr<const HeightField> height_field_;
   TransferFunction function_;
   Camera camera_;

@@ -75,6 +75,11 @@ constexpr TransferFunction::OpacityPoint kProbabilityOpacity[] = {{0.0, 0.0},  {
 constexpr TransferFunction::OpacityPoint kRatioOpacity[] = {{-30, 0},  {-30, 0.04}, {-3, 0.04}, {0, 0.08},
                                                             {3, 0.01}, {10, 0.002}, {30, 0.003}};
 
+/// Of a difference, where it is a part of the largest one, in either direction: clear where little has
+/// changed.
+constexpr TransferFunction::OpacityPoint kDifferenceOpacity[] = {
+    {0.03, 0.0}, {0.1, 0.003}, {0.3, 0.015}, {0.6, 0.04}, {1.0, 0.1}};
+
 TransferFunction namedDefault(const volume::VolumeInfo& info) {
   TransferFunction function;
   function.name = "default";
@@ -115,6 +120,38 @@ double roundUnit(double range) {
   return range / power >= 50 ? 5 * power : power;
 }
 
+bool hasScale(const volume::VolumeInfo& info, const char* scale) {
+  const auto found = info.extra.find(volume::kScaleKey);
+  return found != info.extra.end() && found->second == scale;
+}
+
+/// Blue below 0, orange above, symmetrical about it. @param largest  difference; 0: there is none
+TransferFunction functionOfDifference(const volume::VolumeInfo& info, double largest) {
+  TransferFunction function = namedDefault(info);
+  if (!(largest > 0)) largest = 1;
+  const double unit = roundUnit(2 * largest);
+  largest = std::ceil(largest / unit) * unit;
+  function.colors = colorsOver(colorMap("diverging"), -largest, largest);
+  for (const TransferFunction::OpacityPoint& point : kDifferenceOpacity) {
+    function.opacities.push_back({point.at * largest, point.opacity});
+    function.opacities.insert(function.opacities.begin(), {-point.at * largest, point.opacity});
+  }
+  return function;
+}
+
+/// What all but a few of the differences of a volume are not larger than: those to the floor would leave the
+/// others without colours.
+double usualDifference(const volume::DenseVolume& volume) {
+  constexpr double kPart = 0.95;
+  std::vector<float> values = sortedSample(volume);
+  if (values.empty()) return 0;
+  for (float& value : values) value = std::abs(value);
+  const auto usual =
+      values.begin() + static_cast<std::ptrdiff_t>(kPart * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), usual, values.end());
+  return double{*usual};
+}
+
 /// The function of a scale that the volume names; none for volumes that name none.
 std::optional<TransferFunction> functionOfScale(const volume::VolumeInfo& info) {
   const auto scale = info.extra.find(volume::kScaleKey);
@@ -124,6 +161,10 @@ std::optional<TransferFunction> functionOfScale(const volume::VolumeInfo& info) 
     function.colors = colorsOver(colorMap("viridis"), 0, 1);
     function.opacities.assign(std::begin(kProbabilityOpacity), std::end(kProbabilityOpacity));
     return function;
+  }
+  if (scale->second == volume::kDifferenceScale) {
+    return functionOfDifference(info,
+                                std::max(std::abs(double{info.range_min}), std::abs(double{info.range_max})));
   }
   const bool is_above = scale->second == volume::kRatioAboveScale;
   if (!is_above && scale->second != volume::kRatioBelowScale) return std::nullopt;
@@ -222,6 +263,9 @@ TransferFunction defaultTransferFunction(const volume::VolumeInfo& info) {
 }
 
 TransferFunction defaultTransferFunction(const volume::DenseVolume& volume) {
+  if (hasScale(volume.info, volume::kDifferenceScale)) {
+    return functionOfDifference(volume.info, usualDifference(volume));
+  }
   if (const auto function = functionOfScale(volume.info)) return *function;
   const std::vector<float> values = sortedSample(volume);
   if (volume.info.categorical || values.empty()) return defaultTransferFunction(volume.info);

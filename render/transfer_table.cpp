@@ -40,6 +40,7 @@ TransferTable::TransferTable(const TransferFunction& function, double step_voxel
     const double opacity = opacities[static_cast<std::size_t>(i)];
     const Rgb color = function.color(lowest_ + i * spacing);
     samples_.push_back(premultiplied(color, 1 - std::pow(1 - opacity, step_voxels)));
+    opaque_.push_back(premultiplied(color, 1));
     projected_.push_back(premultiplied(color, largest > 0 ? opacity / largest : 0));
     visible_before_.push_back(visible_before_.back() + (samples_.back().a > 0 ? 1 : 0));
   }

@@ -20,6 +20,8 @@ class TransferTable {
   TransferTable(const TransferFunction& function, double step_voxels);
 
   TransferView view() const;
+  /// The colour of each entry, opaque.
+  const std::vector<Rgba>& opaque() const { return opaque_; }
   /// @param iso_value  of the isosurface, in that mode
   SkipRule skipRule(CompositingMode mode, float iso_value) const;
   int entries() const { return static_cast<int>(samples_.size()); }
@@ -27,6 +29,7 @@ class TransferTable {
  private:
   std::vector<Rgba> samples_;
   std::vector<Rgba> projected_;
+  std::vector<Rgba> opaque_;
   std::vector<int> visible_before_;  ///< how many entries before each have an opacity
   double lowest_ = 0;
   double highest_ = 1;

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/utc.h"
 #include "emscape/base/error.h"
-#include "emscape/base/utc.h"
 
 namespace emscape::scenario {
 

@@ -10,7 +10,7 @@
 #include "base/whole_file.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
-#include "emscape/scenario/antenna_shapes.h"
+#include "scenario/antenna_shapes.h"
 
 namespace emscape::scenario {
 

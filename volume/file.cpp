@@ -6,11 +6,11 @@
 #include <set>
 #include <tuple>
 
-#include "emscape/volume/nvdb.h"
-#include "emscape/volume/raw.h"
-#include "emscape/volume/vdb.h"
-#include "emscape/volume/vti.h"
+#include "volume/nvdb.h"
+#include "volume/raw.h"
 #include "volume/stored_range.h"
+#include "volume/vdb.h"
+#include "volume/vti.h"
 
 namespace emscape::volume {
 namespace fs = std::filesystem;

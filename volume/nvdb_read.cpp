@@ -2,10 +2,10 @@
 #include <cmath>
 
 #include "base/whole_file.h"
-#include "emscape/volume/nvdb.h"
 #include "emscape/volume/statistics.h"
 #include "volume/byte_reader.h"
 #include "volume/nanovdb_wrapper.h"
+#include "volume/nvdb.h"
 #include "volume/sparse.h"
 #include "volume/volume_json.h"
 

@@ -1,6 +1,6 @@
 #include "base/whole_file.h"
-#include "emscape/volume/nvdb.h"
 #include "volume/nanovdb_grid.h"
+#include "volume/nvdb.h"
 #include "volume/volume_json.h"
 
 namespace emscape::volume {

@@ -1,4 +1,4 @@
-#include "emscape/volume/raw.h"
+#include "volume/raw.h"
 
 #include <fstream>
 #include <regex>

@@ -8,8 +8,8 @@
 #include "base/whole_file.h"
 #include "emscape/base/log.h"
 #include "emscape/volume/statistics.h"
-#include "emscape/volume/vdb.h"
 #include "volume/sparse.h"
+#include "volume/vdb.h"
 #include "volume/vdb_grid.h"
 #include "volume/vdb_layout.h"
 

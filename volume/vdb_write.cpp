@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "base/whole_file.h"
-#include "emscape/volume/vdb.h"
+#include "volume/vdb.h"
 #include "volume/vdb_grid.h"
 #include "volume/vdb_layout.h"
 #include "volume/volume_json.h"

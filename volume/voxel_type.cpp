@@ -1,4 +1,4 @@
-#include "emscape/volume/voxel_type.h"
+#include "volume/voxel_type.h"
 
 #include <algorithm>
 #include <cstring>

@@ -4,9 +4,9 @@
 #include <string_view>
 
 #include "emscape/volume/statistics.h"
-#include "emscape/volume/voxel_type.h"
-#include "emscape/volume/vti.h"
 #include "volume/volume_json.h"
+#include "volume/voxel_type.h"
+#include "volume/vti.h"
 #include "volume/vtk_xml.h"
 
 namespace emscape::volume {

@@ -4,9 +4,9 @@
 
 #include "base/whole_file.h"
 #include "emscape/base/parallel.h"
-#include "emscape/volume/vti.h"
 #include "volume/stored_range.h"
 #include "volume/volume_json.h"
+#include "volume/vti.h"
 #include "volume/vtk_xml.h"
 
 namespace emscape::volume {

@@ -12,6 +12,7 @@ void addBench(CLI::App& app, const GlobalOptions& global, Action& action) {
   addBenchModels(*bench, global, action);
   addBenchReconstruction(*bench, global, action);
   addBenchRender(*bench, global, action);
+  addBenchView(*bench, global, action);
 }
 
 }  // namespace emscape::app

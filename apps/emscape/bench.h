@@ -9,5 +9,6 @@ void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action)
 void addBenchModels(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchRender(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchReconstruction(CLI::App& bench, const GlobalOptions& global, Action& action);
+void addBenchView(CLI::App& bench, const GlobalOptions& global, Action& action);
 
 }  // namespace emscape::app

@@ -20,4 +20,30 @@ void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits) {
       ->allow_extra_args(false);
 }
 
+void addCompareOption(CLI::App& command, std::string& compare, const std::string& what) {
+  command.add_option("--compare", compare,
+                     what +
+                         " what differs from the scenario without the --set edits (original), or from "
+                         "another scenario on the same grid (FILE)");
+}
+
+void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes) {
+  const auto take = [&planes](const std::vector<std::string>& texts) {
+    try {
+      planes.clear();
+      for (const std::string& text : texts) planes.push_back(render::parseCutPlane(text));
+      render::checkCutPlanes(planes);
+    } catch (const Error& error) {
+      throw CLI::ValidationError("--plane", error.message());
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--plane", take,
+          "Cuts the volume open: horizontal:altitude_m=..[,keep=below|above] or "
+          "vertical:bearing_deg=..[,x_m=..,y_m=..,offset_m=..,keep=left|right] (docs/view-state.md); may be "
+          "given 3 times")
+      ->allow_extra_args(false);
+}
+
 }  // namespace emscape::app

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
+#include "emscape/render/cut_plane.h"
 #include "emscape/scenario/edit.h"
 
 namespace emscape::app {
@@ -33,6 +34,12 @@ std::string optionText(Hint hint);
 /// --set PATH=VALUE, which may be given several times. @throws Error (usage) when it is parsed, for a text
 /// without '='
 void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits);
+
+/// --compare original|FILE. @param what  the command makes, for the help
+void addCompareOption(CLI::App& command, std::string& compare, const std::string& what);
+/// --plane, which may be given several times; replaces what `planes` holds. @throws Error (usage) when it is
+/// parsed, for a text that is no plane and for too many
+void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes);
 
 /// Runs the subcommand that was chosen; returns the exit status.
 using Action = std::function<int()>;

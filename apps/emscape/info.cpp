@@ -10,10 +10,10 @@
 #include "emscape/emfield/field_solver.h"
 #include "emscape/playback/inputs.h"
 #include "emscape/playback/volume_input.h"
-#include "emscape/scenario/antenna_shapes.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/volume/file.h"
 #include "emscape/volume/statistics.h"
+#include "scenario/antenna_shapes.h"
 
 namespace emscape::app {
 namespace {

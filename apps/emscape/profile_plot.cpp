@@ -9,6 +9,7 @@
 
 #include "base/whole_file.h"
 #include "emscape/base/units.h"
+#include "emscape/emfield/path_report.h"
 #include "emscape/render/legend.h"
 #include "render/canvas.h"
 
@@ -167,10 +168,7 @@ class ProfilePlot {
     canvas_.outline(rim, kZoneRim, unit_, true);
   }
 
-  bool isBlocked() const {
-    return std::any_of(budget_.obstacles.begin(), budget_.obstacles.end(),
-                       [](const PathObstacle& obstacle) { return obstacle.clearance_m < 0; });
-  }
+  bool isBlocked() const { return emfield::isBlocked(budget_); }
 
   void drawRay() {
     const Point2 begin = at(0.0, profile_.begin.height_msl_m),

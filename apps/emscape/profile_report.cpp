@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
+#include "emscape/emfield/path_report.h"
 
 namespace emscape::app {
 namespace {
@@ -14,6 +15,7 @@ using emfield::BudgetTerm;
 using emfield::PathBudget;
 using emfield::PathEnd;
 using emfield::PathObstacle;
+using emfield::valueText;
 
 /// A finite number, or null.
 Json number(double value) {
@@ -69,32 +71,11 @@ Json toJson(const Comparison& comparison) {
   return json;
 }
 
-std::string ofEnd(const PathEnd& end, double ground_msl_m, bool has_terrain) {
-  return fmt::format("{:.5f}, {:.5f} deg; {:.1f} m above mean sea level (EGM96), {:.1f} m above {}",
-                     end.position.latitude_deg, end.position.longitude_deg, end.height_msl_m,
-                     end.height_msl_m - ground_msl_m,
-                     has_terrain ? "ground" : "the smooth earth (no terrain)");
-}
-
-void printRow(const char* name, const std::string& value) {
-  print("  {:<22} {}\n", name, value);
-}
-
 void printGeometry(const PathBudget& budget) {
-  const emfield::PathGeometry& geometry = budget.geometry;
   print("Geometry\n");
-  printRow("emitter", ofEnd(budget.profile.begin, geometry.begin_ground_msl_m, budget.profile.has_terrain));
-  printRow("point", ofEnd(budget.profile.end, geometry.end_ground_msl_m, budget.profile.has_terrain));
-  printRow("range", fmt::format("{:.3f} km over the ground, {:.3f} km slant", budget.profile.range_m / 1000,
-                                geometry.slant_range_m / 1000));
-  printRow("azimuth", fmt::format("{:.3f} deg from true north", radToDeg(budget.profile.azimuth_rad)));
-  printRow("elevation of the ray",
-           fmt::format("{:.3f} deg at the emitter ({:.3f} deg of the straight line)",
-                       radToDeg(geometry.launch_elevation_rad), radToDeg(geometry.straight_elevation_rad)));
-  printRow(
-      "effective earth",
-      fmt::format("k = {:.4g}, radius {:.0f} km; a smooth one cuts off beyond {:.1f} km", budget.k_factor,
-                  budget.profile.effective_earth_radius_m / 1000, geometry.horizon_range_m / 1000));
+  for (const emfield::ReportLine& line : emfield::geometryLines(budget)) {
+    print("  {:<22} {}\n", line.name, line.text);
+  }
 }
 
 void printObstacles(const PathBudget& budget) {
@@ -106,17 +87,11 @@ void printObstacles(const PathBudget& budget) {
   print("  {:>11} {:>11} {:>11} {:>14} {:>15} {:>9}\n", "distance km", "height m", "clearance m",
         "Fresnel rad. m", "in Fresnel rad.", "alone dB");
   for (const PathObstacle& obstacle : budget.obstacles) {
+    const std::string remark = emfield::remarkOf(obstacle);
     print("  {:11.3f} {:11.1f} {:+11.1f} {:14.1f} {:+15.2f} {:9.1f}{}{}\n", obstacle.range_m / 1000,
           obstacle.ground_msl_m, obstacle.clearance_m, obstacle.fresnel_radius_m,
-          obstacle.clearanceInFresnelRadii(), obstacle.knife_edge_db,
-          obstacle.is_earth_bulge ? "  earth's bulge" : "", obstacle.decides ? "  decides" : "");
+          obstacle.clearanceInFresnelRadii(), obstacle.knife_edge_db, remark.empty() ? "" : "  ", remark);
   }
-}
-
-/// Infinity is said in words; what rounds to nothing has no sign.
-std::string valueText(double value) {
-  if (std::isinf(value)) return value < 0 ? "none" : "all";
-  return fmt::format("{:.2f}", std::abs(value) < 0.005 ? 0.0 : value);
 }
 
 void printBudget(const PathBudget& budget) {

@@ -17,12 +17,13 @@
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
-#include "emscape/playback/background_writer.h"
 #include "emscape/playback/frame_source.h"
 #include "emscape/playback/painter.h"
+#include "emscape/playback/picture_series.h"
 #include "emscape/playback/picture_sink.h"
 #include "emscape/playback/real_time_loop.h"
 #include "emscape/playback/view_state.h"
+#include "playback/background_writer.h"
 #include "render/reconstruction.h"
 
 namespace emscape::app {
@@ -52,6 +53,7 @@ struct RenderOptions {
   std::string camera;
   std::string transfer;
   std::string quantity;
+  std::string compare;
   std::string range;
   std::string theme;
   double step_voxels = 0;
@@ -60,6 +62,7 @@ struct RenderOptions {
   double iso_opacity = 0;
   bool shading = false;
   double exaggeration = 0;
+  std::vector<render::CutPlane> planes;
   std::optional<double> frames_per_s;
   bool exact = false;
   bool show_terrain = true;
@@ -85,17 +88,9 @@ ViewState viewOf(const RenderOptions& options) {
   if (isGiven("--size")) view.size = render::parseImageSize(options.size);
   if (isGiven("--camera")) view.camera = render::parseCamera(options.camera);
   if (isGiven("--theme")) view.theme = render::parseTheme(options.theme);
-  if (isGiven("--quantity") && options.quantity != view.quantity) {
-    // Colours, range and surface are those of the view's own quantity.
-    view.quantity = options.quantity;
-    view.transfer.reset();
-    view.range.reset();
-    view.settings.iso_value = render::RenderSettings{}.iso_value;
-  }
-  if (isGiven("--range")) {
-    view.range = parseRange(options.range);
-    view.transfer.reset();
-  }
+  if (isGiven("--quantity")) playback::changeQuantity(view, options.quantity);
+  if (isGiven("--compare")) playback::changeComparison(view, options.compare);
+  if (isGiven("--range")) playback::changeRange(view, parseRange(options.range));
   if (isGiven("--mode")) view.settings.mode = render::parseCompositingMode(options.mode);
   take("--step", options.step_voxels, view.settings.step_voxels);
   take("--mida-gamma", options.mida_gamma, view.settings.mida_gamma);
@@ -104,6 +99,7 @@ ViewState viewOf(const RenderOptions& options) {
   take("--shading", options.shading, view.settings.shading);
   take("--exact", options.exact, view.settings.exact);
   take("--exaggeration", options.exaggeration, view.settings.vertical_exaggeration);
+  take("--plane", options.planes, view.settings.planes);
   take("--terrain", options.show_terrain, view.show_terrain);
   take("--emitters", options.show_emitters, view.show_emitters);
   const std::vector<scenario::Edit>& edits = options.selection.edits;
@@ -126,6 +122,7 @@ bool isOnePicture(const std::vector<std::string>& outputs) {
 playback::FrameSelection selectionOf(const ViewState& view, const RenderOptions& options) {
   playback::FrameSelection selection = options.selection;
   selection.quantity = view.quantity;
+  selection.compare = view.compare;
   selection.range = view.range;
   selection.edits = view.edits;
   if (selection.times.empty() && !options.realtime && isOnePicture(options.outputs)) {
@@ -200,8 +197,6 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   if (options.outputs.empty()) return 0;
   const std::unique_ptr<FrameSource>& source = stage.source;
   Painter& painter = *stage.painter;
-  const std::string note = fmt::format("{}, {} rays, step {:g} voxel", mode, render::toString(plan.pattern),
-                                       view.settings.step_voxels);
   const Sinks sinks = openSinks(options, style, *source, source->count(), options.frames_per_s.value_or(10));
 
   logInfo(fmt::format("drawing {} picture{} of {}x{} into {}", source->count(),
@@ -211,18 +206,10 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   double cast_ms = 0;
   {
     Progress progress(global, "drawing");
-    BackgroundWriter writer(2);  // PNG and video are packed while the next picture is cast
-    for (int index = 0; index < source->count(); ++index) {
-      if (index > 0) painter.setFrame(source->frame(index));
-      cast_ms += painter.draw(plan).total_ms();
-      writer.push([&sinks, index, picture = painter.picture(note)] {
-        for (const auto& sink : sinks) sink->add(index + 1, picture, 1);
-      });
-      progress.show(static_cast<double>(index + 1) / source->count());
-    }
-    writer.finish();
+    cast_ms = playback::drawPictures(
+        *source, painter, plan, playback::pictureNote(view.settings, plan.pattern), sinks,
+        [&](int pictures) { progress.show(static_cast<double>(pictures) / source->count()); }, &stopFlag());
   }
-  for (const auto& sink : sinks) sink->finish();
   logWarnings(source->warnings());
 
   const double seconds = watch.lap_ms() / 1000;
@@ -344,6 +331,7 @@ Examples:
   emscape render scenarios/jacksboro.yaml -o now.png --times 30
   emscape render scenarios/jacksboro.yaml -o now.png --state jacksboro.view.json --size 3840x2160
   emscape render scenarios/jacksboro.yaml -o film.mp4 -o frames --times 0:120:0.5 --camera orbit:azimuth_deg=200
+  emscape render scenarios/jacksboro.yaml -o cut.png --plane vertical:bearing_deg=60 --plane horizontal:altitude_m=3000
   emscape render out/jacksboro.pvd -o film.mp4 --scenario scenarios/jacksboro.yaml
   emscape render engine_256x256x110_uint8.raw -o engine.png --mode mida
   emscape render scenarios/jacksboro.yaml --realtime --size 1200x900 --fps 25 --orbit-rate 10)");
@@ -354,6 +342,7 @@ Examples:
                    "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes")
       ->required();
   addSetOption(*command, options->selection.edits);
+  addCompareOption(*command, options->compare, "Draw");
   command->add_option(
       "--state", options->state,
       "View file: camera, colours, time, edits and the rest; options that are given count more");
@@ -383,6 +372,7 @@ Examples:
   command
       ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
       ->check(CLI::Range(0.0, 100.0));
+  addPlaneOption(*command, options->planes);
   command->add_option("--step", options->step_voxels, "Distance of samples, in voxels; default: 1")
       ->check(CLI::Range(0.05, 10.0));
   command->add_option("--mida-gamma", options->mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")

@@ -13,6 +13,7 @@
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/quantities.h"
+#include "emscape/playback/frame_source.h"
 #include "emscape/playback/series_writer.h"
 
 namespace emscape::app {
@@ -21,6 +22,7 @@ namespace {
 struct SimulateOptions {
   std::string scenario;
   std::vector<scenario::Edit> edits;
+  std::string compare;
   std::string folder;
   std::vector<std::string> formats{"vdb"};
   std::vector<std::string> quantities;
@@ -62,6 +64,13 @@ Json rangesToJson(const playback::SeriesResult& result) {
   return ranges;
 }
 
+/// Makes the series one of differences.
+void compare(playback::FieldSeries& series, const SimulateOptions& options) {
+  const bool with_original = options.compare == playback::kOriginal;
+  const std::string& file = with_original ? options.scenario : options.compare;
+  series.compareWith(playback::loadScenarioWithTerrain(file), with_original ? "the original scenario" : file);
+}
+
 int simulate(const SimulateOptions& options, const GlobalOptions& global) {
   Stopwatch watch;
   const playback::SeriesOptions series_options = seriesOptionsOf(options);
@@ -77,7 +86,9 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
     field_options.quantities = options.quantities;
     field_options.allow_missing_terrain = options.allow_missing_terrain;
     field_options.cache_bytes = static_cast<std::size_t>(options.cache_mib * (1 << 20));
+    if (!options.compare.empty()) field_options.move_tolerance_m = 0;
     auto opened = std::make_unique<playback::FieldSeries>(input, times_s, field_options, &stopFlag());
+    if (!options.compare.empty()) compare(*opened, options);
     opened->rehearse();
     return opened;
   });
@@ -115,10 +126,12 @@ range so far. The folder also holds series.json, what was asked for, and series.
 Examples:
   emscape simulate scenarios/jacksboro.yaml -o out
   emscape simulate scenarios/jacksboro.yaml -o out --format vdb,vti --quantity power_density_dbwm2,snr_db --times 0:60:1
+  emscape simulate scenarios/jacksboro.yaml -o out --set emitters.jammer.power_w=500 --compare original
   emscape simulate scenarios/jacksboro.yaml -o out --resume        after an interruption)");
   auto options = std::make_shared<SimulateOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
+  addCompareOption(*command, options->compare, "Write");
   command->add_option("-o,--output", options->folder, "Folder of the series; made if need be")->required();
   addListOption(*command, "--format", options->formats,
                 "File formats, with commas between them: vdb, nvdb, vti, raw")

@@ -9,25 +9,29 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "apps/view/theme.h"
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
-#include "emscape/render/overlay.h"
 
 namespace emscape::view {
 namespace {
 
 constexpr int kFramesAfterEvent = 3;
+/// While fields and pictures are computed, the window is drawn at new pictures and so often between them: a
+/// software renderer takes the processor that they need.
+constexpr double kBusyInterval_s = 1.0 / 25;
 constexpr double kIdleWait_s = 1;  // signals set no event
 constexpr double kCursorBlink_s = 0.4;
+constexpr double kOpeningPoll_s = 0.03;
 
-std::string newScreenshotName() {
-  for (int number = 1;; ++number) {
-    const std::string name = fmt::format("emscape-{:04d}.png", number);
-    std::error_code ignored;
-    if (!std::filesystem::exists(name, ignored)) return name;
-  }
+constexpr int kWindowFits = 8;
+constexpr render::ImageSize kUsualSize{1200, 900};
+
+std::string titleOf(const ViewOptions& options) {
+  const std::filesystem::path path = std::filesystem::path(options.input).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string() + " — emscape";
 }
 
 }  // namespace
@@ -35,11 +39,19 @@ std::string newScreenshotName() {
 App::App(const ViewOptions& options, const playback::ComputeTarget& target)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
-      window_(std::filesystem::path(options.input).filename().string() + " — emscape", options.window_size,
-              options.scale),
-      session_(options, target, *this, log_, [] { Window::wake(); }) {
+      window_(titleOf(options), options.window_size.value_or(kUsualSize), options.scale),
+      target_(target),
+      session_(makeSession(options)),
+      opener_(files_, [this](const ViewOptions& next) { return makeSession(next); }),
+      window_fits_(options.window_size ? 0 : kWindowFits) {
   log_.write("start",
              {{"gl_renderer", window_.renderer()}, {"scale", window_.scale()}, {"input", options.input}});
+}
+
+std::unique_ptr<Session> App::makeSession(const ViewOptions& options) {
+  WindowControl& window = *this;
+  return std::make_unique<Session>(
+      options, target_, window, log_, [] { Window::wake(); }, files_);
 }
 
 // --- what commands ask for ---
@@ -57,7 +69,7 @@ void App::setScale(double factor) {
 }
 
 void App::screenshot(const std::string& file) {
-  screenshot_ = file.empty() ? newScreenshotName() : file;
+  screenshot_ = file.empty() ? newPictureName() : file;
   frames_left_ = std::max(frames_left_, 2);
 }
 
@@ -79,86 +91,166 @@ void App::inject(const InputEvent& event) {
 
 // --- the loop ---
 
+double App::untilDrawing_s() const {
+  const playback::LiveStatus& status = session_->status();
+  const bool is_idle = status.state == render::ControllerState::idle && !status.computing;
+  const bool has_new_picture = session_->picture() && session_->picture()->status.frame != shown_picture_;
+  if (is_idle || has_new_picture || screenshot_) return 0;
+  return std::max(0.0, drawn_at_s_ + kBusyInterval_s - log_.now_s());
+}
+
 double App::waitTime_s() const {
-  if (frames_left_ > 0 || flies_) return 0;
+  if (frames_left_ > 0) return untilDrawing_s();
+  if (flies_) return 0;
   double wait_s = kIdleWait_s;
-  if (const auto next_s = session_.nextUpdate_s()) wait_s = std::min(wait_s, *next_s);
-  if (const auto next_s = script_.nextRun_s()) wait_s = std::min(wait_s, *next_s);
+  if (const auto next_s = session_->nextUpdate_s()) wait_s = std::min(wait_s, *next_s);
+  if (opener_.active()) wait_s = std::min(wait_s, kOpeningPoll_s);
+  if (const auto next_s = script_.nextRun_s(log_.now_s())) wait_s = std::min(wait_s, *next_s);
   if (ImGui::GetIO().WantTextInput) wait_s = std::min(wait_s, kCursorBlink_s);
   return std::max(wait_s, 1e-3);
 }
 
 void App::failIfNothingOpens() const {
-  if (session_.picture() || session_.status().error.empty()) return;
-  throw Error(ErrorCode::bad_input, session_.status().error);
+  if (session_->picture() || session_->status().error.empty()) return;
+  throw Error(session_->status().error_code, session_->status().error);
+}
+
+void App::showTitle() {
+  window_.setTitle(titleOf(session_->options()));
+}
+
+/// Gives the window the size with which the picture has that of the first view. Panels take shares of the
+/// window, so that the size is searched; they change until the input is open.
+void App::fitWindowToPicture() {
+  constexpr int kIterations = 60;  // each leaves less than half of the difference
+  const render::ImageSize wanted = session_->options().view.size;
+  const render::ImageSize size = window_.framebufferSize();
+  auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
+  for (int n = 0; n < kIterations; ++n) {
+    const Layout layout = layoutOf(*session_, width, height, static_cast<float>(window_.scale()));
+    width += static_cast<float>(wanted.width) - layout.picture.width;
+    height += static_cast<float>(wanted.height) - layout.picture.height;
+  }
+  constexpr float kRounding = 0.01F;  // of the search
+  const render::ImageSize fitting{static_cast<int>(std::ceil(width - kRounding)),
+                                  static_cast<int>(std::ceil(height - kRounding))};
+  if (fitting != size) {
+    --window_fits_;
+    window_.resize(fitting.width, fitting.height);
+  } else if (session_->picture()) {
+    window_fits_ = 0;
+  }
+}
+
+void App::handleRequests() {
+  for (const std::string& file : window_.takeDropped()) session_->perform({"open", {{"file", file}}});
+  if (window_.takeCloseRequest()) session_->perform({"quit"});
+  if (!opener_.update(session_)) return;
+  shown_picture_ = 0;
+  window_fits_ = 0;
+  showTitle();
+  frames_left_ = kFramesAfterEvent;
+}
+
+bool App::panelsChanged() {
+  std::string open;
+  for (const PanelName& panel : panelNames()) open += session_->panels.*panel.open ? '1' : '0';
+  return std::exchange(open_panels_, open) != open;
 }
 
 void App::run() {
-  while (!quits_ && !window_.closeRequested()) {
+  session_->shown("");
+  // What is being written is finished, and its faults are told, before the window goes.
+  while (!quits_ || session_->writing()) {
     window_.waitEvents(waitTime_s());
     if (window_.takeDirty()) frames_left_ = kFramesAfterEvent;
-    if (session_.update()) frames_left_ = std::max(frames_left_, 1);
+    handleRequests();
+    if (session_->update()) frames_left_ = std::max(frames_left_, 1);
     failIfNothingOpens();
     if (ImGui::GetIO().WantTextInput) frames_left_ = std::max(frames_left_, 1);
-    if (!script_.finished()) script_.run(session_, *this, log_.now_s());
-    const bool script_waits_for_frames = script_.nextRun_s() == 0.0;
+    if (!quits_ && !script_.finished()) script_.run(*session_, *this, log_.now_s());
+    if (panelsChanged()) frames_left_ = kFramesAfterEvent;  // laid out in more than one frame
+    const bool script_waits_for_frames = script_.nextRun_s(log_.now_s()) == 0.0;
     if (!window_.input().empty() || screenshot_ || script_waits_for_frames || flies_) {
       frames_left_ = std::max(frames_left_, 1);
     }
-    if (frames_left_ <= 0) continue;
-    --frames_left_;
-    frame();
+    if (frames_left_ > 0 && (untilDrawing_s() == 0 || !window_.input().empty())) frame();
   }
-  log_.write("end", session_.report());
+  session_->leave(false);
+  log_.write("end", session_->report());
 }
 
 void App::frame() {
   const render::ImageSize size = window_.framebufferSize();
   if (size.width < 1 || size.height < 1) return;
   Stopwatch watch;
-  window_.setTheme(session_.theme());
+  window_.setTheme(session_->theme());
   const std::vector<InputEvent> events = window_.beginFrame();
   const ImGuiIO& io = ImGui::GetIO();
   const auto scale = static_cast<float>(window_.scale());
   const Layout layout =
-      layoutOf(session_, static_cast<float>(size.width), static_cast<float>(size.height), scale);
+      layoutOf(*session_, static_cast<float>(size.width), static_cast<float>(size.height), scale);
   handleKeys(events);
-  mouse_.handle(events, layout.picture, io.WantCaptureMouse, session_);
+  mouse_.handle(events, layout.picture, io.WantCaptureMouse, *session_);
   const double now_s = log_.now_s();
-  flies_ = mouse_.fly(window_, std::min(0.1, now_s - last_frame_s_), session_);
+  flies_ = mouse_.fly(window_, std::min(0.1, now_s - last_frame_s_), *session_);
   last_frame_s_ = now_s;
-  session_.setPictureSize({static_cast<int>(layout.picture.width), static_cast<int>(layout.picture.height)});
+  if (window_fits_ > 0) fitWindowToPicture();
+  session_->setPictureSize({static_cast<int>(layout.picture.width), static_cast<int>(layout.picture.height)});
   drawPanels(layout);
-  updateLayers();
-
-  const bool dark = session_.theme() == render::Theme::dark;
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glDisable(GL_SCISSOR_TEST);
-  glViewport(0, 0, size.width, size.height);
-  glClearColor(dark ? 0.063F : 0.95F, dark ? 0.078F : 0.96F, dark ? 0.106F : 0.97F, 1);
-  glClear(GL_COLOR_BUFFER_BIT);
-  if (shown_picture_ > 0) {
-    layers_.draw(static_cast<int>(layout.picture.x),
-                 size.height - static_cast<int>(layout.picture.y) - static_cast<int>(layout.picture.height),
-                 static_cast<int>(layout.picture.width), static_cast<int>(layout.picture.height));
+  if (untilDrawing_s() > 0) {
+    window_.dropFrame();
+    return;
   }
-  window_.endFrame();
+  --frames_left_;
+  updateTexture();
+  draw(layout);
   if (screenshot_) takeScreenshot();
   const double ui_ms = watch.lap_ms();
   window_.swap();
+  drawn_at_s_ = log_.now_s();
   ++frame_;
   if (!log_.open()) return;
   Json line{{"ui_frame", frame_},
             {"ui_ms", std::round(ui_ms * 100) / 100},
-            {"overlay_ms", std::round(overlay_ms_ * 100) / 100},
             {"upload_ms", std::round(upload_ms_ * 100) / 100},
             {"swap_ms", std::round(watch.lap_ms() * 100) / 100}};
-  line.update(session_.report());
+  line.update(session_->report());
   log_.write("frame", line);
 }
 
+void App::draw(const Layout& layout) {
+  const render::ImageSize size = window_.framebufferSize();
+  const ImVec4 panel = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
+  const ImVec4 bar = ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg);
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, size.width, size.height);
+  // Cleared rather than drawn by Dear ImGui: much faster with a software renderer.
+  glEnable(GL_SCISSOR_TEST);
+  const auto fill = [&](const Area& area, const ImVec4& color) {
+    const int left = static_cast<int>(area.x), top = static_cast<int>(area.y);
+    const int right = static_cast<int>(area.x + area.width), bottom = static_cast<int>(area.y + area.height);
+    glScissor(left, size.height - bottom, std::max(0, right - left), std::max(0, bottom - top));
+    glClearColor(color.x, color.y, color.z, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+  };
+  if (!texture_.isSet()) fill(layout.picture, panel);
+  fill(layout.side, panel);
+  fill(layout.timeline, panel);
+  fill(layout.status, bar);
+  glDisable(GL_SCISSOR_TEST);
+  if (texture_.isSet()) {
+    texture_.draw(static_cast<int>(layout.picture.x),
+                  size.height - static_cast<int>(layout.picture.y) - static_cast<int>(layout.picture.height),
+                  static_cast<int>(layout.picture.width), static_cast<int>(layout.picture.height));
+  }
+  window_.endFrame();
+}
+
 void App::handleKeys(const std::vector<InputEvent>& events) {
-  const bool typing = ImGui::GetIO().WantTextInput;
+  const Panels& panels = session_->panels;
+  const bool typing =
+      ImGui::GetIO().WantTextInput || panels.open || panels.record || panels.restore || panels.unsaved;
   for (const InputEvent& event : events) {
     if (event.kind != InputEvent::Kind::key || event.action == GLFW_RELEASE) continue;
     const KeyChord chord = chordOf(event);
@@ -169,42 +261,40 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
       continue;
     log_.write("key", {{"key", toString(chord)}});
     if (chord.key.size() == 1 && chord.key[0] >= '1' && chord.key[0] <= '9') {
-      session_.perform({chord.control ? "bookmark" : "recall", {{"number", chord.key[0] - '0'}}});
+      session_->perform({chord.control ? "bookmark" : "recall", {{"number", chord.key[0] - '0'}}});
     } else if (const Action* action = actionOf(chord)) {
-      session_.perform(parseCommand(std::string(action->command)));
+      session_->perform(parseCommand(std::string(action->command)));
     }
   }
 }
 
 void App::drawPanels(const Layout& layout) {
-  PanelContext context{session_, *this, static_cast<float>(window_.scale())};
-  if (!session_.panels.hidden) {
+  PanelContext context{*session_, *this, static_cast<float>(window_.scale())};
+  if (!session_->panels.hidden) {
     drawMenuBar(context);
     drawSidePanel(context, layout.side);
     drawTimeline(context, layout.timeline);
     drawStatusBar(context, layout.status);
   }
+  drawProbeMarker(context, layout.picture);
+  drawProbe(context, layout.picture);
   drawNotice(context, layout.picture);
   drawHelp(context);
   drawGoToTime(context);
+  drawFileBrowser(context);
+  drawRecording(context, layout.picture);
+  drawRestoreQuestion(context);
+  drawUnsavedQuestion(context);
 }
 
-void App::updateLayers() {
-  const playback::LivePicture* picture = session_.picture();
-  if (!picture) return;
-  if (picture->status.frame == shown_picture_ && shown_theme_ == session_.theme()) return;
+void App::updateTexture() {
+  upload_ms_ = 0;
+  const playback::LivePicture* picture = session_->picture();
+  if (!picture || picture->status.frame == shown_picture_) return;
   Stopwatch watch;
-  render::Annotations annotations = picture->annotations;
-  annotations.theme = session_.theme();
-  const render::OverlayLayers overlay =
-      render::overlayLayers(picture->image.size, picture->camera, picture->box, annotations, picture->hidden);
-  overlay_ms_ = watch.lap_ms();
-  layers_.set(0, overlay.behind);
-  layers_.set(1, picture->image);
-  layers_.set(2, overlay.in_front);
+  texture_.set(picture->finished);
   upload_ms_ = watch.lap_ms();
   shown_picture_ = picture->status.frame;
-  shown_theme_ = session_.theme();
 }
 
 void App::takeScreenshot() {
@@ -212,9 +302,9 @@ void App::takeScreenshot() {
   screenshot_.reset();
   try {
     render::writePng(file, window_.readPixels());
-    session_.tell("written: " + file);
+    session_->tell("written: " + file);
   } catch (const Error& error) {
-    session_.tell(error.what(), true);
+    session_->tell(error.what(), true);
   }
 }
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "apps/view/mouse_control.h"
-#include "apps/view/picture_layers.h"
+#include "apps/view/picture_texture.h"
 #include "apps/view/script.h"
-#include "apps/view/session.h"
+#include "apps/view/session_opener.h"
 #include "apps/view/window.h"
 
 namespace emscape::view {
@@ -20,7 +20,7 @@ class App : private WindowControl {
   App(const ViewOptions& options, const playback::ComputeTarget& target);
 
   /// Until the user, the script or a signal ends it.
-  /// @throws Error (bad_input) if the input cannot be opened, (check_failed) by the script
+  /// @throws Error as the input's that cannot be opened, (check_failed) by the script
   void run();
 
  private:
@@ -33,19 +33,31 @@ class App : private WindowControl {
   void press(const KeyChord& chord) override;
   void inject(const InputEvent& event) override;
 
+  /// Handles input and lays out the panels; draws them if that is due.
   void frame();
+  void draw(const Layout& layout);
+  /// Seconds until the window is to be drawn again; 0: now.
+  double untilDrawing_s() const;
   void handleKeys(const std::vector<InputEvent>& events);
   void drawPanels(const Layout& layout);
-  void updateLayers();
+  void updateTexture();
   void takeScreenshot();
   double waitTime_s() const;
   void failIfNothingOpens() const;
+  std::unique_ptr<Session> makeSession(const ViewOptions& options);
+  void handleRequests();
+  bool panelsChanged();
+  void showTitle();
+  void fitWindowToPicture();
 
   EventLog log_;
   Script script_;
   Window window_;
-  PictureLayers layers_;
-  Session session_;
+  PictureTexture texture_;
+  const playback::ComputeTarget target_;
+  std::shared_ptr<Files> files_ = std::make_shared<Files>();
+  std::unique_ptr<Session> session_;
+  SessionOpener opener_;
   MouseControl mouse_;
 
   bool quits_ = false;
@@ -53,10 +65,12 @@ class App : private WindowControl {
   int frames_left_ = 3;  // after an event, so that what ImGui lays out in two frames is right
   long long frame_ = 0;
   double last_frame_s_ = 0;
-  double overlay_ms_ = 0, upload_ms_ = 0;
-  long long shown_picture_ = 0;  // number of the picture in layers_; 0: none
-  render::Theme shown_theme_ = render::Theme::dark;
+  double drawn_at_s_ = 0;
+  double upload_ms_ = 0;
+  long long shown_picture_ = 0;  // number of the picture in texture_; 0: none
   std::optional<std::string> screenshot_;
+  std::string open_panels_;
+  int window_fits_;  // tries that are left to give the picture the size of the first view
 };
 
 }  // namespace emscape::view

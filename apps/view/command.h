@@ -10,23 +10,33 @@ namespace emscape::view {
 
 using Json = nlohmann::ordered_json;
 
-enum class ArgumentType { number, text, boolean, any };
+enum class ArgumentType { number, text, boolean, texts, any };
 
 struct Argument {
   const char* name;
   ArgumentType type = ArgumentType::number;
   bool required = true;
 };
+inline constexpr ArgumentType kNumber = ArgumentType::number;
+inline constexpr ArgumentType kText = ArgumentType::text;
+inline constexpr ArgumentType kBoolean = ArgumentType::boolean;
+
+class Session;
+struct Command;
 
 /// One verb: how a script calls it and what it does.
 struct Verb {
   const char* name;
   std::vector<Argument> arguments;
   const char* help;
+  /// Throws Error for what cannot be done; null: a verb of scripts alone, such as waiting.
+  void (*run)(Session& session, const Command& command) = nullptr;
 };
 
 /// Every verb, in the order in which the manual lists them.
 const std::vector<Verb>& verbs();
+/// @throws Error (bad_input) that lists the verbs
+const Verb& verbNamed(const std::string& name);
 
 /// A verb with its arguments: {"do": "seek", "time_s": 49.5}.
 struct Command {

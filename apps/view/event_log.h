@@ -12,7 +12,7 @@ namespace emscape::view {
 /// One line per frame and one per event, each with the time since the start. One thread uses it.
 class EventLog {
  public:
-  EventLog() = default;
+  EventLog();
   /// @throws Error (other) if the file cannot be written
   explicit EventLog(const std::string& file);
 
@@ -23,11 +23,13 @@ class EventLog {
   void write(const char* event, const Json& fields = Json::object());
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point start_;
   std::ofstream out_;
 };
 
 /// Resident memory of this process (MiB).
 double residentMemory_mib();
+/// What this process has taken of the processors (s).
+double processorTime_s();
 
 }  // namespace emscape::view

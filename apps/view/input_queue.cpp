@@ -13,16 +13,29 @@ struct NamedKey {
   int code;
 };
 /// Of two rows with the same name the first is the one that scripts press.
-constexpr NamedKey kKeys[] = {{"Space", GLFW_KEY_SPACE},  {"Right", GLFW_KEY_RIGHT},
-                              {"Left", GLFW_KEY_LEFT},    {"Up", GLFW_KEY_UP},
-                              {"Down", GLFW_KEY_DOWN},    {"Home", GLFW_KEY_HOME},
-                              {"End", GLFW_KEY_END},      {"Tab", GLFW_KEY_TAB},
-                              {"Esc", GLFW_KEY_ESCAPE},   {"Enter", GLFW_KEY_ENTER},
-                              {"F1", GLFW_KEY_F1},        {"F12", GLFW_KEY_F12},
-                              {"+", GLFW_KEY_EQUAL},      {"+", GLFW_KEY_KP_ADD},
-                              {"-", GLFW_KEY_MINUS},      {"-", GLFW_KEY_KP_SUBTRACT},
-                              {".", GLFW_KEY_PERIOD},     {",", GLFW_KEY_COMMA},
-                              {"?", GLFW_KEY_SLASH},      {"Backspace", GLFW_KEY_BACKSPACE},
+constexpr NamedKey kKeys[] = {{"Space", GLFW_KEY_SPACE},
+                              {"Right", GLFW_KEY_RIGHT},
+                              {"Left", GLFW_KEY_LEFT},
+                              {"Up", GLFW_KEY_UP},
+                              {"Down", GLFW_KEY_DOWN},
+                              {"Home", GLFW_KEY_HOME},
+                              {"End", GLFW_KEY_END},
+                              {"Tab", GLFW_KEY_TAB},
+                              {"Esc", GLFW_KEY_ESCAPE},
+                              {"Enter", GLFW_KEY_ENTER},
+                              {"F1", GLFW_KEY_F1},
+                              {"F5", GLFW_KEY_F5},
+                              {"F12", GLFW_KEY_F12},
+                              {"+", GLFW_KEY_EQUAL},
+                              {"+", GLFW_KEY_KP_ADD},
+                              {"-", GLFW_KEY_MINUS},
+                              {"-", GLFW_KEY_KP_SUBTRACT},
+                              {".", GLFW_KEY_PERIOD},
+                              {",", GLFW_KEY_COMMA},
+                              {"[", GLFW_KEY_LEFT_BRACKET},
+                              {"]", GLFW_KEY_RIGHT_BRACKET},
+                              {"?", GLFW_KEY_SLASH},
+                              {"Backspace", GLFW_KEY_BACKSPACE},
                               {"Delete", GLFW_KEY_DELETE}};
 
 bool isCharacter(int code, char first, char last) {
@@ -34,8 +47,12 @@ bool isCharacter(int code, char first, char last) {
 std::vector<InputEvent> InputQueue::takeFrame() {
   std::vector<InputEvent> frame;
   std::set<std::pair<InputEvent::Kind, int>> changed;
+  bool has_cursor = false, has_button = false;
   while (!events_.empty()) {
     const InputEvent& event = events_.front();
+    has_cursor = has_cursor || event.kind == InputEvent::Kind::cursor;
+    has_button = has_button || event.kind == InputEvent::Kind::button;
+    if (has_cursor && has_button) break;
     const bool is_switch = (event.kind == InputEvent::Kind::key || event.kind == InputEvent::Kind::button) &&
                            event.action != GLFW_REPEAT;
     if (is_switch && !changed.insert({event.kind, event.code}).second) break;

@@ -10,9 +10,10 @@
 
 namespace emscape::view {
 
-/// A GUI that reads the state of keys once per frame misses a key that is pressed and released within one. So
-/// a frame takes events only until a key or button would change for the second time; the others wait for the
-/// next frame.
+/// A GUI that reads the state of keys once per frame misses a key that is pressed and released within one,
+/// and does not know where the cursor was when a button changed. So a frame takes events only until a key or
+/// button would change for the second time, and holds either movements of the cursor or changes of buttons;
+/// the others wait for the next frame.
 class InputQueue {
  public:
   void push(const InputEvent& event) { events_.push_back(event); }

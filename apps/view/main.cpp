@@ -1,4 +1,5 @@
 /// emscape-view: the window; started by `emscape view`.
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -26,10 +27,11 @@ void show(const ViewOptions& options) {
       std::fprintf(stderr, "%s\n", line.c_str());
   });
   setThreadLimit(options.threads);
+  std::signal(SIGPIPE, SIG_IGN);  // ffmpeg that went away is an error of the write
   // A wrong name, and all faults of a scenario, are told before a window appears.
   if (playback::inputKindOf(options.input) == playback::InputKind::scenario &&
-      !scenario::parseScenario(options.input, options.edits).scenario) {
-    scenario::loadScenario(options.input, options.edits);
+      !scenario::parseScenario(options.input, options.view.edits).scenario) {
+    scenario::loadScenario(options.input, options.view.edits);
   }
   const std::unique_ptr<App> app = withBackendFallback(
       parseBackend(options.backend),

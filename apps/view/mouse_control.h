@@ -1,14 +1,17 @@
 /// The mouse and the keys of flying, on the picture.
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "apps/view/panels.h"
+#include "apps/view/platform_drag.h"
 #include "apps/view/window.h"
 
 namespace emscape::view {
 
-/// Turns events over the picture into movements of the session's camera.
+/// Turns events over the picture into movements of the session's camera, of platforms and of the probe.
 class MouseControl {
  public:
   /// @param panels_want_mouse  the cursor is over a panel, or drags something of one
@@ -19,12 +22,22 @@ class MouseControl {
   bool fly(const Window& window, double elapsed_s, Session& session);
 
  private:
-  enum class Drag { none, orbit, pan, look };
+  enum class Drag { none, orbit, pan, look, platform };
+  void press(const InputEvent& event, const Area& picture, Session& session);
+  bool isDoubleClick(double now_s);
+  void takePlatform(std::size_t emitter, const Area& picture, Session& session);
+  void movePlatform(const Area& picture, Session& session);
+  void showCursor(const Area& picture, bool panels_want_mouse, Session& session) const;
+
   Drag drag_ = Drag::none;
   int button_ = 0;
   double x_ = 0, y_ = 0;
   double clicked_at_s_ = -1;
   double clicked_x_ = 0, clicked_y_ = 0;
+  std::optional<PlatformDrag> platform_;
+  double pressed_x_ = 0, pressed_y_ = 0;
+  bool is_platform_moved_ = false;
+  std::string platform_text_;  // name and place
 };
 
 }  // namespace emscape::view

@@ -7,13 +7,10 @@
 
 #include "apps/view/theme.h"
 #include "emscape/render/legend.h"
+#include "emscape/volume/difference.h"
 
 namespace emscape::view {
 namespace {
-
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
-                                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
-                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
 
 void place(const Area& area) {
   ImGui::SetNextWindowPos({area.x, area.y});
@@ -22,22 +19,38 @@ void place(const Area& area) {
 
 bool isChecked(const Session& session, const std::string& name) {
   const Panels& panels = session.panels;
-  if (name == "Loop") return session.playhead().loop();
-  if (name == "Play or pause") return session.playhead().playing();
+  if (name == "Loop") return session.timeline().loop();
+  if (name == "Play or pause") return session.timeline().playing();
   if (name == "Ground") return session.showsTerrain();
   if (name == "Emitters") return session.showsEmitters();
   if (name == "Shading") return session.settings().shading;
   if (name == "Isosurface") return session.settings().mode == render::CompositingMode::iso;
   if (name == "Scenario: what if") return panels.scenario && !panels.hidden;
   if (name == "Colours and opacity") return panels.colors && !panels.hidden;
+  if (name == "Cutting planes") return panels.planes && !panels.hidden;
+  if (name == "Compare with the original") return session.compares();
+  if (name == "Probe") return panels.probe && !panels.hidden;
+  if (name == "Hold the probe, or let it go") return session.prober().isLocked();
   if (name == "Timeline") return panels.timeline && !panels.hidden;
   return name == "Help" && panels.help;
+}
+
+void drawRecentFiles(PanelContext& context) {
+  const std::vector<std::string> recent = context.session.files().recent;
+  if (!ImGui::BeginMenu("Open recent", !recent.empty())) return;
+  for (std::size_t i = 0; i < recent.size(); ++i) {
+    if (ImGui::MenuItem(recent[i].c_str())) context.session.perform({"open_recent", {{"number", i + 1}}});
+  }
+  ImGui::EndMenu();
 }
 
 bool isEnabled(const Session& session, const std::string& name) {
   if (name == "Undo") return session.canUndo();
   if (name == "Redo") return session.canRedo();
   if (name == "Save the changed scenario") return session.scenario() != nullptr;
+  if (name == "Restore kept edits" || name == "Discard kept edits") return session.keptView().has_value();
+  if (name == "Cancel the recording") return session.files().recorder.running();
+  if (name == "Open the input before this") return session.files().recent.size() > 1;
   return true;
 }
 
@@ -51,9 +64,9 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
     return layout;
   }
   const float status_height = 30 * scale;
-  const bool has_side = panels.scenario || panels.colors;
+  const bool has_side = panels.scenario || panels.colors || panels.planes;
   const float side_width = has_side ? std::min(340 * scale, 0.45F * width) : 0;
-  const float timeline_height = panels.timeline ? std::min(112 * scale, 0.4F * height) : 0;
+  const float timeline_height = panels.timeline ? std::min(timelineHeight(session, scale), 0.4F * height) : 0;
   layout.menu_height = ImGui::GetFrameHeight();
   layout.status = {0, height - status_height, width, status_height};
   layout.timeline = {0, layout.status.y - timeline_height, width, timeline_height};
@@ -78,6 +91,7 @@ void drawMenuBar(PanelContext& context) {
                           isEnabled(context.session, action.name))) {
         perform(context, action.command);
       }
+      if (action.name == std::string("Open the input before this")) drawRecentFiles(context);
     }
     ImGui::EndMenu();
   }
@@ -87,15 +101,23 @@ void drawMenuBar(PanelContext& context) {
 void drawSidePanel(PanelContext& context, const Area& area) {
   if (area.width < 1) return;
   place(area);
-  ImGui::Begin("side", nullptr, kFixed);
+  ImGui::Begin("side", nullptr, kFixedPanel);
   const Panels& panels = context.session.panels;
   const float height = ImGui::GetContentRegionAvail().y;
   if (panels.colors) {
-    const bool both = panels.scenario;
-    ImGui::BeginChild("colors", {0, both ? std::min(height / 2, 330 * context.scale) : 0});
+    const bool more = panels.scenario || panels.planes;
+    ImGui::BeginChild("colors", {0, more ? std::min(0.7F * height, 470 * context.scale) : 0});
     drawColorsPanel(context);
     ImGui::EndChild();
-    if (both) ImGui::Separator();
+    if (more) ImGui::Separator();
+  }
+  if (panels.planes) {
+    const auto rows = static_cast<float>(2 + 3 * context.session.settings().planes.size());
+    const float wanted = rows * ImGui::GetFrameHeightWithSpacing();
+    ImGui::BeginChild("planes", {0, panels.scenario ? std::min(height / 2, wanted) : 0});
+    drawPlanesPanel(context);
+    ImGui::EndChild();
+    if (panels.scenario) ImGui::Separator();
   }
   if (panels.scenario) {
     ImGui::BeginChild("scenario");
@@ -111,8 +133,7 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   const float s = context.scale;
   place(area);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(12 * s, 5 * s));
-  ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg));
-  ImGui::Begin("status", nullptr, kFixed | ImGuiWindowFlags_NoScrollbar);
+  ImGui::Begin("status", nullptr, kFixedPanel | ImGuiWindowFlags_NoScrollbar);
   const char* name = session.picture() ? render::toString(status.state) : "OPENING";
   const ImVec4 color = session.picture() ? stateColor(status.state) : mutedColor(session.theme());
   // The badge: state on its colour.
@@ -127,6 +148,7 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   if (session.picture()) {
     ImGui::SameLine(0, 12 * s);
     std::string left = session.exact() ? "exact" : "approximate";
+    if (volume::isDifference(session.picture()->volume.info())) left = "DIFFERENCE   ·   " + left;
     left += fmt::format("   ·   {}{}, {:.0f} % of rays   ·   cast {:.0f} ms",
                         session.pattern() ? "" : "auto: ", render::toString(status.pattern),
                         100 * status.rays_fraction, status.cast_ms);
@@ -145,7 +167,6 @@ void drawStatusBar(PanelContext& context, const Area& area) {
     }
   }
   ImGui::End();
-  ImGui::PopStyleColor();
   ImGui::PopStyleVar();
 }
 
@@ -231,7 +252,7 @@ void drawHelp(PanelContext& context) {
 void drawGoToTime(PanelContext& context) {
   Session& session = context.session;
   if (!session.panels.time) return;
-  static double typed_s = 0;
+  static char typed[64] = "";
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * context.scale);
@@ -239,17 +260,18 @@ void drawGoToTime(PanelContext& context) {
       "Go to time", &session.panels.time,
       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   if (ImGui::IsWindowAppearing()) {
-    typed_s = session.playhead().step_s();
+    *fmt::format_to_n(typed, sizeof typed - 1, "{:g}", session.timeline().step_s()).out = '\0';
     ImGui::SetKeyboardFocusHere();
   }
   ImGui::SetNextItemWidth(160 * context.scale);
   const bool entered =
-      ImGui::InputDouble("seconds", &typed_s, 0, 0, "%.6g",
-                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+      ImGui::InputText("seconds, or UTC", typed, sizeof typed,
+                       ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   ImGui::SameLine();
   if (ImGui::Button("Go") || entered) {
-    session.perform({"seek", {{"time_s", typed_s}}});
-    session.panels.time = false;
+    const double told_s = session.notice().since_s;
+    session.perform({"seek", {{"time", typed}}});
+    session.panels.time = session.notice().is_error && session.notice().since_s != told_s;
   }
   ImGui::End();
   ImGui::PopStyleVar();

@@ -19,6 +19,12 @@ struct Layout {
 };
 Layout layoutOf(const Session& session, float width, float height, float scale);
 
+/// Of panels that have their place; App fills their ground.
+inline constexpr ImGuiWindowFlags kFixedPanel =
+    ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+    ImGuiWindowFlags_NoBackground;
+
 /// What all panels need.
 struct PanelContext {
   Session& session;
@@ -31,14 +37,28 @@ void perform(PanelContext& context, const char* command);
 
 void drawMenuBar(PanelContext& context);
 void drawScenarioPanel(PanelContext& context);
+/// Colours and opacities: transfer_panel.cpp.
 void drawColorsPanel(PanelContext& context);
-/// Scenario and colours, one above the other.
+void drawPlanesPanel(PanelContext& context);
+/// Colours, planes and scenario, one above the other.
 void drawSidePanel(PanelContext& context, const Area& area);
 void drawTimeline(PanelContext& context, const Area& area);
+/// As much as its rows need (pixels).
+float timelineHeight(const Session& session, float scale);
+/// Its buttons: transport_panel.cpp.
+void drawTransport(PanelContext& context);
 void drawStatusBar(PanelContext& context, const Area& area);
 /// The notice, and what is shown before the first picture.
 void drawNotice(PanelContext& context, const Area& picture);
+void drawProbe(PanelContext& context, const Area& picture);
+/// The point that the probe holds, over the picture.
+void drawProbeMarker(const PanelContext& context, const Area& picture);
 void drawHelp(PanelContext& context);
 void drawGoToTime(PanelContext& context);
+void drawFileBrowser(PanelContext& context);
+/// The recording that is under way, at the top of the picture, and what is to be recorded.
+void drawRecording(PanelContext& context, const Area& picture);
+void drawRestoreQuestion(PanelContext& context);
+void drawUnsavedQuestion(PanelContext& context);
 
 }  // namespace emscape::view

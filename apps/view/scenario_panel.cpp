@@ -2,102 +2,70 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
+#include <map>
+#include <unordered_set>
 
 #include "apps/view/panels.h"
+#include "apps/view/parameter_rows.h"
 #include "apps/view/theme.h"
-#include "emscape/scenario/scenario.h"
+#include "emscape/base/error.h"
+#include "emscape/emfield/quantities.h"
 
 namespace emscape::view {
 namespace {
 
-/// The name of a list's item as a part of a path.
-std::string pathName(const std::string& name) {
-  if (name.find_first_of(".\"=\\") == std::string::npos) return name;
-  std::string quoted = "\"";
-  for (const char c : name) quoted += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  return quoted + "\"";
-}
+using scenario::ParameterGroup;
 
-std::string numberText(double value) {
-  return fmt::format("{:.10g}", value);
-}
+constexpr std::size_t kSearchFrom = 8;  // emitters: more than these get a field to search them
 
-/// Rows of a name and a control.
-class Form {
- public:
-  Form(PanelContext& context, const char* id) : context_(context) {
-    open_ = ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp);
-    if (!open_) return;
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 112 * context.scale);
-    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
-  }
-  ~Form() {
-    if (open_) ImGui::EndTable();
-  }
-  Form(const Form&) = delete;
-  Form& operator=(const Form&) = delete;
+/// A part of the scenario with a heading that folds.
+struct Section {
+  std::string name;
+  std::string path;
+  std::optional<scenario::EmitterKind> kind;  ///< of an emitter
+};
 
-  /// A value between limits, dragged; Ctrl + click types it.
-  void slider(const char* name, const std::string& path, double value, double min, double max,
-              const char* format, bool logarithmic = false) {
-    row(name, path);
-    const int flags = logarithmic ? ImGuiSliderFlags_Logarithmic : 0;
-    const double low = std::min(min, value), high = std::max(max, value);
-    if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format, flags)) {
-      context_.session.dragValue(path, numberText(value));
+/// What the panel keeps from frame to frame.
+struct PanelState {
+  playback::ScenarioPtr scenario;  // of what follows
+  std::vector<Section> emitters, platforms, others;
+  std::map<std::string, ParameterGroup> groups;
+  std::set<std::string> edited;
+  std::unordered_set<std::string> open;  // paths of sections
+  bool is_new = true;
+  ImGuiTextFilter filter;
+  Typing typing;
+
+  void take(const playback::ScenarioPtr& next) {
+    if (next == scenario) return;
+    scenario = next;
+    groups.clear();
+    edited.clear();
+    for (const scenario::Edit& edit : next->edits()) edited.insert(edit.path);
+    emitters.clear();
+    platforms.clear();
+    others.clear();
+    for (const scenario::Emitter& emitter : next->emitters) {
+      emitters.push_back({emitter.name, "emitters." + scenario::pathStep(emitter.name), emitter.kind});
     }
-    end();
-  }
-  /// A value that is typed.
-  void number(const char* name, const std::string& path, double value, double unit, const char* format) {
-    row(name, path);
-    double shown = value / unit;
-    ImGui::InputDouble("##value", &shown, 0, 0, format);
-    if (ImGui::IsItemDeactivatedAfterEdit() && shown * unit != value) change(path, numberText(shown * unit));
-    end();
-  }
-  void choice(const char* name, const std::string& path, const char* value,
-              const std::vector<const char*>& values) {
-    row(name, path);
-    if (ImGui::BeginCombo("##value", value)) {
-      for (const char* one : values) {
-        if (ImGui::Selectable(one, std::string(one) == value)) change(path, one);
-      }
-      ImGui::EndCombo();
+    for (const scenario::Platform& platform : next->platforms) {
+      platforms.push_back({platform.name, "platforms." + scenario::pathStep(platform.name), {}});
     }
-    end();
-  }
-  /// @return whether it was switched
-  bool check(const char* name, const std::string& path, bool on) {
-    row(name, path);
-    const bool switched = ImGui::Checkbox("##value", &on);
-    end();
-    return switched;
-  }
-  void change(const std::string& path, const std::string& value) {
-    context_.session.perform({"set", {{"path", path}, {"value", value}}});
+    for (const scenario::ReceiverProfile& receiver : next->receivers) {
+      others.push_back({receiver.name, "receivers." + scenario::pathStep(receiver.name), {}});
+    }
+    others.push_back({"Air", "atmosphere", {}});
+    others.push_back({"Ground", "ground", {}});
+    others.push_back({"Output", "output", {}});
+    others.push_back({"Region", "region", {}});
+    if (std::exchange(is_new, false) && !emitters.empty()) open.insert(emitters.front().path);
   }
 
- private:
-  void row(const char* name, const std::string& path) {
-    ImGui::PushID(path.c_str());
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(name);
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("--set '%s=…'", path.c_str());
-    ImGui::TableNextColumn();
-    ImGui::SetNextItemWidth(-1);
+  const ParameterGroup& groupAt(const std::string& path) {
+    const auto known = groups.find(path);
+    if (known != groups.end()) return known->second;
+    return groups.emplace(path, scenario::parametersOf(*scenario, path)).first->second;
   }
-  void end() {
-    if (ImGui::IsItemDeactivated()) context_.session.endDrag();
-    ImGui::PopID();
-  }
-
-  PanelContext& context_;
-  bool open_ = false;
 };
 
 bool transmitsAtAll(const scenario::Emitter& emitter, double duration_s) {
@@ -106,122 +74,172 @@ bool transmitsAtAll(const scenario::Emitter& emitter, double duration_s) {
                      [&](const scenario::TimeInterval& interval) { return interval.begin_s <= duration_s; });
 }
 
-void drawEmitter(PanelContext& context, const scenario::Scenario& scenario,
-                 const scenario::Emitter& emitter) {
-  const std::string path = "emitters." + pathName(emitter.name) + ".";
-  Form form(context, emitter.name.c_str());
-  const bool on = transmitsAtAll(emitter, scenario.clock.duration_s);
-  if (form.check("transmits", path + "active_s", on)) {
-    // Off: a second that no step reaches.
-    const double never_s = scenario.clock.duration_s + scenario.clock.step_s + 1;
-    form.change(path + "active_s", on ? fmt::format("[[{:g}, {:g}]]", never_s, never_s + 1) : "null");
+/// A switch of the emitter: off is a second that no step reaches.
+void drawSwitch(PanelContext& context, ParameterRows& rows, const PanelState& state, const Section& section) {
+  const std::vector<scenario::Emitter>& emitters = state.scenario->emitters;
+  const auto emitter = std::find_if(emitters.begin(), emitters.end(),
+                                    [&](const scenario::Emitter& one) { return one.name == section.name; });
+  if (emitter == emitters.end() || !rows.begin("switch")) return;
+  const scenario::Clock& clock = state.scenario->clock;
+  const std::string path = section.path + ".active_s";
+  bool on = transmitsAtAll(*emitter, clock.duration_s);
+  rows.label("transmits", "--set '" + path + "=…'", state.edited.count(path) > 0);
+  ImGui::TableNextColumn();
+  if (ImGui::Checkbox("##transmits", &on)) {
+    const double never_s = clock.duration_s + clock.step_s + 1;
+    context.session.perform(
+        {"set",
+         {{"path", path},
+          {"value", on ? std::string("null") : fmt::format("[[{:g}, {:g}]]", never_s, never_s + 1)}}});
   }
-  form.slider("power", path + "power_w", emitter.power_w, 1e-2, 1e7, "%.6g W", true);
-  form.number("frequency, MHz", path + "frequency_hz", emitter.frequency_hz, 1e6, "%.6g");
-  form.slider("losses", path + "losses_db", emitter.losses_db, 0, 30, "%.1f dB");
-  if (emitter.scan.kind == scenario::ScanKind::rotate) {
-    form.slider("rotation", path + "scan.rate_rpm", emitter.scan.rate_rpm, -60, 60, "%.1f rpm");
-  }
-  if (emitter.scan.kind == scenario::ScanKind::fixed || emitter.scan.kind == scenario::ScanKind::sector) {
-    form.slider("azimuth", path + "scan.azimuth_deg", emitter.scan.azimuth_deg, 0, 360, "%.1f°");
-  }
-  if (emitter.scan.kind != scenario::ScanKind::dwell_list) {
-    form.slider("elevation", path + "scan.elevation_deg", emitter.scan.elevation_deg, -10, 60, "%.1f°");
-  }
-  form.choice("propagation", path + "propagation", scenario::toString(emitter.propagation),
-              {"free_space", "horizon", "diffraction", "two_ray", "itm", "p528"});
-  if (emitter.kind == scenario::EmitterKind::radar) {
-    form.slider("target", path + "receiver.target_rcs_m2", emitter.receiver.target_rcs_m2, 1e-3, 1e3,
-                "%.3g m²", true);
-  }
+  ParameterRows::end();
 }
 
-void drawPlatform(PanelContext& context, const scenario::Platform& platform) {
-  const std::string path = "platforms." + pathName(platform.name) + ".position.";
-  if (!platform.track_file.empty() || platform.track.size() != 1) {
-    ImGui::TextDisabled("moves: %s", platform.track_file.c_str());
-    return;
+/// Names that the verb `quantity` takes: with several channels for each quantity, those.
+std::vector<std::string> quantitiesOf(const scenario::Scenario& scenario) {
+  std::vector<std::string> parts{""};
+  if (scenario.output.combine == scenario::CombineMode::per_emitter) {
+    parts.clear();
+    for (const scenario::Emitter& emitter : scenario.emitters) parts.push_back(":" + emitter.name);
+  } else if (scenario.output.combine == scenario::CombineMode::per_band) {
+    parts.clear();
+    for (const scenario::Band& band : scenario.bands) parts.push_back(":" + band.name);
   }
-  const scenario::SitePosition& position = platform.track.front().position;
-  Form form(context, platform.name.c_str());
-  if (position.height_agl_m) {
-    form.slider("above ground", path + "height_agl_m", *position.height_agl_m, 0, 3000, "%.1f m", true);
+  std::vector<std::string> names = scenario.output.quantities;
+  for (const emfield::QuantityInfo& info : emfield::quantityTable()) {
+    if (std::find(names.begin(), names.end(), info.name) == names.end()) names.emplace_back(info.name);
   }
-  if (position.height_msl_m) {
-    form.slider("above sea", path + "height_msl_m", *position.height_msl_m, 0, 12000, "%.1f m");
+  std::vector<std::string> all;
+  for (const std::string& name : names) {
+    for (const std::string& part : parts) all.push_back(name + part);
   }
-  if (position.height_ellipsoid_m) {
-    form.slider("above ellipsoid", path + "height_ellipsoid_m", *position.height_ellipsoid_m, 0, 12000,
-                "%.1f m");
-  }
-  form.number("latitude", path + "latitude_deg", position.latitude_deg, 1, "%.6f");
-  form.number("longitude", path + "longitude_deg", position.longitude_deg, 1, "%.6f");
+  return all;
 }
 
-void drawAir(PanelContext& context, const scenario::Atmosphere& atmosphere) {
-  Form form(context, "air");
-  form.slider("k factor", "atmosphere.k_factor", atmosphere.k_factor, 0.5, 4, "%.3f");
-  form.slider("rain", "atmosphere.rain_mm_h", atmosphere.rain_mm_h, 0, 100, "%.1f mm/h");
-  form.slider("temperature", "atmosphere.temperature_k", atmosphere.temperature_k, 230, 320, "%.1f K");
-  form.slider("vapour", "atmosphere.vapour_g_m3", atmosphere.vapour_g_m3, 0, 30, "%.1f g/m³");
+void drawQuantity(PanelContext& context, ParameterRows& rows, const scenario::Scenario& scenario) {
+  if (!rows.begin("quantity")) return;
+  rows.label("shown", "The quantity in the picture\n--quantity NAME", false);
+  ImGui::TableNextColumn();
+  ImGui::SetNextItemWidth(-1);
+  const std::string& chosen = context.session.quantity();
+  const std::string shown = chosen.empty() ? scenario.output.quantities.front() : chosen;
+  if (ImGui::BeginCombo("##quantity", shown.c_str())) {
+    for (const std::string& name : quantitiesOf(scenario)) {
+      if (ImGui::Selectable(name.c_str(), name == shown))
+        context.session.perform({"quantity", {{"name", name}}});
+    }
+    ImGui::EndCombo();
+  }
+  ParameterRows::end();
+}
+
+void drawBody(PanelContext& context, PanelState& state, const Section& section) {
+  ParameterRows rows(context, state.edited, state.typing);
+  ImGui::PushID(section.path.c_str());
+  try {
+    if (section.kind) drawSwitch(context, rows, state, section);
+    if (section.path == "output") drawQuantity(context, rows, *state.scenario);
+    rows.draw(state.groupAt(section.path));
+  } catch (const Error& error) {
+    ImGui::TextWrapped("%s", error.message().c_str());
+  }
+  ImGui::PopID();
 }
 
 /// A heading that folds, with a dot of the kind's colour.
-bool section(const std::string& name, const char* group, std::optional<ImVec4> dot, bool open, float scale) {
-  ImGui::PushID(group);
-  const bool is_open = ImGui::TreeNodeEx(
-      name.c_str(), ImGuiTreeNodeFlags_Framed | ImGuiTreeNodeFlags_SpanAvailWidth |
-                        (open ? ImGuiTreeNodeFlags_DefaultOpen : 0) | ImGuiTreeNodeFlags_NoTreePushOnOpen);
-  if (dot) {
+void drawHeading(PanelState& state, const Section& section, render::Theme theme, float scale) {
+  ImGui::PushID(section.path.c_str());
+  ImGui::SetNextItemOpen(state.open.count(section.path) > 0);
+  const bool open = ImGui::TreeNodeEx(
+      "section",
+      ImGuiTreeNodeFlags_Framed | ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen,
+      "%s", section.name.c_str());
+  if (section.kind) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    ImGui::GetWindowDrawList()->AddCircleFilled({high.x - 14 * scale, (low.y + high.y) / 2}, 4.5F * scale,
-                                                ImGui::ColorConvertFloat4ToU32(*dot));
+    ImGui::GetWindowDrawList()->AddCircleFilled(
+        {high.x - 14 * scale, (low.y + high.y) / 2}, 4.5F * scale,
+        ImGui::ColorConvertFloat4ToU32(emitterColor(*section.kind, theme)));
   }
   ImGui::PopID();
-  return is_open;
+  if (open) {
+    state.open.insert(section.path);
+  } else {
+    state.open.erase(section.path);
+  }
 }
 
-}  // namespace
-
-void drawScenarioPanel(PanelContext& context) {
-  Session& session = context.session;
-  const std::shared_ptr<const scenario::Scenario> scenario = session.scenario();
-  const float s = context.scale;
-  ImGui::TextColored(accentColor(session.theme()), "What if");
-  if (!scenario) {
-    ImGui::TextDisabled("volumes: there is no scenario to change");
-    return;
+/// Only what is visible is drawn: runs of closed sections are clipped.
+void drawSections(PanelContext& context, PanelState& state, const std::vector<Section>& sections) {
+  const render::Theme theme = context.session.theme();
+  std::vector<const Section*> shown;
+  for (const Section& section : sections) {
+    if (state.filter.PassFilter(section.name.c_str())) shown.push_back(&section);
   }
+  const auto isOpen = [&](const Section* section) { return state.open.count(section->path) > 0; };
+  for (auto at = shown.begin(); at != shown.end();) {
+    if (isOpen(*at)) {
+      drawHeading(state, **at, theme, context.scale);
+      if (isOpen(*at)) drawBody(context, state, **at);
+      ++at;
+      continue;
+    }
+    const auto end = std::find_if(at, shown.end(), isOpen);
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(end - at), ImGui::GetFrameHeightWithSpacing());
+    while (clipper.Step()) {
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+        drawHeading(state, **(at + i), theme, context.scale);
+      }
+    }
+    at = end;
+  }
+  if (!shown.empty()) ImGui::Spacing();
+}
+
+void drawHead(PanelContext& context, const PanelState& state) {
+  const Session& session = context.session;
   const auto button = [&](const char* name, const char* command, bool enabled, const char* tip) {
     ImGui::BeginDisabled(!enabled);
     if (ImGui::SmallButton(name)) perform(context, command);
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", tip);
   };
-  ImGui::SameLine(0, 16 * s);
+  ImGui::SameLine(0, 16 * context.scale);
   button("undo", R"({"do":"undo"})", session.canUndo(), "Ctrl+Z");
   ImGui::SameLine();
   button("redo", R"({"do":"redo"})", session.canRedo(), "Ctrl+Shift+Z");
   ImGui::SameLine();
   button("copy as command", R"({"do":"copy_command"})", true, "Ctrl+Shift+C");
-  const std::size_t edits = scenario->edits().size();
-  if (edits > 0) {
-    ImGui::TextDisabled("%zu value%s changed", edits, edits == 1 ? "" : "s");
+  if (!state.edited.empty()) {
+    ImGui::TextDisabled("%zu value%s changed", state.edited.size(), state.edited.size() == 1 ? "" : "s");
   }
-  ImGui::Spacing();
-  bool is_first = true;
-  for (const scenario::Emitter& emitter : scenario->emitters) {
-    if (section(emitter.name, "emitter", emitterColor(emitter.kind, session.theme()), is_first, s)) {
-      drawEmitter(context, *scenario, emitter);
+}
+
+}  // namespace
+
+void drawScenarioPanel(PanelContext& context) {
+  static PanelState state;
+  const playback::ScenarioPtr scenario = context.session.scenario();
+  ImGui::TextColored(accentColor(context.session.theme()), "What if");
+  if (!scenario) {
+    ImGui::TextDisabled("volumes: there is no scenario to change");
+    return;
+  }
+  state.take(scenario);
+  drawHead(context, state);
+  if (state.emitters.size() > kSearchFrom || state.filter.IsActive()) {
+    ImGui::SetNextItemWidth(-1);
+    if (ImGui::InputTextWithHint("##search", "search emitters and platforms", state.filter.InputBuf,
+                                 IM_ARRAYSIZE(state.filter.InputBuf))) {
+      state.filter.Build();
     }
-    is_first = false;
   }
   ImGui::Spacing();
-  for (const scenario::Platform& platform : scenario->platforms) {
-    if (section(platform.name, "platform", std::nullopt, false, s)) drawPlatform(context, platform);
-  }
-  ImGui::Spacing();
-  if (section("Air", "air", std::nullopt, false, s)) drawAir(context, scenario->atmosphere);
+  ImGui::BeginChild("sections");
+  drawSections(context, state, state.emitters);
+  drawSections(context, state, state.platforms);
+  drawSections(context, state, state.others);
+  ImGui::EndChild();
 }
 
 }  // namespace emscape::view

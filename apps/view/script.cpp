@@ -3,6 +3,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <sstream>
 
@@ -14,6 +15,7 @@ namespace {
 
 constexpr double kWaitLimit_s = 60;
 constexpr int kFramesAfterInput = 3;
+constexpr int kFramesAfterMouse = 6;  // a drag takes four
 
 bool isWait(const std::string& verb) {
   return verb == "wait_s" || verb == "wait_state" || verb == "wait_frame";
@@ -101,11 +103,14 @@ bool Script::waitIsOver(const Line& line, const Session& session, double now_s) 
     over = session.picture() != nullptr;
   } else if (state == "IDLE" || state == "exact") {
     over = session.settled();
+  } else if (state == "recorded") {
+    over = !session.files().recorder.running();
   } else {
     over = state == render::toString(session.status().state);
   }
   const double limit_s = command.number("timeout_s", kWaitLimit_s);
   if (!over && waited_s > limit_s) {
+    if (!command.boolean("must", true)) return true;
     throw Error(ErrorCode::check_failed, line.place,
                 fmt::format("{} {}: not within {:g} s; the state is {}", command.verb, state, limit_s,
                             session.report().dump()));
@@ -126,9 +131,16 @@ void Script::expect(const Line& line, const Session& session) const {
   }
 }
 
+void Script::mark(const std::string& text, Session& session) const {
+  Json fields{{"text", text}};
+  fields.update(session.report());
+  session.log().write("mark", fields);
+}
+
 void Script::run(Session& session, WindowControl& window, double now_s) {
   if (frames_to_wait_ > 0 && --frames_to_wait_ > 0) return;
   for (; !finished(); ++next_, waits_since_s_.reset()) {
+    if (session.isAnswering()) return;
     const Line& line = lines_[next_];
     if (line.at_s && now_s < *line.at_s) return;
     const std::string& verb = line.command.verb;
@@ -136,6 +148,8 @@ void Script::run(Session& session, WindowControl& window, double now_s) {
       if (!waitIsOver(line, session, now_s)) return;
     } else if (verb == "expect") {
       expect(line, session);
+    } else if (verb == "mark") {
+      mark(line.command.text("text"), session);
     } else if (verb == "key") {
       window.press(parseChord(line.command.text("key")));
     } else if (verb == "mouse") {
@@ -144,7 +158,7 @@ void Script::run(Session& session, WindowControl& window, double now_s) {
       session.perform(line.command);
     }
     if (verb == "key" || verb == "mouse" || verb == "resize" || verb == "scale" || verb == "screenshot") {
-      frames_to_wait_ = kFramesAfterInput;
+      frames_to_wait_ = verb == "mouse" ? kFramesAfterMouse : kFramesAfterInput;
       ++next_;
       waits_since_s_.reset();
       return;
@@ -152,9 +166,15 @@ void Script::run(Session& session, WindowControl& window, double now_s) {
   }
 }
 
-std::optional<double> Script::nextRun_s() const {
+std::optional<double> Script::nextRun_s(double now_s) const {
+  constexpr double kPolling_s = 0.01;
   if (finished()) return std::nullopt;
-  return frames_to_wait_ > 0 ? 0 : 0.01;
+  if (frames_to_wait_ > 0) return 0;
+  const Line& line = lines_[next_];
+  if (line.at_s && *line.at_s > now_s) return *line.at_s - now_s;
+  if (waits_since_s_ && line.command.verb == "wait_s")
+    return std::max(0.0, *waits_since_s_ + line.command.number("seconds") - now_s);
+  return kPolling_s;
 }
 
 }  // namespace emscape::view

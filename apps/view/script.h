@@ -23,7 +23,7 @@ class Script {
   /// long
   void run(Session& session, WindowControl& window, double now_s);
   /// Seconds until run() is to be called again; none if the script is finished.
-  std::optional<double> nextRun_s() const;
+  std::optional<double> nextRun_s(double now_s) const;
 
  private:
   struct Line {
@@ -33,6 +33,7 @@ class Script {
   };
   bool waitIsOver(const Line& line, const Session& session, double now_s);
   void expect(const Line& line, const Session& session) const;
+  void mark(const std::string& text, Session& session) const;
 
   std::vector<Line> lines_;
   std::size_t next_ = 0;

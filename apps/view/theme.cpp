@@ -71,6 +71,7 @@ ImGuiStyle styleOf(render::Theme theme, float scale) {
   style.WindowBorderSize = 0;
   style.PopupBorderSize = 1;
   style.FrameBorderSize = 1;
+  style.CircleTessellationMaxError = 0.5F;  // fewer triangles for corners that look the same
   const ImVec4 accent = accentColor(theme);
   const auto faded = [&accent](float alpha) { return ImVec4(accent.x, accent.y, accent.z, alpha); };
   ImVec4* c = style.Colors;

@@ -17,47 +17,55 @@ F1 lists keys and mouse; --script runs the same actions without hands.
 
 Examples:
   emscape view scenarios/jacksboro.yaml
+  emscape view scenarios/jacksboro.yaml --state jacksboro.view.json
   emscape view out/jacksboro.pvd --scenario scenarios/jacksboro.yaml --scale 2
   emscape view scenarios/jacksboro.yaml --set emitters.jammer.power_w=500 --script tour.jsonl --log tour.log
 
 Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectation of the script was not met.)";
 
-/// Options as they are typed.
+/// Options as they are typed. Those that a view has, too, count only where they are given.
 struct Typed {
-  std::string size = "1200x900", mode = "dvr", rays = "auto", camera = "orbit", range, theme = "dark";
-  double budget_ms = 40;
+  std::string state, size, mode, rays = "auto", camera, range, theme, quantity;
+  double time_s = 0, exaggeration = 0, step_voxels = 0, budget_ms = 40;
+  bool shading = false;
+  std::vector<scenario::Edit> edits;
+  std::string compare;
+  std::vector<render::CutPlane> planes;
 };
 
 void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
-  playback::PictureStyle& style = options.style;
   app.add_option("INPUT", options.input,
                  "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes")
       ->required();
   app.add_option("--scenario", options.scenario, "Scenario whose ground and emitters are drawn with volumes");
-  app::addSetOption(app, options.edits);
-  app.add_option("--size", typed.size, "Window size in pixels, WxH");
+  app.add_option("--state", typed.state,
+                 "View file: camera, colours, time, edits and the rest; options that are given count more");
+  app::addSetOption(app, typed.edits);
+  app::addCompareOption(app, typed.compare, "Show first");
+  app.add_option("--size", typed.size,
+                 "Window size in pixels, WxH; default: 1200x900, with --state as large as its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
       ->check(CLI::Range(0.5, 4.0));
-  app.add_option("--time", options.time_s, "Shown first, in seconds");
-  app.add_option("--quantity", options.quantity, "Quantity or channel to draw; default: the first");
-  app.add_option("--mode", typed.mode, "How samples become a pixel")
+  app.add_option("--time", typed.time_s, "Shown first, in seconds; default: 0");
+  app.add_option("--quantity", typed.quantity, "Quantity or channel to draw; default: the first");
+  app.add_option("--mode", typed.mode, "How samples become a pixel; default: dvr")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
-  app.add_option("--camera", typed.camera, "orbit:azimuth_deg=..,.. or lookat:eye_x_m=..,..");
+  app.add_option("--camera", typed.camera, "orbit:azimuth_deg=..,.. or lookat:eye_x_m=..,..; default: orbit");
   app.add_option("--range", typed.range, "MIN:MAX of the colours; default: fitted to the first step");
-  app.add_option("--transfer", style.transfer, "Colours and opacities (JSON); default: fitted");
-  app.add_option("--theme", typed.theme, "Colours of texts and background")
+  app.add_option("--transfer", options.transfer, "Colours and opacities (JSON); default: fitted");
+  app.add_option("--theme", typed.theme, "Colours of texts and background; default: dark")
       ->check(CLI::IsMember({"dark", "light"}));
   app.add_option("--rays", typed.rays,
                  "Pixels that are cast while the picture changes; auto: as the budget allows")
       ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter", "adaptive"}));
   app.add_option("--budget", typed.budget_ms, "Milliseconds between two pictures while it changes")
       ->check(CLI::Range(1.0, 1e5));
-  app.add_option("--exaggeration", style.settings.vertical_exaggeration,
-                 "Vertical exaggeration; 0: chosen from the box")
+  app.add_option("--exaggeration", typed.exaggeration, "Vertical exaggeration; 0: chosen from the box")
       ->check(CLI::Range(0.0, 100.0));
-  app.add_option("--step", style.settings.step_voxels, "Distance of samples, in voxels")
+  app::addPlaneOption(app, typed.planes);
+  app.add_option("--step", typed.step_voxels, "Distance of samples, in voxels; default: 1")
       ->check(CLI::Range(0.05, 10.0));
-  app.add_flag("--shading", style.settings.shading, "Light on the fog");
+  app.add_flag("--shading", typed.shading, "Light on the fog");
   app.add_flag("--allow-missing-terrain", options.allow_missing_terrain,
                "Compute although elevation data is missing; the holes are drawn as such");
   app.add_option("--script", options.script, "JSON lines: what to do and when (docs/viewer.md)");
@@ -66,6 +74,35 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   app.add_option("--threads", options.threads, "Threads to use; 0: one per core")->check(CLI::Range(0, 4096));
   app.add_flag("--quiet,-q", options.quiet, "Only warnings and errors on standard error");
+}
+
+/// What is shown first: the view of --state, or the default one, with the options that are given.
+void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
+  playback::ViewState& view = options.view;
+  if (!typed.state.empty()) {
+    view = playback::readViewState(typed.state);
+    options.state = typed.state;
+    options.window_size.reset();
+  }
+  if (!typed.size.empty()) options.window_size = render::parseImageSize(typed.size);
+  const auto take = [&](const char* name, const auto& change) {
+    if (app.count(name) == 0) return;
+    change();
+    options.state.clear();  // the view is not the file's any more
+  };
+  take("--camera", [&] { view.camera = render::parseCamera(typed.camera); });
+  take("--theme", [&] { view.theme = render::parseTheme(typed.theme); });
+  take("--time", [&] { view.time_s = typed.time_s; });
+  take("--quantity", [&] { playback::changeQuantity(view, typed.quantity); });
+  take("--compare", [&] { playback::changeComparison(view, typed.compare); });
+  take("--range", [&] { playback::changeRange(view, app::parseRange(typed.range)); });
+  take("--transfer", [&] { view.transfer.reset(); });
+  take("--mode", [&] { view.settings.mode = render::parseCompositingMode(typed.mode); });
+  take("--step", [&] { view.settings.step_voxels = typed.step_voxels; });
+  take("--exaggeration", [&] { view.settings.vertical_exaggeration = typed.exaggeration; });
+  take("--plane", [&] { view.settings.planes = typed.planes; });
+  take("--shading", [&] { view.settings.shading = typed.shading; });
+  take("--set", [&] { view.edits.insert(view.edits.end(), typed.edits.begin(), typed.edits.end()); });
 }
 
 }  // namespace
@@ -94,13 +131,9 @@ std::optional<ViewOptions> parseOptions(int argc, char** argv) {
     return std::nullopt;
   }
   if (options.input.empty()) throw Error(ErrorCode::usage, "INPUT is required\nTry 'emscape view --help'.");
-  options.window_size = render::parseImageSize(typed.size);
-  options.style.camera = render::parseCamera(typed.camera);
-  options.style.theme = render::parseTheme(typed.theme);
-  options.style.settings.mode = render::parseCompositingMode(typed.mode);
+  readView(app, typed, options);
   if (typed.rays != "auto") options.controller.pattern = render::parsePattern(typed.rays);
   options.controller.budget_ms = typed.budget_ms;
-  if (!typed.range.empty()) options.range = app::parseRange(typed.range);
   return options;
 }
 

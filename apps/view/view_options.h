@@ -3,25 +3,23 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
-#include "emscape/playback/painter.h"
+#include "emscape/playback/view_state.h"
 #include "emscape/render/frame_controller.h"
-#include "emscape/scenario/edit.h"
-#include "emscape/volume/value_range.h"
 
 namespace emscape::view {
 
 struct ViewOptions {
   std::string input;
-  std::string scenario;  ///< beside volumes; may be empty
-  std::string quantity;
-  std::vector<scenario::Edit> edits;
-  render::ImageSize window_size{1200, 900};
+  std::string scenario;          ///< beside volumes; may be empty
+  playback::ViewState view;      ///< shown first; its size is that of the picture
+  std::string state;             ///< file that `view` was read from; empty: none, or options changed it
+  std::string transfer;          ///< file of the transfer function; may be empty
+  bool unsaved_edits = false;    ///< those of `view` are in no file: an autosave brought them back
+  bool offers_kept_view = true;  ///< asks whether the autosave of the input is to be restored
+  /// None: as large as the view's picture needs it.
+  std::optional<render::ImageSize> window_size = render::ImageSize{1200, 900};
   double scale = 0;  ///< of texts and controls; 0: that of the screen
-  playback::PictureStyle style;
-  std::optional<volume::ValueRange> range;
-  std::optional<double> time_s;
   render::ControllerOptions controller;
   bool allow_missing_terrain = false;
   std::string script, log;

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <filesystem>
 #include <mutex>
+#include <utility>
 
 #include "apps/view/theme.h"
 #include "emscape/base/error.h"
@@ -67,6 +68,10 @@ void installCallbacks(GLFWwindow* window) {
   });
   glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { windowOf(w).markDirty(); });
   glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { windowOf(w).markDirty(); });
+  glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
+    windowOf(w).drop({paths, paths + count});
+    windowOf(w).markDirty();
+  });
   glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { windowOf(w).markDirty(); });
   glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
     ImGui_ImplGlfw_WindowFocusCallback(w, focused);
@@ -140,8 +145,14 @@ bool Window::takeDirty() {
   return happened;
 }
 
-bool Window::closeRequested() const {
-  return glfwWindowShouldClose(window_) != 0;
+bool Window::takeCloseRequest() {
+  const bool wanted = glfwWindowShouldClose(window_) != 0;
+  glfwSetWindowShouldClose(window_, GLFW_FALSE);
+  return wanted;
+}
+
+std::vector<std::string> Window::takeDropped() {
+  return std::exchange(dropped_, {});
 }
 
 render::ImageSize Window::framebufferSize() const {
@@ -242,6 +253,10 @@ void Window::endFrame() {
   const render::ImageSize size = framebufferSize();
   glViewport(0, 0, size.width, size.height);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Window::dropFrame() {
+  ImGui::EndFrame();
 }
 
 void Window::swap() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/view/input_queue.h"
 #include "emscape/render/image.h"
@@ -28,7 +29,10 @@ class Window {
   /// Whether the user or the display asked for a new frame since the last call.
   bool takeDirty();
   void markDirty() { dirty_ = true; }
-  bool closeRequested() const;
+  /// Whether the user wants to close the window, since the last call.
+  bool takeCloseRequest();
+  /// Files that were dropped on the window since the last call.
+  std::vector<std::string> takeDropped();
 
   /// 0x0 while it is minimised.
   render::ImageSize framebufferSize() const;
@@ -42,10 +46,13 @@ class Window {
   void setTheme(render::Theme theme);
 
   InputQueue& input() { return input_; }
+  void drop(std::vector<std::string> files) { dropped_ = std::move(files); }
   /// Begins a frame of Dear ImGui with the events that are due; returns them.
   std::vector<InputEvent> beginFrame();
   /// Draws what Dear ImGui was told.
   void endFrame();
+  /// Ends a frame that is not drawn.
+  void dropFrame();
   void swap();
   /// What was drawn since the last swap().
   render::Image8 readPixels() const;
@@ -68,6 +75,7 @@ class Window {
   bool keys_[512]{};
   double scale_ = 1;
   render::Theme theme_ = render::Theme::dark;
+  std::vector<std::string> dropped_;
   bool style_changed_ = true;
   bool dirty_ = true;
 };

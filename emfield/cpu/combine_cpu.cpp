@@ -123,7 +123,18 @@ void startRow(const CombineTask& task, std::size_t channel, std::size_t first) {
   }
 }
 
-void combineRow(const CombineTask& task, int j, int k, float* power_density_wm2) {
+/// @param buffer  of one row, for emitters whose power density is not kept
+/// @return the row's power density
+const float* powerOf(const CombineEmitter& emitter, const Row& row, std::size_t first, float* buffer) {
+  float* const power_wm2 = emitter.power_wm2 != nullptr ? emitter.power_wm2 + first : buffer;
+  if (emitter.power_is_known) return power_wm2;
+  powerDensityRow(emitter.beam, row, power_wm2);
+  if (emitter.beam.geometry.excess != nullptr)
+    applyExcess(emitter.beam.geometry.excess + first, row.count, power_wm2);
+  return power_wm2;
+}
+
+void combineRow(const CombineTask& task, int j, int k, float* buffer) {
   const int count = task.dims.x;
   const std::size_t first = (static_cast<std::size_t>(k) * task.dims.y + j) * count;
   const Row row{static_cast<std::size_t>(j) * count, count, task.t_m[k]};
@@ -133,13 +144,11 @@ void combineRow(const CombineTask& task, int j, int k, float* power_density_wm2)
     }
   }
   for (const CombineEmitter& emitter : task.emitters) {
-    powerDensityRow(emitter.beam, row, power_density_wm2);
-    if (emitter.beam.geometry.excess != nullptr)
-      applyExcess(emitter.beam.geometry.excess + first, count, power_density_wm2);
+    const float* const power_wm2 = powerOf(emitter, row, first, buffer);
     for (const ChannelShare& share : emitter.shares) {
       const Accumulator& out = task.accumulators[share.channel];
       if (out.value == nullptr) continue;
-      reduceRow(task.reductions[share.channel], share.weight, emitter.emitter_index, power_density_wm2, count,
+      reduceRow(task.reductions[share.channel], share.weight, emitter.emitter_index, power_wm2, count,
                 out.value + first, out.largest == nullptr ? nullptr : out.largest + first);
     }
   }
@@ -149,10 +158,10 @@ void combineRow(const CombineTask& task, int j, int k, float* power_density_wm2)
 
 void combineCpu(const CombineTask& task) {
   parallelFor(task.dims.y, 1, [&](int begin, int end) {
-    std::vector<float> power_density_wm2(task.dims.x);
+    std::vector<float> buffer(task.dims.x);
     for (int j = begin; j < end; ++j) {
       for (int k = task.first_row_k == nullptr ? 0 : task.first_row_k[j]; k < task.dims.z; ++k) {
-        combineRow(task, j, k, power_density_wm2.data());
+        combineRow(task, j, k, buffer.data());
       }
     }
   });

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "base/memory.h"
 #include "base/stopwatch.h"
 #include "emfield/field_engine.h"
+#include "emfield/kept_power.h"
 
 namespace emscape::emfield {
 namespace {
@@ -18,7 +20,11 @@ struct ChannelBuffers {
 class CpuEngine : public FieldEngine {
  public:
   CpuEngine(const FieldSetup& setup, int slots)
-      : setup_(setup), voxels_(static_cast<std::size_t>(setup.grid.dims.count())), slots_(slots) {
+      : setup_(setup),
+        voxels_(static_cast<std::size_t>(setup.grid.dims.count())),
+        slots_(slots),
+        kept_power_(static_cast<std::size_t>(std::max(0, slots - 1)), voxels_,
+                    availableMemory_bytes().value_or(0)) {
     planChanged(true);
     const Dims& dims = setup.grid.dims;
     const std::vector<std::uint16_t>& valid = setup.columns.first_valid_k;
@@ -47,6 +53,7 @@ class CpuEngine : public FieldEngine {
   std::size_t voxels_;
   std::vector<int> first_row_k_;
   std::vector<EmitterGeometry> slots_;
+  KeptPower<std::vector<float>> kept_power_;  // not of the last slot, which emitters share
   std::vector<ChannelBuffers> buffers_;
   StageTimes times_;
 };
@@ -55,6 +62,7 @@ std::vector<GeometryFindings> CpuEngine::computeGeometry(const std::vector<Geome
   std::vector<GeometryFindings> all;
   for (const GeometryRequest& request : requests) {
     EmitterGeometry& geometry = slots_[request.slot];
+    kept_power_.forget(static_cast<std::size_t>(request.slot));
     EmitterGeometry::Times spent;
     geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
                      setup_.columns, setup_.terrain.get(), setup_.resolution, spent);
@@ -121,7 +129,10 @@ void CpuEngine::combine(const CombinePass& pass) {
     task.emitters.push_back(member.emitter);
     EmitterBeam& beam = task.emitters.back().beam;
     beam.geometry = slots_[member.slot].view();
-    beam.pattern = setup_.scenario->emitters[member.emitter.emitter_index].antenna->view();
+    const auto& antenna = setup_.scenario->emitters[member.emitter.emitter_index].antenna;
+    beam.pattern = antenna->view();
+    if (takesPart(task, task.emitters.back()))
+      kept_power_.choose(static_cast<std::size_t>(member.slot), antenna, task.emitters.back());
   }
   Stopwatch watch;
   combineCpu(task);
@@ -177,7 +188,7 @@ void CpuEngine::addMemory(MemoryUse& use) const {
   }
   use.bytes_per_voxel_and_channel = static_cast<double>(channel_bytes) / static_cast<double>(voxels_) /
                                     static_cast<double>(std::max<std::size_t>(1, buffers_.size()));
-  use.total_bytes += channel_bytes;
+  use.total_bytes += channel_bytes + kept_power_.bytes();
   for (const EmitterGeometry& geometry : slots_) use.total_bytes += geometry.bytes();
 }
 

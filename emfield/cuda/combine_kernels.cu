@@ -20,6 +20,8 @@ constexpr int kMostChannels = 4;
 template <int kChannels>
 struct Member {
   EmitterBeam beam;
+  float* power_wm2;  ///< see CombineEmitter
+  bool power_is_known;
   int emitter_index;
   float weights[kChannels];
   bool takes_part[kChannels];
@@ -91,30 +93,45 @@ __global__ void __launch_bounds__(kWarp* kWarps)
 
   for (int m = 0; m < launch.member_count; ++m) {
     const Member<kChannels>& member = launch.members[m];
-    switch (member.beam.pattern.kind) {
-      case PatternKind::isotropic:
-        fillLayers<PatternKind::isotropic>(member.beam, column, t_m, power_density_wm2);
-        break;
-      case PatternKind::gaussian:
-        fillLayers<PatternKind::gaussian>(member.beam, column, t_m, power_density_wm2);
-        break;
-      case PatternKind::separable:
-        fillLayers<PatternKind::separable>(member.beam, column, t_m, power_density_wm2);
-        break;
-      case PatternKind::phased_array:
-        fillLayers<PatternKind::phased_array>(member.beam, column, t_m, power_density_wm2);
-        break;
-      case PatternKind::grid:
-        fillLayers<PatternKind::grid>(member.beam, column, t_m, power_density_wm2);
-        break;
-    }
-    if (member.beam.geometry.excess != nullptr) {
-      const ExcessCode* const excess =
-          member.beam.geometry.excess + static_cast<long long>(begin) * columns + column;
+    const long long first = static_cast<long long>(begin) * columns + column;
+    if (member.power_is_known) {
 #pragma unroll
       for (int l = 0; l < kLayers; ++l) {
-        if (begin + l < launch.dims.z) {
-          power_density_wm2[l] *= excessFactor(excess[static_cast<long long>(l) * columns]);
+        if (begin + l < launch.dims.z)
+          power_density_wm2[l] = member.power_wm2[first + static_cast<long long>(l) * columns];
+      }
+    } else {
+      switch (member.beam.pattern.kind) {
+        case PatternKind::isotropic:
+          fillLayers<PatternKind::isotropic>(member.beam, column, t_m, power_density_wm2);
+          break;
+        case PatternKind::gaussian:
+          fillLayers<PatternKind::gaussian>(member.beam, column, t_m, power_density_wm2);
+          break;
+        case PatternKind::separable:
+          fillLayers<PatternKind::separable>(member.beam, column, t_m, power_density_wm2);
+          break;
+        case PatternKind::phased_array:
+          fillLayers<PatternKind::phased_array>(member.beam, column, t_m, power_density_wm2);
+          break;
+        case PatternKind::grid:
+          fillLayers<PatternKind::grid>(member.beam, column, t_m, power_density_wm2);
+          break;
+      }
+      if (member.beam.geometry.excess != nullptr) {
+        const ExcessCode* const excess = member.beam.geometry.excess + first;
+#pragma unroll
+        for (int l = 0; l < kLayers; ++l) {
+          if (begin + l < launch.dims.z) {
+            power_density_wm2[l] *= excessFactor(excess[static_cast<long long>(l) * columns]);
+          }
+        }
+      }
+      if (member.power_wm2 != nullptr) {
+#pragma unroll
+        for (int l = 0; l < kLayers; ++l) {
+          if (begin + l < launch.dims.z)
+            member.power_wm2[first + static_cast<long long>(l) * columns] = power_density_wm2[l];
         }
       }
     }
@@ -165,7 +182,8 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
     launch.member_count = 0;
   };
   for (const CombineEmitter& emitter : task.emitters) {
-    Member<kChannels> member{emitter.beam, emitter.emitter_index, {}, {}};
+    Member<kChannels> member{
+        emitter.beam, emitter.power_wm2, emitter.power_is_known, emitter.emitter_index, {}, {}};
     bool takes_part = false;
     for (const ChannelShare& share : emitter.shares) {
       for (int c = 0; c < kChannels; ++c) {

@@ -1,10 +1,12 @@
 // The field's stages on a GPU.
 
+#include <algorithm>
 #include <map>
 
 #include "emfield/cuda/combine_kernels.h"
 #include "emfield/cuda/device_geometry.h"
 #include "emfield/field_engine.h"
+#include "emfield/kept_power.h"
 #include "emscape/base/device.h"
 #include "emscape/base/error.h"
 
@@ -58,6 +60,8 @@ class CudaEngine : public FieldEngine {
   CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecision precision);
 
   std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) override {
+    for (const GeometryRequest& request : requests)
+      kept_power_.forget(static_cast<std::size_t>(request.slot));
     return geometry_.compute(requests, stream_, clock_);
   }
   void setResting(const std::vector<bool>& channels) override;
@@ -79,6 +83,7 @@ class CudaEngine : public FieldEngine {
   emscape::cuda::Stream stream_;
   cuda::StageClock clock_;
   cuda::DeviceGeometry geometry_;
+  KeptPower<Buffer<float>> kept_power_;                      // not of the last slot, which emitters share
   std::map<scenario::AntennaPtr, DevicePattern> patterns_;   ///< of the emitters' antennas
   std::map<std::pair<int, int>, RadarTables> radar_tables_;  ///< of a channel and an emitter
   std::vector<ChannelBuffers> buffers_;
@@ -89,7 +94,8 @@ CudaEngine::CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecisio
     : setup_(setup),
       voxels_(static_cast<std::size_t>(setup.grid.dims.count())),
       precision_(precision),
-      geometry_(setup, slots) {
+      geometry_(setup, slots),
+      kept_power_(static_cast<std::size_t>(std::max(0, slots - 1)), voxels_, findDevice().free_bytes) {
   planChanged(true);
 }
 
@@ -141,7 +147,10 @@ void CudaEngine::combine(const CombinePass& pass) {
     task.emitters.push_back(member.emitter);
     EmitterBeam& beam = task.emitters.back().beam;
     beam.geometry = geometry_.view(member.slot);
-    beam.pattern = patterns_.at(setup_.scenario->emitters[member.emitter.emitter_index].antenna).view();
+    const scenario::AntennaPtr& antenna = setup_.scenario->emitters[member.emitter.emitter_index].antenna;
+    beam.pattern = patterns_.at(antenna).view();
+    if (takesPart(task, task.emitters.back()))
+      kept_power_.choose(static_cast<std::size_t>(member.slot), antenna, task.emitters.back());
   }
   clock_.begin(stream_);
   cuda::combine(task, geometry_.firstValidK(), stream_);
@@ -206,7 +215,7 @@ void CudaEngine::addMemory(MemoryUse& use) const {
   }
   use.bytes_per_voxel_and_channel = static_cast<double>(channel_bytes) / static_cast<double>(voxels_) /
                                     static_cast<double>(std::max<std::size_t>(1, buffers_.size()));
-  use.total_bytes += channel_bytes + geometry_.bytes();
+  use.total_bytes += channel_bytes + geometry_.bytes() + kept_power_.bytes();
 }
 
 }  // namespace

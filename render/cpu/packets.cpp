@@ -36,8 +36,8 @@ HWY_INLINE void clipAxis(D origin, D direction, double lower, double upper, D& b
 }
 
 /// Rays of half a packet (doubles are twice as wide); pixels by x and y, both as whole numbers in doubles.
-HWY_INLINE void setHalf(const RaycastTask& task, const double* x, const double* y, const double* limits,
-                        float* const to[8]) {
+HWY_INLINE void setHalf(const RaycastTask& task, const double* x, const double* y, const double* first,
+                        const double* last, float* const to[8]) {
   const hn::ScalableTag<double> d;
   const hn::Rebind<float, hn::ScalableTag<double>> narrow;
   const CameraView& camera = task.camera;
@@ -65,8 +65,8 @@ HWY_INLINE void setHalf(const RaycastTask& task, const double* x, const double* 
   dx = dx * norm;
   dy = dy * norm;
   dz = dz * norm;
-  D begin = hn::Zero(d);
-  D end = hn::Load(d, limits);
+  D begin = hn::Load(d, first);
+  D end = hn::Load(d, last);
   const Vec3d lower = task.volume.lower();
   const Vec3d upper = task.volume.upper();
   clipAxis(origin_x, dx, lower.x, upper.x, begin, end);
@@ -87,21 +87,23 @@ HWY_INLINE void setHalf(const RaycastTask& task, const double* x, const double* 
   store(begin, to[7]);
 }
 
-HWY_INLINE Rays setRays(const RaycastTask& task, const Pixel* pixels, const float* limits, int count) {
+HWY_INLINE Rays setRays(const RaycastTask& task, const Pixel* pixels, const RayBounds* bounds, int count) {
   constexpr std::size_t kLanes = hn::MaxLanes(hn::ScalableTag<float>());
-  HWY_ALIGN double x[kLanes], y[kLanes], end[kLanes];
+  HWY_ALIGN double x[kLanes], y[kLanes], begin[kLanes], end[kLanes];
   HWY_ALIGN float parts[8][kLanes];
   for (int lane = 0; lane < static_cast<int>(kLanes); ++lane) {
     const Pixel pixel = pixels[lane < count ? lane : 0];
     x[lane] = pixel.x;
     y[lane] = pixel.y;
-    end[lane] = lane >= count ? 0.0 : (limits != nullptr ? limits[lane] : 1e300);
+    const RayBounds bound = lane >= count ? RayBounds{0, 0} : bounds != nullptr ? bounds[lane] : RayBounds{};
+    begin[lane] = bound.begin;
+    end[lane] = bound.end;
   }
   const std::size_t half = hn::Lanes(hn::ScalableTag<double>());
   for (std::size_t lane = 0; lane < kLanes; lane += half) {
     float* const to[8] = {parts[0] + lane, parts[1] + lane, parts[2] + lane, parts[3] + lane,
                           parts[4] + lane, parts[5] + lane, parts[6] + lane, parts[7] + lane};
-    setHalf(task, x + lane, y + lane, end + lane, to);
+    setHalf(task, x + lane, y + lane, begin + lane, end + lane, to);
   }
   const hn::ScalableTag<float> f;
   return {{hn::Load(f, parts[0]), hn::Load(f, parts[1]), hn::Load(f, parts[2])},
@@ -286,14 +288,14 @@ HWY_INLINE Color castSurface(const RaycastTask& task, const Rays& rays, long lon
 using CastPacket = Color (*)(const RaycastTask&, const Rays&, long long&);
 
 template <CastPacket kCast>
-HWY_NOINLINE long long castAll(const RaycastTask& task, const Pixel* pixels, const float* limits, int count,
-                               Rgba* fronts) {
+HWY_NOINLINE long long castAll(const RaycastTask& task, const Pixel* pixels, const RayBounds* bounds,
+                               int count, Rgba* fronts) {
   constexpr int kLanes = static_cast<int>(hn::MaxLanes(hn::ScalableTag<float>()));
   HWY_ALIGN float rgba[4 * kLanes];
   long long samples = 0;
   for (int first = 0; first < count; first += kLanes) {
     const int used = count - first < kLanes ? count - first : kLanes;
-    const Rays rays = setRays(task, pixels + first, limits != nullptr ? limits + first : nullptr, used);
+    const Rays rays = setRays(task, pixels + first, bounds != nullptr ? bounds + first : nullptr, used);
     const Color color = kCast(task, rays, samples);
     hn::StoreInterleaved4(color.r, color.g, color.b, color.a, kF, rgba);
     for (int lane = 0; lane < used; ++lane) {
@@ -305,35 +307,35 @@ HWY_NOINLINE long long castAll(const RaycastTask& task, const Pixel* pixels, con
 
 /// The modes whose samples are taken as they are.
 template <class Lanes>
-HWY_INLINE long long castPlain(const RaycastTask& task, const Pixel* pixels, const float* limits, int count,
-                               Rgba* fronts) {
+HWY_INLINE long long castPlain(const RaycastTask& task, const Pixel* pixels, const RayBounds* bounds,
+                               int count, Rgba* fronts) {
   return task.volume.coded.codes != nullptr
-             ? castAll<castPacket<Lanes, CodedReader, false>>(task, pixels, limits, count, fronts)
-             : castAll<castPacket<Lanes, ValueReader, false>>(task, pixels, limits, count, fronts);
+             ? castAll<castPacket<Lanes, CodedReader, false>>(task, pixels, bounds, count, fronts)
+             : castAll<castPacket<Lanes, ValueReader, false>>(task, pixels, bounds, count, fronts);
 }
 
 /// With light on them: it follows from small differences, which codes would round.
 template <class Lanes>
-HWY_INLINE long long castFog(const RaycastTask& task, const Pixel* pixels, const float* limits, int count,
+HWY_INLINE long long castFog(const RaycastTask& task, const Pixel* pixels, const RayBounds* bounds, int count,
                              Rgba* fronts) {
   return task.shading.shades_fog
-             ? castAll<castPacket<Lanes, ValueReader, true>>(task, pixels, limits, count, fronts)
-             : castPlain<Lanes>(task, pixels, limits, count, fronts);
+             ? castAll<castPacket<Lanes, ValueReader, true>>(task, pixels, bounds, count, fronts)
+             : castPlain<Lanes>(task, pixels, bounds, count, fronts);
 }
 
-long long cast(const RaycastTask& task, CompositingMode mode, const Pixel* pixels, const float* limits,
+long long cast(const RaycastTask& task, CompositingMode mode, const Pixel* pixels, const RayBounds* bounds,
                int count, Rgba* fronts) {
   switch (mode) {
     case CompositingMode::mida:
-      return castFog<MidaLanes>(task, pixels, limits, count, fronts);
+      return castFog<MidaLanes>(task, pixels, bounds, count, fronts);
     case CompositingMode::mip:
-      return castPlain<MipLanes>(task, pixels, limits, count, fronts);
+      return castPlain<MipLanes>(task, pixels, bounds, count, fronts);
     case CompositingMode::iso:
-      return castAll<castSurface>(task, pixels, limits, count, fronts);
+      return castAll<castSurface>(task, pixels, bounds, count, fronts);
     case CompositingMode::dvr:
       break;
   }
-  return castFog<DvrLanes>(task, pixels, limits, count, fronts);
+  return castFog<DvrLanes>(task, pixels, bounds, count, fronts);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -360,10 +362,10 @@ bool codesServe(const CodedValues& coded, const Dims& dims, const TransferView& 
 }  // namespace
 
 long long castPackets(const RaycastTask& given, CompositingMode mode, const Pixel* pixels,
-                      const float* limits, int count, Rgba* fronts) {
+                      const RayBounds* bounds, int count, Rgba* fronts) {
   RaycastTask task = given;
   if (!codesServe(task.volume.coded, task.volume.dims, task.transfer)) task.volume.coded.codes = nullptr;
-  return HWY_DYNAMIC_DISPATCH(cast)(task, mode, pixels, limits, count, fronts);
+  return HWY_DYNAMIC_DISPATCH(cast)(task, mode, pixels, bounds, count, fronts);
 }
 
 }  // namespace emscape::render

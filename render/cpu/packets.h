@@ -16,12 +16,12 @@ bool packetsCanCast(const VolumeView& volume);
 /// Casts the volume as some pixels show it (see RaycastTask::castVolume()), with the widest vectors that the
 /// processor has.
 /// @param pixels  neighbours beside each other make good packets
-/// @param limits  distance along each ray beyond which no sample is taken; null: none
+/// @param bounds  of the samples on each ray; null: none
 /// @param fronts  receives `count` colours
 /// @return samples taken
 /// Without light, values are read as 16-bit codes where these resolve a 4096th of the transfer function.
 /// @accuracy each channel within one level of 255 of the plain form
-long long castPackets(const RaycastTask& task, CompositingMode mode, const Pixel* pixels, const float* limits,
-                      int count, Rgba* fronts);
+long long castPackets(const RaycastTask& task, CompositingMode mode, const Pixel* pixels,
+                      const RayBounds* bounds, int count, Rgba* fronts);
 
 }  // namespace emscape::render

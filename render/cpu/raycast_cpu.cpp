@@ -31,18 +31,17 @@ constexpr std::array<Pixel, kTilePixels> zOrder() {
 constexpr std::array<Pixel, kTilePixels> kZOrder = zOrder();
 
 /// RaycastTask::castVolume() or castSurface() for one kind of compositing and sampling.
-using CastPixel = Rgba (RaycastTask::*)(int, int, double) const;
+using CastPixel = Rgba (RaycastTask::*)(int, int, RayBounds) const;
 
 template <CastPixel kCast>
-EMSCAPE_SIMD_CLONES void castPlain(const RaycastTask& task, const Pixel* pixels, const float* limits,
+EMSCAPE_SIMD_CLONES void castPlain(const RaycastTask& task, const Pixel* pixels, const RayBounds* bounds,
                                    int count, Rgba* fronts) {
   for (int n = 0; n < count; ++n) {
-    const double limit = limits != nullptr ? limits[n] : 1e300;
-    fronts[n] = (task.*kCast)(pixels[n].x, pixels[n].y, limit);
+    fronts[n] = (task.*kCast)(pixels[n].x, pixels[n].y, bounds != nullptr ? bounds[n] : RayBounds{});
   }
 }
 
-using CastPlain = void (*)(const RaycastTask&, const Pixel*, const float*, int, Rgba*);
+using CastPlain = void (*)(const RaycastTask&, const Pixel*, const RayBounds*, int, Rgba*);
 
 template <class Sampler>
 CastPlain plainOf(CompositingMode mode) {
@@ -59,6 +58,13 @@ CastPlain plainOf(CompositingMode mode) {
   return castPlain<&RaycastTask::castVolume<DvrCompositor, Sampler>>;
 }
 
+using CutPixel = CutRay (*)(const RaycastTask&, Pixel, float);
+
+template <class Sampler>
+CutRay cutOf(const RaycastTask& task, Pixel pixel, float limit) {
+  return task.cutRay<Sampler>(pixel.x, pixel.y, limit);
+}
+
 bool isSet(const StopFlag* stop) {
   return stop != nullptr && stop->load(std::memory_order_relaxed);
 }
@@ -69,25 +75,35 @@ class PieceCaster {
   explicit PieceCaster(const CpuCast& cast)
       : cast_(cast),
         in_packets_(!cast.plain && !cast.nearest && packetsCanCast(cast.task.volume)),
-        plain_(cast.nearest ? plainOf<NearestSampler>(cast.mode) : plainOf<TrilinearSampler>(cast.mode)) {}
+        plain_(cast.nearest ? plainOf<NearestSampler>(cast.mode) : plainOf<TrilinearSampler>(cast.mode)),
+        cut_(cast.nearest ? cutOf<NearestSampler> : cutOf<TrilinearSampler>) {}
 
   /// @return samples taken, as far as they are counted
   long long operator()(const Pixel* pixels, int count, Image& image) const {
     std::array<Rgba, kTilePixels> fronts;
-    std::array<float, kTilePixels> limits;
-    if (cast_.ground != nullptr) {
-      for (int n = 0; n < count; ++n) limits[static_cast<std::size_t>(n)] = groundLimit(pixels[n]);
+    std::array<CutRay, kTilePixels> cut;
+    std::array<RayBounds, kTilePixels> bounds;
+    const bool cuts = cast_.task.cut.count > 0;
+    const bool bounded = cuts || cast_.ground != nullptr;
+    for (int n = 0; bounded && n < count; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      bounds[i] = {};
+      if (cast_.ground != nullptr) bounds[i].end = groundLimit(pixels[n]);
+      if (!cuts) continue;
+      cut[i] = cut_(cast_.task, pixels[n], bounds[i].end);
+      bounds[i] = cut[i].bounds;
     }
-    const float* limit = cast_.ground != nullptr ? limits.data() : nullptr;
+    const RayBounds* bound = bounded ? bounds.data() : nullptr;
     long long samples = 0;
     if (in_packets_) {
-      samples = castPackets(cast_.task, cast_.mode, pixels, limit, count, fronts.data());
+      samples = castPackets(cast_.task, cast_.mode, pixels, bound, count, fronts.data());
     } else {
-      plain_(cast_.task, pixels, limit, count, fronts.data());
+      plain_(cast_.task, pixels, bound, count, fronts.data());
     }
     const bool shows_ground = cast_.ground != nullptr && cast_.shows_ground;
     for (int n = 0; n < count; ++n) {
-      const Rgba& front = fronts[static_cast<std::size_t>(n)];
+      const auto i = static_cast<std::size_t>(n);
+      const Rgba front = cuts ? over(fronts[i], cut[i].section) : fronts[i];
       const int x = pixels[n].x;
       const int y = pixels[n].y;
       image.at(x, y) = shows_ground ? cast_.ground->behind(front, cast_.ground->index(x, y)) : front;
@@ -110,6 +126,7 @@ class PieceCaster {
   const CpuCast& cast_;
   const bool in_packets_;
   const CastPlain plain_;
+  const CutPixel cut_;
 };
 
 }  // namespace

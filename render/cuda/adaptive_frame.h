@@ -303,7 +303,7 @@ __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Col
       if (lane >= rays) break;
       const Pixel pixel = queue.pixels[n];
       launch.layer.at(pixel.x, pixel.y) =
-          toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, limitOf(launch, pixel)));
+          toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, boundsOf(launch, pixel)));
     }
   } else {
     const unsigned threads = is_lattice ? kLatticeThreads : static_cast<unsigned>(RayKind::kParts);
@@ -313,7 +313,7 @@ __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Col
       const bool has_pixel = n < queue.length;
       const Pixel pixel = has_pixel ? queue.pixels[n] : Pixel{};
       const RayPieces pieces =
-          launch.task.piecesOf(pixel.x, pixel.y, has_pixel ? limitOf(launch, pixel) : 0.0);
+          launch.task.piecesOf(pixel.x, pixel.y, has_pixel ? boundsOf(launch, pixel) : RayBounds{0, 0});
       const Rgba color = castByThreads<RayKind>(launch, colors, pieces, threads);
       if (has_pixel && lane < rays) launch.layer.at(pixel.x, pixel.y) = toFloat4(color);
     }

@@ -19,10 +19,14 @@ __device__ inline void waitForCopies() {
   __syncthreads();
 }
 
-/// Where the ray of a pixel ends at the ground.
-__device__ inline double limitOf(const CastLaunch& launch, const Pixel& pixel) {
-  return launch.limits != nullptr ? launch.limits[pixelIndex(launch.task.camera.size, pixel.x, pixel.y)]
-                                  : 1e300;
+/// Where the samples of a pixel's ray begin and end.
+__device__ inline RayBounds boundsOf(const CastLaunch& launch, const Pixel& pixel) {
+  RayBounds bounds;
+  if (launch.limits == nullptr) return bounds;
+  const long long index = pixelIndex(launch.task.camera.size, pixel.x, pixel.y);
+  bounds.end = launch.limits[index];
+  if (launch.begins != nullptr) bounds.begin = launch.begins[index];
+  return bounds;
 }
 
 }  // namespace emscape::render::cuda

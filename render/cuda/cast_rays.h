@@ -34,8 +34,9 @@ struct VolumeRay {
   using Colors = SampleColors;
   static constexpr int kParts = kMayShade ? 1 : Compositor::kParts;
   static constexpr int kFetched = kMayShade ? 1 : kBatch<Compositor>;
-  __device__ static Rgba cast(const CastLaunch& launch, const Colors& colors, int x, int y, double limit) {
-    return launch.task.castVolume<Compositor, Sampler, kMayShade, kFetched>(x, y, limit, colors,
+  __device__ static Rgba cast(const CastLaunch& launch, const Colors& colors, int x, int y,
+                              RayBounds bounds) {
+    return launch.task.castVolume<Compositor, Sampler, kMayShade, kFetched>(x, y, bounds, colors,
                                                                             *launch.volume_highest_f);
   }
   __device__ static Compositor begin(const CastLaunch& launch) {
@@ -55,8 +56,8 @@ struct SurfaceRay {
   using Colors = GlobalColors;
   static constexpr int kParts = 1;
   __device__ static Rgba cast(const CastLaunch& launch, const Colors& /*colors*/, int x, int y,
-                              double limit) {
-    return launch.task.castSurface<Sampler>(x, y, limit);
+                              RayBounds bounds) {
+    return launch.task.castSurface<Sampler>(x, y, bounds);
   }
 };
 
@@ -81,10 +82,10 @@ __device__ void castTask(const CastLaunch& launch, const typename RayKind::Color
   float4& target = launch.layer.at(pixel.x, pixel.y);
   if constexpr (RayKind::kParts == 1) {
     if (!task.has_pixel) return;
-    target = toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, limitOf(launch, pixel)));
+    target = toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, boundsOf(launch, pixel)));
   } else {
     const RayPieces pieces =
-        launch.task.piecesOf(pixel.x, pixel.y, task.has_pixel ? limitOf(launch, pixel) : 0.0);
+        launch.task.piecesOf(pixel.x, pixel.y, task.has_pixel ? boundsOf(launch, pixel) : RayBounds{0, 0});
     typename RayKind::Compositor whole = RayKind::begin(launch);
     bool done = pieces.count == 0;
     // Every sample is taken in one place: kernels begin with waiting for their instructions.

@@ -1,16 +1,9 @@
 #include "render/cuda/adaptive_frame.h"
 #include "render/cuda/cast_rays.h"
-#include "volume/sparse_block.h"
+#include "render/cuda/grid_voxels.h"
 
 namespace emscape::render::cuda {
 namespace {
-
-/// Voxels of a NanoVDB grid.
-class GridVoxels : public volume::SparseVoxels {
- public:
-  EMSCAPE_HD explicit GridVoxels(const VolumeView& volume)
-      : volume::SparseVoxels(volume.sparse, volume.dims) {}
-};
 
 template <class Launch>
 void startSparse(const Launch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {

@@ -41,6 +41,7 @@ void DeviceScene::updateTable(const Scene& scene, cudaStream_t stream) {
   const auto entries = static_cast<std::size_t>(rule.table.last) + 1;
   samples_.upload(rule.table.samples, entries, stream);
   projected_.upload(rule.table.projected, entries, stream);
+  opaque_.upload(scene.table().opaque(), stream);
   visible_before_.upload(rule.visible_before, entries + 1, stream);
   std::vector<HalfColor> halves((entries + 1) / 2 * 2);  // kernels read pairs
   for (std::size_t i = 0; i < entries; ++i) {
@@ -92,6 +93,7 @@ CastLaunch DeviceScene::launch(const Scene& scene, const volume::DeviceStorage& 
   task.volume.sparse = storage.sparseBlocks();
   task.transfer.samples = samples_.data();
   task.transfer.projected = projected_.data();
+  task.cut.colors = opaque_.data();
   const bool skips = scene.settings().skip_empty && skippingPays(scene.settings().mode, skippable_share_);
   task.skip = {highest_.data(), skips ? levels_.data() : nullptr, storage.bricks().dims};
   if (scene.ground()) {

@@ -32,7 +32,7 @@ class DeviceScene {
 
   Scene::Versions seen_;  ///< what the members here were made of
 
-  emscape::cuda::Buffer<Rgba> samples_, projected_;
+  emscape::cuda::Buffer<Rgba> samples_, projected_, opaque_;
   emscape::cuda::Buffer<HalfColor> half_colors_;
   emscape::cuda::Buffer<int> visible_before_;
 

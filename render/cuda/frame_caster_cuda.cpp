@@ -49,6 +49,7 @@ class CudaFrameCaster : public FrameCaster {
   CastLaunch begin(const Scene& scene, ImageSize size, double most_samples, bool is_frame);
   CastLaunch prepare(const Scene& scene, ImageSize size);
   void findGround(const Scene& scene, const CastLaunch& launch);
+  void findSections(CastLaunch& launch);
   void findInside(const Scene& scene, ImageSize size);
   void finish(FrameReport& report);
   bool castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices, LaunchTrain& train,
@@ -90,6 +91,8 @@ class CudaFrameCaster : public FrameCaster {
   View ground_view_, inside_view_;
   Buffer<float> ground_distances_;
   Buffer<float4> ground_colors_;
+  Buffer<float> cut_begins_, cut_limits_, cut_distances_;
+  Buffer<float4> cut_colors_;
   Silhouette silhouette_;
   Buffer<Span> inside_;
 
@@ -131,8 +134,8 @@ long long raysFor(const CastLaunch& launch, double samples) {
 /// @param most_samples  of a launch that a stop waits for; is_frame: no restoration
 CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, double most_samples, bool is_frame) {
   volume_->storage().beginReading(stream_);
-  const bool is_prepared =
-      scene_.isCurrent(scene) && (!scene.ground() || ground_view_.holds(scene.versions().view, size));
+  const bool is_prepared = scene_.isCurrent(scene) && !scene.isCut() &&
+                           (!scene.ground() || ground_view_.holds(scene.versions().view, size));
   if (!is_prepared) begin_.record(stream_);
   const CastLaunch launch = prepare(scene, size);
   most_rays_ = raysFor(launch, most_samples);
@@ -176,6 +179,7 @@ CastLaunch CudaFrameCaster::prepare(const Scene& scene, ImageSize size) {
     layers_.ground_distances = ground_distances_.data();
     layers_.ground_colors = ground_colors_.data();
   }
+  if (scene.isCut()) findSections(launch);
   return launch;
 }
 
@@ -187,6 +191,25 @@ void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
   ground_colors_.resize(static_cast<std::size_t>(size.count()));
   cuda::castGround(launch.task, ground_distances_.data(), ground_colors_.data(), stream_);
   ground_view_ = {version, size};
+}
+
+/// Sections belong to a frame, as they show the volume's values.
+void CudaFrameCaster::findSections(CastLaunch& launch) {
+  const std::size_t pixels = picture8_.size();
+  cut_begins_.resize(pixels);
+  cut_limits_.resize(pixels);
+  cut_distances_.resize(pixels);
+  cut_colors_.resize(pixels);
+  RaycastTask task = launch.task;
+  task.volume.texture = volume_->storage().pointTexture();
+  cuda::castCut(task, sampling_,
+                {layers_.ground_distances, layers_.ground_colors, cut_begins_.data(), cut_limits_.data(),
+                 cut_distances_.data(), cut_colors_.data()},
+                stream_);
+  launch.begins = cut_begins_.data();
+  launch.limits = cut_limits_.data();
+  layers_.ground_distances = cut_distances_.data();
+  layers_.ground_colors = cut_colors_.data();
 }
 
 /// By the host, before a frame's time begins: the GPU would wait for it. Wide, as the GPU's quotients are not

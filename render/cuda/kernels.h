@@ -87,7 +87,8 @@ struct CastLaunch {
   PixelSet pixels;
   const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for Sampling::filtered
   const float* volume_highest_f = nullptr;  ///< one
-  const float* limits = nullptr;            ///< one a pixel: where the ground is; null: no ground
+  const float* limits = nullptr;            ///< one a pixel: where the ground is, or a section; null: nowhere
+  const float* begins = nullptr;            ///< one a pixel: where planes let its ray begin; null: not cut
   unsigned* next_tile = nullptr;            ///< 0, before each launch and after it; one a stream
   const TaskOrder* order = nullptr;         ///< an earlier launch found it, or all 0; null: there is none
   TaskOrder* next_order = nullptr;          ///< another, that receives the one for this view; null with order
@@ -100,9 +101,21 @@ void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling samplin
 /// Where every pixel's ray meets the ground (infinity: nowhere), and its colour there.
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream);
 
+/// What planes leave of every pixel's ray; arrays of one a pixel.
+struct CutLayer {
+  const float* ground_distances = nullptr;  ///< null: no ground
+  const float4* ground_colors = nullptr;
+  float* begins = nullptr;     ///< of the samples
+  float* limits = nullptr;     ///< of the samples
+  float* distances = nullptr;  ///< of the section or the ground that is seen; infinity: of none
+  float4* colors = nullptr;    ///< of it
+};
+/// @param task  its texture does not filter
+void castCut(const RaycastTask& task, Sampling sampling, const CutLayer& layer, cudaStream_t stream);
+
 // --- The picture ---
 
-/// The volume's layer and the ground behind it.
+/// The volume's layer and what lies behind it, the ground or a section.
 struct Layers {
   ImageSize size;
   Pattern pattern = Pattern::full;  ///< of the layer: which of its pixels count; adaptive: all

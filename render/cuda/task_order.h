@@ -231,7 +231,7 @@ class OrderFinder {
     const auto inside = clip(ray, vecCast<float>(task.volume.lower()), vecCast<float>(task.volume.upper()));
     const float square = dot(ray.direction, ray.direction);
     const float voxels = square * rsqrtf(square);
-    const float end = fminf(inside.end * voxels, static_cast<float>(limitOf(launch_, pixel)));
+    const float end = fminf(inside.end * voxels, boundsOf(launch_, pixel).end);
     return fmaxf(end - inside.begin * voxels, 0.0F);
   }
 

@@ -10,10 +10,10 @@
 #include <utility>
 
 #include "emscape/base/units.h"
-#include "emscape/scenario/antenna_shapes.h"
 #include "scenario/antenna/cut.h"
 #include "scenario/antenna/tables.h"
 #include "scenario/antenna/text.h"
+#include "scenario/antenna_shapes.h"
 
 namespace emscape::scenario {
 namespace {

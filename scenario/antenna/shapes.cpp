@@ -6,8 +6,8 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "emscape/scenario/antenna_shapes.h"
 #include "scenario/antenna/tables.h"
+#include "scenario/antenna_shapes.h"
 
 namespace emscape::scenario {
 namespace {

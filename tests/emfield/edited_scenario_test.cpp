@@ -450,6 +450,42 @@ TEST(EditedScenario, EqualsANewSolverWithABoundOnTheCaches) {
       {nullptr}, 40, editValue, random, options);
 }
 
+/// Edits that compute echoes alone, and then one for which the power of all emitters is added up again.
+void checkEchoesThenPower(const FieldOptions& options) {
+  Random random(9);
+  auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
+  scenario->output.quantities = {"power_density_dbwm2", "detection_probability"};
+  scenario->output.radar_look = scenario::RadarLook::target;
+  FieldSolver solver(scenario, nullptr, options);
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  const auto edit = [&](const std::function<void(Scenario&)>& change) {
+    scenario = std::make_shared<Scenario>(*scenario);
+    change(*scenario);
+    solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  };
+  for (int n = 0; n < 3; ++n) {
+    edit([](Scenario& s) {
+      for (Emitter& emitter : s.emitters) emitter.receiver.target_rcs_m2 *= 2;
+    });
+  }
+  for (int n = 0; n < 3; ++n) edit([](Scenario& s) { s.emitters.back().power_w *= 2; });
+  FieldSolver fresh(scenario, nullptr, options);
+  fresh.update(scenario::snapshotAt(scenario, nullptr, 0));
+  expectEqualSolvers(solver, fresh);
+}
+
+TEST(EditedScenario, EqualsANewSolverWhereEchoesChangedBeforePower) {
+  checkEchoesThenPower({});
+}
+
+TEST(CudaEditedScenario, EqualsANewSolverWhereEchoesChangedBeforePower) {
+  const Device device = findDevice();
+  if (!device.usable) GTEST_SKIP() << device.why_not;
+  FieldOptions options;
+  options.backend = Backend::cuda;
+  checkEchoesThenPower(options);
+}
+
 TEST(CudaEditedScenario, EqualsANewSolver) {
   const Device device = findDevice();
   if (!device.usable) GTEST_SKIP() << device.why_not;

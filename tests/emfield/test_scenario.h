@@ -6,9 +6,9 @@
 #include <string>
 
 #include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/antenna_shapes.h"
 #include "emscape/scenario/scenario.h"
 #include "emscape/scenario/snapshot.h"
+#include "scenario/antenna_shapes.h"
 
 namespace emscape::emfield::testing {
 

@@ -1,7 +1,7 @@
 #include <stdexcept>
 
 #include "emscape/playback/async_task.h"
-#include "emscape/playback/background_writer.h"
+#include "playback/background_writer.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

@@ -1,6 +1,6 @@
 #include "emscape/playback/autosave.h"
 
-#include "emscape/base/utc.h"
+#include "base/utc.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

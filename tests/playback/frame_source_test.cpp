@@ -36,9 +36,38 @@ TEST(FrameSource, ComputesAScenariosStepsWithOneRange) {
   ASSERT_NE(source->scene(), nullptr);
   const Frame first = source->frame(0), last = source->frame(3);
   EXPECT_EQ(first.markers.size(), 2U);
+  EXPECT_TRUE(first.tracks.empty());
   EXPECT_EQ(first.volume.info().range_max, last.volume.info().range_max);
   EXPECT_EQ(last.volume.info().time_s, 3);
   EXPECT_FALSE(source->frame(3).changed);
+}
+
+TEST(FrameSource, TracksGoThroughTheMarkersOfTheirEmitters) {
+  const TemporaryFolder folder;
+  writeFile(folder / "track.csv",
+            "t_s,latitude_deg,longitude_deg,height_msl_m\n"
+            "-10,52.0,4.9,900\n0,52.0,5.0,1000\n2,52.02,5.0,1200\n3,52.02,5.03,1200\n90,52.02,6,1200\n");
+  FrameSelection selection;
+  selection.input = quickScenario(
+      folder, {{"[40, 40, 20]", "[8, 8, 6]"},
+               {"{name: mast, position: {latitude_deg: 52.05, longitude_deg: 5.06, height_agl_m: 50}}",
+                "{name: mast, track: {file: track.csv}}"}});
+  const auto source = openFrameSource(selection, {});
+  double before = -1;
+  for (int step = 0; step < source->count(); ++step) {
+    const Frame frame = source->frame(step);
+    ASSERT_EQ(frame.tracks.size(), 1U);
+    const render::Track& track = frame.tracks[0];
+    EXPECT_EQ(track.kind, render::MarkerKind::transmitter);
+    EXPECT_GT(track.travelled, before);
+    before = track.travelled;
+    const auto point = std::min(static_cast<std::size_t>(track.travelled), track.points_m.size() - 2);
+    const Vec3d leg = track.points_m[point + 1] - track.points_m[point];
+    const Vec3d here = track.points_m[point] + leg * (track.travelled - static_cast<double>(point));
+    EXPECT_LT(length(here - frame.markers[1].position_m), 0.1) << step;
+  }
+  const Frame last = source->frame(source->count() - 1);
+  EXPECT_EQ(last.tracks[0].travelled, static_cast<double>(last.tracks[0].points_m.size() - 1));
 }
 
 TEST(FrameSource, ReadsVolumesNearestToTheTimesThatAreAskedFor) {

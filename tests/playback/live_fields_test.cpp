@@ -16,6 +16,7 @@ class EditableFrames : public MadeFrames {
  public:
   using MadeFrames::MadeFrames;
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
+    if (scenario->name == "too large") throw Error(ErrorCode::device, "cudaMalloc: out of memory\nat x");
     if (scenario->name == "without ground") throw Error(ErrorCode::bad_input, "no ground\nat all");
     ++edits;
   }
@@ -39,10 +40,6 @@ class Fields {
     events.deliver = [this](FieldDelivery delivery, auto) {
       const std::lock_guard<std::mutex> lock(mutex_);
       delivered_.push_back(std::move(delivery));
-    };
-    events.fitted = [this](SeriesRange range) {
-      const std::lock_guard<std::mutex> lock(mutex_);
-      fitted_ = range;
     };
     events.changed = [this] {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -82,10 +79,6 @@ class Fields {
     const std::lock_guard<std::mutex> lock(mutex_);
     return delivered_.back().frame.volume.info().time_s;
   }
-  std::optional<SeriesRange> fitted() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return fitted_;
-  }
   /// With the lock.
   long long lastRevision() const {
     return std::max(delivered_.empty() ? 0 : delivered_.back().revision, fields->status().failed_revision);
@@ -98,7 +91,6 @@ class Fields {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<FieldDelivery> delivered_;
-  std::optional<SeriesRange> fitted_;
 
  public:
   std::unique_ptr<LiveFields> fields;  // the first to go
@@ -160,6 +152,15 @@ TEST(LiveFields, AFailedEditIsToldInOneLineUntilAnotherOneSucceeds) {
   EXPECT_THAT(live.source->asked(), ElementsAre(0, 0));
 }
 
+TEST(LiveFields, AFailureOfTheDeviceSaysWhatToDo) {
+  Fields live(10);
+  live.wait();
+  live.ask([](FieldRequest& request) { request.scenario = scenarioNamed("too large"); });
+  live.wait();
+  EXPECT_EQ(live.fields->status().error,
+            "cudaMalloc: out of memory; --backend cpu computes without the GPU");
+}
+
 TEST(LiveFields, AStepThatFailsLeavesTheOthers) {
   Fields live(10, Fields::defaults(), [](int step) {
     if (step == 5) throw Error(ErrorCode::bad_input, "step 5 is damaged");
@@ -177,12 +178,10 @@ TEST(LiveFields, AStepThatFailsLeavesTheOthers) {
 TEST(LiveFields, TheRangeOfTheSeriesIsFoundBesideWhatIsAskedFor) {
   Fields live(48);
   live.wait();
-  live.ask([](FieldRequest& request) { request.fit = 7; });
+  live.ask([](FieldRequest& request) { request.search = 7; });
   live.wait();
-  live.waitFor([&] { return !live.fields->status().fitting; });
-  ASSERT_TRUE(live.fitted());
-  EXPECT_EQ(live.fitted()->fit, 7);
-  EXPECT_EQ(live.fitted()->range, (ValueRange{0, 48}));
+  live.waitFor([&] { return live.fields->status().series.search == 7; });
+  EXPECT_EQ(live.fields->status().series.range, (ValueRange{0, 48}));
   EXPECT_EQ(live.source->asked().size(), 24U) << "every other step, each once";
   EXPECT_EQ(live.shown_s(), 0) << "what is shown stays";
 }

@@ -158,6 +158,39 @@ std::shared_ptr<const scenario::Scenario> edited(const LiveView& view, const std
 
 constexpr auto kBusyRestoreIdle = {ControllerState::busy, ControllerState::restore, ControllerState::idle};
 
+TEST(LiveView, ComparisonShowsWhatEditsChangeAndTheFieldAgain) {
+  const TemporaryFolder folder;
+  Expected expected(quickScenario(folder));
+  Live live(expected.input);
+  const auto field = live.settled();
+  live.view->setComparison(true);
+  const auto equal = live.settled();
+  EXPECT_EQ(equal->volume.info().quantity, "power_density_difference_db");
+  EXPECT_EQ(equal->annotations.subtitle, "difference to the original scenario");
+  EXPECT_EQ(equal->volume.info().range_max, 0) << "nothing is edited";
+  live.view->setScenario(edited(*live.view, "emitters.radar.power_w", "100000"));
+  const auto changed = live.settled();
+  EXPECT_GT(changed->volume.info().range_max, 9.9F);
+  EXPECT_GE(changed->volume.info().range_min, 0);
+  live.view->setComparison(false);
+  const auto again = live.settled();
+  EXPECT_EQ(again->volume.info().quantity, "power_density_dbwm2");
+  EXPECT_EQ(again->annotations.subtitle, "");
+  expected.edits = {{"emitters.radar.power_w", "100000"}};
+  expectSame(again, expected);
+}
+
+TEST(LiveView, WhatHasNoDifferenceIsToldAndThePictureStays) {
+  const TemporaryFolder folder;
+  LiveOptions options = quarterOptions();
+  options.quantity = "dominant_emitter";
+  Live live(quickScenario(folder), options);
+  const auto field = live.settled();
+  live.view->setComparison(true);
+  EXPECT_THAT(live.error(), HasSubstr("dominant_emitter: indices have no difference"));
+  EXPECT_EQ(live.settled()->volume.info().quantity, "dominant_emitter");
+}
+
 TEST(LiveView, EveryKindOfEventGoesFromBusyOverRestoreToIdleAndThePictureIsThatOfAFullCast) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
@@ -356,18 +389,23 @@ TEST(LiveView, NothingIsDrawnWithoutPixels) {
   EXPECT_EQ(live.settled()->status.shown_s, 2);
 }
 
-TEST(LiveView, ColoursAreFittedToTheSeriesOrARangeWhenTheUserSaysSo) {
+TEST(LiveView, ColoursAreFittedToARangeOrAStepWhenTheUserSaysSo) {
   const TemporaryFolder folder;
   const std::string input = quickScenario(folder);
   Live live(input);
   const render::TransferFunction fitted = live.settled()->transfer;
   live.view->seek(2);
   EXPECT_EQ(live.settled()->transfer.lowest(), fitted.lowest()) << "colours stay over the series";
-  live.view->fitToSeries();
-  live.waitUntil([&](const LiveStatus& status) { return status.isSettled() && live.view->picture()->range; });
+  EXPECT_FALSE(live.view->status().series_range);
+  live.view->searchSeriesRange();
+  EXPECT_TRUE(live.view->status().searching);
+  live.waitUntil([&](const LiveStatus& status) { return status.isSettled(); });
   FrameSelection selection;
   selection.input = input;
   const volume::VolumeInfo series = openFrameSource(selection, {})->frame(0).volume.info();
+  EXPECT_EQ(*live.view->status().series_range, (ValueRange{series.range_min, series.range_max}));
+  EXPECT_EQ(live.settled()->transfer.lowest(), fitted.lowest()) << "what is shown stays";
+  live.view->setRange({series.range_min, series.range_max});
   const auto shown = live.settled();
   EXPECT_EQ(*shown->range, (ValueRange{series.range_min, series.range_max}));
   EXPECT_EQ(shown->transfer.highest(), render::defaultTransferFunction(series).highest());
@@ -403,7 +441,7 @@ TEST(LiveView, EndsWhileEverythingRuns) {
       render::CameraSpec camera;
       camera.azimuth_deg = n;
       view.setCamera(camera);
-      if (n % 7 == 0) view.fitToSeries();
+      if (n % 7 == 0) view.searchSeriesRange();
       if (n % 50 == 49 && view.scenario()) {
         view.setScenario(edited(view, "emitters.radar.power_w", std::to_string(n)));
       }

@@ -1,4 +1,4 @@
-#include "emscape/playback/mailbox.h"
+#include "playback/mailbox.h"
 
 #include <gtest/gtest.h>
 

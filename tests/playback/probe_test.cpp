@@ -111,6 +111,62 @@ TEST(Pick, FindsTheGroundUnderAPixelWhateverTheExaggeration) {
   }
 }
 
+TEST(Pick, GroundAloneAndLevelsAreFoundToo) {
+  const volume::DenseVolume volume = madeVolume();
+  render::HeightField ground;
+  ground.columns = ground.rows = 2;
+  ground.spacing_x_m = ground.spacing_y_m = 1000;
+  ground.heights_m.assign(4, 200);
+  const render::SceneBox box = render::sceneBoxOf(volume.grid, 2);
+  const render::Camera camera = cameraAt("orbit:elevation_deg=50", box, kSize);
+  const Vec3d point{300, 400, 200};
+  const render::Projected pixel = render::project(camera, kSize, box.toDrawn(point));
+  const auto on_ground = pickGround(camera, box, kSize, pixel.x, pixel.y, ground);
+  ASSERT_TRUE(on_ground);
+  EXPECT_LT(length(*on_ground - point), 0.01);
+  const auto on_level = pickLevel(camera, box, kSize, pixel.x, pixel.y, 200);
+  ASSERT_TRUE(on_level);
+  EXPECT_LT(length(*on_level - point), 0.01);
+  EXPECT_FALSE(pickGround(camera, box, kSize, 0, 0, ground));
+  EXPECT_FALSE(pickLevel(camera, box, kSize, 0, 0, 200));         // beside the box
+  EXPECT_FALSE(pickLevel(camera, box, kSize, 160, 120, 100000));  // behind the eye
+}
+
+TEST(Pick, FindsTheSectionsOfPlanesAndNothingThatTheyRemove) {
+  const volume::DenseVolume volume = madeVolume();
+  render::HeightField ground;
+  ground.columns = ground.rows = 2;
+  ground.spacing_x_m = ground.spacing_y_m = 1000;
+  ground.heights_m.assign(4, 200);
+  const render::SceneBox box = render::sceneBoxOf(volume.grid, 2);
+  const render::Camera camera = cameraAt("orbit:elevation_deg=50,azimuth_deg=180", box, kSize);
+  const auto pickedAt = [&](const Vec3d& point, const std::vector<std::string>& planes) {
+    std::vector<render::CutPlane> cuts;
+    for (const std::string& plane : planes) cuts.push_back(render::parseCutPlane(plane));
+    const render::Projected pixel = render::project(camera, kSize, box.toDrawn(point));
+    return *pick(camera, box, kSize, pixel.x, pixel.y, volume, &ground, cuts);
+  };
+  const Vec3d on_ground{500, 500, 200}, in_air{500, 500, 600};
+  EXPECT_EQ(pickedAt(on_ground, {}).on, PickedPoint::On::ground);
+  // From above: the section comes first.
+  const PickedPoint below = pickedAt(in_air, {"horizontal:altitude_m=600,keep=below"});
+  EXPECT_EQ(below.on, PickedPoint::On::section);
+  EXPECT_LT(length(below.position_m - in_air), 0.01);
+  // What lies above is kept: the section ends the ray.
+  const PickedPoint above = pickedAt(in_air, {"horizontal:altitude_m=600,keep=above"});
+  EXPECT_EQ(above.on, PickedPoint::On::section);
+  EXPECT_LT(length(above.position_m - in_air), 0.01);
+  // A plane below the ground does not show; one that is off does nothing.
+  EXPECT_EQ(pickedAt(on_ground, {"horizontal:altitude_m=100,keep=above"}).on, PickedPoint::On::ground);
+  EXPECT_EQ(pickedAt(on_ground, {"horizontal:altitude_m=600,keep=below,on=false"}).on,
+            PickedPoint::On::ground);
+  // The camera is in the south: what lies south of the line is gone, ground and all.
+  const Vec3d on_wall{500, 600, 500};
+  const PickedPoint wall = pickedAt(on_wall, {"vertical:bearing_deg=90,y_m=600,x_m=500,keep=left"});
+  EXPECT_EQ(wall.on, PickedPoint::On::section);
+  EXPECT_LT(length(wall.position_m - on_wall), 0.01);
+}
+
 TEST(Pick, WithoutGroundFindsTheLargestValueOfTheRayElseTheBox) {
   volume::DenseVolume volume = madeVolume();
   std::fill(volume.values.begin(), volume.values.end(), -1.0F);

@@ -7,8 +7,8 @@
 #include "emscape/base/log.h"
 #include "emscape/playback/stop.h"
 #include "emscape/volume/file.h"
-#include "emscape/volume/vti.h"
 #include "tests/playback/playback_samples.h"
+#include "volume/vti.h"
 
 namespace emscape::playback::test {
 namespace {

@@ -155,6 +155,62 @@ TEST(TransferEditor, WhatChangesNothingIsNoStep) {
   EXPECT_FALSE(editor.canUndo());
 }
 
+TEST(TransferEditor, PointsStayWithinTheInterval) {
+  TransferEditor editor(ramp());
+  EXPECT_EQ(editor.function().opacities[static_cast<std::size_t>(editor.add(50, 0.2))].at, 0);
+  editor.select(0);
+  editor.moveSelected(-200, 0);
+  EXPECT_EQ(editor.function().lowest(), -100) << "the ends have handles of their own";
+}
+
+TEST(TransferEditor, ADragOfAnEndLosesNothingOnTheWay) {
+  TransferEditor editor(ramp());
+  editor.setColorMap("viridis");
+  const std::string before = transferFunctionText(editor.function());
+  editor.beginDrag();
+  editor.setLowest(std::nextafter(0.0, -1.0));  // all colours in one value
+  editor.setLowest(-80);
+  EXPECT_EQ(editor.function().colors.size(), render::colorMap("viridis").points.size());
+  EXPECT_EQ(editor.colorMap(), "viridis");
+  editor.setLowest(-100);
+  editor.endDrag();
+  EXPECT_EQ(transferFunctionText(editor.function()), before);
+}
+
+TEST(TransferEditor, OpacitiesAreScaledAndStayBelowOne) {
+  TransferEditor editor(ramp());
+  editor.scaleOpacities(3);
+  EXPECT_DOUBLE_EQ(editor.function().opacities[1].opacity, 0.03);
+  EXPECT_EQ(editor.function().opacities[2].opacity, 1);
+  EXPECT_EQ(editor.stepsMade(), 1);
+  EXPECT_EQ(editor.changes(), 1);
+  editor.undo();
+  EXPECT_EQ(editor.changes(), 2);
+  editor.undo();
+  EXPECT_EQ(editor.changes(), 2) << "there was nothing to undo";
+}
+
+TEST(TransferEditor, OpacityPresetsCoverTheInterval) {
+  for (const OpacityPreset& preset : opacityPresets()) {
+    for (const double at : {-1e9, -100.0, -37.0, 0.0}) {
+      TransferEditor editor(ramp());
+      editor.setOpacityPreset(preset.name, at);
+      EXPECT_EQ(editor.function().lowest(), -100) << preset.name;
+      EXPECT_EQ(editor.function().highest(), 0) << preset.name;
+      // What the format asks of a function: it can be read back.
+      volume::VolumeInfo info;
+      info.unit = "dB";
+      EXPECT_NO_THROW(render::parseTransferFunction(transferFunctionText(editor.function()), "a.json", info));
+    }
+  }
+  TransferEditor editor(ramp());
+  editor.setOpacityPreset("threshold", -40);
+  EXPECT_EQ(editor.function().opacity(-41), 0);
+  EXPECT_EQ(editor.function().opacity(-39), 0.05);
+  EXPECT_THAT(errorOf([&] { editor.setOpacityPreset("hill"); }),
+              testing::HasSubstr("unknown opacity preset 'hill': expected ramp, late ramp, threshold"));
+}
+
 TEST(TransferEditor, CategoriesAreRefused) {
   render::TransferFunction function = ramp();
   function.categorical = true;

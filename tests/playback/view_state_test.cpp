@@ -37,11 +37,13 @@ class RandomState {
     if (coin()) state.settings.iso_value = uniform(-200, 10);
     state.settings.iso_opacity = uniform(0, 1);
     state.settings.vertical_exaggeration = coin() ? 0 : uniform(0.1, 20);
+    for (unsigned i = below(4); i > 0; --i) state.settings.planes.push_back(plane());
     state.theme = coin() ? render::Theme::dark : render::Theme::light;
     state.show_terrain = coin();
     state.show_emitters = coin();
     state.size = {static_cast<int>(1 + below(4000)), static_cast<int>(1 + below(4000))};
     for (unsigned i = below(4); i > 0; --i) state.edits.push_back({"emitters.\"a=b\".power_w", text()});
+    if (coin()) state.compare = kOriginal;
     for (unsigned i = below(3); i > 0; --i) state.open_panels.push_back("panel " + std::to_string(i));
     return state;
   }
@@ -56,6 +58,22 @@ class RandomState {
         "ridge", "",   "a: b # c", "\"quoted\" \\ text", "two\nlines\t", "\xC3\xA9\xE2\x82\xAC", "[1, 2]",
         "true",  "12", "null"};
     return kTexts[below(std::size(kTexts))];
+  }
+  render::CutPlane plane() {
+    render::CutPlane plane;
+    plane.on = coin();
+    plane.altitude_m = uniform(-100, 1e4);
+    if (coin()) return coin() ? plane : render::flipped(plane);
+    plane = {};
+    plane.kind = render::CutPlane::Kind::vertical;
+    plane.keep = coin() ? render::CutPlane::Side::left : render::CutPlane::Side::right;
+    plane.bearing_deg = uniform(-360, 360);
+    plane.offset_m = coin() ? 0 : uniform(-1e4, 1e4);
+    if (coin()) {
+      plane.x_m = uniform(-1e4, 1e4);
+      plane.y_m = uniform(-1e4, 1e4);
+    }
+    return plane;
   }
   Vec3d position() { return {uniform(-1e5, 1e5), uniform(-1e5, 1e5), uniform(-1e3, 2e4)}; }
   render::CameraSpec camera() {
@@ -120,11 +138,13 @@ TEST(ViewState, RandomStatesAreReadBackToTheBit) {
     }
     ASSERT_EQ(read.settings.iso_opacity, state.settings.iso_opacity);
     ASSERT_EQ(read.settings.vertical_exaggeration, state.settings.vertical_exaggeration);
+    ASSERT_EQ(read.settings.planes, state.settings.planes);
     ASSERT_EQ(read.theme, state.theme);
     ASSERT_EQ(read.show_terrain, state.show_terrain);
     ASSERT_EQ(read.show_emitters, state.show_emitters);
     ASSERT_EQ(read.size, state.size);
     ASSERT_EQ(read.edits, state.edits);
+    ASSERT_EQ(read.compare, state.compare);
     ASSERT_EQ(read.open_panels, state.open_panels);
   }
 }
@@ -153,6 +173,8 @@ TEST(ViewState, RefusalsSayWhereAndWhat) {
   EXPECT_EQ(refusalOf(head + "\"loop\": 1}"), "a.json:2:10: 'loop' must be true or false, not '1'");
   EXPECT_EQ(refusalOf(head + "\"range\": {\"min\": 1, \"max\": 0.5}}"),
             "a.json:2:29: 'max' is 0.5, not above 'min', 1");
+  EXPECT_EQ(refusalOf(head + "\"planes\": [\"horizontal:altitude_m=1\", \"vertical:bearing_deg=999\"]}"),
+            "a.json:2:40: plane 'vertical:bearing_deg=999': bearing_deg '999': expected a number -360..360");
   EXPECT_THAT(refusalOf(head + "\"edits\": [\"a.b=1\", \"power\"]}"),
               HasSubstr("a.json:2:21: 'power' is not an edit; write PATH=VALUE"));
   EXPECT_THAT(refusalOf(head + "\"mode\": \"fog\"}"),

@@ -90,6 +90,23 @@ TEST(CudaCast, PlainFormShowsWhatTheCpusPlainFormShows) {
   EXPECT_LE(all.shareApart(), kShareApart);
 }
 
+TEST(CudaCast, CutVolumesShowWhatTheCpuShows) {
+  EMSCAPE_NEEDS_GPU();
+  std::mt19937 random(23);
+  Renderer cpu, gpu(onGpu());
+  Agreement all;
+  for (int scene = 0; scene < 60; ++scene) {
+    const ImageSize size{1 + static_cast<int>(random() % 60), 1 + static_cast<int>(random() % 60)};
+    setSameRandomScene(cpu, gpu, random, size);
+    std::mt19937 again = random;
+    testing::addRandomPlanes(cpu, random);
+    testing::addRandomPlanes(gpu, again);
+    all.add(gpu.render(size), cpu.render(size));
+  }
+  std::printf("cut: %.4f %% apart, at most %d levels\n", 100 * all.shareApart(), all.largest_levels);
+  EXPECT_LE(all.shareApart(), kShareApart);
+}
+
 TEST(CudaCast, IndicesAreThoseOfTheCpu) {
   EMSCAPE_NEEDS_GPU();
   const ImageSize size{80, 60};

@@ -36,6 +36,24 @@ TEST(CudaRestore, IsBitIdenticalToAFullCast) {
   }
 }
 
+TEST(CudaRestore, OfACutVolumeIsBitIdenticalToAFullCast) {
+  EMSCAPE_NEEDS_GPU();
+  std::mt19937 random(8);
+  Renderer renderer(onGpu());
+  for (int scene = 0; scene < 40; ++scene) {
+    const ImageSize size{1 + static_cast<int>(random() % 70), 1 + static_cast<int>(random() % 70)};
+    setRandomScene(renderer, random, size);
+    testing::addRandomPlanes(renderer, random);
+    const Image full = renderer.render(size);
+    for (const Pattern pattern : allPatterns()) {
+      Image image = renderer.render(size, {pattern});
+      renderer.restore(image);
+      EXPECT_TRUE(image.pixels == full.pixels)
+          << scene << " " << toString(pattern) << " " << toString(renderer.settings().mode);
+    }
+  }
+}
+
 /// A large picture of many samples, so that a restoration takes many launches.
 void setLongScene(Renderer& renderer, ImageSize size) {
   const auto volume = makeEmeVolume({60, 60, 40}, 5);

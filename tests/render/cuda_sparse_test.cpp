@@ -70,6 +70,11 @@ TEST(CudaSparse, ShowsWhatTheCpuShowsOfRandomScenes) {
   for (int scene = 0; scene < 40; ++scene) {
     const ImageSize size{1 + static_cast<int>(random() % 60), 1 + static_cast<int>(random() % 60)};
     setSameRandomScene(cpu, gpu, random, size);
+    if (scene % 2 == 1) {
+      std::mt19937 again = random;
+      testing::addRandomPlanes(cpu, random);
+      testing::addRandomPlanes(gpu, again);
+    }
     all.add(gpu.render(size), cpu.render(size));
   }
   EXPECT_LE(all.shareApart(), kShareApart);

@@ -41,4 +41,27 @@ inline void setRandomScene(Renderer& renderer, std::mt19937& random, ImageSize s
   renderer.setCamera(makeCamera(camera, renderer.sceneBox(), size));
 }
 
+/// One to three planes through the box of the renderer's volume.
+inline void addRandomPlanes(Renderer& renderer, std::mt19937& random) {
+  const auto part = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };
+  const SceneBox box = renderer.sceneBox();
+  const Vec3d size_m = box.upper_m - box.lower_m;
+  RenderSettings settings = renderer.settings();
+  const int count = 1 + static_cast<int>(random() % 3);
+  for (int n = 0; n < count; ++n) {
+    CutPlane plane;
+    if (part() < 0.5) {
+      plane.altitude_m = box.lower_m.z + part() * size_m.z;
+    } else {
+      plane.kind = CutPlane::Kind::vertical;
+      plane.keep = CutPlane::Side::left;
+      plane.x_m = box.lower_m.x + part() * size_m.x;
+      plane.y_m = box.lower_m.y + part() * size_m.y;
+      plane.bearing_deg = 360 * part();
+    }
+    settings.planes.push_back(part() < 0.5 ? flipped(plane) : plane);
+  }
+  renderer.setSettings(settings);
+}
+
 }  // namespace emscape::render::testing

@@ -279,6 +279,25 @@ TEST(TransferFile, EveryShippedFunctionReads) {
   EXPECT_GE(count, 5);
 }
 
+TEST(TransferFunction, OfADifferenceIsCentredOnZeroAndLeavesOutTheFewLargest) {
+  auto volume = testing::makeVolume({20, 10, 10}, {1, 1, 1}, [](int i, int j, int k) {
+    return i == 0 && j == 0 ? -110.0F : 10.0F - static_cast<float>((i + j + k) % 20);
+  });
+  volume->info.extra[volume::kScaleKey] = volume::kDifferenceScale;
+  volume->info.range_min = -110;
+  volume->info.range_max = 10;
+  const TransferFunction fitted = defaultTransferFunction(*volume);
+  EXPECT_EQ(fitted.lowest(), -fitted.highest());
+  EXPECT_GE(fitted.highest(), 9);
+  EXPECT_LE(fitted.highest(), 20);
+  EXPECT_EQ(fitted.opacity(0), 0);
+  EXPECT_GT(fitted.color(fitted.lowest()).b, fitted.color(fitted.lowest()).r) << "blue below";
+  EXPECT_GT(fitted.color(fitted.highest()).r, fitted.color(fitted.highest()).b) << "orange above";
+  const TransferFunction whole = defaultTransferFunction(volume->info);
+  EXPECT_EQ(whole.lowest(), -whole.highest());
+  EXPECT_GE(whole.highest(), 110);
+}
+
 TEST(ColorMap, EndsAreThePublishedColours) {
   EXPECT_NEAR(colorMap("viridis").at(0).r, 0x44 / 255.0, 1e-6);
   EXPECT_NEAR(colorMap("viridis").at(1).g, 0xe7 / 255.0, 1e-6);

@@ -4,8 +4,8 @@
 #include <limits>
 #include <string>
 
-#include "emscape/scenario/antenna_shapes.h"
 #include "scenario/antenna/pattern.h"
+#include "scenario/antenna_shapes.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/scenario/antenna_files.h"
 

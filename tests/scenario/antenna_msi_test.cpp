@@ -5,8 +5,8 @@
 #include <string>
 
 #include "emscape/base/log.h"
-#include "emscape/scenario/antenna_shapes.h"
 #include "scenario/antenna/pattern.h"
+#include "scenario/antenna_shapes.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/scenario/antenna_files.h"
 

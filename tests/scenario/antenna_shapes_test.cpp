@@ -1,4 +1,4 @@
-#include "emscape/scenario/antenna_shapes.h"
+#include "scenario/antenna_shapes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

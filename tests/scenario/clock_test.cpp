@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "base/utc.h"
 #include "emscape/base/error.h"
-#include "emscape/base/utc.h"
 
 namespace emscape::scenario {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
-#include "emscape/scenario/antenna_shapes.h"
+#include "scenario/antenna_shapes.h"
 #include "scenario/terrain/view.h"
 
 namespace emscape::scenario {

@@ -37,14 +37,16 @@ TEST(InputQueue, DifferentKeysAndMovementsShareAFrameInOrder) {
   EXPECT_DOUBLE_EQ(frame[3].x, 3);
 }
 
-TEST(InputQueue, ADragIsNotSplitBeforeItsMovements) {
+TEST(InputQueue, ButtonsChangeWhereTheCursorIs) {
   InputQueue queue;
+  queue.push(cursor(5, 0));
   queue.push({InputEvent::Kind::button, 0, 0, GLFW_PRESS, 0, 0, 0});
   queue.push(cursor(10, 0));
-  queue.push({InputEvent::Kind::button, 0, 0, GLFW_RELEASE, 0, 0, 0});
   queue.push(cursor(20, 0));
-  EXPECT_EQ(queue.takeFrame().size(), 2U);
-  EXPECT_EQ(queue.takeFrame().size(), 2U);
+  queue.push({InputEvent::Kind::button, 0, 0, GLFW_RELEASE, 0, 0, 0});
+  queue.push(cursor(30, 0));
+  for (const std::size_t expected : {1U, 1U, 2U, 1U, 1U}) EXPECT_EQ(queue.takeFrame().size(), expected);
+  EXPECT_TRUE(queue.empty());
 }
 
 TEST(InputQueue, HeldKeysRepeatWithinAFrame) {

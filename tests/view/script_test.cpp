@@ -31,7 +31,7 @@ TEST(Script, CommentsAndEmptyLinesAreSkipped) {
 }
 
 TEST(Script, FaultsNameTheLine) {
-  EXPECT_EQ(faultOf("{\"do\":\"play\"}\n{\"do\":\"seek\"}\n"), ":2: seek: time_s is missing");
+  EXPECT_EQ(faultOf("{\"do\":\"play\"}\n{\"do\":\"step\"}\n"), ":2: step: steps is missing");
   EXPECT_EQ(faultOf("play\n"), ":1: not JSON");
   EXPECT_EQ(faultOf("{\"do\":\"play\",\"at_s\":\"soon\"}\n"), ":1: at_s: expected a number");
 }

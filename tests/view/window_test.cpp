@@ -1,116 +1,19 @@
 /// The window as a user sees it: the program in a virtual display, with real events of keyboard and mouse.
-#include <fcntl.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
-#include <memory>
-#include <nlohmann/json.hpp>
+#include <filesystem>
 #include <set>
-#include <sstream>
 #include <thread>
 
 #include "emscape/render/image.h"
-#include "tests/apps/program.h"
+#include "tests/view/window_fixture.h"
 
 namespace emscape::test {
 namespace {
 
-using Json = nlohmann::json;
 using testing::HasSubstr;
-
-bool hasProgram(const std::string& name) {
-  return std::system(("command -v " + name + " >/dev/null 2>&1").c_str()) == 0;
-}
-
-/// An X server without a screen.
-class VirtualDisplay {
- public:
-  VirtualDisplay() {
-    int ends[2];
-    if (pipe(ends) != 0) return;
-    process_ = fork();
-    if (process_ == 0) {
-      const int nowhere = open("/dev/null", O_RDWR);
-      dup2(nowhere, STDOUT_FILENO);
-      dup2(nowhere, STDERR_FILENO);
-      const std::string number = std::to_string(ends[1]);
-      execlp("Xvfb", "Xvfb", "-displayfd", number.c_str(), "-screen", "0", "1920x1200x24", "-nolisten", "tcp",
-             static_cast<char*>(nullptr));
-      _exit(127);
-    }
-    close(ends[1]);
-    for (char c = 0; read(ends[0], &c, 1) == 1 && c != '\n';) name_ += c;
-    close(ends[0]);
-  }
-  ~VirtualDisplay() {
-    if (process_ <= 0) return;
-    kill(process_, SIGTERM);
-    waitpid(process_, nullptr, 0);
-  }
-  VirtualDisplay(const VirtualDisplay&) = delete;
-  VirtualDisplay& operator=(const VirtualDisplay&) = delete;
-
-  /// ":7"; ":" if it did not start.
-  std::string name() const { return ":" + name_; }
-
- private:
-  pid_t process_ = -1;
-  std::string name_;
-};
-
-class Window : public testing::Test {
- protected:
-  void SetUp() override {
-    if (!hasProgram("Xvfb")) GTEST_SKIP() << "Xvfb is not installed";
-    display_ = std::make_unique<VirtualDisplay>();
-    ASSERT_GT(display_->name().size(), 1U) << "Xvfb did not start";
-  }
-
-  std::string environment() const {
-    // The OpenGL driver is unloaded before its leaks could be told from the program's.
-    return "export DISPLAY=" + display_->name() +
-           " LP_NUM_THREADS=1 LIBGL_ALWAYS_SOFTWARE=1 ASAN_OPTIONS=detect_leaks=0;";
-  }
-
-  Arguments viewOf(const std::string& input, const std::string& script) {
-    writeFile(folder_ / "script.jsonl", script);
-    return {"view",  input,    "--size", "640x480", "--backend", "cpu", "--script", folder_ / "script.jsonl",
-            "--log", logFile()};
-  }
-
-  /// Runs a script to its end.
-  ProgramResult runScript(const std::string& script, const Arguments& more = {}) {
-    Arguments arguments = viewOf(quick(), script);
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments, environment());
-  }
-
-  std::string logFile() const { return folder_ / "log.jsonl"; }
-  std::vector<Json> log(const std::string& event) const {
-    std::vector<Json> lines;
-    std::istringstream text(readFile(logFile()));
-    for (std::string line; std::getline(text, line);) {
-      Json object = Json::parse(line, nullptr, false);
-      if (!object.is_discarded() && object["event"] == event) lines.push_back(object);
-    }
-    return lines;
-  }
-  /// "BUSY RESTORE IDLE": the states in the order in which they came.
-  std::string states() const {
-    std::string states;
-    for (const Json& change : log("state"))
-      states += (states.empty() ? "" : " ") + change["to"].get<std::string>();
-    return states;
-  }
-
-  TemporaryFolder folder_;
-  std::unique_ptr<VirtualDisplay> display_;
-};
 
 int colorsOf(const render::Image8& image) {
   std::set<std::uint32_t> colors;
@@ -136,6 +39,31 @@ TEST_F(Window, ShowsAnExactPictureAndWritesScreenshots) {
   EXPECT_EQ(log("start").size(), 1U);
   EXPECT_EQ(log("end").size(), 1U);
   EXPECT_GT(log("frame").size(), 1U);
+}
+
+TEST_F(Window, CutsTheVolumeOpenAndComparesWithTheOriginal) {
+  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+{"do":"key","key":"H"}
+{"do":"key","key":"Shift+H"}
+{"do":"plane","index":1,"altitude_m":2000,"flip":true}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"planes","op":"==","value":2}
+{"do":"plane","on":false}
+{"do":"expect","key":"planes","op":"==","value":1}
+{"do":"plane","remove":true}
+{"do":"set","path":"emitters.radar.power_w","value":"100000"}
+{"do":"key","key":"C"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"quantity","op":"==","value":"power_density_difference_db"}
+{"do":"expect","key":"error","op":"==","value":""}
+{"do":"plane","index":4,"on":true}
+{"do":"expect","key":"error","op":"==","value":"plane: index 4: expected 1..1"}
+{"do":"key","key":"C"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"quantity","op":"==","value":"power_density_dbwm2"}
+{"do":"quit"}
+)");
+  EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST_F(Window, DragsOrbitAndThePictureBecomesExactAgain) {
@@ -164,6 +92,7 @@ TEST_F(Window, KeysRunTheirActions) {
 {"do":"expect","key":"playing","op":"==","value":true}
 {"do":"key","key":"Space"}
 {"do":"expect","key":"playing","op":"==","value":false}
+{"do":"key","key":"Home"}
 {"do":"key","key":"D"}
 {"do":"expect","key":"theme","op":"==","value":"light"}
 {"do":"key","key":"Ctrl+1"}
@@ -191,6 +120,90 @@ TEST_F(Window, EditsAreComputedUndoneAndRedone) {
 {"do":"set","path":")" + emitter + R"(","value":"-5"}
 {"do":"expect","key":"error","op":"!=","value":""}
 {"do":"expect","key":"edits","op":"==","value":1}
+{"do":"quit"}
+)");
+  EXPECT_EQ(result.status, 0) << result.err;
+}
+
+TEST_F(Window, AMarkerIsDraggedAndTheFieldFollows) {
+  // The camera's target is the radar; the legend moves it to the left of the middle.
+  const ProgramResult result = runScript(R"({"do":"panel","name":"all","open":false}
+{"do":"pattern","pattern":"quarter"}
+{"do":"camera","spec":"orbit:elevation_deg=89,distance=1.5,target_x_m=0,target_y_m=0,target_z_m=20"}
+{"do":"wait_state","state":"exact"}
+{"do":"mouse","x":289,"y":240,"button":"left","to_x":340,"to_y":280}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"error","op":"==","value":""}
+{"do":"expect","key":"edits","op":"==","value":2}
+{"do":"expect","key":"elevation_deg","op":"==","value":89}
+{"do":"key","key":"Ctrl+Z"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"edits","op":"==","value":0}
+{"do":"expect","key":"can_undo","op":"==","value":false}
+{"do":"quit"}
+)");
+  EXPECT_EQ(result.status, 0) << result.err;
+  const std::vector<Json> edits = log("edit");
+  ASSERT_GE(edits.size(), 2U);
+  EXPECT_EQ(edits[0]["path"], "platforms.radar site.position.latitude_deg");
+  EXPECT_EQ(edits[1]["path"], "platforms.radar site.position.longitude_deg");
+  EXPECT_THAT(states(), HasSubstr("BUSY RESTORE IDLE"));
+}
+
+TEST_F(Window, AnOpacityPointIsDraggedInTheCurve) {
+  const ProgramResult result = runScript(R"({"do":"panel","name":"colors","open":true}
+{"do":"panel","name":"scenario","open":false}
+{"do":"pattern","pattern":"quarter"}
+{"do":"step_voxels","value":0.05}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"opacity_points","op":"==","value":9}
+{"do":"mouse","x":510,"y":150,"button":"left","to_x":530,"to_y":130}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"opacity_points","op":"==","value":10}
+{"do":"mouse","x":530,"y":130,"button":"left","to_x":500,"to_y":90}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"opacity_points","op":"==","value":10}
+{"do":"expect","key":"selected_opacity","op":">","value":0.01}
+{"do":"key","key":"Ctrl+Z"}
+{"do":"expect","key":"selected_opacity","op":"<","value":0.01}
+{"do":"key","key":"Delete"}
+{"do":"expect","key":"opacity_points","op":"==","value":9}
+{"do":"key","key":"Ctrl+Z"}
+{"do":"key","key":"Ctrl+Z"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"can_undo","op":"==","value":false}
+{"do":"expect","key":"error","op":"==","value":""}
+{"do":"quit"}
+)");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(states(), HasSubstr("BUSY RESTORE IDLE"));
+  EXPECT_THAT(states(), testing::EndsWith("IDLE"));
+}
+
+TEST_F(Window, TheTimeLineIsScrubbedZoomedPannedAndLimited) {
+  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+{"do":"mouse","x":200,"y":392,"button":"left","to_x":360,"to_y":392}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"shown_s","op":"==","value":2}
+{"do":"mouse","x":627,"y":359,"button":"left","to_x":495,"to_y":359}
+{"do":"expect","key":"play_to_s","op":"==","value":3}
+{"do":"key","key":"["}
+{"do":"expect","key":"play_from_s","op":"==","value":2}
+{"do":"expect","key":"shown_s","op":"==","value":2}
+{"do":"mouse","x":360,"y":392,"wheel":3}
+{"do":"wait_s","seconds":0.2}
+{"do":"expect","key":"visible_from_s","op":">","value":0.5}
+{"do":"expect","key":"visible_from_s","op":"<","value":1.05}
+{"do":"mouse","x":350,"y":392,"button":"middle","to_x":300,"to_y":392}
+{"do":"expect","key":"visible_from_s","op":">","value":1.05}
+{"do":"key","key":"Ctrl+Home"}
+{"do":"expect","key":"visible_from_s","op":"==","value":0}
+{"do":"key","key":"Backspace"}
+{"do":"expect","key":"play_to_s","op":"==","value":4}
+{"do":"key","key":"Shift+J"}
+{"do":"key","key":"Space"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"rate","op":"==","value":-1}
 {"do":"quit"}
 )");
   EXPECT_EQ(result.status, 0) << result.err;
@@ -238,6 +251,99 @@ TEST_F(Window, BadInputIsOneMessageAndStatusThree) {
   result = runScript("{\"do\":\"jump\"}\n");
   EXPECT_EQ(result.status, 3);
   EXPECT_THAT(result.err, HasSubstr("script.jsonl:1: unknown verb 'jump'"));
+}
+
+TEST_F(Window, AnInputThatCannotBeOpenedEndsWithItsOwnStatus) {
+  const ProgramResult result =
+      run({"view", quick(), "--quantity", "power_density_dbwm2:none"}, environment());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("there is no such channel"));
+}
+
+TEST_F(Window, DrawsAViewAsRenderDoes) {
+  const std::string state = folder_ / "a.view.json", shown = folder_ / "shown.png";
+  const ProgramResult saved =
+      run({"render", quick(), "--save-state", state, "--size", "500x300", "--camera",
+           "orbit:azimuth_deg=40,elevation_deg=50", "--times", "2", "--theme", "light", "--mode", "mida",
+           "--set", "emitters.radar.power_w=777", "-o", folder_ / "rendered.png"});
+  ASSERT_EQ(saved.status, 0) << saved.err;
+  writeFile(folder_ / "script.jsonl", R"({"do":"wait_state","state":"exact"}
+{"do":"expect","key":"picture_width","op":"==","value":500}
+{"do":"expect","key":"picture_height","op":"==","value":300}
+{"do":"picture","file":")" + shown + R"("}
+{"do":"save_state","file":")" + state + R"("}
+{"do":"copy_command"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"error","op":"==","value":""}
+{"do":"quit"}
+)");
+  const ProgramResult result = run({"view", quick(), "--state", state, "--scale", "1.5", "--backend", "cpu",
+                                    "--script", folder_ / "script.jsonl", "--log", logFile()},
+                                   environment());
+  ASSERT_EQ(result.status, 0) << result.err;
+  const render::Image8 picture = render::readPng(shown);
+  const render::ImageDifference difference =
+      render::compare(picture, render::readPng(folder_ / "rendered.png"));
+  for (const int max : difference.max) EXPECT_LE(max, 1);
+  // And so does the view that the window wrote.
+  ASSERT_EQ(run({"render", quick(), "--state", state, "-o", folder_ / "again.png"}).status, 0);
+  EXPECT_EQ(render::compare(render::readPng(folder_ / "again.png"), render::readPng(folder_ / "rendered.png"))
+                .erroneous,
+            0);
+}
+
+TEST_F(Window, RestoresEditsAfterAKill) {
+  RunningProgram program(viewOf(quick(), R"({"do":"wait_state","state":"exact"}
+{"do":"set","path":"emitters.radar.power_w","value":"500"}
+{"do":"wait_s","seconds":60}
+)"),
+                         environment());
+  for (int i = 0; i < 600 && log("autosave").empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  ASSERT_EQ(log("autosave").size(), 1U);
+  program.signal(SIGKILL);
+  program.wait();
+  const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
+{"do":"expect","key":"kept","op":"==","value":true}
+{"do":"expect","key":"edits","op":"==","value":0}
+{"do":"restore"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"edits","op":"==","value":1}
+{"do":"expect","key":"unsaved","op":"==","value":true}
+{"do":"quit"}
+)");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(runScript(R"({"do":"wait_state","state":"exact"}
+{"do":"expect","key":"kept","op":"==","value":false}
+{"do":"quit"}
+)")
+                .status,
+            0);
+}
+
+TEST_F(Window, BrowsesAndOpensAnotherInput) {
+  const std::string inputs = folder_ / "inputs";
+  std::filesystem::create_directory(inputs);
+  writeFile(inputs + "/a.yaml", readFile(quick()));
+  writeFile(inputs + "/b.yaml", readFile(quick()));
+  const ProgramResult result = run(viewOf(inputs + "/a.yaml", R"({"do":"wait_state","state":"exact"}
+{"do":"key","key":"Ctrl+O"}
+{"do":"wait_s","seconds":0.5}
+{"do":"key","key":"Down"}
+{"do":"key","key":"Enter"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"input","op":"==","value":")" + inputs + R"(/b.yaml"}
+{"do":"open","file":"/no/such/file.yaml"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"error","op":"==","value":"/no/such/file.yaml: no such file or folder"}
+{"do":"open_recent"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"input","op":"==","value":")" + inputs + R"(/a.yaml"}
+{"do":"quit"}
+)"),
+                                   environment());
+  EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST_F(Window, RealEventsOfTheServerArrive) {

@@ -1,8 +1,8 @@
 #include "emscape/volume/file.h"
 
-#include "emscape/volume/vti.h"
 #include "tests/file_size_limit.h"
 #include "tests/volume/sample_volumes.h"
+#include "volume/vti.h"
 
 namespace emscape::volume {
 namespace {

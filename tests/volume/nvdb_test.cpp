@@ -1,4 +1,4 @@
-#include "emscape/volume/nvdb.h"
+#include "volume/nvdb.h"
 
 #include "tests/volume/sample_volumes.h"
 #include "volume/nanovdb_wrapper.h"

@@ -1,4 +1,4 @@
-#include "emscape/volume/raw.h"
+#include "volume/raw.h"
 
 #include "emscape/volume/statistics.h"
 #include "tests/reference_dir.h"

@@ -1,4 +1,4 @@
-#include "emscape/volume/vdb.h"
+#include "volume/vdb.h"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>

@@ -1,4 +1,4 @@
-#include "emscape/volume/vti.h"
+#include "volume/vti.h"
 
 #include "tests/volume/sample_volumes.h"
 

@@ -12,6 +12,10 @@ namespace emscape::playback {
 
 using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 
+/// A scenario with values changed, checked together; the same object where the edits change no text. Any
+/// thread may call it. @throws Error (bad_input) as Scenario::set()
+ScenarioPtr edited(const ScenarioPtr& scenario, const std::vector<scenario::Edit>& edits);
+
 /// Every state is a scenario of its own that nobody changes, so that a solver may still read one that was
 /// undone. One thread uses it.
 class EditHistory {
@@ -27,6 +31,8 @@ class EditHistory {
   /// @throws Error (bad_input) as Scenario::set(); nothing is changed then
   void set(const std::vector<scenario::Edit>& edits);
   void set(const std::string& path, const std::string& value) { set({{path, value}}); }
+  /// The same with what edited() made of scenario().
+  void adopt(ScenarioPtr edited);
 
   /// From here to endDrag() all edits are one step; none if the drag ends where it began.
   void beginDrag() { stack_.beginDrag(); }
@@ -34,6 +40,8 @@ class EditHistory {
   /// Back to where the drag began.
   void cancelDrag() { stack_.cancelDrag(); }
 
+  /// As UndoStack::stepsMade().
+  long long stepsMade() const { return stack_.stepsMade(); }
   bool canUndo() const { return stack_.canUndo(); }
   bool canRedo() const { return stack_.canRedo(); }
   void undo();
@@ -49,6 +57,8 @@ class EditHistory {
   std::string saved_hash_;
 };
 
+/// A word as a POSIX shell takes it unchanged: in single quotes where it needs them.
+std::string shellWord(const std::string& text);
 /// A command line that makes the same edits: `emscape render scenarios/a.yaml --set
 /// 'emitters.jammer.power_w=5'`, quoted for a POSIX shell.
 /// @param subcommand  of emscape

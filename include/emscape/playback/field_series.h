@@ -35,7 +35,9 @@ class FieldSeries {
   int count() const { return static_cast<int>(times_s_.size()); }
   double time_s(int step) const { return times_s_[static_cast<std::size_t>(step)]; }
   const std::vector<double>& times_s() const { return times_s_; }
-  const std::vector<emfield::Channel>& channels() const { return solver_.channels(); }
+  const std::vector<emfield::Channel>& channels() const {
+    return reference_ ? difference_channels_ : solver_.channels();
+  }
   const LoadedScenario& input() const { return input_; }
   /// May be null.
   const StopFlag* stopFlag() const { return stop_; }
@@ -47,16 +49,24 @@ class FieldSeries {
   /// @param times_s  ascending
   void setScenario(LoadedScenario input, std::vector<double> times_s);
 
-  /// Computes the first step, so that what it lacks is told now. @throws Error, Stopped
-  void rehearse() { update(0); }
+  /// Volumes are from now on the differences (volume::difference()) to those of a reference at the same
+  /// times, and channels have the names of differences. Not to be followed by setScenario().
+  /// @param name  of the reference, for legends
+  /// @throws Error (bad_input) for another grid, other channels and indices, (device)
+  void compareWith(const LoadedScenario& reference, const std::string& name);
+  /// Null without one.
+  const LoadedScenario* reference() const { return reference_ ? &reference_->input() : nullptr; }
 
-  /// Computes every `stride`-th step to learn the range of each channel over them.
+  /// Computes the first step, so that what it lacks is told now. @throws Error, Stopped
+  void rehearse();
+
+  /// Computes every `stride`-th step to learn the range of each channel over them; not with a reference.
   /// @param progress  may be empty
   /// @throws Error, Stopped
   std::vector<ValueRange> findRanges(int stride, const ProgressSink& progress);
 
-  /// The channels' volumes at a step; info().range_* are each volume's own. The step that was computed last
-  /// is not computed again. @throws Error, Stopped
+  /// The channels' volumes at a step, or their differences; info().range_* are each volume's own. The step
+  /// that was computed last is not computed again. @throws Error, Stopped
   std::vector<volume::Volume> compute(int step);
 
   /// Whether the volumes that compute() gave last differ from those that it gave before.
@@ -64,7 +74,7 @@ class FieldSeries {
   /// Updates of the solver so far.
   long long updates() const { return updates_; }
   /// Those of the solver so far.
-  std::vector<std::string> warnings() const { return solver_.warnings(); }
+  std::vector<std::string> warnings() const;
 
  private:
   void update(int step);
@@ -74,6 +84,9 @@ class FieldSeries {
   emfield::FieldOptions options_;
   const StopFlag* stop_;
   emfield::FieldSolver solver_;
+  std::unique_ptr<FieldSeries> reference_;
+  std::string reference_name_;
+  std::vector<emfield::Channel> difference_channels_;
   int updated_step_ = -1;
   bool changed_since_given_ = false;  // by an update since the last compute()
   bool changed_ = true;

@@ -18,7 +18,8 @@ namespace emscape::playback {
 struct Frame {
   volume::Volume volume;
   std::vector<render::Marker> markers;
-  bool changed = true;  ///< false: the volume's values are those of the frame asked for before
+  std::vector<render::Track> tracks;  ///< of the platforms that move
+  bool changed = true;                ///< false: the volume's values are those of the frame asked for before
 };
 
 /// What to draw of an input.
@@ -31,10 +32,15 @@ struct FrameSelection {
   std::string scenario;             ///< beside volumes: whose ground and emitters are drawn; may be empty
   bool allow_missing_terrain = false;
   std::vector<scenario::Edit> edits;  ///< to the scenario
+  /// Frames are differences to this one: kOriginal, the scenario without the edits, or a scenario (or
+  /// volumes) on the same grid. Empty: no comparison, but setComparison() can begin one with the original.
+  std::string compare;
   /// Frames of a scenario that do not depend on any other ones: the range of each is that of its own values,
   /// and emitters have moved however little they did. For frames in any order.
   bool independent = false;
 };
+
+constexpr const char* kOriginal = "original";
 
 /// Instants in order of time. One thread at a time calls frame(); the other functions are safe beside it, but
 /// for warnings().
@@ -63,6 +69,11 @@ class FrameSource {
   /// Another quantity or channel; empty: the first. As setScenario().
   /// @throws Error (bad_input, usage, device); nothing is changed then
   virtual void setQuantity(const std::string& quantity);
+
+  /// Whether frames show what differs from the reference (FrameSelection::compare) instead of the field; for
+  /// independent frames. As setScenario(); what cannot be compared is told by frame().
+  /// @throws Error (usage) where there is nothing to compare with
+  virtual void setComparison(bool on);
 
   /// The index whose time is nearest; the earlier of two as near. @param time_s  any, beyond the ends too
   int nearestIndex(double time_s) const;

@@ -1,6 +1,7 @@
 /// The engine behind a window: fields and pictures on threads of their own, driven by events.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -8,10 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/error.h"
 #include "emscape/playback/compute_target.h"
 #include "emscape/playback/painter.h"
 #include "emscape/render/camera.h"
 #include "emscape/render/frame_controller.h"
+#include "emscape/render/height_field.h"
 #include "emscape/render/image.h"
 #include "emscape/render/overlay.h"
 #include "emscape/render/pattern.h"
@@ -32,6 +35,7 @@ struct LiveOptions {
   bool allow_missing_terrain = false;
   std::string quantity;               ///< quantity or channel; empty: the first
   std::vector<scenario::Edit> edits;  ///< to the scenario as it is opened
+  std::string compare;                ///< as FrameSelection::compare: the view begins with the comparison
   double time_s = 0;                  ///< the first step that is shown is the nearest
   /// At least so long between the beginnings of two fields that a change of the time alone asks for (ms).
   double min_seek_interval_ms = 60;
@@ -41,6 +45,7 @@ struct LiveOptions {
   /// Threads of loops; 0: solving takes one fewer than there are while pictures are cast on all of them.
   int solve_threads = 0;
   int cast_threads = 0;
+  int niceness = 0;  ///< of those threads: see ThreadArena
 };
 
 /// What is on screen and what is being done.
@@ -49,6 +54,7 @@ struct LiveStatus {
   render::Pattern pattern = render::Pattern::full;  ///< of the picture's busy frame
   double rays_fraction = 0;                         ///< of that frame: pixels that were cast, 0..1
   double cast_ms = 0;                               ///< of that frame, interpolation included
+  double labels_ms = 0;                             ///< of fetching the picture and drawing its labels
   double field_ms = 0;                              ///< of the last field that was computed
   /// From the oldest input that this picture is the first to show to the picture; 0: it shows no new input.
   double input_to_picture_ms = 0;
@@ -56,37 +62,46 @@ struct LiveStatus {
   /// The picture shows what was asked for last, and each of its pixels is cast. After a failure: the last
   /// that could be shown.
   bool exact = false;
-  double asked_s = 0;             ///< time of the step asked for last
-  double shown_s = 0;             ///< time of the picture's step
-  bool computing = false;         ///< the field of what was asked for last is under way
-  bool fitting = false;           ///< the values of the series are being searched for fitToSeries()
+  double asked_s = 0;                              ///< time of the step asked for last
+  double shown_s = 0;                              ///< time of the picture's step
+  bool computing = false;                          ///< the field of what was asked for last is under way
+  bool searching = false;                          ///< the values of the series, for searchSeriesRange()
+  std::optional<volume::ValueRange> series_range;  ///< found by it; none before, and without values
   std::vector<int> cached_steps;  ///< indices into times_s() that need not be computed, ascending
   std::string reason;             ///< why with this pattern
   std::string device;             ///< "cpu" or the name of the GPU
   std::string error;              ///< the last failure, in one line; empty after the next success of its kind
-  long long frame = 0;            ///< number of the picture, from 1; 0: there is none yet
+  ErrorCode error_code = ErrorCode::other;  ///< of an input that cannot be opened
+  long long frame = 0;                      ///< number of the picture, from 1; 0: there is none yet
   long long fields_computed = 0;
   long long wake_ups = 0;  ///< of both threads since the start: stands still while nothing is to be done
 
   /// Nothing happens until the next input.
-  bool isSettled() const { return exact && state == render::ControllerState::idle && !fitting; }
+  bool isSettled() const { return exact && state == render::ControllerState::idle && !searching; }
+};
+
+/// The controller went over to another state.
+struct StateChange {
+  render::ControllerState to = render::ControllerState::idle;
+  std::chrono::steady_clock::time_point time;
 };
 
 /// A picture with what it shows. Does not change.
 struct LivePicture {
   render::Image8 image;  ///< premultiplied, without background and labels
+  /// On its background, with its labels. Of an exact picture: as `emscape render` writes it.
+  render::Image8 finished;
   render::Camera camera;
   render::SceneBox box;
   render::Annotations annotations;
-  render::HiddenTest hidden;  ///< for the positions of the annotations' markers
   render::TransferFunction transfer;
   render::RenderSettings settings;
-  /// That of colours fitted by setRange() or fitToSeries(); none: they were fitted to the values of a step,
-  /// or set.
+  /// That of colours fitted by setRange(); none: they were fitted to the values of a step, or set.
   std::optional<volume::ValueRange> range;
   volume::Volume volume;                               ///< info().range_* are its own
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null for volumes without one
   scenario::TerrainPtr terrain;                        ///< may be null
+  std::shared_ptr<const render::HeightField> ground;   ///< as it is drawn; null where none is
   LiveStatus status;                                   ///< when the picture was made
 };
 
@@ -100,8 +115,8 @@ struct LivePicture {
 ///
 /// Colours are fitted once, to the first frame (to how frequent its values are, as `render` does), and again
 /// for another quantity; they then stay, so that they mean the same over the series and edits can be
-/// compared. fitToStep(), fitToSeries() and setRange() are orders of the user. The function in use is part of
-/// each picture: whoever stores it with camera and settings gets the same picture again.
+/// compared. fitToStep(), setRange() and setTransferFunction() are orders of the user. The function in use is
+/// part of each picture: whoever stores it with camera and settings gets the same picture again.
 class LiveView {
  public:
   /// @param input                    scenario or volume file, .pvd, folder of volumes
@@ -126,6 +141,11 @@ class LiveView {
   /// Another quantity or channel; empty: the first. Colours are fitted anew.
   void setQuantity(const std::string& quantity);
 
+  /// Whether the difference to the reference is shown: LiveOptions::compare, else the scenario as it was
+  /// opened, without LiveOptions::edits. Colours are fitted anew. An edit does not compute the reference
+  /// again. What cannot be compared, such as indices, goes to status().error, and what was on screen stays.
+  void setComparison(bool on);
+
   void setCamera(const render::CameraSpec& camera);
   void setTransferFunction(const render::TransferFunction& function);
   /// Values out of their range go to status().error, and the settings stay.
@@ -136,17 +156,22 @@ class LiveView {
   void setPattern(std::optional<render::Pattern> pattern);
   void showTerrain(bool show);
   void showEmitters(bool show);
+  void setTheme(render::Theme theme);
 
   /// Colours fitted to the step on screen.
   void fitToStep();
-  /// Colours over the range of the series: computes up to 24 steps of it when nothing else is to be done.
-  void fitToSeries();
   /// Colours over a range.
   void setRange(const volume::ValueRange& range);
+  /// Searches the range of the values over the series, for status().series_range: computes up to 24 steps of
+  /// it when nothing else is to be done. What is shown stays.
+  void searchSeriesRange();
 
   /// The latest; null before the first.
   std::shared_ptr<const LivePicture> picture() const;
   LiveStatus status() const;
+  /// The changes of status().state since the last call, in their order: who looks now and then sees them all.
+  /// At most the last 1000.
+  std::vector<StateChange> takeStateChanges();
   /// Steps of the source, ascending; empty before it is open.
   std::vector<double> times_s() const;
   /// As it was set last, or read from the file; null before it is read, and without one.

@@ -1,12 +1,14 @@
 /// Frames of a source as finished pictures: one camera, one set of colours.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "emscape/base/progress.h"
 #include "emscape/playback/frame_source.h"
 #include "emscape/render/camera.h"
+#include "emscape/render/height_field.h"
 #include "emscape/render/image.h"
 #include "emscape/render/overlay.h"
 #include "emscape/render/renderer.h"
@@ -65,6 +67,7 @@ class Painter {
   bool hasColors() const { return has_colors_; }
   void showTerrain(bool show);
   void showEmitters(bool show);
+  void setTheme(render::Theme theme) { annotations_.theme = theme; }
 
   render::FrameReport draw(const render::FramePlan& plan, const StopFlag* stop = nullptr);
   /// Casts what the last draw() left out.
@@ -76,6 +79,8 @@ class Painter {
   /// A full cast of what draw() and restore() show, beside it.
   render::Image fullCast();
 
+  /// The ground that is drawn; null where none is.
+  const std::shared_ptr<const render::HeightField>& heightField() const { return height_field_; }
   /// What is written on a picture of the frame.
   const render::Annotations& annotations() const { return annotations_; }
   /// Its camera, box and hidden positions are those of the picture. Colours and settings may be changed after
@@ -84,6 +89,8 @@ class Painter {
 
   /// What was drawn last on its background, with its labels. @param note  small, at the bottom
   render::Image8 picture(const std::string& note);
+  /// A picture that was fetched, on the same background with the same labels; at most one level apart.
+  render::Image8 annotated(const render::Image8& fetched, const std::string& note);
 
  private:
   /// That of the scene below the grid of the frame, if it is to be shown.
@@ -100,6 +107,7 @@ class Painter {
   std::optional<LoadedScenario> scene_;
   std::optional<Frame> frame_;
   scenario::TerrainPtr ground_;  // whose height field the renderer has
+  std::shared_ptr<const render::HeightField> height_field_;
   render::Renderer renderer_;
   render::Annotations annotations_;
   render::Image image_;

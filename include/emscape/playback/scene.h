@@ -17,6 +17,8 @@ namespace emscape::playback {
 std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
                                                          const volume::Grid& grid);
 
+render::MarkerKind markerKindOf(scenario::EmitterKind kind);
+
 /// The emitters of an instant, in the grid's frame.
 std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
                                       const volume::Grid& grid);

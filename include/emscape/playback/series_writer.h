@@ -13,8 +13,8 @@
 ///                 grown by half, at the end, and when the work is stopped.
 /// Each step is computed once. Its files are whole at once and state the range over the steps so far; at the
 /// end the range over the series is put into all of them (volume::setStoredRange). A folder whose work was
-/// interrupted is then the same to the byte (but for FieldOptions::move_tolerance_m, which counts from the step at which
-/// the work began again).
+/// interrupted is then the same to the byte (but for FieldOptions::move_tolerance_m, which counts from the
+/// step at which the work began again).
 #pragma once
 
 #include <filesystem>

@@ -22,7 +22,7 @@ struct ActivityBar {
   std::vector<scenario::TimeInterval> intervals;  ///< ascending, without overlap; one for always
 };
 
-/// The rates that faster() and slower() go through, ascending, in scenario seconds in a second.
+/// The usual rates, ascending, in scenario seconds in a second; negative ones (backwards) are the same.
 const std::vector<double>& playRates();
 /// The nearest of them by ratio, with the sign of `rate`; the slowest for 0.
 double snappedRate(double rate);
@@ -30,34 +30,61 @@ double snappedRate(double rate);
 /// Time moves between the first and the last step. One thread uses it.
 class Timeline {
  public:
-  /// @param times_s    of the steps, ascending, at least one
+  /// No steps: nothing moves before setSteps().
+  Timeline() = default;
+  /// @param times_s    of the steps, ascending
   /// @param epoch_utc  ISO 8601; empty: no UTC texts
   explicit Timeline(std::vector<double> times_s, std::string epoch_utc = "",
                     std::vector<ActivityBar> bars = {});
   /// Steps of a source that shows a scenario.
   Timeline(std::vector<double> times_s, const scenario::Scenario& scenario);
 
+  /// Other steps, ascending. The hand, the playing range and the visible part stay as far as they lie within.
+  void setSteps(std::vector<double> times_s);
+  /// Another scenario: its epoch, and when its emitters radiate.
+  void setScenario(const scenario::Scenario& scenario);
+
   const std::vector<double>& times_s() const { return times_s_; }
-  double begin_s() const { return times_s_.front(); }
-  double end_s() const { return times_s_.back(); }
+  double begin_s() const { return times_s_.empty() ? 0 : times_s_.front(); }
+  double end_s() const { return times_s_.empty() ? 0 : times_s_.back(); }
   const std::vector<ActivityBar>& bars() const { return bars_; }
+  /// Whether there is time to move in.
+  bool hasSpan() const { return begin_s() < end_s(); }
 
   /// About `count` ticks at round times (1, 2, 5, 10, 15, 30 s, min, h, ...) within an interval.
   /// @param from_s, to_s  from_s < to_s
   std::vector<TimelineTick> ticks(double from_s, double to_s, int count) const;
 
+  /// Reads "49.5" (s) or, with an epoch, a time of day (UTC): "06:00:49.5", "06:00"; of several days the
+  /// first at which it is that time from begin_s() on.
+  /// @throws Error (bad_input) that says what is expected
+  double parseTime_s(const std::string& text) const;
+
   /// Steps that need not be computed, as spans of times that reach halfway to the steps around.
   /// @param steps  indices, ascending
   std::vector<scenario::TimeInterval> cachedSpans(const std::vector<int>& steps) const;
 
+  // The part that is drawn
+  /// All of the steps' span at first.
+  scenario::TimeInterval visible() const;
+  /// Moved into the span, widened to a millionth of it. Nothing happens unless from_s < to_s.
+  void setVisible(double from_s, double to_s);
+  /// @param factor   of the visible length, > 0: below 1 shows less
+  /// @param about_s  stays where it is
+  void zoom(double factor, double about_s);
+  void pan(double by_s);
+  void showAll() { visible_.reset(); }
+
   // The hand
   double time_s() const { return time_s_; }
-  /// Clamped to the steps' span; of a time that is not a number nothing happens.
+  /// Clamped to the steps' span; of a time that is not a number nothing happens. Playing goes on from there.
   void seek(double time_s);
   /// The index of the step nearest to a time; the earlier of two as near.
   int nearestStep(double time_s) const;
   /// The step that is shown.
   int step() const { return nearestStep(time_s_); }
+  /// Its time; that of the hand without steps.
+  double step_s() const { return times_s_.empty() ? time_s_ : times_s_[static_cast<std::size_t>(step())]; }
   /// To the step that lies so many after the one shown (before: negative), at most to the last or first.
   /// Stops playing.
   void stepBy(int steps);
@@ -66,31 +93,46 @@ class Timeline {
 
   // Playing
   bool playing() const { return playing_; }
-  /// At the end that the rate leads to, playing begins anew from the other one.
+  /// At the end that the rate leads to, and outside the playing range, playing begins anew from the other
+  /// end.
   void play();
   void pause() { playing_ = false; }
+  /// Playing stays within; all of the steps' span at first.
+  scenario::TimeInterval playRange() const;
+  /// Moved to the nearest steps, two at least.
+  void setPlayRange(double begin_s, double end_s);
+  /// One end of it; stays a step before or after the other one.
+  void setPlayBegin(double time_s);
+  void setPlayEnd(double time_s);
+  void playAll() { play_range_.reset(); }
   double rate() const { return rate_; }
   /// Any rate but 0, which is not taken; negative: backwards.
   void setRate(double rate);
-  /// The next of playRates() in the direction that time goes.
-  void faster();
-  void slower();
+  /// To the next of the usual rates above (1) or below (-1). Below the slowest are those backwards.
+  void changeRate(int direction);
   void reverse() { rate_ = -rate_; }
   bool loop() const { return loop_; }
   void setLoop(bool loop) { loop_ = loop; }
 
-  /// Lets time pass while it plays. At an end it goes on from the other one in a loop, else it stops there.
+  /// Lets time pass while it plays. At an end of the playing range it goes on from the other one in a loop,
+  /// else it stops there. The visible part follows the hand.
   /// @param dt_s  of the user's clock, >= 0
   /// @return time_s()
   double advance(double dt_s);
+  /// Seconds of the user's clock until another step is shown; none while it does not play.
+  std::optional<double> untilNextStep_s() const;
 
  private:
   void goToStep(int step);
+  void setPlaySteps(int first, int last);
+  void follow(double before_s);
+  scenario::TimeInterval span() const { return {begin_s(), end_s()}; }
 
   std::vector<double> times_s_;
   std::string epoch_utc_;
   std::vector<ActivityBar> bars_;
-  double time_s_;
+  std::optional<scenario::TimeInterval> visible_, play_range_;  // none: the whole span
+  double time_s_ = 0;
   double rate_ = 1;
   bool playing_ = false;
   bool loop_ = false;

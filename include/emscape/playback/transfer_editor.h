@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/playback/opacity_preset.h"
 #include "emscape/playback/undo_stack.h"
 #include "emscape/render/transfer_function.h"
 #include "emscape/volume/value_range.h"
@@ -33,6 +34,8 @@ class TransferEditor {
   explicit TransferEditor(const render::TransferFunction& function);
 
   const render::TransferFunction& function() const { return stack_.state(); }
+  /// Counts its changes, undo and redo included.
+  long long changes() const { return changes_; }
   /// Another function, in one step: a file, or the default of a volume. @throws as the constructor
   void setFunction(const render::TransferFunction& function);
 
@@ -46,25 +49,36 @@ class TransferEditor {
   /// The point nearest to a value and a position on the axis, if it is within `radius`.
   /// @param value_scale  length of one unit of the value, in that of the axis
   std::optional<int> pointNear(double value, double position, double value_scale, double radius) const;
-  /// Adds a point and selects it. @return its index; after points at the same value
+  /// Adds a point within the interval and selects it. @return its index; after points at the same value
   int add(double value, double opacity);
-  /// Moves the selected point between its neighbours. Nothing happens without one.
+  /// Moves the selected point between its neighbours, within the interval. Nothing happens without one.
   void moveSelected(double value, double opacity);
   /// Deletes the selected point; the one that takes its index becomes selected, or the last. The last two,
   /// and points without which no interval would be left, stay.
   void removeSelected();
 
+  /// All points of one of opacityPresets() over the interval, as a step.
+  /// @param at  where a threshold or a shell lies; none: the middle
+  /// @throws Error (bad_input) for an unknown name
+  void setOpacityPreset(const std::string& name, std::optional<double> at = std::nullopt);
+  /// Multiplies all opacities; those above 1 become 1. @param factor  >= 0
+  void scaleOpacities(double factor);
+
   // Colours
   /// A colour map over the interval of the function, as a step. @throws Error (bad_input) for an unknown name
   void setColorMap(const std::string& name);
+  /// The name of the map that the colours are; empty: none of them.
+  std::string colorMap() const;
   /// What setColorMap() takes.
   static std::vector<std::string> presets() { return render::colorMapNames(); }
 
-  /// Colours and opacities together, stretched from the function's interval to another one. "Fit now" gives
-  /// the range of the volume that is shown, "fit series" its info.range_*. Nothing happens for a range
-  /// without width.
+  /// Colours and opacities together, stretched from the function's interval to another one. Nothing happens
+  /// for a range without width.
   void fit(const volume::ValueRange& range);
-  /// The ends of the interval, each by itself.
+  /// The same in double precision.
+  void setInterval(double lowest, double highest);
+  /// The ends of the interval, each by itself. Within a drag they are moved from where it began, so that
+  /// nothing is lost on the way.
   void setLowest(double value);
   void setHighest(double value);
 
@@ -72,6 +86,8 @@ class TransferEditor {
   /// From here to endDrag() all changes are one step.
   void beginDrag() { stack_.beginDrag(); }
   void endDrag();
+  /// As UndoStack::stepsMade().
+  long long stepsMade() const { return stack_.stepsMade(); }
   bool canUndo() const { return stack_.canUndo(); }
   bool canRedo() const { return stack_.canRedo(); }
   void undo();
@@ -79,10 +95,12 @@ class TransferEditor {
 
  private:
   void set(render::TransferFunction function);
-  void spread(double lowest, double highest);
+  /// What a drag of the ends starts from.
+  const render::TransferFunction& base() const { return stack_.dragged() ? *stack_.dragged() : function(); }
   void checkSelection();
 
   UndoStack<render::TransferFunction> stack_;
+  long long changes_ = 0;
   std::optional<int> selected_;
 };
 

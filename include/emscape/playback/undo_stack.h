@@ -39,6 +39,9 @@ class UndoStack {
   /// The state at the beginning of the drag; null if there is none.
   const State* dragged() const { return drag_ ? &*drag_ : nullptr; }
 
+  /// How many steps were ever made: tells who keeps the order of several stacks whether this one has made
+  /// one.
+  long long stepsMade() const { return steps_made_; }
   bool canUndo() const { return !past_.empty() || drag_; }
   bool canRedo() const { return !future_.empty() && !drag_; }
   /// One step back; an open drag is that step. Nothing happens where there is none.
@@ -57,6 +60,7 @@ class UndoStack {
     past_.push_back(std::move(before));
     if (past_.size() > max_steps_) past_.erase(past_.begin());
     future_.clear();
+    ++steps_made_;
   }
   void move(std::vector<State>& from, std::vector<State>& to) {
     if (from.empty()) return;
@@ -68,6 +72,7 @@ class UndoStack {
   std::size_t max_steps_;
   std::optional<State> drag_;  ///< the state at its beginning
   std::vector<State> past_, future_;
+  long long steps_made_ = 0;
 };
 
 }  // namespace emscape::playback

@@ -40,6 +40,7 @@ struct ViewState {
   bool show_emitters = true;
   render::ImageSize size{1280, 720};
   std::vector<scenario::Edit> edits;     ///< to the scenario, in order
+  std::string compare;                   ///< as FrameSelection::compare; empty: the field is shown
   std::vector<std::string> open_panels;  ///< of the window, by its own names
 };
 
@@ -56,6 +57,15 @@ std::string viewStateText(const ViewState& state);
 /// @throws Error (bad_input) for a state that could not be read again, such as a camera out of its limits;
 /// (other) if the file cannot be written
 void writeViewState(const std::string& file, const ViewState& state);
+
+/// Another quantity or channel in a view: colours, range and isosurface, which belong to the one before, are
+/// dropped. Nothing happens if it is the same.
+void changeQuantity(ViewState& state, const std::string& quantity);
+/// The field or a difference (FrameSelection::compare): colours, range and isosurface are dropped where the
+/// other of the two was shown.
+void changeComparison(ViewState& state, const std::string& compare);
+/// Colours over a range, in place of a transfer function.
+void changeRange(ViewState& state, const volume::ValueRange& range);
 
 /// How the pictures of a state look.
 PictureStyle pictureStyleOf(const ViewState& state);

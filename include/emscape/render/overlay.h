@@ -25,6 +25,15 @@ struct Marker {
   std::optional<double> ground_m;  ///< height of the ground below it (frame z): where the stem ends
 };
 
+/// The way of something that moves.
+struct Track {
+  MarkerKind kind = MarkerKind::platform;
+  std::vector<Vec3d> points_m;  ///< frame metres, in the order of time
+  /// How far it has come: 2.5 is half way from points_m[2] to points_m[3]. What lies behind is drawn
+  /// brighter.
+  double travelled = 0;
+};
+
 enum class Theme { dark, light };
 /// "dark" or "light". @throws Error (usage)
 Theme parseTheme(const std::string& name);
@@ -37,6 +46,7 @@ struct Annotations {
   std::string time_utc;
   std::string note;  ///< small, at the bottom: rays, step
   std::vector<Marker> markers;
+  std::vector<Track> tracks;
   std::optional<Legend> legend;
   bool georeferenced = true;  ///< compass, axes in km and altitude; otherwise axes in the grid's unit
   bool axes = true;
@@ -54,13 +64,8 @@ using HiddenTest = std::function<bool(const Vec3d& frame_m)>;
 Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
                const HiddenTest& hidden = {});
 
-/// What compose() draws behind and in front of the cast picture, for programs that put the three together
-/// themselves: cast over behind, in_front over both.
-struct OverlayLayers {
-  Image8 behind;    ///< opaque
-  Image8 in_front;  ///< premultiplied
-};
-OverlayLayers overlayLayers(ImageSize size, const Camera& camera, const SceneBox& box,
-                            const Annotations& annotations, const HiddenTest& hidden = {});
+/// The same of a picture that is quantised already; differs from the above by at most one level.
+Image8 compose(const Image8& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
+               const HiddenTest& hidden = {});
 
 }  // namespace emscape::render

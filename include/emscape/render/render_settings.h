@@ -3,6 +3,9 @@
 
 #include <limits>
 #include <string>
+#include <vector>
+
+#include "emscape/render/cut_plane.h"
 
 namespace emscape::render {
 
@@ -24,6 +27,7 @@ struct RenderSettings {
   bool skip_empty = true;  ///< skip bricks that cannot change the picture; the picture is the same either way
   bool plain = false;      ///< the reference form of the ray caster; slow, for comparison
   double vertical_exaggeration = 0;  ///< 0: niceVerticalExaggeration()
+  std::vector<CutPlane> planes;      ///< that cut the volume open; at most kMaxCutPlanes
 };
 
 }  // namespace emscape::render

@@ -33,6 +33,7 @@ constexpr const char* kScaleKey = "scale";
 constexpr const char* kProbabilityScale = "probability";  ///< 0..1
 constexpr const char* kRatioBelowScale = "ratio, below";  ///< dB about 0; what lies below 0 is looked for
 constexpr const char* kRatioAboveScale = "ratio, above";  ///< dB about 0; what lies above 0 is looked for
+constexpr const char* kDifferenceScale = "difference";    ///< of two fields, about 0
 
 /// Values in dense order. Voxels below ground or without a known field are masked: they hold `info.floor`,
 /// are inactive in .vdb and are never drawn.

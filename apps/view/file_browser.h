@@ -1,0 +1,77 @@
+/// Model of a file browser: a folder's content, what is selected, and what was typed. No drawing.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/playback/async_task.h"
+
+namespace emscape::view {
+
+/// What the window can open, by the ending of its name.
+enum class FileKind { folder, scenario, volume, view, other };
+FileKind fileKindOf(const std::filesystem::path& file, bool is_folder);
+
+struct FolderEntry {
+  std::string name;
+  FileKind kind = FileKind::other;
+};
+
+/// The folders of a folder, then the files that can be opened, each by name; names that begin with a point
+/// are left out.
+/// @throws Error (other) that names the folder and the cause
+std::vector<FolderEntry> listFolder(const std::filesystem::path& folder);
+
+/// A folder is read on a thread of its own: it may lie on a disk that sleeps. The thread of the window uses
+/// the object.
+class FileBrowser {
+ public:
+  /// What may be chosen besides folders.
+  enum class Purpose { input, view };
+
+  /// Reads the folder of the last visit (at first the given one) again.
+  void open(Purpose purpose, const std::filesystem::path& first_folder);
+  Purpose purpose() const { return purpose_; }
+  void enter(const std::filesystem::path& folder);
+  void goUp() { enter(folder_.parent_path()); }
+  /// Takes what was read. @return whether something changed
+  bool update();
+
+  const std::filesystem::path& folder() const { return folder_; }
+  bool reading() const { return task_.active(); }
+  /// Those that the purpose allows.
+  const std::vector<FolderEntry>& entries() const { return entries_; }
+  /// Why the folder cannot be read; empty if it can.
+  const std::string& error() const { return error_; }
+
+  int selected() const { return selected_; }
+  void select(int index);
+  void moveSelection(int rows) { select(selected_ + rows); }
+  /// Opens the selected entry: enters a folder, or gives the file.
+  std::optional<std::string> choose();
+  /// A path as it is typed, from the folder on, with ~ for the home: enters a folder, or gives the file,
+  /// which need not exist.
+  std::optional<std::string> choose(const std::string& typed);
+
+ private:
+  struct Listing {
+    std::filesystem::path folder;
+    std::vector<FolderEntry> entries;
+    std::string error;
+  };
+  void read();
+
+  Purpose purpose_ = Purpose::input;
+  std::filesystem::path folder_;
+  std::string left_;  // name of the folder that goUp() came from: it is selected
+  std::vector<FolderEntry> entries_;
+  std::string error_;
+  int selected_ = 0;
+  bool again_ = false;  // another folder was asked for meanwhile
+  playback::Event event_;
+  playback::AsyncTask<Listing> task_{event_};
+};
+
+}  // namespace emscape::view

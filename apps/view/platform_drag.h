@@ -1,0 +1,37 @@
+/// A platform that is moved by hand in the picture.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/playback/live_view.h"
+#include "emscape/scenario/edit.h"
+
+namespace emscape::view {
+
+/// Index of the marker under a pixel, which is that of the emitter; none if none is near.
+std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double x, double y);
+
+/// From the press of the button on. A platform whose height is given above the ground goes where the ground
+/// is under the cursor, any other one stays at its height. The cursor keeps its distance from the marker.
+class PlatformDrag {
+ public:
+  /// @param emitter  index of its marker
+  /// @throws Error (bad_input) if the picture has no scenario, or the platform moves along a track
+  PlatformDrag(const playback::LivePicture& picture, std::size_t emitter, double x, double y);
+
+  const std::string& platform() const { return platform_; }
+  /// The edits that move the platform to the cursor; none where there is nothing under it.
+  std::optional<std::vector<scenario::Edit>> moveTo(const playback::LivePicture& picture, double x,
+                                                    double y) const;
+
+ private:
+  std::string platform_;
+  bool follows_ground_ = false;
+  Vec3d grip_m_;  // the point that the cursor holds, at its height
+  double offset_x_ = 0, offset_y_ = 0;
+};
+
+}  // namespace emscape::view

@@ -1,0 +1,102 @@
+/// What is under the cursor, or at a point that is held, read beside the window's thread.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/playback/live_view.h"
+#include "emscape/playback/probe.h"
+#include "playback/latest_worker.h"
+
+namespace emscape::view {
+
+/// What one emitter contributes to a reading.
+struct Contribution {
+  std::size_t emitter = 0;  ///< index into ProbeReading::emitters
+  double value = 0;         ///< -infinity without a field
+  std::string text;         ///< value with unit, or why there is none
+};
+/// The strongest first. @param quantity  that is meant; power density where an emitter has no such term
+std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading, const std::string& quantity);
+
+/// One reading with what it was read from.
+struct ProbeResult {
+  std::optional<playback::ProbeReading> reading;  ///< none: there is nothing under the cursor
+  std::vector<Contribution> contributions;
+  std::string error;  ///< why nothing could be read
+  std::shared_ptr<const scenario::Scenario> scenario;
+  std::string quantity;  ///< of the volume
+  double time_s = 0;
+};
+
+/// Reads the picture that is shown: under the cursor, or at a locked point again and again as the field
+/// changes. The latest question counts. The window's thread uses it.
+class Prober {
+ public:
+  using PicturePtr = std::shared_ptr<const playback::LivePicture>;
+
+  /// @param wake  called on another thread when update() has something to take
+  explicit Prober(std::function<void()> wake);
+
+  /// Nothing is read while it is off.
+  void turnOn(bool on);
+  bool isOn() const { return is_on_; }
+  /// The cursor is over a pixel of the picture; none: elsewhere.
+  void hover(std::optional<render::Projected> pixel);
+  /// Holds what is under a pixel.
+  void lockAtPixel(double x, double y);
+  /// Holds a position. @param position_m  frame metres
+  void lockAt(const Vec3d& position_m);
+  /// Holds what was read last, or lets go.
+  void toggleLock();
+  void unlock();
+  bool isLocked() const { return is_locked_; }
+  /// Of the locked point; none before it has been found.
+  const std::optional<Vec3d>& locked_m() const { return locked_m_; }
+
+  /// Asks for what the picture makes necessary, takes what has been read. @return whether there is a new one
+  bool update(const PicturePtr& picture);
+  /// Null before the first.
+  const ProbeResult* result() const { return result_ ? &*result_ : nullptr; }
+  /// Whether a reading is under way.
+  bool isBusy() const { return is_on_ && (is_due_ || worker_.isBusy()); }
+
+ private:
+  struct Pixel {
+    double x = 0, y = 0;
+  };
+  struct Question {
+    PicturePtr picture;
+    std::optional<Pixel> pixel;  ///< none: the position
+    Vec3d position_m;
+    long long lock = 0;
+  };
+  struct Answer {
+    ProbeResult result;
+    long long lock = 0;
+  };
+  class Reader;
+
+  void ask(const PicturePtr& picture);
+
+  bool is_on_ = false;
+  bool is_due_ = false;  // something else is to be read than was asked for last
+  std::optional<Pixel> pixel_;
+  bool is_locked_ = false;
+  long long lock_ = 0;  // counts locks: an answer to a question before the last one is none
+  std::optional<Vec3d> locked_m_;
+  // What was asked for last
+  PicturePtr asked_picture_;
+  std::optional<ProbeResult> result_;
+  playback::LatestWorker<Question, Answer> worker_;
+};
+
+/// The command that explains the path of an emitter to the reading's position.
+/// @throws Error (bad_input) where there is no scenario
+std::string profileCommand(const ProbeResult& result, const std::string& emitter);
+
+}  // namespace emscape::view

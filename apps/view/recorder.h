@@ -1,0 +1,77 @@
+/// Records a view over a range of times: pictures or a video, beside the window.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "emscape/playback/async_task.h"
+#include "emscape/playback/compute_target.h"
+#include "emscape/playback/frame_source.h"
+#include "emscape/playback/painter.h"
+
+namespace emscape::view {
+
+/// Which times; all fields empty: every step of the series.
+struct RecordRange {
+  std::optional<double> begin_s, end_s;
+  std::optional<double> step_s;  ///< none: that of the series
+  double frames_per_s = 10;      ///< of a video, 0.1..240
+};
+
+/// What is drawn, and where to.
+struct RecordJob {
+  playback::FrameSelection selection;
+  playback::PictureStyle style;
+  playback::ComputeTarget target;
+  double frames_per_s = 10;
+  std::string output;  ///< NAME.mp4, NAME.png (one time) or a folder
+};
+
+/// One recording at a time, on a thread and from a source of its own, as `emscape render` does it. The thread
+/// of the window uses it.
+class Recorder {
+ public:
+  Recorder() = default;
+  /// Cancels what is recorded.
+  ~Recorder();
+  Recorder(const Recorder&) = delete;
+  Recorder& operator=(const Recorder&) = delete;
+
+  /// @param wake  called from the thread of the recording after each picture and at its end
+  /// @throws Error (usage) if a recording is under way
+  void start(const RecordJob& job, std::function<void()> wake);
+  /// Returns at once; the recording ends within a picture.
+  void cancel() { stop_ = true; }
+  bool running() const { return task_.active(); }
+
+  struct Progress {
+    std::string output;
+    int pictures = 0;
+    int total = 0;  ///< 0: not known yet
+  };
+  Progress progress() const;
+
+  /// How a recording ended.
+  struct Outcome {
+    std::string text;
+    bool is_error = false;
+  };
+  /// That of a recording that has ended; once.
+  std::optional<Outcome> takeOutcome();
+
+ private:
+  struct Counter {
+    std::atomic<int> pictures{0}, total{0};
+  };
+
+  StopFlag stop_{false};
+  std::shared_ptr<Counter> counter_ = std::make_shared<Counter>();
+  std::string output_;
+  playback::Event event_;
+  playback::AsyncTask<Outcome> task_{event_};
+};
+
+}  // namespace emscape::view

@@ -1,0 +1,21 @@
+/// The command that draws a view into a file.
+#pragma once
+
+#include <string>
+
+#include "apps/view/view_options.h"
+#include "emscape/volume/volume.h"
+
+namespace emscape::view {
+
+/// `emscape render INPUT --state FILE -o picture.png`.
+std::string renderCommand(const ViewOptions& options, const std::string& state_file);
+
+/// The same with the options that describe the view, and --set for its edits. Colours that `render` would not
+/// fit by itself go to a file, which is written into stateFolder()/copied.
+/// @param shown  the volume on screen
+/// @throws Error (other) if that file cannot be written
+std::string renderCommand(const ViewOptions& options, const playback::ViewState& view,
+                          const volume::Volume& shown);
+
+}  // namespace emscape::view

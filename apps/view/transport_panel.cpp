@@ -1,0 +1,137 @@
+/// Buttons of playing, rate, and the time that is asked for.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/view/panels.h"
+#include "apps/view/theme.h"
+#include "emscape/scenario/clock.h"
+
+namespace emscape::view {
+namespace {
+
+enum class Symbol { first, back, play, pause, forward, last };
+
+/// A button with a drawn symbol: fonts differ in which of them they have.
+bool symbolButton(const char* id, Symbol symbol, const char* tip, float scale) {
+  const float side = ImGui::GetFrameHeight();
+  const bool pressed = ImGui::Button(id, {1.35F * side, side});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const ImVec2 c{(low.x + high.x) / 2, (low.y + high.y) / 2};
+  const float r = 5.5F * scale;
+  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto triangle = [&](float x, float direction) {
+    list.AddTriangleFilled({x - direction * r * 0.8F, c.y - r}, {x + direction * r * 0.9F, c.y},
+                           {x - direction * r * 0.8F, c.y + r}, ink);
+  };
+  const auto bar = [&](float x) { list.AddRectFilled({x - scale, c.y - r}, {x + scale, c.y + r}, ink); };
+  switch (symbol) {
+    case Symbol::first:
+      bar(c.x - r);
+      triangle(c.x + 1.5F * scale, -1);
+      break;
+    case Symbol::back:
+      triangle(c.x, -1);
+      break;
+    case Symbol::play:
+      triangle(c.x, 1);
+      break;
+    case Symbol::pause:
+      bar(c.x - 3 * scale);
+      bar(c.x + 3 * scale);
+      break;
+    case Symbol::forward:
+      triangle(c.x, 1);
+      bar(c.x - r);
+      break;
+    case Symbol::last:
+      triangle(c.x - 1.5F * scale, 1);
+      bar(c.x + r);
+      break;
+  }
+  return pressed;
+}
+
+void drawButtons(PanelContext& context) {
+  const float s = context.scale;
+  const bool playing = context.session.timeline().playing();
+  if (symbolButton("##first", Symbol::first, "First step (Home)", s)) perform(context, R"({"do":"first"})");
+  ImGui::SameLine(0, 4 * s);
+  if (symbolButton("##back", Symbol::back, "Step back (Left)", s))
+    perform(context, R"({"do":"step","steps":-1})");
+  ImGui::SameLine(0, 4 * s);
+  if (symbolButton("##play", playing ? Symbol::pause : Symbol::play, "Play or pause (Space)", s)) {
+    perform(context, R"({"do":"play"})");
+  }
+  ImGui::SameLine(0, 4 * s);
+  if (symbolButton("##forward", Symbol::forward, "Step forward (Right)", s)) {
+    perform(context, R"({"do":"step","steps":1})");
+  }
+  ImGui::SameLine(0, 4 * s);
+  if (symbolButton("##last", Symbol::last, "Last step (End)", s)) perform(context, R"({"do":"last"})");
+}
+
+/// Any rate is typed; the arrow beside it lists the usual ones.
+void drawRate(PanelContext& context) {
+  Session& session = context.session;
+  const float s = context.scale;
+  const double rate = session.timeline().rate();
+  double typed = rate;
+  ImGui::SetNextItemWidth(64 * s);
+  ImGui::InputDouble("##rate", &typed, 0, 0, "× %.4g", ImGuiInputTextFlags_AutoSelectAll);
+  if (ImGui::IsItemDeactivatedAfterEdit()) session.perform({"rate", {{"value", typed}}});
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("Scenario seconds in a second, negative: backwards (J lower, L higher)");
+  }
+  ImGui::SameLine(0, 2 * s);
+  if (ImGui::BeginCombo("##rates", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_HeightLargest)) {
+    for (const double usual : playback::playRates()) {
+      if (ImGui::Selectable(fmt::format("× {:g}", usual).c_str(), usual == std::abs(rate))) {
+        session.perform({"rate", {{"value", std::copysign(usual, rate)}}});
+      }
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::SameLine(0, 10 * s);
+  bool backwards = rate < 0;
+  if (ImGui::Checkbox("backwards", &backwards)) perform(context, R"({"do":"reverse"})");
+  ImGui::SameLine(0, 10 * s);
+  bool loop = session.timeline().loop();
+  if (ImGui::Checkbox("loop", &loop)) session.perform({"loop", {{"on", loop}}});
+}
+
+/// The time that is asked for, and the one on screen as long as it is another.
+void drawTimes(const PanelContext& context) {
+  const Session& session = context.session;
+  const playback::Timeline& timeline = session.timeline();
+  const float s = context.scale;
+  const double asked_s = timeline.step_s();
+  std::string now = fmt::format("t = {:g} s", asked_s);
+  if (!timeline.times_s().empty()) {
+    now += fmt::format("   step {} of {}", timeline.step() + 1, timeline.times_s().size());
+  }
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(now.c_str());
+  if (session.picture() && session.status().shown_s != asked_s) {
+    ImGui::SameLine(0, 18 * s);
+    ImGui::TextColored(stateColor(render::ControllerState::busy), "shown %s",
+                       fmt::format("{:g} s", session.status().shown_s).c_str());
+  } else if (const auto scenario = session.scenario(); scenario && !scenario->clock.epoch_utc.empty()) {
+    ImGui::SameLine(0, 18 * s);
+    ImGui::TextColored(mutedColor(session.theme()), "%s", scenario::utcAt(scenario->clock, asked_s).c_str());
+  }
+}
+
+}  // namespace
+
+void drawTransport(PanelContext& context) {
+  drawButtons(context);
+  ImGui::SameLine(0, 14 * context.scale);
+  drawRate(context);
+  ImGui::SameLine(0, 18 * context.scale);
+  drawTimes(context);
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,53 @@
+/// Undo over several histories: the latest step of any of them comes first.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace emscape::view {
+
+enum class History { scenario, transfer };
+
+/// Keeps the order in which histories made their steps; the steps are theirs.
+class UndoOrder {
+ public:
+  /// @param steps_made  by this history so far; those that are new are the latest of all
+  void note(History history, long long steps_made) {
+    long long& noted = noted_[static_cast<std::size_t>(history)];
+    for (; noted < steps_made; ++noted) {
+      done_.push_back(history);
+      undone_.clear();
+    }
+  }
+  /// A history begins anew: none of its steps can be undone or redone.
+  void forget(History history) {
+    noted_[static_cast<std::size_t>(history)] = 0;
+    for (auto* list : {&done_, &undone_}) {
+      std::vector<History> others;
+      for (const History one : *list) {
+        if (one != history) others.push_back(one);
+      }
+      *list = others;
+    }
+  }
+  bool canUndo() const { return !done_.empty(); }
+  bool canRedo() const { return !undone_.empty(); }
+  /// The history whose last step is to be undone, redone; none: there is none.
+  std::optional<History> undo() { return move(done_, undone_); }
+  std::optional<History> redo() { return move(undone_, done_); }
+
+ private:
+  static std::optional<History> move(std::vector<History>& from, std::vector<History>& to) {
+    if (from.empty()) return std::nullopt;
+    to.push_back(from.back());
+    from.pop_back();
+    return to.back();
+  }
+
+  std::array<long long, 2> noted_{};
+  std::vector<History> done_, undone_;
+};
+
+}  // namespace emscape::view

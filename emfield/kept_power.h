@@ -1,0 +1,94 @@
+/// Power densities of emitters that stay as they are while others change.
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include "emfield/combine.h"
+
+namespace emscape::emfield {
+
+/// Whether two emitters have the same power density everywhere if their geometry is the same.
+bool samePower(const scenario::AntennaPtr& antenna_a, const EmitterBeam& a,
+               const scenario::AntennaPtr& antenna_b, const EmitterBeam& b);
+
+/// An emitter that enters a second sum as it entered the last one is computed once more and kept; from then
+/// on it is read, which is many times faster, and the same to the bit.
+/// @tparam Array  of floats: std::vector<float> or a GPU's buffer
+template <class Array>
+class KeptPower {
+ public:
+  /// @param slots            emitters with geometry of their own
+  /// @param voxels           of the grid
+  /// @param available_bytes  of which an eighth is taken at most, and no more than 1 GiB
+  KeptPower(std::size_t slots, std::size_t voxels, std::size_t available_bytes)
+      : voxels_(voxels), slots_(slots) {
+    constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
+    constexpr std::size_t kPartOfMemory = 8;
+    const std::size_t bytes = available_bytes / kPartOfMemory;
+    limit_ = (bytes < kMaxBytes ? bytes : kMaxBytes) / (sizeof(float) * (voxels > 0 ? voxels : 1));
+  }
+
+  /// Says where the power of an emitter is written or read in the next pass. The pass must be run, and the
+  /// emitter take part in it (takesPart()): else what is kept is never written.
+  /// @param slot     of the emitter; others than those of the constructor are never kept
+  /// @param antenna  of the emitter
+  /// @param emitter  its beam is complete; power_wm2 and power_is_known are set
+  void choose(std::size_t slot, const scenario::AntennaPtr& antenna, CombineEmitter& emitter) {
+    if (slot >= slots_.size()) return;
+    Slot& kept = slots_[slot];
+    if (!kept.antenna || !samePower(kept.antenna, kept.beam, antenna, emitter.beam)) {
+      forget(slot);
+      kept.antenna = antenna;
+      kept.beam = emitter.beam;
+      return;
+    }
+    emitter.power_is_known = kept.is_known;
+    if (!kept.is_known && !take(kept)) return;
+    kept.is_known = true;
+    emitter.power_wm2 = kept.power_wm2.data();
+  }
+  /// The geometry of a slot is another one.
+  void forget(std::size_t slot) {
+    if (slot >= slots_.size()) return;
+    if (slots_[slot].is_known) free_.push_back(std::move(slots_[slot].power_wm2));
+    slots_[slot] = {};
+  }
+  std::size_t bytes() const { return taken_ * voxels_ * sizeof(float); }
+
+ private:
+  struct Slot {
+    scenario::AntennaPtr antenna;  ///< null: did not enter a sum
+    EmitterBeam beam;
+    Array power_wm2;
+    bool is_known = false;
+  };
+
+  /// @return false where there is no memory for another one
+  bool take(Slot& slot) {
+    if (!free_.empty()) {
+      slot.power_wm2 = std::move(free_.back());
+      free_.pop_back();
+      return true;
+    }
+    if (taken_ >= limit_) return false;
+    try {
+      slot.power_wm2.resize(voxels_);
+    } catch (const std::exception&) {  // somebody else took the memory
+      limit_ = taken_;
+      return false;
+    }
+    ++taken_;
+    return true;
+  }
+
+  std::size_t voxels_;
+  std::size_t taken_ = 0;  // arrays
+  std::size_t limit_ = 0;  // of taken_
+  std::vector<Slot> slots_;
+  std::vector<Array> free_;
+};
+
+}  // namespace emscape::emfield

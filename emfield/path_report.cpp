@@ -1,0 +1,56 @@
+#include "emscape/emfield/path_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/units.h"
+
+namespace emscape::emfield {
+namespace {
+
+std::string ofEnd(const PathEnd& end, double ground_msl_m, bool has_terrain) {
+  return fmt::format("{:.5f}, {:.5f} deg; {:.1f} m above mean sea level (EGM96), {:.1f} m above {}",
+                     end.position.latitude_deg, end.position.longitude_deg, end.height_msl_m,
+                     end.height_msl_m - ground_msl_m,
+                     has_terrain ? "ground" : "the smooth earth (no terrain)");
+}
+
+}  // namespace
+
+std::vector<ReportLine> geometryLines(const PathBudget& budget) {
+  const PathGeometry& geometry = budget.geometry;
+  const PathProfile& profile = budget.profile;
+  return {
+      {"emitter", ofEnd(profile.begin, geometry.begin_ground_msl_m, profile.has_terrain)},
+      {"point", ofEnd(profile.end, geometry.end_ground_msl_m, profile.has_terrain)},
+      {"range", fmt::format("{:.3f} km over the ground, {:.3f} km slant", profile.range_m / 1000,
+                            geometry.slant_range_m / 1000)},
+      {"azimuth", fmt::format("{:.3f} deg from true north", radToDeg(profile.azimuth_rad))},
+      {"elevation of the ray",
+       fmt::format("{:.3f} deg at the emitter ({:.3f} deg of the straight line)",
+                   radToDeg(geometry.launch_elevation_rad), radToDeg(geometry.straight_elevation_rad))},
+      {"effective earth",
+       fmt::format("k = {:.4g}, radius {:.0f} km; a smooth one cuts off beyond {:.1f} km", budget.k_factor,
+                   profile.effective_earth_radius_m / 1000, geometry.horizon_range_m / 1000)},
+  };
+}
+
+std::string valueText(double value) {
+  if (std::isinf(value)) return value < 0 ? "none" : "all";
+  return fmt::format("{:.2f}", std::abs(value) < 0.005 ? 0.0 : value);
+}
+
+std::string remarkOf(const PathObstacle& obstacle) {
+  std::string remark = obstacle.is_earth_bulge ? "earth's bulge" : "";
+  if (obstacle.decides) remark += remark.empty() ? "decides" : "  decides";
+  return remark;
+}
+
+bool isBlocked(const PathBudget& budget) {
+  return std::any_of(budget.obstacles.begin(), budget.obstacles.end(),
+                     [](const PathObstacle& obstacle) { return obstacle.clearance_m < 0; });
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,24 @@
+/// Opacity curves that an editor of a transfer function starts from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emscape/render/transfer_function.h"
+
+namespace emscape::playback {
+
+struct OpacityPreset {
+  const char* name;
+  const char* help;
+};
+/// ramp, late ramp, threshold, shell, bands, opaque.
+const std::vector<OpacityPreset>& opacityPresets();
+
+/// The points of one, from `lowest` to `highest`.
+/// @param at  where a threshold or a shell lies; clamped to the inner part of the interval
+/// @throws Error (bad_input) for an unknown name, which lists them
+std::vector<render::TransferFunction::OpacityPoint> opacityPreset(const std::string& name, double lowest,
+                                                                  double highest, double at);
+
+}  // namespace emscape::playback

@@ -1,0 +1,31 @@
+/// The pictures of a source, one after another, into files.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emscape/base/progress.h"
+#include "emscape/playback/frame_source.h"
+#include "emscape/playback/painter.h"
+#include "emscape/playback/picture_sink.h"
+#include "emscape/render/frame.h"
+
+namespace emscape::playback {
+
+/// The small text at the bottom of a picture: "dvr, full rays, step 1 voxel".
+std::string pictureNote(const render::RenderSettings& settings, render::Pattern pattern);
+
+/// Draws every frame of a source. Files are written on a thread of their own while the next picture is cast.
+/// @param painter  with the first frame set
+/// @param sinks    each gets every picture; finished at the end
+/// @param done     called after each picture with the number of pictures so far; may be empty
+/// @param stop     ends the work with Stopped; may be null
+/// @return milliseconds that casting took
+/// @throws Error, Stopped; the sinks are then not finished
+double drawPictures(FrameSource& source, Painter& painter, const render::FramePlan& plan,
+                    const std::string& note, const std::vector<std::unique_ptr<PictureSink>>& sinks,
+                    const std::function<void(int pictures)>& done = {}, const StopFlag* stop = nullptr);
+
+}  // namespace emscape::playback

@@ -1,0 +1,55 @@
+#include "base/cuda/cuda_memory.h"
+#include "render/cuda/grid_voxels.h"
+#include "render/cuda/kernels.h"
+#include "render/cuda/pixel_tile.h"
+#include "render/cuda/texture_samplers.h"
+
+namespace emscape::render::cuda {
+namespace {
+
+template <class Sampler>
+__global__ void __launch_bounds__(kTileThreads)
+    cutRays(const __grid_constant__ RaycastTask task, const __grid_constant__ CutLayer layer) {
+  const ImageSize size = task.camera.size;
+  const Place place = placeOfThread(size.width);
+  if (place.column >= size.width || place.row >= size.height) return;
+  const long long index = pixelIndex(size, place.column, place.row);
+  const bool has_ground = layer.ground_distances != nullptr;
+  const float ground = has_ground ? layer.ground_distances[index] : INFINITY;
+  const CutRay ray = task.cutRay<Sampler>(place.column, place.row, ground);
+  layer.begins[index] = ray.bounds.begin;
+  layer.limits[index] = ray.bounds.end;
+  if (ray.section.a > 0.0F) {
+    layer.distances[index] = ray.bounds.end;
+    layer.colors[index] = toFloat4(ray.section);
+  } else {
+    layer.distances[index] = ground;
+    if (ground < INFINITY) layer.colors[index] = layer.ground_colors[index];
+  }
+}
+
+template <class Sampler>
+void start(const RaycastTask& task, const CutLayer& layer, cudaStream_t stream) {
+  const ImageSize size = task.camera.size;
+  cutRays<Sampler><<<tileCount(size.width, size.height), kTileThreads, 0, stream>>>(task, layer);
+  emscape::cuda::checkLaunch("cutRays");
+}
+
+}  // namespace
+
+void castCut(const RaycastTask& task, Sampling sampling, const CutLayer& layer, cudaStream_t stream) {
+  switch (sampling) {
+    case Sampling::sparse:
+      return start<TrilinearSamplerOf<GridVoxels>>(task, layer, stream);
+    case Sampling::sparse_nearest:
+      return start<NearestSamplerOf<GridVoxels>>(task, layer, stream);
+    case Sampling::nearest:
+      return start<NearestTextureSampler>(task, layer, stream);
+    case Sampling::filtered:
+    case Sampling::accurate:
+      break;
+  }
+  return start<AccurateSampler>(task, layer, stream);
+}
+
+}  // namespace emscape::render::cuda

@@ -1,0 +1,137 @@
+#include "playback/difference_source.h"
+
+#include <algorithm>
+
+#include "emscape/volume/difference.h"
+#include "tests/playback/playback_samples.h"
+
+namespace emscape::playback::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::vector<std::pair<std::string, std::string>> kSmall{{"[40, 40, 20]", "[8, 8, 6]"}};
+
+/// Both emitters ten times as strong.
+std::vector<scenario::Edit> tenfold() {
+  return {{"emitters.radar.power_w", "100000"}, {"emitters.transmitter.power_w", "10000"}};
+}
+
+FrameSelection selectionOf(const std::string& input) {
+  FrameSelection selection;
+  selection.input = input;
+  selection.times = "0:3:1";
+  selection.compare = kOriginal;
+  return selection;
+}
+
+std::unique_ptr<FrameSource> made(std::vector<double> times_s) {
+  return std::make_unique<MadeFrames>(std::move(times_s));
+}
+
+TEST(DifferenceSource, OfEqualScenariosIsZeroEverywhere) {
+  const TemporaryFolder folder;
+  const auto source = openFrameSource(selectionOf(quickScenario(folder, kSmall)), {});
+  for (int index = 0; index < source->count(); ++index) {
+    const auto volume = source->frame(index).volume.host();
+    EXPECT_EQ(volume->values, std::vector<float>(volume->values.size(), 0.0F)) << index;
+  }
+}
+
+TEST(DifferenceSource, TenTimesThePowerIsTenDecibelsWhereBothHaveAField) {
+  const TemporaryFolder folder;
+  FrameSelection selection = selectionOf(quickScenario(folder, kSmall));
+  FrameSelection plain = selection;
+  plain.compare.clear();
+  selection.edits = tenfold();
+  const auto source = openFrameSource(selection, {});
+  const auto before = openFrameSource(plain, {})->frame(1).volume.host();
+  const auto volume = source->frame(1).volume.host();
+  long long compared = 0;
+  for (std::size_t i = 0; i < volume->values.size(); ++i) {
+    if (before->values[i] <= before->info.floor) continue;
+    EXPECT_NEAR(volume->values[i], 10, 1e-4);
+    ++compared;
+  }
+  EXPECT_GT(compared, 100);
+  EXPECT_EQ(volume->info.unit, "dB");
+  EXPECT_EQ(volume->info.quantity, "power_density_difference_db");
+  EXPECT_EQ(volume->info.time_s, 1);
+  EXPECT_EQ(volume->info.extra.at(kDifferenceToKey), "the original scenario");
+}
+
+TEST(DifferenceSource, AnEditDoesNotComputeTheReferenceAgain) {
+  int opened = 0;
+  const MadeFrames* reference = nullptr;
+  DifferenceSource source(
+      made({0, 1, 2}),
+      [&] {
+        ++opened;
+        auto frames = std::make_unique<MadeFrames>(std::vector<double>{0, 1, 2});
+        reference = frames.get();
+        return frames;
+      },
+      "the other", false);
+  source.frame(0);
+  EXPECT_EQ(opened, 0) << "nothing is compared yet";
+  source.setComparison(true);
+  EXPECT_EQ(source.frame(1).volume.host()->values, std::vector<float>(MadeFrames::kVoxels, 0.0F));
+  source.frame(1);
+  source.setComparison(false);
+  EXPECT_EQ(source.frame(1).volume.info().quantity, "made");
+  source.setComparison(true);
+  source.frame(1);
+  EXPECT_EQ(opened, 1);
+  EXPECT_EQ(reference->asked(), std::vector<int>{1});
+}
+
+TEST(DifferenceSource, TheReferenceMustHaveTheSameSteps) {
+  DifferenceSource source(
+      made({0, 1.25}),
+      [] {
+        return made({0, 1, 2});
+      },
+      "the other", true);
+  EXPECT_NO_THROW(source.frame(0));
+  EXPECT_EQ(errorOf([&] { source.frame(1); }),
+            "the other has no step at 1.25 s to compare with; the nearest is at 1 s");
+}
+
+TEST(DifferenceSource, IndicesAreRefused) {
+  const TemporaryFolder folder;
+  FrameSelection selection = selectionOf(quickScenario(folder, kSmall));
+  selection.quantity = "dominant_emitter";
+  EXPECT_THAT(errorOf([&] { openFrameSource(selection, {})->frame(0); }),
+              HasSubstr("dominant_emitter: indices have no difference"));
+}
+
+TEST(DifferenceSource, VolumesHaveNoOriginal) {
+  const TemporaryFolder folder;
+  FrameSelection selection;
+  selection.input = folder.path().string();
+  selection.compare = kOriginal;
+  EXPECT_THAT(errorOf([&] { openFrameSource(selection, {}); }),
+              HasSubstr("volumes have no original to compare with"));
+}
+
+TEST(DifferenceSource, ASeriesOfDifferencesHasOneRangeAndTheirNames) {
+  const TemporaryFolder folder;
+  const std::string file = quickScenario(folder, kSmall);
+  const LoadedScenario original = loadScenarioWithTerrain(file);
+  FieldSeries series(loadScenarioWithTerrain(file, tenfold()), seconds(3), {});
+  series.compareWith(original, "the original scenario");
+  ASSERT_EQ(series.channels().size(), 1U);
+  EXPECT_EQ(series.channels().front().name, "power_density_difference_db");
+  const auto volume = series.compute(2).front().host();
+  EXPECT_EQ(volume->info.quantity, "power_density_difference_db");
+  EXPECT_EQ(volume->info.time_s, 2);
+  EXPECT_NEAR(*std::max_element(volume->values.begin(), volume->values.end()), 10, 1e-3);
+  emfield::FieldOptions indices;
+  indices.quantities = {"dominant_emitter"};
+  FieldSeries of_indices(original, seconds(3), indices);
+  EXPECT_THAT(errorOf([&] { of_indices.compareWith(original, "x"); }),
+              HasSubstr("indices have no difference"));
+}
+
+}  // namespace
+}  // namespace emscape::playback::test

@@ -1,0 +1,104 @@
+#include "tests/view/session_sample.h"
+
+namespace emscape::view::test {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kProbe =
+    R"({"do":"probe","latitude_deg":52.02,"longitude_deg":5.03,"height_msl_m":1500})";
+
+TEST(SessionProbe, HoldsAPositionAndSaysWhatIsThereAndWhy) {
+  SessionSample sample("quick.yaml");
+  sample.perform(kProbe);
+  EXPECT_EQ(sample.error(), "");
+  const Json report = sample.session->report();
+  EXPECT_TRUE(report["probe_locked"].get<bool>());
+  EXPECT_NEAR(report["probe_latitude_deg"].get<double>(), 52.02, 1e-9);
+  EXPECT_NEAR(report["probe_height_msl_m"].get<double>(), 1500, 1e-3);
+  EXPECT_THAT(report["probe_text"].get<std::string>(), HasSubstr("dBW/m2"));
+  const ProbeResult& result = *sample.session->prober().result();
+  ASSERT_EQ(result.contributions.size(), 2U);
+  EXPECT_GE(result.contributions[0].value, result.contributions[1].value);
+  EXPECT_THAT(result.contributions[0].text, HasSubstr("dBW/m2"));
+  EXPECT_FALSE(result.reading->emitters[0].budget->verdict.empty());
+}
+
+TEST(SessionProbe, FollowsTimeAndEdits) {
+  SessionSample sample("quick.yaml", {{"output.floor", "-300"}});
+  sample.perform(kProbe);
+  const auto value = [&] { return sample.session->report()["probe_value"].get<double>(); };
+  const auto budgetOfTransmitter = [&] {
+    return sample.session->prober().result()->reading->emitters[1].budget->find("power_density_dbwm2")->value;
+  };
+  const double before = value(), transmitter_before = budgetOfTransmitter();
+  sample.perform(
+      R"({"do":"set_together","edits":["emitters.transmitter.power_w=10000","emitters.radar.power_w=100000"]})");
+  sample.settle();
+  EXPECT_NEAR(value(), before + 10, 0.01);
+  EXPECT_NEAR(budgetOfTransmitter(), transmitter_before + 10, 1e-6);
+  sample.perform(R"({"do":"seek","time_s":2})");
+  sample.settle();
+  EXPECT_EQ(sample.session->report()["probe_time_s"], 2);
+  // A movement of the camera is no reason to read again.
+  const ProbeResult* result = sample.session->prober().result();
+  const auto scenario = result->scenario;
+  sample.perform(R"({"do":"orbit","azimuth_deg":20})");
+  sample.settle();
+  EXPECT_NEAR(sample.session->report()["probe_latitude_deg"].get<double>(), 52.02, 1e-9);
+}
+
+TEST(SessionProbe, FollowsTheCursorUntilItIsHeld) {
+  SessionSample sample("jacksboro.yaml", {{"region.dims", "[40, 40, 20]"}});
+  sample.perform(R"({"do":"panel","name":"probe"})");
+  Prober& prober = sample.session->prober();
+  prober.hover(render::Projected{110, 110});
+  sample.settle();
+  const double latitude_deg = sample.session->report()["probe_latitude_deg"].get<double>();
+  // Above the ground, where a receiver would stand, in a voxel that holds a field.
+  EXPECT_GT(sample.session->report()["probe_height_agl_m"].get<double>(), 9);
+  EXPECT_LT(sample.session->report()["probe_height_agl_m"].get<double>(), 200);
+  EXPECT_THAT(sample.session->report()["probe_text"].get<std::string>(),
+              testing::Not(testing::HasSubstr("masked")));
+  prober.hover(render::Projected{120, 100});
+  sample.settle();
+  EXPECT_NE(sample.session->report()["probe_latitude_deg"].get<double>(), latitude_deg);
+  prober.hover(render::Projected{110, 110});
+  sample.settle();
+  sample.perform(R"({"do":"lock_probe"})");
+  prober.hover(render::Projected{20, 20});
+  sample.settle();
+  EXPECT_TRUE(prober.isLocked());
+  EXPECT_NEAR(sample.session->report()["probe_latitude_deg"].get<double>(), latitude_deg, 1e-9);
+  sample.perform(R"({"do":"lock_probe"})");
+  sample.settle();
+  EXPECT_FALSE(prober.isLocked());
+  EXPECT_FALSE(prober.result()->reading);  // the corner lies beside the volume
+  sample.perform(R"({"do":"probe","x":110,"y":110})");
+  EXPECT_NEAR(sample.session->report()["probe_latitude_deg"].get<double>(), latitude_deg, 1e-9);
+  EXPECT_TRUE(prober.locked_m());
+}
+
+TEST(SessionProbe, CopiesTheCommandThatExplainsThePath) {
+  SessionSample sample("quick.yaml");
+  sample.perform(R"({"do":"copy_profile","emitter":"radar"})");
+  EXPECT_EQ(sample.error(), "there is no path to explain: the probe holds no point of a scenario");
+  sample.perform(kProbe);
+  sample.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"5"})");
+  sample.settle();
+  sample.perform(R"({"do":"copy_profile","emitter":"radar"})");
+  EXPECT_THAT(sample.window.clipboard, HasSubstr("quick.yaml --set emitters.radar.power_w=5 --emitter radar "
+                                                 "--to=52.0200000,5.0300000,1500.00 --time 0"));
+}
+
+TEST(SessionProbe, SaysWhatIsNoPosition) {
+  SessionSample sample("quick.yaml");
+  sample.perform(R"({"do":"probe","x":3})");
+  EXPECT_EQ(sample.error(),
+            "probe: expected x and y, or latitude_deg and longitude_deg with height_msl_m or height_agl_m");
+  sample.perform(R"({"do":"probe","latitude_deg":91,"longitude_deg":5,"height_msl_m":0})");
+  EXPECT_EQ(sample.error(), "probe: 91, 5 is outside latitude -90..90 and longitude -180..180 deg");
+}
+
+}  // namespace
+}  // namespace emscape::view::test

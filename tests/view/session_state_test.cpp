@@ -1,0 +1,198 @@
+/// The view of a session as a file: it draws the picture that the window shows.
+#include <fmt/format.h>
+
+#include <random>
+
+#include "emscape/playback/edit_history.h"
+#include "emscape/playback/picture_series.h"
+#include "emscape/render/image.h"
+#include "tests/view/session_samples.h"
+
+namespace emscape::view::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// What `emscape render INPUT --state` draws.
+struct Rendered {
+  render::Image8 volume;   ///< bare
+  render::Image8 picture;  ///< with background and labels
+};
+
+Rendered render(const std::string& input, const playback::ViewState& written) {
+  const playback::ViewState view =
+      playback::parseViewState(playback::viewStateText(written), "test.view.json");
+  playback::FrameSelection selection;
+  selection.input = input;
+  selection.quantity = view.quantity;
+  selection.range = view.range;
+  selection.edits = view.edits;
+  selection.compare = view.compare;
+  selection.times = fmt::format("{}", view.time_s);
+  const auto source = playback::openFrameSource(selection, cpu());
+  playback::Painter painter(playback::pictureStyleOf(view), *source, cpu());
+  painter.setFrame(source->frame(0));
+  painter.draw({});
+  return {render::quantize(painter.image()),
+          painter.picture(playback::pictureNote(view.settings, render::Pattern::full))};
+}
+
+/// A view, and commands that change it by hand, both random.
+class RandomView {
+ public:
+  RandomView(unsigned seed, double duration_s, std::vector<std::string> emitters)
+      : random_(seed), duration_s_(duration_s), emitters_(std::move(emitters)) {}
+
+  ViewOptions options(const std::string& input) {
+    ViewOptions options = optionsFor(input, {between(120, 420), between(90, 320)});
+    playback::ViewState& view = options.view;
+    view.camera.azimuth_deg = number(0, 360);
+    view.camera.elevation_deg = number(-20, 80);
+    if (flip()) view.camera.distance = number(0.4, 2);
+    if (flip()) view.camera.projection = render::Projection::orthographic;
+    view.time_s = number(0, duration_s_);
+    view.theme = flip() ? render::Theme::light : render::Theme::dark;
+    view.settings.mode = static_cast<render::CompositingMode>(between(0, 3));
+    view.settings.iso_value = number(-45, -35);
+    view.settings.step_voxels = number(0.5, 2);
+    view.settings.shading = flip();
+    if (flip()) view.settings.planes.push_back(render::parseCutPlane("vertical:bearing_deg=70"));
+    if (flip()) view.settings.planes.push_back(render::parseCutPlane("horizontal:altitude_m=2000"));
+    view.show_terrain = flip();
+    view.show_emitters = flip();
+    if (flip()) view.range = volume::ValueRange{-110, static_cast<float>(number(-60, -10))};
+    for (const std::string& emitter : emitters_) {
+      if (flip())
+        view.edits.push_back({"emitters." + emitter + ".power_w", fmt::format("{}", number(1, 1e5))});
+    }
+    return options;
+  }
+  std::string command() {
+    switch (between(0, 6)) {
+      case 0:
+        return fmt::format(R"({{"do":"orbit","azimuth_deg":{},"elevation_deg":{}}})", number(-90, 90),
+                           number(-20, 20));
+      case 1:
+        return fmt::format(R"({{"do":"dolly","factor":{}}})", number(0.5, 1.5));
+      case 2:
+        return fmt::format(R"({{"do":"pan","right_px":{},"down_px":{}}})", number(-60, 60), number(-60, 60));
+      case 3:
+        return fmt::format(R"({{"do":"transfer","colors":"{}"}})", flip() ? "inferno" : "cividis");
+      case 4:
+        return fmt::format(R"({{"do":"opacity","factor":{}}})", number(0.3, 3));
+      case 5:
+        return fmt::format(R"({{"do":"range","min":{},"max":{}}})", number(-120, -90), number(-60, -20));
+      default:
+        return fmt::format(R"({{"do":"seek","time_s":{}}})", number(0, duration_s_));
+    }
+  }
+
+ private:
+  double number(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  int between(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
+  bool flip() { return between(0, 1) == 1; }
+
+  std::mt19937 random_;
+  const double duration_s_;
+  const std::vector<std::string> emitters_;
+};
+
+void expectThePictureOfRender(const std::string& input, RandomView& random) {
+  Shown shown(random.options(input));
+  ASSERT_TRUE(waitUntilSettled(*shown));
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(shown.perform(random.command()), "");
+  ASSERT_TRUE(waitUntilSettled(*shown));
+  const playback::LivePicture& picture = *shown->picture();
+  const Rendered rendered = render(input, shown->viewState());
+  EXPECT_EQ(picture.image.size, rendered.volume.size);
+  EXPECT_TRUE(picture.image.rgba == rendered.volume.rgba) << playback::viewStateText(shown->viewState());
+
+  const StateFolder folder;
+  const std::string file = folder / "picture.png";
+  shown.perform(fmt::format(R"({{"do":"picture","file":"{}"}})", file));
+  ASSERT_TRUE(waitUntilSettled(*shown)) << shown->notice().text;
+  const render::ImageDifference difference = render::compare(render::readPng(file), rendered.picture);
+  EXPECT_EQ(difference.erroneous, 0);
+}
+
+TEST(SessionState, IsThePictureOfRenderForRandomViews) {
+  const StateFolder folder;
+  for (unsigned seed = 1; seed <= 14; ++seed) {
+    SCOPED_TRACE(fmt::format("seed {}", seed));
+    RandomView random(seed, 4, {"radar", "transmitter"});
+    expectThePictureOfRender(shippedScenario("quick.yaml"), random);
+  }
+}
+
+TEST(SessionState, IsThePictureOfRenderForRandomViewsOfRealGround) {
+  const StateFolder folder;
+  for (unsigned seed = 15; seed <= 20; ++seed) {
+    SCOPED_TRACE(fmt::format("seed {}", seed));
+    RandomView random(seed, 120, {"jammer", "search radar"});
+    expectThePictureOfRender(shippedScenario("jacksboro.yaml"), random);
+  }
+}
+
+TEST(SessionState, IsSavedAndShownAgain) {
+  const StateFolder folder;
+  Shown shown(optionsFor(shippedScenario("quick.yaml")));
+  ASSERT_TRUE(waitUntilSettled(*shown));
+  shown.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
+  shown.perform(R"({"do":"seek","time_s":2})");
+  shown.perform(R"({"do":"bookmark","number":3})");
+  shown.perform(R"({"do":"rate","value":5})");
+  shown.perform(R"({"do":"loop"})");
+  shown.perform(R"({"do":"opacity","factor":2})");
+  shown.perform(R"({"do":"panel","name":"colors","open":true})");
+  ASSERT_TRUE(waitUntilSettled(*shown));
+  const std::string file = folder / "a.view.json";
+  shown.perform(fmt::format(R"({{"do":"save_state","file":"{}"}})", file));
+  ASSERT_TRUE(waitUntilSettled(*shown));
+
+  ViewOptions options = optionsFor(shippedScenario("quick.yaml"));
+  options.view = playback::readViewState(file);
+  options.state = file;
+  Shown again(options);
+  ASSERT_TRUE(waitUntilSettled(*again));
+  EXPECT_EQ(playback::viewStateText(again->viewState()), readText(file));
+  EXPECT_TRUE(again->picture()->image.rgba == shown->picture()->image.rgba);
+  EXPECT_TRUE(again->panels.colors);
+  EXPECT_TRUE(again->timeline().loop());
+}
+
+TEST(SessionState, AViewThatCannotBeWrittenIsTold) {
+  const StateFolder folder;
+  Shown shown(optionsFor(shippedScenario("quick.yaml")));
+  ASSERT_TRUE(waitUntilSettled(*shown));
+  shown.perform(R"({"do":"save_state","file":"/no/such/folder/a.view.json"})");
+  ASSERT_TRUE(waitUntilSettled(*shown));
+  EXPECT_TRUE(shown->notice().is_error);
+  EXPECT_THAT(shown->notice().text, HasSubstr("/no/such/folder/a.view.json"));
+}
+
+TEST(SessionState, TheCopiedCommandNamesTheSavedViewUntilItChanges) {
+  const StateFolder folder;
+  Shown shown(optionsFor(shippedScenario("quick.yaml")));
+  ASSERT_TRUE(waitUntilSettled(*shown));
+  const auto copied = [&shown] {
+    shown.perform(R"({"do":"copy_command"})");
+    EXPECT_TRUE(waitUntilSettled(*shown));
+    return shown.window.clipboard;
+  };
+  EXPECT_THAT(copied(), testing::AllOf(HasSubstr("--camera orbit:"), testing::Not(HasSubstr("--transfer"))));
+  const std::string file = folder / "a.view.json";
+  shown.perform(fmt::format(R"({{"do":"save_state","file":"{}"}})", file));
+  ASSERT_TRUE(waitUntilSettled(*shown));
+  EXPECT_EQ(copied(), "emscape render " + playback::shellWord(shippedScenario("quick.yaml")) + " --state " +
+                          file + " -o picture.png");
+  shown.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
+  shown.perform(R"({"do":"opacity","factor":2})");
+  ASSERT_TRUE(waitUntilSettled(*shown));
+  EXPECT_THAT(copied(), testing::AllOf(HasSubstr("--set emitters.radar.power_w=500"),
+                                       HasSubstr("--transfer "), testing::Not(HasSubstr("--state"))));
+}
+
+}  // namespace
+}  // namespace emscape::view::test

@@ -1,0 +1,35 @@
+#include "apps/view/undo_order.h"
+
+#include <gtest/gtest.h>
+
+namespace emscape::view {
+namespace {
+
+TEST(UndoOrder, GoesBackThroughTheStepsInTheOrderInWhichTheyWereMade) {
+  UndoOrder order;
+  EXPECT_FALSE(order.undo());
+  order.note(History::scenario, 1);
+  order.note(History::transfer, 2);
+  order.note(History::scenario, 1);  // nothing new
+  order.note(History::scenario, 2);
+  EXPECT_EQ(order.undo(), History::scenario);
+  EXPECT_EQ(order.undo(), History::transfer);
+  EXPECT_EQ(order.redo(), History::transfer);
+  EXPECT_TRUE(order.canRedo());
+  order.note(History::transfer, 3);
+  EXPECT_FALSE(order.canRedo()) << "what was undone is gone";
+  EXPECT_EQ(order.undo(), History::transfer);
+}
+
+TEST(UndoOrder, ForgetsAHistoryThatBeginsAnew) {
+  UndoOrder order;
+  order.note(History::transfer, 3);
+  order.note(History::scenario, 1);
+  order.forget(History::transfer);
+  order.note(History::transfer, 0);
+  EXPECT_EQ(order.undo(), History::scenario);
+  EXPECT_FALSE(order.canUndo());
+}
+
+}  // namespace
+}  // namespace emscape::view
