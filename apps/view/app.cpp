@@ -40,7 +40,7 @@ App::App(const ViewOptions& options, const playback::ComputeTarget& target)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
       window_(titleOf(options), options.window_size.value_or(kUsualSize), options.scale),
-      shares_gpu_(!options.copy_pictures && render::openGlSharesGpu()),
+      shares_gpu_(options.share_gpu && render::openGlSharesGpu()),
       target_(target),
       session_(makeSession(options)),
       opener_(files_, [this](const ViewOptions& next) { return makeSession(next); }),
