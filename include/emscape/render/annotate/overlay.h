@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "emscape/render/annotate/legend.h"
 #include "emscape/render/camera.h"
 #include "emscape/render/image.h"
-#include "emscape/render/legend.h"
 
 namespace emscape::render {
 

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "emscape/render/overlay.h"
-#include "render/canvas.h"
+#include "emscape/render/annotate/overlay.h"
+#include "render/annotate/canvas.h"
 
 namespace emscape::render {
 

@@ -1,4 +1,4 @@
-#include "emscape/render/overlay.h"
+#include "emscape/render/annotate/overlay.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "render/annotate/overlay_parts.h"
 #include "render/names.h"
-#include "render/overlay_parts.h"
 #include "render/rgba.h"
 
 namespace emscape::render {
