@@ -6,7 +6,6 @@
 #include "emscape/base/device.h"
 #include "render/adaptive_tolerance.h"
 #include "render/cuda/device_scene.h"
-#include "render/cuda/kept_orders.h"
 #include "render/cuda/kernels.h"
 #include "render/cuda/launch_train.h"
 #include "render/frame_caster.h"
@@ -75,7 +74,6 @@ class CudaFrameCaster : public FrameCaster {
 
   cuda::Layers layers_;  ///< of the picture that was drawn last
   Buffer<unsigned> next_tile_;
-  cuda::KeptOrders orders_;
   Buffer<float4> layer_;
   Buffer<float4> picture_;
   Buffer<uchar4> picture8_;
@@ -285,7 +283,6 @@ bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<L
       band = lattice;
       band.first_y += row * lattice.step_y;
       band.rows = std::min(rows, lattice.rows - row);
-      if (band.rows == lattice.rows) orders_.lend(part, stream_);
       cast(part);
       train.launched();
     }

@@ -58,25 +58,11 @@ struct HalfColor {
 /// Entries that fit.
 constexpr int kMostHalfColors = 4096;
 
-/// In which order the tasks of a lattice are cast: see OrderFinder. Right for any view of that lattice, and
-/// fast for those close to the one it was found for.
-struct alignas(16) TaskOrder {
-  static constexpr int kAlong = 38;  ///< cells, in either direction
+/// The order in which the tasks of a lattice are cast; see OrderFinder.
+struct TaskOrder {
+  static constexpr int kAlong = 26;  ///< cells, in either direction
   static constexpr unsigned kCells = kAlong * kAlong;
 
-  /// What it is an order of.
-  struct Shape {
-    int columns = 0, rows = 0;  ///< of the lattice; 0: of nothing
-    int tile_width = 0;         ///< pixels
-    unsigned warps = 0;         ///< of the launch
-    bool has_halves = false;    ///< rays may be cast in halves
-
-    EMSCAPE_HD bool operator==(const Shape& other) const {
-      return columns == other.columns && rows == other.rows && tile_width == other.tile_width &&
-             warps == other.warps && has_halves == other.has_halves;
-    }
-  };
-  Shape shape;
   unsigned shown = 0, all = 0;              ///< tiles, or halves of them, that show something; all of them
   unsigned carriers = 0, carried = 0;       ///< numbers that carry others, and how many each
   unsigned short entries[2 * kCells] = {};  ///< cell * kPortions + portion; see Portion
@@ -90,8 +76,6 @@ struct CastLaunch {
   const float* limits = nullptr;            ///< one a pixel: where the ground is, or a section; null: nowhere
   const float* begins = nullptr;            ///< one a pixel: where planes let its ray begin; null: not cut
   unsigned* next_tile = nullptr;            ///< 0, before each launch and after it; one a stream
-  const TaskOrder* order = nullptr;         ///< an earlier launch found it, or all 0; null: there is none
-  TaskOrder* next_order = nullptr;          ///< another, that receives the one for this view; null with order
   Layer layer;
 };
 void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);

@@ -60,46 +60,10 @@ class OrderFinder {
   __device__ OrderFinder(const CastLaunch& launch, const TileGrid& grid, TaskOrder& order)
       : launch_(launch), grid_(grid), order_(order) {}
 
-  /// Takes the order that an earlier launch found, if there is one for such a lattice, whatever its view was:
-  /// while others cast, a block finds the one for the next launch. Otherwise each block finds it for itself.
-  /// What was begun to be copied to shared memory is there after it.
+  /// Each block finds the order for itself: a counting sort that comes to the same whatever the order in
+  /// which warps run. They count the entries of each class, and an entry's place is that of its class, of its
+  /// round in it, and of its lane in that. What was begun to be copied to shared memory is there after it.
   __device__ void find() {
-    if (launch_.order != nullptr) beginToCopy(*launch_.order);
-    waitForCopies();
-    const bool is_known = launch_.order != nullptr && order_.shape == shape();
-    const bool finds_next = launch_.order != nullptr && blockIdx.x + 1 == gridDim.x;
-    if (!is_known || finds_next) sort();
-    if (!finds_next) return;
-    for (unsigned n = threadIdx.x; n < kWords; n += kCastThreads)
-      words(*launch_.next_order)[n] = words(order_)[n];
-    if (is_known) beginToCopy(*launch_.order);
-    waitForCopies();
-  }
-
- private:
-  static constexpr int kAlong = TaskOrder::kAlong;
-  static constexpr int kCorners = (kAlong + 1) * (kAlong + 1);
-  static constexpr unsigned kCells = TaskOrder::kCells;
-  static constexpr unsigned kCellsOfThread = (kCells + kCastThreads - 1) / kCastThreads;
-  static constexpr unsigned kRoundsOfLane = (kCells + 32 * 32 - 1) / (32 * 32);  ///< of 32 cells each
-  static constexpr unsigned kRounds = 32 * kRoundsOfLane;
-  static constexpr unsigned kClasses = 32;  ///< of work: the first is the most, the last is none
-  static constexpr unsigned kWords = sizeof(TaskOrder) / sizeof(uint4);
-  static_assert(kCells * kPortions < 1 << 16, "an entry has 16 bits");
-
-  __device__ static uint4* words(TaskOrder& order) { return reinterpret_cast<uint4*>(&order); }
-  __device__ void beginToCopy(const TaskOrder& from) const {
-    for (unsigned n = threadIdx.x; n < kWords; n += kCastThreads)
-      __pipeline_memcpy_async(words(order_) + n, reinterpret_cast<const uint4*>(&from) + n, sizeof(uint4));
-    __pipeline_commit();
-  }
-  __device__ TaskOrder::Shape shape() const {
-    return {grid_.lattice.columns, grid_.lattice.rows, grid_.tile_width, gridDim.x * kCastWarps, kMayHalve};
-  }
-
-  /// A counting sort that comes to the same whatever the order in which warps run: they count the entries of
-  /// each class, and an entry's place is that of its class, of its round in it, and of its lane in that.
-  __device__ void sort() {
     __shared__ float corners[kCorners];
     __shared__ unsigned longest, sum;  // of cells' rays, in 1/16 voxels: the same in every block
     __shared__ unsigned short counts[kClasses][kRounds];
@@ -165,7 +129,6 @@ class OrderFinder {
     const unsigned end_of_class = sumUpTo(of_class[lane], lane);
     const unsigned first_of_class = end_of_class - of_class[lane];
     if (warp == 0 && lane == kClasses - 1) {
-      order_.shape = shape();
       order_.shown = first_of_class * grid_.tilesOfCell();
       order_.all = end_of_class * grid_.tilesOfCell();
       order_.carriers = max(order_.shown / 2, gridDim.x * kCastWarps);
@@ -183,6 +146,16 @@ class OrderFinder {
     }
     __syncthreads();
   }
+
+ private:
+  static constexpr int kAlong = TaskOrder::kAlong;
+  static constexpr int kCorners = (kAlong + 1) * (kAlong + 1);
+  static constexpr unsigned kCells = TaskOrder::kCells;
+  static constexpr unsigned kCellsOfThread = (kCells + kCastThreads - 1) / kCastThreads;
+  static constexpr unsigned kRoundsOfLane = (kCells + 32 * 32 - 1) / (32 * 32);  ///< of 32 cells each
+  static constexpr unsigned kRounds = 32 * kRoundsOfLane;
+  static constexpr unsigned kClasses = 32;  ///< of work: the first is the most, the last is none
+  static_assert(kCells * kPortions < 1 << 16, "an entry has 16 bits");
 
   __device__ static unsigned cellOfThread(unsigned n) { return n * kCastThreads + threadIdx.x; }
   /// Of the rays in a cell's corners, in 1/16 voxels. @param corner  its first

@@ -100,8 +100,8 @@ class WarpTasks {
  private:
   __device__ bool isList() const { return pixels_.list != nullptr; }
   __device__ static TaskOrder& order() {
-    __shared__ uint4 words[sizeof(TaskOrder) / sizeof(uint4)];
-    return reinterpret_cast<TaskOrder&>(words);
+    __shared__ TaskOrder order;
+    return order;
   }
 
   const PixelSet& pixels_;
