@@ -45,7 +45,7 @@ class CudaFrameCaster : public FrameCaster {
   void fetch(Image8& image) override;
 
  private:
-  CastLaunch begin(const Scene& scene, ImageSize size, double most_samples, bool is_frame);
+  CastLaunch begin(const Scene& scene, ImageSize size, double most_samples);
   CastLaunch prepare(const Scene& scene, ImageSize size);
   void findGround(const Scene& scene, const CastLaunch& launch);
   void findSections(CastLaunch& launch);
@@ -61,10 +61,8 @@ class CudaFrameCaster : public FrameCaster {
   const volume::VoxelPrecision precision_;
   emscape::cuda::Stream stream_;
   emscape::cuda::TimeMark begin_, end_;  ///< of the last frame, or restoration
-  cuda::FrameGraph graph_{begin_, end_};
-  cuda::Submission to_{stream_};  ///< where a frame's kernels go
-  bool at_once_ = false;          ///< to graph_
-  long long most_rays_ = 0;       ///< of a launch that can be stopped after
+  const cuda::Submission to_{stream_};
+  long long most_rays_ = 0;  ///< of a launch that can be stopped after
 
   volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
   std::shared_ptr<const volume::DeviceVolume> volume_;
@@ -129,21 +127,15 @@ long long raysFor(const CastLaunch& launch, double samples) {
 
 /// The time of a frame begins with the first work that the GPU is given, but for findInside()'s few
 /// kilobytes.
-/// @param most_samples  of a launch that a stop waits for; is_frame: no restoration
-CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, double most_samples, bool is_frame) {
+/// @param most_samples  of a launch that a stop waits for
+CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, double most_samples) {
   volume_->storage().beginReading(stream_);
   const bool is_prepared = scene_.isCurrent(scene) && !scene.isCut() &&
                            (!scene.ground() || ground_view_.holds(scene.versions().view, size));
   if (!is_prepared) begin_.record(stream_);
   const CastLaunch launch = prepare(scene, size);
   most_rays_ = raysFor(launch, most_samples);
-  at_once_ = is_prepared && is_frame && size.count() <= most_rays_;
-  if (at_once_) {
-    graph_.begin();
-  } else if (is_prepared) {
-    begin_.record(stream_);
-  }
-  to_ = cuda::Submission(stream_, at_once_ ? &graph_ : nullptr);
+  if (is_prepared) begin_.record(stream_);
   return launch;
 }
 
@@ -229,7 +221,7 @@ FrameReport CudaFrameCaster::draw(const Scene& scene, const FramePlan& plan, Ima
   drawn_ = plan;
   if (size.count() == 0) return report;
   if (plan.pattern == Pattern::adaptive) findInside(scene, size);
-  const CastLaunch launch = begin(scene, size, kFrameSamples, true);
+  const CastLaunch launch = begin(scene, size, kFrameSamples);
   LaunchTrain train(stream_, stop, most_rays_);
   layers_.pattern = plan.pattern;
   layers_.interpolation = plan.interpolation;
@@ -248,7 +240,7 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   report.pattern = drawn_.pattern;
   const ImageSize size = layers_.size;
   if (size.count() == 0) return report;
-  const CastLaunch launch = begin(scene, size, kRestorationSamples, false);
+  const CastLaunch launch = begin(scene, size, kRestorationSamples);
   LaunchTrain train(stream_, stop, most_rays_);
   report.complete = drawn_.pattern == Pattern::adaptive
                         ? castPredicted(launch, train, report)
@@ -260,11 +252,7 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
 /// Everything is launched: shows the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
   if (report.complete) showPicture8(layers_, picture8_.data(), to_);
-  if (at_once_) {
-    graph_.submit(stream_);
-  } else {
-    end_.record(stream_);
-  }
+  end_.record(stream_);
   volume_->storage().endReading(stream_);
   stream_.wait();
   report.cast_ms = end_.since_ms(begin_);
