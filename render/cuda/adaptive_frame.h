@@ -342,10 +342,13 @@ __global__ void __launch_bounds__(kCastThreads, 1)
 }
 
 template <class RayKind>
-void start(const AdaptiveLaunch& launch, const Submission& to) {
+void start(const AdaptiveLaunch& launch, cudaStream_t stream) {
   static const unsigned resident = residentBlocks(castAdaptiveFrame<RayKind>);
-  to.start("castAdaptiveFrame", castAdaptiveFrame<RayKind>,
-           {resident, kCastThreads, RayKind::Colors::sharedBytes(launch), LaunchKind::together}, launch);
+  void* parameters[] = {const_cast<AdaptiveLaunch*>(&launch)};
+  // A failure is reported by checkLaunch(), with the kernel's name.
+  static_cast<void>(cudaLaunchCooperativeKernel(castAdaptiveFrame<RayKind>, resident, kCastThreads,
+                                                parameters, RayKind::Colors::sharedBytes(launch), stream));
+  emscape::cuda::checkLaunch("castAdaptiveFrame");
 }
 
 }  // namespace emscape::render::cuda

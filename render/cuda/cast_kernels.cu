@@ -55,33 +55,33 @@ __global__ void __launch_bounds__(kTileThreads)
 }
 
 template <class Launch>
-void startSampling(const Launch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
+void startSampling(const Launch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
   const bool shades = launch.task.shading.shades_fog;
   switch (sampling) {
     case Sampling::sparse:
     case Sampling::sparse_nearest:
-      return castSparse(launch, mode, sampling, to);
+      return castSparse(launch, mode, sampling, stream);
     case Sampling::nearest:
-      return startVolume<NearestTextureSampler, GlobalColors, false>(launch, mode, to);
+      return startVolume<NearestTextureSampler, GlobalColors, false>(launch, mode, stream);
     case Sampling::accurate:
-      return shades ? startVolume<AccurateSampler, GlobalColors, true>(launch, mode, to)
-                    : startVolume<AccurateSampler, GlobalColors, false>(launch, mode, to);
+      return shades ? startVolume<AccurateSampler, GlobalColors, true>(launch, mode, stream)
+                    : startVolume<AccurateSampler, GlobalColors, false>(launch, mode, stream);
     case Sampling::filtered:
       break;
   }
-  return shades ? startVolume<FilteredSampler, SharedColors, true>(launch, mode, to)
-                : startVolume<FilteredSampler, SharedColors, false>(launch, mode, to);
+  return shades ? startVolume<FilteredSampler, SharedColors, true>(launch, mode, stream)
+                : startVolume<FilteredSampler, SharedColors, false>(launch, mode, stream);
 }
 
 }  // namespace
 
-void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
-  startSampling(launch, mode, sampling, to);
+void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
+  startSampling(launch, mode, sampling, stream);
 }
 
 void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling,
-                  const Submission& to) {
-  startSampling(launch, mode, sampling, to);
+                  cudaStream_t stream) {
+  startSampling(launch, mode, sampling, stream);
 }
 
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream) {

@@ -147,30 +147,30 @@ unsigned residentBlocks(void (*kernel)(Launch)) {
 }
 
 template <class RayKind>
-void start(const CastLaunch& launch, const Submission& to) {
+void start(const CastLaunch& launch, cudaStream_t stream) {
   const PixelSet& pixels = launch.pixels;
   const long long rays = pixels.list != nullptr ? pixels.end - pixels.first : pixels.lattice.count();
   if (rays == 0) return;
   static const unsigned resident = residentBlocks(castRays<RayKind>);
   const auto blocks = static_cast<unsigned>(std::min<long long>((rays + 31) / 32, resident));
-  to.start("castRays", castRays<RayKind>, {blocks, kCastThreads, RayKind::Colors::sharedBytes(launch)},
-           launch);
+  castRays<RayKind><<<blocks, kCastThreads, RayKind::Colors::sharedBytes(launch), stream>>>(launch);
+  emscape::cuda::checkLaunch("castRays");
 }
 
 /// @param launch  a CastLaunch, or another for which there is a start()
 template <class Sampler, class Colors, bool kMayShade, class Launch>
-void startVolume(const Launch& launch, CompositingMode mode, const Submission& to) {
+void startVolume(const Launch& launch, CompositingMode mode, cudaStream_t stream) {
   switch (mode) {
     case CompositingMode::mida:
-      return start<VolumeRay<MidaCompositor, Sampler, Colors, kMayShade>>(launch, to);
+      return start<VolumeRay<MidaCompositor, Sampler, Colors, kMayShade>>(launch, stream);
     case CompositingMode::mip:
-      return start<VolumeRay<MipCompositor, Sampler, GlobalColors, false>>(launch, to);
+      return start<VolumeRay<MipCompositor, Sampler, GlobalColors, false>>(launch, stream);
     case CompositingMode::iso:
-      return start<SurfaceRay<Sampler>>(launch, to);
+      return start<SurfaceRay<Sampler>>(launch, stream);
     case CompositingMode::dvr:
       break;
   }
-  return start<VolumeRay<DvrCompositor, Sampler, Colors, kMayShade>>(launch, to);
+  return start<VolumeRay<DvrCompositor, Sampler, Colors, kMayShade>>(launch, stream);
 }
 
 }  // namespace emscape::render::cuda

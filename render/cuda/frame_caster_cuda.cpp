@@ -56,13 +56,12 @@ class CudaFrameCaster : public FrameCaster {
   bool castAdaptive(const CastLaunch& launch, const FramePlan& plan, LaunchTrain& train);
   void countAdaptive(const FramePlan& plan, FrameReport& report);
   bool castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report);
-  void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, to_); }
+  void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, stream_); }
 
   const volume::VoxelPrecision precision_;
   emscape::cuda::Stream stream_;
   emscape::cuda::TimeMark begin_, end_;  ///< of the last frame, or restoration
-  const cuda::Submission to_{stream_};
-  long long most_rays_ = 0;  ///< of a launch that can be stopped after
+  long long most_rays_ = 0;              ///< of a launch that can be stopped after
 
   volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
   std::shared_ptr<const volume::DeviceVolume> volume_;
@@ -251,7 +250,7 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
 
 /// Everything is launched: shows the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
-  if (report.complete) showPicture8(layers_, picture8_.data(), to_);
+  if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
   end_.record(stream_);
   volume_->storage().endReading(stream_);
   stream_.wait();
@@ -296,7 +295,7 @@ bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& pl
   adaptive.tolerance_levels = static_cast<float>(tolerance_levels_);
   adaptive.classes = classes_.data();
   adaptive.rays = rays_.data();
-  cuda::castAdaptive(adaptive, mode_, sampling_, to_);
+  cuda::castAdaptive(adaptive, mode_, sampling_, stream_);
   train.launched();
   return true;
 }
@@ -337,7 +336,7 @@ void CudaFrameCaster::fetch(Image& image) {
   if (image.size != layers_.size) image = Image(layers_.size);
   if (image.pixels.empty()) return;
   picture_.resize(picture8_.size());
-  showPicture(layers_, picture_.data(), cuda::Submission(stream_));
+  showPicture(layers_, picture_.data(), stream_);
   static_assert(sizeof(Rgba) == sizeof(float4), "a pixel is four floats");
   picture_.download(reinterpret_cast<float4*>(image.pixels.data()), stream_);
 }

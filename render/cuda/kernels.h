@@ -9,7 +9,6 @@
 
 #include "render/adaptive_pass.h"
 #include "render/compositing.h"
-#include "render/cuda/submission.h"
 #include "render/raycast.h"
 #include "render/reconstruction.h"
 #include "render/silhouette.h"
@@ -78,9 +77,9 @@ struct CastLaunch {
   unsigned* next_tile = nullptr;            ///< 0, before each launch and after it; one a stream
   Layer layer;
 };
-void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);
+void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 /// The same for a sparse sampling alone.
-void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);
+void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 
 /// Where every pixel's ray meets the ground (infinity: nowhere), and its colour there.
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream);
@@ -108,8 +107,8 @@ struct Layers {
   const float* ground_distances = nullptr;  ///< null: no ground
   const float4* ground_colors = nullptr;
 };
-void showPicture(const Layers& layers, float4* picture, const Submission& to);
-void showPicture8(const Layers& layers, uchar4* picture, const Submission& to);
+void showPicture(const Layers& layers, float4* picture, cudaStream_t stream);
+void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream);
 
 // --- Adaptive ---
 
@@ -123,10 +122,9 @@ struct AdaptiveLaunch : CastLaunch {
   unsigned* rays = nullptr;  ///< is increased by the number of rays cast
 };
 /// Casts the frame and predicts what it does not cast; the whole layer is written.
-void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling,
-                  const Submission& to);
+void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 /// The same for a sparse sampling alone.
-void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);
+void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 
 /// Counters for listPredicted(): how many pixels there are of each class, and how many are placed.
 struct ClassCounts {
