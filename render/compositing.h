@@ -66,7 +66,39 @@ constexpr float kOpaqueEnough = 0.99F;
 constexpr float kNeverOpaqueEnough = 2.0F;
 
 constexpr int kMostRayParts = 8;
-constexpr int kRayHalves = 2;  ///< parts are joined to halves first, those to the ray
+
+/// The parts of a ray, joined to two halves and these to the ray: every caster adds them up in this order, so
+/// that a pixel is the same to the last bit.
+template <class Compositor>
+class JoinedParts {
+ public:
+  EMSCAPE_HD explicit JoinedParts(const Compositor& before) : before_(before), half_(before.behind()) {}
+
+  /// The compositor of the next part.
+  EMSCAPE_HD Compositor behind() const { return half_.behind(); }
+  /// @param count  of parts that were joined before; of one half
+  EMSCAPE_HD void join(const Compositor& parts, int count = 1) {
+    half_.join(parts);
+    count_ += count;
+    if (count_ == Compositor::kParts / 2) beginHalf();
+  }
+  EMSCAPE_HD bool nearlyDone() const { return half_.nearlyDone(); }
+  /// What is composited so far.
+  EMSCAPE_HD Compositor whole() const {
+    Compositor ray = before_;
+    ray.join(half_);
+    return ray;
+  }
+
+ private:
+  EMSCAPE_HD void beginHalf() {
+    before_ = whole();
+    half_ = before_.behind();
+  }
+
+  Compositor before_, half_;
+  int count_ = 0;
+};
 
 /// Direct volume rendering: emission and absorption.
 struct DvrCompositor {

@@ -175,31 +175,15 @@ struct RaycastTask {
   ///                comes out does not depend on it
   template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
   EMSCAPE_HD Rgba castVolume(int x, int y, RayBounds bounds, const Colors& colors, float highest_f) const {
-    Compositor compositor(opaque_enough, mida_gamma, highest_f);
     const RayPieces pieces = piecesOf(x, y, bounds);
-    constexpr int kHalves = Compositor::kParts == 1 ? 1 : kRayHalves;
-    for (int half = 0; half < kHalves && pieces.count > 0; ++half) {
-      Compositor next = compositor.behind();
-      const bool done = castHalf<Compositor, Sampler, kMayShade, kBatch>(pieces, half, colors, next);
-      compositor.join(next);
+    JoinedParts<Compositor> ray(Compositor(opaque_enough, mida_gamma, highest_f));
+    for (int part = 0; part < Compositor::kParts && pieces.count > 0; ++part) {
+      Compositor next = ray.behind();
+      const bool done = castPart<Compositor, Sampler, kMayShade, kBatch>(pieces, part, colors, next);
+      ray.join(next);
       if (done) break;
     }
-    return compositor.result(transfer);
-  }
-
-  /// One half of the parts of a ray, or the only part. @return whether nothing behind it matters
-  template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
-  EMSCAPE_HD bool castHalf(const RayPieces& pieces, int half, const Colors& colors,
-                           Compositor& compositor) const {
-    constexpr int kPartsOfHalf = Compositor::kParts == 1 ? 1 : Compositor::kParts / kRayHalves;
-    for (int n = 0; n < kPartsOfHalf; ++n) {
-      Compositor next = compositor.behind();
-      const bool done =
-          castPart<Compositor, Sampler, kMayShade, kBatch>(pieces, half * kPartsOfHalf + n, colors, next);
-      compositor.join(next);
-      if (done) return true;
-    }
-    return false;
+    return ray.whole().result(transfer);
   }
 
   /// One of Compositor::kParts parts of a ray, the first one in front.

@@ -8,6 +8,9 @@
 
 #include <cooperative_groups.h>
 
+#include <cstring>
+#include <type_traits>
+
 #include "render/adaptive_pass.h"
 #include "render/cuda/cast_rays.h"
 
@@ -234,8 +237,21 @@ __device__ inline unsigned lookAtPixels(const AdaptiveLaunch& launch, int pass, 
   }
 }
 
-/// Casts one ray by several threads, `rays` lanes apart, each of which takes as many of its parts; with any
-/// number of them, and as castTask() does it, a pixel becomes the same. All threads of a warp call it.
+/// What another thread of the warp holds. All threads call it.
+template <class Value>
+__device__ Value fromLane(const Value& value, unsigned lane) {
+  constexpr unsigned kWords = sizeof(Value) / sizeof(unsigned);
+  static_assert(kWords * sizeof(unsigned) == sizeof(Value) && std::is_trivially_copyable_v<Value>, "words");
+  unsigned words[kWords];
+  memcpy(words, &value, sizeof value);
+  for (unsigned& word : words) word = __shfl_sync(~0U, word, static_cast<int>(lane));
+  Value other = value;
+  memcpy(&other, words, sizeof other);
+  return other;
+}
+
+/// Casts one ray by several threads, `rays` lanes apart, each of which takes as many of its parts. The pixel
+/// is that of RaycastTask::castVolume() for any number of threads. All threads of a warp call it.
 /// @param threads  2, or as many as there are parts
 /// @return the ray's colour for the first of its threads
 template <class RayKind>
@@ -246,48 +262,38 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
   const unsigned rays = 32 / threads;
   const unsigned lane = threadIdx.x % 32;
   const int parts_of_thread = kParts / static_cast<int>(threads);
-  Compositor whole = RayKind::begin(launch);
-  Compositor half = whole.behind();
+  JoinedParts<Compositor> ray(RayKind::begin(launch));
   int part = static_cast<int>(lane / rays) * parts_of_thread;
   int end = part + parts_of_thread;
   bool done = pieces.count == 0;
-  // Every sample is taken in one place: code that was not run before is waited for.
+  // One copy of the sampling loop: instructions that were not run before are waited for.
   for (bool again = false;; again = true) {
     for (; part < end && !done; ++part) {
-      if (again && part == kParts / kRayHalves) {
-        whole.join(half);
-        half = whole.behind();
-      }
-      Compositor next = half.behind();
+      Compositor next = ray.behind();
       done = RayKind::castPart(launch, pieces, part, colors, next);
-      half.join(next);
+      ray.join(next);
     }
     if (again) break;
-    // The first of a ray's threads knew what lies before its parts: nothing.
-    const Compositor own = half;
+    // Only the first of a ray's threads knew what lies before its parts: nothing.
+    const Compositor own = ray.whole();
     bool is_sure = true;
 #pragma unroll 1
     for (unsigned n = 1; n < threads; ++n) {
       const Compositor cast = fromLane(own, n * rays + lane % rays);
       if (done || !is_sure) continue;
-      if (2 * n == threads) {
-        whole.join(half);
-        half = whole.behind();
-      }
-      Compositor joined = half;
-      joined.join(cast);
+      JoinedParts<Compositor> joined = ray;
+      joined.join(cast, parts_of_thread);
       is_sure = !joined.nearlyDone();
       if (is_sure) {
-        half = joined;
+        ray = joined;
       } else {
         part = static_cast<int>(n) * parts_of_thread;
       }
     }
     if (done || is_sure || lane >= rays) break;
-    end = kParts;  // the rest once more, now that it is known what lies before
+    end = kParts;  // the rest is cast again, now that it is known what lies before
   }
-  whole.join(half);
-  return whole.result(launch.task.transfer);
+  return ray.whole().result(launch.task.transfer);
 }
 
 /// All threads of a block call it. @param is_lattice  the rays are many

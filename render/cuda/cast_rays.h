@@ -2,8 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
 
 #include "base/cuda/cuda_memory.h"
 #include "render/cuda/kernels.h"
@@ -42,10 +40,6 @@ struct VolumeRay {
   __device__ static Compositor begin(const CastLaunch& launch) {
     return {launch.task.opaque_enough, launch.task.mida_gamma, *launch.volume_highest_f};
   }
-  __device__ static bool castHalf(const CastLaunch& launch, const RayPieces& pieces, int half,
-                                  const Colors& colors, Compositor& compositor) {
-    return launch.task.castHalf<Compositor, Sampler, kMayShade, kFetched>(pieces, half, colors, compositor);
-  }
   __device__ static bool castPart(const CastLaunch& launch, const RayPieces& pieces, int part,
                                   const Colors& colors, Compositor& compositor) {
     return launch.task.castPart<Compositor, Sampler, kMayShade, kFetched>(pieces, part, colors, compositor);
@@ -61,68 +55,21 @@ struct SurfaceRay {
   }
 };
 
-/// What another thread of the warp holds. All threads call it.
-template <class Value>
-__device__ Value fromLane(const Value& value, unsigned lane) {
-  constexpr unsigned kWords = sizeof(Value) / sizeof(unsigned);
-  static_assert(kWords * sizeof(unsigned) == sizeof(Value) && std::is_trivially_copyable_v<Value>, "words");
-  unsigned words[kWords];
-  memcpy(words, &value, sizeof value);
-  for (unsigned& word : words) word = __shfl_sync(~0U, word, static_cast<int>(lane));
-  Value other = value;
-  memcpy(&other, words, sizeof other);
-  return other;
-}
-
-/// All threads of a warp call it.
-template <class RayKind>
-__device__ void castTask(const CastLaunch& launch, const typename RayKind::Colors& colors,
-                         const WarpTask& task, unsigned lane) {
-  const Pixel pixel = task.pixel;
-  float4& target = launch.layer.at(pixel.x, pixel.y);
-  if constexpr (RayKind::kParts == 1) {
-    if (!task.has_pixel) return;
-    target = toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, boundsOf(launch, pixel)));
-  } else {
-    const RayPieces pieces =
-        launch.task.piecesOf(pixel.x, pixel.y, task.has_pixel ? boundsOf(launch, pixel) : RayBounds{0, 0});
-    typename RayKind::Compositor whole = RayKind::begin(launch);
-    bool done = pieces.count == 0;
-    // Every sample is taken in one place: kernels begin with waiting for their instructions.
-    int half = task.in_halves && lane >= 16 ? 1 : 0;
-    int end = task.in_halves ? half + 1 : kRayHalves;
-    for (bool again = false;; again = true) {
-      for (; half < end && !done; ++half) {
-        auto next = whole.behind();
-        done = RayKind::castHalf(launch, pieces, half, colors, next);
-        whole.join(next);
-      }
-      if (!task.in_halves || again) break;
-      auto joined = whole;
-      joined.join(fromLane(whole, lane % 16 + 16));
-      if (lane >= 16) return;
-      if (done) break;
-      if (!joined.nearlyDone()) {
-        whole = joined;
-        break;
-      }
-      end = kRayHalves;  // the other half once more, now that it is known what lies before
-    }
-    if (task.has_pixel) target = toFloat4(whole.result(launch.task.transfer));
-  }
-}
-
-/// A thread a ray, or two where a ray is long.
+/// One thread per ray.
 template <class RayKind>
 __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__ CastLaunch launch) {
   const typename RayKind::Colors colors(launch);
-  const WarpTasks<(RayKind::kParts > 1)> tasks(launch);
+  const WarpTasks<false> tasks(launch);
   TileQueue queue(launch.next_tile, tasks.count());
   const unsigned lane = threadIdx.x % 32;
   unsigned number = 0;
   while (queue.take(lane, number)) {
     for (unsigned n = 0; n < tasks.tasksOf(number); ++n) {
-      castTask<RayKind>(launch, colors, tasks.of(number, n, lane), lane);
+      const WarpTask task = tasks.of(number, n, lane);
+      if (!task.has_pixel) continue;
+      const Pixel pixel = task.pixel;
+      launch.layer.at(pixel.x, pixel.y) =
+          toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, boundsOf(launch, pixel)));
     }
   }
 }
