@@ -4,9 +4,7 @@
 #include <algorithm>
 
 #include "base/cuda/cuda_memory.h"
-#include "render/cuda/kernels.h"
-#include "render/cuda/pixel_tile.h"
-#include "render/cuda/warp_tasks.h"
+#include "render/cuda/cast_block.h"
 
 namespace emscape::render::cuda {
 
@@ -55,22 +53,40 @@ struct SurfaceRay {
   }
 };
 
-/// One thread per ray.
+/// Hands out 0, 1, 2, ... to warps, all threads of which call it.
+/// @param next   0, as it is again after the last number
+/// @param count  of numbers that are asked for in all
+__device__ inline unsigned nextNumber(unsigned* next, unsigned count) {
+  unsigned number = 0;
+  if (threadIdx.x % 32 == 0) {
+    number = atomicAdd(next, 1U);
+    if (number + 1 == count) *next = 0;
+  }
+  return __shfl_sync(~0U, number, 0);
+}
+
+/// One thread per ray. Warps take the tiles that show something one by one, as each of them is done with the
+/// last; the others, which take no time, are shared out evenly.
 template <class RayKind>
 __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__ CastLaunch launch) {
   const typename RayKind::Colors colors(launch);
-  const WarpTasks<false> tasks(launch);
-  TileQueue queue(launch.next_tile, tasks.count());
-  const unsigned lane = threadIdx.x % 32;
-  unsigned number = 0;
-  while (queue.take(lane, number)) {
-    for (unsigned n = 0; n < tasks.tasksOf(number); ++n) {
-      const WarpTask task = tasks.of(number, n, lane);
-      if (!task.has_pixel) continue;
-      const Pixel pixel = task.pixel;
+  const unsigned lane = threadIdx.x % 32, warp = threadIdx.x / 32 * gridDim.x + blockIdx.x;
+  const unsigned warps = gridDim.x * kCastWarps;
+  const unsigned shown = launch.pixels.shownTiles(), all = launch.pixels.allTiles();
+  waitForCopies();
+  bool asks = true;
+  for (unsigned tile = warp;;) {  // the first one needs no asking
+    if (asks && tile >= shown) {
+      asks = false;
+      tile = shown + warp;
+    }
+    if (tile >= all) return;
+    Pixel pixel;
+    if (launch.pixels.pixelOf(tile, lane, pixel)) {
       launch.layer.at(pixel.x, pixel.y) =
           toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, boundsOf(launch, pixel)));
     }
+    tile = asks ? warps + nextNumber(launch.next_tile, shown) : tile + warps;
   }
 }
 
@@ -95,8 +111,7 @@ unsigned residentBlocks(void (*kernel)(Launch)) {
 
 template <class RayKind>
 void start(const CastLaunch& launch, cudaStream_t stream) {
-  const PixelSet& pixels = launch.pixels;
-  const long long rays = pixels.list != nullptr ? pixels.end - pixels.first : pixels.lattice.count();
+  const long long rays = launch.pixels.rays();
   if (rays == 0) return;
   static const unsigned resident = residentBlocks(castRays<RayKind>);
   const auto blocks = static_cast<unsigned>(std::min<long long>((rays + 31) / 32, resident));

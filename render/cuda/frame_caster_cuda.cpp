@@ -46,6 +46,7 @@ class CudaFrameCaster : public FrameCaster {
 
  private:
   CastLaunch begin(const Scene& scene, ImageSize size, double most_samples);
+  void beginTime();
   CastLaunch prepare(const Scene& scene, ImageSize size);
   void findGround(const Scene& scene, const CastLaunch& launch);
   void findSections(CastLaunch& launch);
@@ -61,6 +62,7 @@ class CudaFrameCaster : public FrameCaster {
   const volume::VoxelPrecision precision_;
   emscape::cuda::Stream stream_;
   emscape::cuda::TimeMark begin_, end_;  ///< of the last frame, or restoration
+  bool is_begun_ = false;                ///< begin_ is recorded
   long long most_rays_ = 0;              ///< of a launch that can be stopped after
 
   volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
@@ -124,17 +126,22 @@ long long raysFor(const CastLaunch& launch, double samples) {
   return std::max<long long>(static_cast<long long>(samples * launch.task.step_voxels / longest), 1);
 }
 
-/// The time of a frame begins with the first work that the GPU is given, but for findInside()'s few
-/// kilobytes.
+/// The time of a frame, or restoration, begins with the first work that the GPU is given for it, but for
+/// findInside()'s few kilobytes.
+void CudaFrameCaster::beginTime() {
+  if (!is_begun_) begin_.record(stream_);
+  is_begun_ = true;
+}
+
 /// @param most_samples  of a launch that a stop waits for
 CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, double most_samples) {
   volume_->storage().beginReading(stream_);
   const bool is_prepared = scene_.isCurrent(scene) && !scene.isCut() &&
                            (!scene.ground() || ground_view_.holds(scene.versions().view, size));
-  if (!is_prepared) begin_.record(stream_);
+  is_begun_ = false;
+  if (!is_prepared) beginTime();
   const CastLaunch launch = prepare(scene, size);
   most_rays_ = raysFor(launch, most_samples);
-  if (is_prepared) begin_.record(stream_);
   return launch;
 }
 
@@ -250,6 +257,7 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
 
 /// Everything is launched: shows the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
+  beginTime();
   if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
   end_.record(stream_);
   volume_->storage().endReading(stream_);
@@ -265,11 +273,12 @@ bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<L
         std::min<long long>(std::max<long long>(train.mostRays() / lattice.columns, 1), lattice.rows));
     for (int row = 0; row < lattice.rows; row += rows) {
       if (!train.goOn()) return false;
-      CastLaunch part = launch;
-      Lattice& band = part.pixels.lattice;
-      band = lattice;
+      Lattice band = lattice;
       band.first_y += row * lattice.step_y;
       band.rows = std::min(rows, lattice.rows - row);
+      CastLaunch part = launch;
+      part.pixels.tiles = cuda::longestFirst(launch.task, band);
+      beginTime();
       cast(part);
       train.launched();
     }
@@ -295,6 +304,7 @@ bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& pl
   adaptive.tolerance_levels = static_cast<float>(tolerance_levels_);
   adaptive.classes = classes_.data();
   adaptive.rays = rays_.data();
+  beginTime();
   cuda::castAdaptive(adaptive, mode_, sampling_, stream_);
   train.launched();
   return true;
@@ -311,6 +321,7 @@ void CudaFrameCaster::countAdaptive(const FramePlan& plan, FrameReport& report) 
 
 /// Casts what the last adaptive frame predicted, the worst first. @return false if it was stopped
 bool CudaFrameCaster::castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report) {
+  beginTime();
   queue_.resize(classes_.size());
   counts_.resize(1);
   check(cudaMemsetAsync(counts_.data(), 0, sizeof(cuda::ClassCounts), stream_), "cudaMemset");

@@ -9,6 +9,7 @@
 
 #include "render/adaptive_pass.h"
 #include "render/compositing.h"
+#include "render/cuda/tile_order.h"
 #include "render/raycast.h"
 #include "render/reconstruction.h"
 #include "render/silhouette.h"
@@ -34,12 +35,26 @@ struct Layer {
 
 // --- Casting ---
 
-/// Which pixels a launch casts: those of a lattice, or a part of a list.
+/// Which pixels a launch casts: those of a lattice, or a part of a list. A warp casts 32 of them at a time.
 struct PixelSet {
-  Lattice lattice;
+  TileOrder tiles;              ///< of the lattice
   const Pixel* list = nullptr;  ///< null: the lattice
   unsigned first = 0;           ///< of the list
   unsigned end = 0;             ///< of the list, one beyond the last
+
+  EMSCAPE_HD long long rays() const { return list != nullptr ? end - first : tiles.lattice.count(); }
+  /// Tiles, or 32 pixels of the list each; the first shownTiles() of them show something.
+  EMSCAPE_HD unsigned allTiles() const {
+    return list != nullptr ? (end - first + 31) / 32 : tiles.allTiles();
+  }
+  EMSCAPE_HD unsigned shownTiles() const { return list != nullptr ? allTiles() : tiles.shownTiles(); }
+  /// @return false: there is no such pixel
+  EMSCAPE_HD bool pixelOf(unsigned tile, unsigned lane, Pixel& pixel) const {
+    if (list == nullptr) return tiles.pixelOf(tile, lane, pixel);
+    const unsigned n = first + tile * 32 + lane;
+    if (n < end) pixel = list[n];
+    return n < end;
+  }
 };
 
 enum class Sampling {
@@ -56,16 +71,6 @@ struct HalfColor {
 };
 /// Entries that fit.
 constexpr int kMostHalfColors = 4096;
-
-/// The order in which the tasks of a lattice are cast; see OrderFinder.
-struct TaskOrder {
-  static constexpr int kAlong = 26;  ///< cells, in either direction
-  static constexpr unsigned kCells = kAlong * kAlong;
-
-  unsigned shown = 0, all = 0;              ///< tiles, or halves of them, that show something; all of them
-  unsigned carriers = 0, carried = 0;       ///< numbers that carry others, and how many each
-  unsigned short entries[2 * kCells] = {};  ///< cell * kPortions + portion; see Portion
-};
 
 struct CastLaunch {
   RaycastTask task;  ///< volume_highest_f does not count
@@ -121,6 +126,7 @@ struct AdaptiveLaunch : CastLaunch {
       nullptr;               ///< receives those of the estimated error, one a pixel; see errorClassOf()
   unsigned* rays = nullptr;  ///< is increased by the number of rays cast
 };
+static_assert(sizeof(AdaptiveLaunch) <= 4096, "what a kernel's parameters may take");
 /// Casts the frame and predicts what it does not cast; the whole layer is written.
 void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 /// The same for a sparse sampling alone.
