@@ -21,63 +21,37 @@ namespace emscape::render::cuda {
 /// Either 2 or as many as a ray has parts.
 constexpr unsigned kLatticeThreads = 2;
 
-/// The tiles of a grid of pixels that a block looks at, and the place of each of its threads in them.
+/// The tiles of a grid of pixels that a block looks at: one of each run of as many tiles as there are blocks.
+/// Its position in the run moves on by a golden section: whatever the picture's width, its tiles do not fall
+/// in line.
 class BlockTiles {
  public:
-  /// @param first  of the block's pixels that the first thread is to look at
-  __device__ BlockTiles(int columns, int rows, unsigned width_log2, unsigned height_log2, unsigned first) {
-    log2_ = width_log2 + height_log2;
-    tile_columns_ = ((static_cast<unsigned>(columns) - 1) >> width_log2) + 1;
-    tiles_ = tile_columns_ * (((static_cast<unsigned>(rows) - 1) >> height_log2) + 1);
-    per_tile_columns_ = 1.0F / static_cast<float>(tile_columns_);
-    width_log2_ = width_log2;
-    height_log2_ = height_log2;
-    const unsigned n = first + threadIdx.x;
-    in_x_ = n & ((1U << width_log2) - 1);
-    in_y_ = (n >> width_log2) & ((1U << height_log2) - 1);
-    // Every block has one tile of each run of so many as there are blocks. Its place in the run moves on by a
-    // golden section: whatever the picture's width, its tiles do not fall in line.
-    const unsigned shift = gridDim.x * 5 / 13 + 1, runs = kCastThreads >> log2_, run = n >> log2_;
-    run_ = run * gridDim.x;
-    in_run_ = (blockIdx.x + run * shift) % gridDim.x;
-    runs_ = runs * gridDim.x;
-    shift_ = runs * shift % gridDim.x;
+  /// @param columns, rows  of pixels; width_log2, height_log2  of a tile
+  __device__ BlockTiles(int columns, int rows, unsigned width_log2, unsigned height_log2)
+      : width_log2_(width_log2), height_log2_(height_log2) {
+    columns_ = ((static_cast<unsigned>(columns) - 1) >> width_log2) + 1;
+    count_ = columns_ * (((static_cast<unsigned>(rows) - 1) >> height_log2) + 1);
   }
 
   /// How many pixels a block looks at, or some more.
-  __device__ unsigned pixelsOfBlock() const { return ((tiles_ + gridDim.x - 1) / gridDim.x) << log2_; }
-  /// On to the thread's next pixel, kCastThreads further.
-  __device__ void moveOn() {
-    run_ += runs_;
-    in_run_ += shift_;
-    if (in_run_ >= gridDim.x) in_run_ -= gridDim.x;
+  __device__ unsigned pixelsOfBlock() const {
+    return ((count_ + gridDim.x - 1) / gridDim.x) << (width_log2_ + height_log2_);
   }
-  /// The pixel's place in the grid, or beyond its last column or row.
-  /// @return false: there is none
-  __device__ bool place(int& column, int& row) const {
-    const unsigned tile = run_ + in_run_;
-    // A quotient that is at most one off: there are far fewer rows than 2^22.
-    auto tile_row = static_cast<unsigned>(static_cast<float>(tile) * per_tile_columns_);
-    auto tile_column = static_cast<int>(tile - tile_row * tile_columns_);
-    if (tile_column < 0) {
-      tile_column += static_cast<int>(tile_columns_);
-      --tile_row;
-    } else if (tile_column >= static_cast<int>(tile_columns_)) {
-      tile_column -= static_cast<int>(tile_columns_);
-      ++tile_row;
-    }
-    column = static_cast<int>((static_cast<unsigned>(tile_column) << width_log2_) + in_x_);
-    row = static_cast<int>((tile_row << height_log2_) + in_y_);
-    return tile < tiles_;
+  /// Where pixel n of the block is in the grid, or beyond its last column or row. @return false: there is
+  /// none
+  __device__ bool locate(unsigned n, int& column, int& row) const {
+    const unsigned run = n >> (width_log2_ + height_log2_), shift = gridDim.x * 5 / 13 + 1;
+    const unsigned tile = run * gridDim.x + (blockIdx.x + run * shift) % gridDim.x;
+    const unsigned in_x = n & ((1U << width_log2_) - 1);
+    const unsigned in_y = n >> width_log2_ & ((1U << height_log2_) - 1);
+    column = static_cast<int>((tile % columns_ << width_log2_) + in_x);
+    row = static_cast<int>((tile / columns_ << height_log2_) + in_y);
+    return tile < count_;
   }
 
  private:
-  unsigned width_log2_, height_log2_, log2_;  ///< of a tile
-  unsigned tile_columns_, tiles_;
-  float per_tile_columns_;
-  unsigned in_x_, in_y_;   ///< the thread's, of a tile
-  unsigned run_, in_run_;  ///< the first tile of a run, and the block's of it
-  unsigned runs_, shift_;  ///< how the two change
+  unsigned width_log2_, height_log2_;  ///< of a tile
+  unsigned columns_, count_;           ///< of tiles
 };
 
 /// The layer as midpoints see it; see predictMidpoint(). Other blocks have written it before a barrier.
@@ -92,69 +66,31 @@ struct KnownLayer {
   }
 };
 
-/// As predictMidpoint(); where nothing is known, nothing is certain. Apart, as few pixels lie at the edge.
-__device__ __noinline__ inline Prediction<Rgba> predictAtEdge(const Layer& layer, Pass pass, int x, int y) {
-  Prediction<Rgba> prediction;
-  if (!predictMidpoint(KnownLayer{layer, layer.size}, pass, x, y, prediction)) {
-    prediction.error_levels = INFINITY;
-  }
-  return prediction;
-}
-
-/// The known pixels in line with a midpoint (x, y): 3 and 1 times (dx, dy) before it, and behind it.
-__device__ inline void readLine(const Layer& layer, int x, int y, int dx, int dy, Rgba (&known)[4]) {
-  // They are twice (dx, dy) apart: they lie in one plane.
-  const float4* pixel = &layer.at(x - 3 * dx, y - 3 * dy);
-  const int step = dx + dy * static_cast<int>(layer.columns());
-#pragma unroll
-  for (int n = 0; n < 4; ++n) known[n] = toRgba(pixel[n * step]);
-}
-
-/// @param kPass  of kPasses
-template <int kPass>
-__device__ Prediction<Rgba> predictPixel(const Layer& layer, int x, int y) {
-  constexpr Pass kTaken = kPasses[kPass];
-  constexpr int r = kTaken.reach;
-  const auto isInside = [](int n, int length) {
-    return static_cast<unsigned>(n - 3 * r) < static_cast<unsigned>(length - 6 * r);
-  };
-  if (layer.size.width <= 6 * r || layer.size.height <= 6 * r || !isInside(x, layer.size.width) ||
-      !isInside(y, layer.size.height)) {
-    return predictAtEdge(layer, kTaken, x, y);
-  }
-  constexpr int dy = kTaken.diagonal ? r : 0;
-  Rgba p[4], q[4];  // all of them are read before the first is waited for
-  readLine(layer, x, y, r, dy, p);
-  readLine(layer, x, y, -dy, r, q);
-  return predict(predictAlong(p[1], p[2], p[0], p[3]), predictAlong(q[1], q[2], q[0], q[3]));
-}
-
-/// What decides which pixels are cast; of an AdaptiveLaunch.
+/// What decides which pixels of a pass are cast; of an AdaptiveLaunch.
 struct Criteria {
   Layer layer;
   const Span* inside;
   float tolerance_levels;
   std::uint8_t* classes;
+  Pass pass;
+  bool is_lattice;  ///< instead of a pass
 };
 
-/// Leaves a pixel transparent, or as it is predicted. @param kPass  of kPasses; -1: the lattice
-/// @return whether it must be cast instead
-template <int kPass>
-__device__ bool mustBeCast(const Criteria& frame, int x, int y) {
+/// Leaves a pixel transparent, or as it is predicted. @return whether it must be cast instead
+__device__ inline bool mustBeCast(const Criteria& frame, int x, int y) {
   const Span inside = frame.inside[y];
   const bool is_inside = inside.contains(x);
   bool must_be_cast = is_inside;
   Rgba color;
   std::uint8_t error_class = 0;
-  if constexpr (kPass >= 0) {
-    if (is_inside) {
-      constexpr auto kTolerance = static_cast<float>(kPasses[kPass].tolerance);
-      const Prediction<Rgba> prediction = predictPixel<kPass>(frame.layer, x, y);
-      must_be_cast = !(prediction.error_levels <= frame.tolerance_levels * kTolerance);
-      if (!must_be_cast) {
-        color = prediction.color;
-        error_class = errorClassOf(prediction.error_levels);
-      }
+  if (is_inside && !frame.is_lattice) {
+    Prediction<Rgba> prediction;
+    if (predictMidpoint(KnownLayer{frame.layer, frame.layer.size}, frame.pass, x, y, prediction)) {
+      must_be_cast = !(prediction.error_levels <= frame.tolerance_levels);
+    }
+    if (!must_be_cast) {
+      color = prediction.color;
+      error_class = errorClassOf(prediction.error_levels);
     }
   }
   if (!must_be_cast) frame.layer.at(x, y) = toFloat4(color);
@@ -191,50 +127,39 @@ struct BlockQueue {
 /// Looks at the block's pixels from the first one on, as many as its queue holds. Called, not a part of the
 /// kernel: what one function needs would take registers from the others.
 /// @return how many the block has
-template <int kPass>
-__device__ __noinline__ unsigned lookAtPixels(Criteria frame, unsigned first) {
+__device__ __noinline__ inline unsigned lookAtPixels(Criteria frame, unsigned first) {
   __builtin_assume(__isGlobal(frame.layer.pixels));
   __builtin_assume(__isGlobal(frame.inside));
   __builtin_assume(__isGlobal(frame.classes));
-  constexpr bool kIsLattice = kPass < 0;
-  constexpr Pass kTaken = kPasses[kIsLattice ? 0 : kPass];
+  const bool is_lattice = frame.is_lattice;
+  const Pass pass = frame.pass;
   const ImageSize size = frame.layer.size;
   const auto ofLattice = [](int length) { return (length + kLatticeStep - 1) / kLatticeStep; };
-  const int columns = kIsLattice ? ofLattice(size.width) : kTaken.columns(size);
-  const int rows = kIsLattice ? ofLattice(size.height) : kTaken.rows(size);
+  const int columns = is_lattice ? ofLattice(size.width) : pass.columns(size);
+  const int rows = is_lattice ? ofLattice(size.height) : pass.rows(size);
   // Small tiles make blocks alike; where there are many of them, larger ones read pixels less often.
-  const bool is_small = kIsLattice || static_cast<long long>(columns) * rows < 768LL * gridDim.x;
-  BlockTiles tiles(columns, rows, is_small ? 2 : 3, is_small ? 1 : 2, first);
+  const bool is_small = is_lattice || static_cast<long long>(columns) * rows < 768LL * gridDim.x;
+  const BlockTiles tiles(columns, rows, is_small ? 2 : 3, is_small ? 1 : 2);
   BlockQueue& queue = BlockQueue::ofBlock();
   const unsigned pixels = tiles.pixelsOfBlock();
   const unsigned end = min(first + BlockQueue::kMost, pixels);
   for (unsigned n = first + threadIdx.x; n - threadIdx.x % 32 < end; n += kCastThreads) {
     int column = 0, row = 0;
-    const bool is_any = n < end && tiles.place(column, row);
-    const int y = kIsLattice ? row * kLatticeStep : kTaken.firstY() + row * kTaken.stepY();
-    const int x = kIsLattice ? column * kLatticeStep : kTaken.firstX(y) + column * kTaken.stepX();
-    queue.append(is_any && x < size.width && y < size.height && mustBeCast<kPass>(frame, x, y), x, y);
-    tiles.moveOn();
+    const bool is_any = n < end && tiles.locate(n, column, row);
+    const int y = is_lattice ? row * kLatticeStep : pass.firstY() + row * pass.stepY();
+    const int x = is_lattice ? column * kLatticeStep : pass.firstX(y) + column * pass.stepX();
+    queue.append(is_any && x < size.width && y < size.height && mustBeCast(frame, x, y), x, y);
   }
   return pixels;
 }
 
-/// @param pass  of kPasses; -1: the lattice
-__device__ inline unsigned lookAtPixels(const AdaptiveLaunch& launch, int pass, unsigned first) {
-  const Criteria frame{launch.layer, launch.inside, launch.tolerance_levels, launch.classes};
-  static_assert(AdaptiveLaunch::kPassCount == 4, "one case each");
-  switch (pass) {
-    case 0:
-      return lookAtPixels<0>(frame, first);
-    case 1:
-      return lookAtPixels<1>(frame, first);
-    case 2:
-      return lookAtPixels<2>(frame, first);
-    case 3:
-      return lookAtPixels<3>(frame, first);
-    default:
-      return lookAtPixels<-1>(frame, first);
-  }
+/// @param pass  of AdaptiveLaunch::passes; -1: the lattice
+__device__ inline Criteria criteriaOf(const AdaptiveLaunch& launch, int pass) {
+  Criteria criteria{launch.layer, launch.inside, launch.tolerance_levels, launch.classes, {}, pass < 0};
+  if (pass < 0) return criteria;
+  criteria.pass = launch.passes[pass];
+  criteria.tolerance_levels *= static_cast<float>(criteria.pass.tolerance);
+  return criteria;
 }
 
 /// What another thread of the warp holds. All threads call it.
@@ -335,10 +260,11 @@ __global__ void __launch_bounds__(kCastThreads, 1)
 #pragma unroll 1
   for (int pass = -1; pass < AdaptiveLaunch::kPassCount; ++pass) {
     if (pass >= 0) cooperative_groups::this_grid().sync();
+    const Criteria criteria = criteriaOf(launch, pass);
     for (unsigned first = 0, looked_at = ~0U; first < looked_at; first += BlockQueue::kMost) {
       if (threadIdx.x == 0) queue.length = 0;
       __syncthreads();
-      looked_at = lookAtPixels(launch, pass, first);
+      looked_at = lookAtPixels(criteria, first);
       waitForCopies();  // of the colours, too
       if (threadIdx.x == 0) atomicAdd(launch.rays, queue.length);
       castQueued<RayKind>(launch, colors, queue, pass < 0);

@@ -120,6 +120,7 @@ void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream);
 /// A frame: what is cast, its `pixels` aside, and what decides which pixels are.
 struct AdaptiveLaunch : CastLaunch {
   static constexpr int kPassCount = static_cast<int>(std::size(kPasses));
+  Pass passes[kPassCount] = {kPasses[0], kPasses[1], kPasses[2], kPasses[3]};
   const Span* inside = nullptr;  ///< one a row
   float tolerance_levels = 0;
   std::uint8_t* classes =
