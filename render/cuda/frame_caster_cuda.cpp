@@ -7,7 +7,6 @@
 #include "render/adaptive_tolerance.h"
 #include "render/cuda/device_scene.h"
 #include "render/cuda/kernels.h"
-#include "render/cuda/launch_train.h"
 #include "render/frame_caster.h"
 #include "render/silhouette.h"
 #include "volume/cuda/device_storage.h"
@@ -16,7 +15,6 @@ namespace emscape::render {
 namespace {
 
 using cuda::CastLaunch;
-using cuda::LaunchTrain;
 using cuda::Sampling;
 using emscape::cuda::Buffer;
 using emscape::cuda::check;
@@ -45,25 +43,27 @@ class CudaFrameCaster : public FrameCaster {
   void fetch(Image8& image) override;
 
  private:
-  CastLaunch begin(const Scene& scene, ImageSize size, double most_samples);
+  CastLaunch begin(const Scene& scene, ImageSize size, const StopFlag* stop, double max_samples);
+  bool isStopped(const StopFlag* stop);
   void beginTime();
   CastLaunch prepare(const Scene& scene, ImageSize size);
   void findGround(const Scene& scene, const CastLaunch& launch);
   void findSections(CastLaunch& launch);
   void findInside(const Scene& scene, ImageSize size);
   void finish(FrameReport& report);
-  bool castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices, LaunchTrain& train,
+  bool castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices, const StopFlag* stop,
                     FrameReport& report);
-  bool castAdaptive(const CastLaunch& launch, const FramePlan& plan, LaunchTrain& train);
+  bool castAdaptive(const CastLaunch& launch, const FramePlan& plan, const StopFlag* stop);
   void countAdaptive(const FramePlan& plan, FrameReport& report);
-  bool castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report);
+  bool castPredicted(CastLaunch launch, const StopFlag* stop, FrameReport& report);
   void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, stream_); }
 
   const volume::VoxelPrecision precision_;
   emscape::cuda::Stream stream_;
   emscape::cuda::TimeMark begin_, end_;  ///< of the last frame, or restoration
   bool is_begun_ = false;                ///< begin_ is recorded
-  long long most_rays_ = 0;              ///< of a launch that can be stopped after
+  long long max_rays_ = 0;               ///< of a launch
+  bool is_cast_ = false;                 ///< a launch of the frame, at least in part
 
   volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
   std::shared_ptr<const volume::DeviceVolume> volume_;
@@ -133,15 +133,24 @@ void CudaFrameCaster::beginTime() {
   is_begun_ = true;
 }
 
-/// @param most_samples  of a launch that a stop waits for
-CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, double most_samples) {
+/// Before each launch that casts: waits for the one before, so that a stop waits for one launch at most.
+bool CudaFrameCaster::isStopped(const StopFlag* stop) {
+  if (stop == nullptr) return false;
+  if (is_cast_) stream_.wait();
+  is_cast_ = true;
+  return stop->load(std::memory_order_relaxed);
+}
+
+/// @param max_samples  of a launch that a stop waits for
+CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, const StopFlag* stop,
+                                  double max_samples) {
   volume_->storage().beginReading(stream_);
   const bool is_prepared = scene_.isCurrent(scene) && !scene.isCut() &&
                            (!scene.ground() || ground_view_.holds(scene.versions().view, size));
-  is_begun_ = false;
+  is_begun_ = is_cast_ = false;
   if (!is_prepared) beginTime();
   const CastLaunch launch = prepare(scene, size);
-  most_rays_ = raysFor(launch, most_samples);
+  max_rays_ = stop != nullptr ? raysFor(launch, max_samples) : size.count();
   return launch;
 }
 
@@ -227,14 +236,13 @@ FrameReport CudaFrameCaster::draw(const Scene& scene, const FramePlan& plan, Ima
   drawn_ = plan;
   if (size.count() == 0) return report;
   if (plan.pattern == Pattern::adaptive) findInside(scene, size);
-  const CastLaunch launch = begin(scene, size, kFrameSamples);
-  LaunchTrain train(stream_, stop, most_rays_);
+  const CastLaunch launch = begin(scene, size, stop, kFrameSamples);
   layers_.pattern = plan.pattern;
   layers_.interpolation = plan.interpolation;
   if (plan.pattern == Pattern::adaptive) {
-    report.complete = castAdaptive(launch, plan, train);
+    report.complete = castAdaptive(launch, plan, stop);
   } else {
-    report.complete = castLattices(launch, sourceLattices(plan.pattern, size), train, report);
+    report.complete = castLattices(launch, sourceLattices(plan.pattern, size), stop, report);
   }
   finish(report);
   if (plan.pattern == Pattern::adaptive && report.complete) countAdaptive(plan, report);
@@ -246,11 +254,10 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   report.pattern = drawn_.pattern;
   const ImageSize size = layers_.size;
   if (size.count() == 0) return report;
-  const CastLaunch launch = begin(scene, size, kRestorationSamples);
-  LaunchTrain train(stream_, stop, most_rays_);
+  const CastLaunch launch = begin(scene, size, stop, kRestorationSamples);
   report.complete = drawn_.pattern == Pattern::adaptive
-                        ? castPredicted(launch, train, report)
-                        : castLattices(launch, missingLattices(drawn_.pattern, size), train, report);
+                        ? castPredicted(launch, stop, report)
+                        : castLattices(launch, missingLattices(drawn_.pattern, size), stop, report);
   finish(report);
   return report;
 }
@@ -267,12 +274,12 @@ void CudaFrameCaster::finish(FrameReport& report) {
 
 /// @return false if it was stopped
 bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices,
-                                   LaunchTrain& train, FrameReport& report) {
+                                   const StopFlag* stop, FrameReport& report) {
   for (const Lattice& lattice : lattices) {
     const int rows = static_cast<int>(
-        std::min<long long>(std::max<long long>(train.mostRays() / lattice.columns, 1), lattice.rows));
+        std::min<long long>(std::max<long long>(max_rays_ / lattice.columns, 1), lattice.rows));
     for (int row = 0; row < lattice.rows; row += rows) {
-      if (!train.goOn()) return false;
+      if (isStopped(stop)) return false;
       Lattice band = lattice;
       band.first_y += row * lattice.step_y;
       band.rows = std::min(rows, lattice.rows - row);
@@ -280,7 +287,6 @@ bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<L
       part.pixels.tiles = cuda::longestFirst(launch.task, band);
       beginTime();
       cast(part);
-      train.launched();
     }
     report.rays += lattice.count();
   }
@@ -288,14 +294,14 @@ bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<L
 }
 
 /// @return false if it was stopped
-bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& plan, LaunchTrain& train) {
+bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& plan, const StopFlag* stop) {
   classes_.resize(picture8_.size());
   if (rays_.size() == 0) {
     rays_.resize(1);
     check(cudaMemsetAsync(rays_.data(), 0, sizeof(unsigned), stream_), "cudaMemset");
   }
   tolerance_levels_ = hold_.levels(plan.tolerance_levels);
-  if (!train.goOn()) {
+  if (isStopped(stop)) {
     check(cudaMemsetAsync(classes_.data(), 0, classes_.size(), stream_), "cudaMemset");
     return false;
   }
@@ -306,7 +312,6 @@ bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& pl
   adaptive.rays = rays_.data();
   beginTime();
   cuda::castAdaptive(adaptive, mode_, sampling_, stream_);
-  train.launched();
   return true;
 }
 
@@ -320,7 +325,7 @@ void CudaFrameCaster::countAdaptive(const FramePlan& plan, FrameReport& report) 
 }
 
 /// Casts what the last adaptive frame predicted, the worst first. @return false if it was stopped
-bool CudaFrameCaster::castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report) {
+bool CudaFrameCaster::castPredicted(CastLaunch launch, const StopFlag* stop, FrameReport& report) {
   beginTime();
   queue_.resize(classes_.size());
   counts_.resize(1);
@@ -330,14 +335,13 @@ bool CudaFrameCaster::castPredicted(CastLaunch launch, LaunchTrain& train, Frame
   counts_.download(&counts, stream_);
   unsigned missing = 0;
   for (const unsigned found : counts.found) missing += found;
-  const auto most = static_cast<unsigned>(std::min<long long>(train.mostRays(), layers_.size.count()));
+  const auto most = static_cast<unsigned>(std::min<long long>(max_rays_, layers_.size.count()));
   launch.pixels.list = queue_.data();
   for (unsigned first = 0; first < missing; first += most) {
-    if (!train.goOn()) return false;
+    if (isStopped(stop)) return false;
     launch.pixels.first = first;
     launch.pixels.end = std::min(first + most, missing);
     cast(launch);
-    train.launched();
   }
   report.rays = missing;
   return true;
