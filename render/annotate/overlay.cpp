@@ -20,7 +20,7 @@ constexpr Named<Theme> kThemes[] = {{Theme::dark, "dark"}, {Theme::light, "light
 constexpr double kMargin = 26;
 constexpr double kTitle = 23;
 constexpr double kCompassRadius = 40;
-constexpr double kSmallestUnit = 0.62;
+constexpr double kMinUnit = 0.62;
 
 /// What is seen of `back` behind `front`, of four premultiplied bytes each, rounded to nearest and clamped.
 std::uint32_t bytesOver(std::uint32_t front, std::uint32_t back) {
@@ -136,7 +136,7 @@ Theme parseTheme(const std::string& name) {
 }
 
 Style::Style(ImageSize size, Theme theme) {
-  unit = std::max(kSmallestUnit, std::min(size.width / 1200.0, size.height / 900.0));
+  unit = std::max(kMinUnit, std::min(size.width / 1200.0, size.height / 900.0));
   text_px *= unit;
   small_px *= unit;
   if (theme == Theme::dark) {

@@ -1,4 +1,4 @@
-/// The parts of a finished picture; used by overlay.cpp alone.
+/// The parts of a finished picture's annotations; internal to this library.
 #pragma once
 
 #include <vector>

@@ -1,9 +1,8 @@
 /// A frame of the pattern `adaptive` in one kernel: the lattice, then pass after pass what cannot be
 /// predicted from the pixels known by then. For .cu files.
 ///
-/// Each block looks at tiles from all over the picture and casts those of their pixels that need it, so that
-/// blocks have alike much to do without asking each other; all of them wait for each other between passes
-/// alone.
+/// Each block takes tiles from all over the picture and casts those of their pixels that need it, so that
+/// blocks have about the same work without a common queue. They wait for each other only between passes.
 #pragma once
 
 #include <cooperative_groups.h>
@@ -16,14 +15,14 @@
 
 namespace emscape::render::cuda {
 
-/// Threads a ray of the lattice, whose rays are many: as few as fill the GPU, since neighbouring rays share
-/// what the texture unit reads, parts of a ray do not. The passes' rays are few: a thread a part.
+/// Threads per ray of the lattice, which has many rays: as few as fill the GPU, since neighbouring rays share
+/// texture cache lines and parts of a ray do not. Passes have few rays: one thread per part.
 /// Either 2 or as many as a ray has parts.
 constexpr unsigned kLatticeThreads = 2;
 
-/// The tiles of a grid of pixels that a block looks at: one of each run of as many tiles as there are blocks.
-/// Its position in the run moves on by a golden section: whatever the picture's width, its tiles do not fall
-/// in line.
+/// The tiles of a grid of pixels that a block takes: one of each run of as many tiles as there are blocks.
+/// Its position in the run moves on by a golden section, so that its tiles are not aligned for any width of
+/// picture.
 class BlockTiles {
  public:
   /// @param columns, rows  of pixels; width_log2, height_log2  of a tile
@@ -33,7 +32,7 @@ class BlockTiles {
     count_ = columns_ * (((static_cast<unsigned>(rows) - 1) >> height_log2) + 1);
   }
 
-  /// How many pixels a block looks at, or some more.
+  /// Number of pixels of a block, or a few more.
   __device__ unsigned pixelsOfBlock() const {
     return ((count_ + gridDim.x - 1) / gridDim.x) << (width_log2_ + height_log2_);
   }
@@ -54,7 +53,7 @@ class BlockTiles {
   unsigned columns_, count_;           ///< of tiles
 };
 
-/// The layer as midpoints see it; see predictMidpoint(). Other blocks have written it before a barrier.
+/// The layer for predictMidpoint(). Other blocks wrote it before the last barrier.
 struct KnownLayer {
   using Color = Rgba;
   const Layer& layer;
@@ -100,8 +99,8 @@ __device__ inline bool mustBeCast(const Criteria& frame, int x, int y) {
 
 /// Pixels that a block is to cast, in its shared memory.
 struct BlockQueue {
-  static constexpr unsigned kMost = 6144;
-  Pixel pixels[kMost];
+  static constexpr unsigned kMax = 6144;
+  Pixel pixels[kMax];
   unsigned length;
 
   __device__ static BlockQueue& ofBlock() {
@@ -124,10 +123,10 @@ struct BlockQueue {
   }
 };
 
-/// Looks at the block's pixels from the first one on, as many as its queue holds. Called, not a part of the
-/// kernel: what one function needs would take registers from the others.
-/// @return how many the block has
-__device__ __noinline__ inline unsigned lookAtPixels(Criteria frame, unsigned first) {
+/// Predicts the block's pixels from the first one on, or queues them, as many as the queue holds. Not
+/// inlined, so that it takes no registers from the rest of the kernel.
+/// @return how many pixels the block has
+__device__ __noinline__ inline unsigned classifyPixels(Criteria frame, unsigned first) {
   __builtin_assume(__isGlobal(frame.layer.pixels));
   __builtin_assume(__isGlobal(frame.inside));
   __builtin_assume(__isGlobal(frame.classes));
@@ -137,12 +136,12 @@ __device__ __noinline__ inline unsigned lookAtPixels(Criteria frame, unsigned fi
   const auto ofLattice = [](int length) { return (length + kLatticeStep - 1) / kLatticeStep; };
   const int columns = is_lattice ? ofLattice(size.width) : pass.columns(size);
   const int rows = is_lattice ? ofLattice(size.height) : pass.rows(size);
-  // Small tiles make blocks alike; where there are many of them, larger ones read pixels less often.
+  // Small tiles balance the blocks; where there are many of them, larger ones read pixels less often.
   const bool is_small = is_lattice || static_cast<long long>(columns) * rows < 768LL * gridDim.x;
   const BlockTiles tiles(columns, rows, is_small ? 2 : 3, is_small ? 1 : 2);
   BlockQueue& queue = BlockQueue::ofBlock();
   const unsigned pixels = tiles.pixelsOfBlock();
-  const unsigned end = min(first + BlockQueue::kMost, pixels);
+  const unsigned end = min(first + BlockQueue::kMax, pixels);
   for (unsigned n = first + threadIdx.x; n - threadIdx.x % 32 < end; n += kCastThreads) {
     int column = 0, row = 0;
     const bool is_any = n < end && tiles.locate(n, column, row);
@@ -162,7 +161,7 @@ __device__ inline Criteria criteriaOf(const AdaptiveLaunch& launch, int pass) {
   return criteria;
 }
 
-/// What another thread of the warp holds. All threads call it.
+/// The value of another thread of the warp. All threads of the warp call it.
 template <class Value>
 __device__ Value fromLane(const Value& value, unsigned lane) {
   constexpr unsigned kWords = sizeof(Value) / sizeof(unsigned);
@@ -181,7 +180,7 @@ __device__ Value fromLane(const Value& value, unsigned lane) {
 /// @return the ray's colour for the first of its threads
 template <class RayKind>
 __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::Colors& colors,
-                              const RayPieces& pieces, unsigned threads) {
+                              const RaySegments& segments, unsigned threads) {
   using Compositor = typename RayKind::Compositor;
   constexpr int kParts = RayKind::kParts;
   const unsigned rays = 32 / threads;
@@ -190,16 +189,16 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
   JoinedParts<Compositor> ray(RayKind::begin(launch));
   int part = static_cast<int>(lane / rays) * parts_of_thread;
   int end = part + parts_of_thread;
-  bool done = pieces.count == 0;
-  // One copy of the sampling loop: instructions that were not run before are waited for.
+  bool done = segments.count == 0;
+  // One copy of the sampling loop: instruction-cache misses dominate the start of the kernel.
   for (bool again = false;; again = true) {
     for (; part < end && !done; ++part) {
       Compositor next = ray.behind();
-      done = RayKind::castPart(launch, pieces, part, colors, next);
+      done = RayKind::castPart(launch, segments, part, colors, next);
       ray.join(next);
     }
     if (again) break;
-    // Only the first of a ray's threads knew what lies before its parts: nothing.
+    // Only the first of a ray's threads knew what is in front of its parts: nothing.
     const Compositor own = ray.whole();
     bool is_sure = true;
 #pragma unroll 1
@@ -216,7 +215,7 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
       }
     }
     if (done || is_sure || lane >= rays) break;
-    end = kParts;  // the rest is cast again, now that it is known what lies before
+    end = kParts;  // the rest is cast again, now that it is known what is in front
   }
   return ray.whole().result(launch.task.transfer);
 }
@@ -227,7 +226,7 @@ __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Col
                            const BlockQueue& queue, bool is_lattice) {
   const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
   if constexpr (RayKind::kParts == 1) {
-    // Rays of a warp wait for each other: as few of them as leave no warp without.
+    // Rays of a warp wait for each other: as few per warp as give every warp some.
     const unsigned count = queue.length;
     const unsigned rays = min(max((count + kCastWarps - 1) / kCastWarps, 1U), 32U);
     for (unsigned n = warp * rays + lane; n < count; n += kCastWarps * rays) {
@@ -243,15 +242,15 @@ __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Col
       const unsigned n = first + lane % rays;
       const bool has_pixel = n < queue.length;
       const Pixel pixel = has_pixel ? queue.pixels[n] : Pixel{};
-      const RayPieces pieces =
-          launch.task.piecesOf(pixel.x, pixel.y, has_pixel ? boundsOf(launch, pixel) : RayBounds{0, 0});
-      const Rgba color = castByThreads<RayKind>(launch, colors, pieces, threads);
+      const RaySegments segments =
+          launch.task.segmentsOf(pixel.x, pixel.y, has_pixel ? boundsOf(launch, pixel) : RayBounds{0, 0});
+      const Rgba color = castByThreads<RayKind>(launch, colors, segments, threads);
       if (has_pixel && lane < rays) launch.layer.at(pixel.x, pixel.y) = toFloat4(color);
     }
   }
 }
 
-/// As many blocks as run at a time.
+/// Launched with as many blocks as run at a time.
 template <class RayKind>
 __global__ void __launch_bounds__(kCastThreads, 1)
     castAdaptiveFrame(const __grid_constant__ AdaptiveLaunch launch) {
@@ -261,10 +260,10 @@ __global__ void __launch_bounds__(kCastThreads, 1)
   for (int pass = -1; pass < AdaptiveLaunch::kPassCount; ++pass) {
     if (pass >= 0) cooperative_groups::this_grid().sync();
     const Criteria criteria = criteriaOf(launch, pass);
-    for (unsigned first = 0, looked_at = ~0U; first < looked_at; first += BlockQueue::kMost) {
+    for (unsigned first = 0, looked_at = ~0U; first < looked_at; first += BlockQueue::kMax) {
       if (threadIdx.x == 0) queue.length = 0;
       __syncthreads();
-      looked_at = lookAtPixels(criteria, first);
+      looked_at = classifyPixels(criteria, first);
       waitForCopies();  // of the colours, too
       if (threadIdx.x == 0) atomicAdd(launch.rays, queue.length);
       castQueued<RayKind>(launch, colors, queue, pass < 0);

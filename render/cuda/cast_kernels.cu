@@ -46,10 +46,10 @@ class SharedColors {
 __global__ void __launch_bounds__(kTileThreads)
     groundRays(const __grid_constant__ RaycastTask task, float* distances, float4* colors) {
   const ImageSize size = task.camera.size;
-  const Place place = placeOfThread(size.width);
-  if (place.column >= size.width || place.row >= size.height) return;
-  const long long index = pixelIndex(size, place.column, place.row);
-  const GroundHit hit = task.groundAt(place.column, place.row);
+  int x = 0, y = 0;
+  if (!pixelOfThread(size, x, y)) return;
+  const long long index = pixelIndex(size, x, y);
+  const GroundHit hit = task.groundAt(x, y);
   distances[index] = hit.found ? static_cast<float>(hit.distance) : INFINITY;
   if (hit.found) colors[index] = toFloat4(hit.color);
 }
@@ -86,7 +86,7 @@ void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling s
 
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream) {
   const ImageSize size = task.camera.size;
-  groundRays<<<tileCount(size.width, size.height), kTileThreads, 0, stream>>>(task, distances, colors);
+  groundRays<<<tileCount(size), kTileThreads, 0, stream>>>(task, distances, colors);
   emscape::cuda::checkLaunch("groundRays");
 }
 

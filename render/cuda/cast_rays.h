@@ -1,4 +1,4 @@
-/// Rays as kernels cast them, whatever they sample. For .cu files.
+/// Kernels that cast rays, for any sampler. For .cu files.
 #pragma once
 
 #include <algorithm>
@@ -9,11 +9,11 @@
 namespace emscape::render::cuda {
 
 /// Samples fetched at a time: with few rays, and at the end of a launch, too few threads are left to hide the
-/// wait for one. More registers a thread mean fewer threads.
+/// latency of one. More registers per thread mean fewer threads.
 template <class Compositor>
 constexpr int kBatch = Compositor::kEndsItself ? 8 : 4;
 
-/// The table where it lies.
+/// The table in global memory.
 class GlobalColors {
  public:
   static unsigned sharedBytes(const CastLaunch& /*launch*/) { return 0; }
@@ -38,9 +38,9 @@ struct VolumeRay {
   __device__ static Compositor begin(const CastLaunch& launch) {
     return {launch.task.opaque_enough, launch.task.mida_gamma, *launch.volume_highest_f};
   }
-  __device__ static bool castPart(const CastLaunch& launch, const RayPieces& pieces, int part,
+  __device__ static bool castPart(const CastLaunch& launch, const RaySegments& segments, int part,
                                   const Colors& colors, Compositor& compositor) {
-    return launch.task.castPart<Compositor, Sampler, kMayShade, kFetched>(pieces, part, colors, compositor);
+    return launch.task.castPart<Compositor, Sampler, kMayShade, kFetched>(segments, part, colors, compositor);
   }
 };
 template <class Sampler>
@@ -91,20 +91,20 @@ __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__
 }
 
 /// What the largest table takes of a block's shared memory.
-constexpr int kMostSharedBytes = (kMostHalfColors + 1) * static_cast<int>(sizeof(HalfColor));
+constexpr int kMaxSharedBytes = (kMaxHalfColors + 1) * static_cast<int>(sizeof(HalfColor));
 
 /// Allows a kernel the shared memory that the largest table takes. @return its blocks that run at a time
 template <class Launch>
 unsigned residentBlocks(void (*kernel)(Launch)) {
   emscape::cuda::check(
-      cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, kMostSharedBytes),
+      cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, kMaxSharedBytes),
       "cudaFuncSetAttribute");
   int device = 0, multiprocessors = 0, blocks = 0;
   emscape::cuda::check(cudaGetDevice(&device), "cudaGetDevice");
   emscape::cuda::check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
                        "cudaDeviceGetAttribute");
   emscape::cuda::check(
-      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, kCastThreads, kMostSharedBytes),
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, kCastThreads, kMaxSharedBytes),
       "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
   return static_cast<unsigned>(multiprocessors * std::max(blocks, 1));
 }

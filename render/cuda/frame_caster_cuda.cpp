@@ -19,8 +19,8 @@ using cuda::Sampling;
 using emscape::cuda::Buffer;
 using emscape::cuda::check;
 
-/// Samples of one launch, about: what a stop waits for at most. A restoration, which nobody waits for, is
-/// cast in smaller steps.
+/// Approximate number of samples of one launch: a stop waits for one launch at most. A restoration, for which
+/// nobody waits, is cast in smaller steps.
 constexpr double kFrameSamples = 1 << 30;
 constexpr double kRestorationSamples = 1 << 27;
 
@@ -35,8 +35,8 @@ class CudaFrameCaster : public FrameCaster {
 
   std::size_t volumeBytes() const override { return volume_ ? volume_->bytes() : 0; }
 
-  void lend(Image& /*image*/) override {}
-  void giveBack(Image& image, const FrameReport& report) override {
+  void bindTarget(Image& /*image*/) override {}
+  void unbindTarget(Image& image, const FrameReport& report) override {
     if (report.complete) fetch(image);
   }
   void fetch(Image& image) override;
@@ -77,7 +77,7 @@ class CudaFrameCaster : public FrameCaster {
   Buffer<float4> picture_;
   Buffer<uchar4> picture8_;
 
-  /// What belongs to a view: the ground, and the pixels whose rays meet the box.
+  /// Results for one view: the ground, and the pixels whose rays meet the box.
   struct View {
     unsigned version = 0;
     ImageSize size;
@@ -94,7 +94,7 @@ class CudaFrameCaster : public FrameCaster {
   Buffer<Span> inside_;
 
   FramePlan drawn_;
-  ToleranceHold hold_;
+  ToleranceController hold_;
   double tolerance_levels_ = 0;  ///< of the last adaptive frame
   Buffer<std::uint8_t> classes_;
   Buffer<unsigned> rays_;     ///< one: how many all adaptive frames have cast, modulo 2^32
@@ -118,7 +118,7 @@ void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volu
   scene_.volumeChanged();
 }
 
-/// Rays of a launch that a ray's longest way through the volume makes at most so many samples of.
+/// Number of rays that take at most so many samples, even if each crosses the volume along its diagonal.
 long long raysFor(const CastLaunch& launch, double samples) {
   const Dims& dims = launch.task.volume.dims;
   const double longest =
@@ -198,7 +198,7 @@ void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
   ground_view_ = {version, size};
 }
 
-/// Sections belong to a frame, as they show the volume's values.
+/// Found for every frame, as sections show the volume's values.
 void CudaFrameCaster::findSections(CastLaunch& launch) {
   const std::size_t pixels = picture8_.size();
   cut_begins_.resize(pixels);
@@ -217,8 +217,8 @@ void CudaFrameCaster::findSections(CastLaunch& launch) {
   layers_.ground_colors = cut_colors_.data();
 }
 
-/// By the host, before a frame's time begins: the GPU would wait for it. Wide, as the GPU's quotients are not
-/// exact in the last two bits of a double, the host's are: a ray may meet the box by so little.
+/// By the host, before a frame's time begins, as the GPU would wait for it. Wide, as the GPU's quotients are
+/// not exact in the last two bits of a double: a ray may meet the box on one side alone.
 void CudaFrameCaster::findInside(const Scene& scene, ImageSize size) {
   const unsigned version = scene.versions().view;
   if (inside_view_.holds(version, size)) return;
@@ -262,7 +262,7 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   return report;
 }
 
-/// Everything is launched: shows the picture and waits for it.
+/// After the last launch: makes the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
   beginTime();
   if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
@@ -315,13 +315,13 @@ bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& pl
   return true;
 }
 
-/// How many rays the frame came to, for the report and for the tolerance of the next one.
+/// Counts the rays of the frame, for its report and for the tolerance of the next one.
 void CudaFrameCaster::countAdaptive(const FramePlan& plan, FrameReport& report) {
   unsigned rays = 0;
   rays_.download(&rays, stream_);
   report.rays = rays - std::exchange(rays_before_, rays);
-  const double most_rays = std::max(plan.ray_share * static_cast<double>(silhouette_.count()), 1.0);
-  hold_.drawn(tolerance_levels_, static_cast<double>(report.rays), most_rays);
+  const double max_rays = std::max(plan.ray_share * static_cast<double>(silhouette_.count()), 1.0);
+  hold_.drawn(tolerance_levels_, static_cast<double>(report.rays), max_rays);
 }
 
 /// Casts what the last adaptive frame predicted, the worst first. @return false if it was stopped

@@ -18,8 +18,8 @@
 
 namespace emscape::render::cuda {
 
-/// The volume alone as it is cast: a colour for each pixel of the picture. Pixels whose x is even or odd, and
-/// y, lie apart in four planes: so the source pixels of a pattern lie together.
+/// The volume alone as it is cast: a colour per pixel of the picture, in four planes by odd and even x and y.
+/// So the source pixels of a pattern are contiguous.
 struct Layer {
   float4* pixels = nullptr;
   ImageSize size;
@@ -65,21 +65,21 @@ enum class Sampling {
   sparse_nearest
 };
 
-/// A transfer function's colours as the kernels that filter hold them in shared memory: r g, b a as halves.
+/// A colour of the transfer function's table in shared memory: r g, b a as halves.
 struct HalfColor {
   std::uint32_t rg = 0, ba = 0;
 };
-/// Entries that fit.
-constexpr int kMostHalfColors = 4096;
+/// Entries that fit into shared memory.
+constexpr int kMaxHalfColors = 4096;
 
 struct CastLaunch {
-  RaycastTask task;  ///< volume_highest_f does not count
+  RaycastTask task;  ///< without volume_highest_f
   PixelSet pixels;
   const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for Sampling::filtered
   const float* volume_highest_f = nullptr;  ///< one
-  const float* limits = nullptr;            ///< one a pixel: where the ground is, or a section; null: nowhere
-  const float* begins = nullptr;            ///< one a pixel: where planes let its ray begin; null: not cut
-  unsigned* next_tile = nullptr;            ///< 0, before each launch and after it; one a stream
+  const float* limits = nullptr;  ///< one per pixel: where the ground is, or a section; null: nowhere
+  const float* begins = nullptr;  ///< one per pixel: where planes let its ray begin; null: not cut
+  unsigned* next_tile = nullptr;  ///< queue counter: zero between launches; one per stream
   Layer layer;
 };
 void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
@@ -89,7 +89,7 @@ void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling samplin
 /// Where every pixel's ray meets the ground (infinity: nowhere), and its colour there.
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream);
 
-/// What planes leave of every pixel's ray; arrays of one a pixel.
+/// The part of every pixel's ray that planes leave; arrays with one element per pixel.
 struct CutLayer {
   const float* ground_distances = nullptr;  ///< null: no ground
   const float4* ground_colors = nullptr;
@@ -103,7 +103,7 @@ void castCut(const RaycastTask& task, Sampling sampling, const CutLayer& layer, 
 
 // --- The picture ---
 
-/// The volume's layer and what lies behind it, the ground or a section.
+/// The volume's layer, and the ground or a section behind it.
 struct Layers {
   ImageSize size;
   Pattern pattern = Pattern::full;  ///< of the layer: which of its pixels count; adaptive: all
@@ -121,10 +121,10 @@ void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream);
 struct AdaptiveLaunch : CastLaunch {
   static constexpr int kPassCount = static_cast<int>(std::size(kPasses));
   Pass passes[kPassCount] = {kPasses[0], kPasses[1], kPasses[2], kPasses[3]};
-  const Span* inside = nullptr;  ///< one a row
+  const Span* inside = nullptr;  ///< one per row
   float tolerance_levels = 0;
   std::uint8_t* classes =
-      nullptr;               ///< receives those of the estimated error, one a pixel; see errorClassOf()
+      nullptr;               ///< receives those of the estimated error, one per pixel; see errorClassOf()
   unsigned* rays = nullptr;  ///< is increased by the number of rays cast
 };
 static_assert(sizeof(AdaptiveLaunch) <= 4096, "what a kernel's parameters may take");
@@ -144,7 +144,7 @@ void listPredicted(const std::uint8_t* classes, ImageSize size, ClassCounts* cou
 
 // --- Bricks ---
 
-/// What the bricks of a volume come to.
+/// Summary of a volume's bricks.
 struct BrickSummary {
   float highest_f = 0;     ///< the largest f of all
   unsigned skippable = 0;  ///< how many have a level below SkipView::kNever

@@ -13,7 +13,7 @@
 namespace emscape::render::cuda {
 
 /// A lattice in tiles of 32 pixels, nearly square in the picture, and these in a coarse grid of cells. Tiles
-/// are numbered cell by cell; some lie beyond the lattice. Plain data.
+/// are numbered cell by cell; some are beyond the lattice. Plain data.
 struct TileOrder {
   static constexpr int kAlong = 16;  ///< cells along either axis
   static constexpr int kCells = kAlong * kAlong;
@@ -76,7 +76,7 @@ inline TileOrder longestFirst(const RaycastTask& task, const Lattice& lattice) {
   for (int row = 0; row <= kAlong; ++row) {
     for (int column = 0; column <= kAlong; ++column) {
       const Pixel pixel = order.cornerAt(column, row);
-      corners[row][column] = task.piecesOf(pixel.x, pixel.y, {}).length;
+      corners[row][column] = task.segmentsOf(pixel.x, pixel.y, {}).length;
     }
   }
   std::array<float, TileOrder::kCells> longest;

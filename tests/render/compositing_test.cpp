@@ -77,7 +77,7 @@ TEST(Compositing, MidaWithGammaOneIsMip) {
   expectNear(composite<MidaCompositor>(1).result(transfer), projected[2]);  // f = 0.9
 }
 
-/// What lies ahead, as LookAhead tells it.
+/// What lies ahead, as OccupancyLookahead tells it.
 struct Ahead {
   float highest;
   bool exceeds(int /*next*/, float f) const { return highest > f; }

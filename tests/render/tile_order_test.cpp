@@ -62,7 +62,7 @@ TEST(TileOrder, BeginsWithTheLongestRays) {
     Pixel pixel;
     const unsigned middle = order.tilesOfCell() / 2;
     return order.pixelOf(static_cast<unsigned>(n) * order.tilesOfCell() + middle, 0, pixel)
-               ? task.piecesOf(pixel.x, pixel.y, {}).length
+               ? task.segmentsOf(pixel.x, pixel.y, {}).length
                : 0.0F;
   };
   double first_half = 0, second_half = 0;

@@ -29,8 +29,8 @@ struct Marker {
 struct Track {
   MarkerKind kind = MarkerKind::platform;
   std::vector<Vec3d> points_m;  ///< frame metres, in the order of time
-  /// How far it has come: 2.5 is half way from points_m[2] to points_m[3]. What lies behind is drawn
-  /// brighter.
+  /// How far it has come: 2.5 is half way from points_m[2] to points_m[3]. The part behind it is
+  /// drawn brighter.
   double travelled = 0;
 };
 
@@ -53,8 +53,8 @@ struct Annotations {
   Theme theme = Theme::dark;
 };
 
-/// Space that annotations take from a picture: give it to makeCamera() so that the box does not lie below
-/// them.
+/// Space that annotations take from a picture: give it to makeCamera() so that they do not cover the
+/// box.
 FrameMargins overlayMargins(ImageSize size, const Annotations& annotations);
 
 /// Whether the ground hides a position (frame metres); empty: nothing is hidden.
