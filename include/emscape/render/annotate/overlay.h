@@ -8,6 +8,7 @@
 
 #include "emscape/render/annotate/legend.h"
 #include "emscape/render/camera.h"
+#include "emscape/render/device_picture.h"
 #include "emscape/render/image.h"
 
 namespace emscape::render {
@@ -59,6 +60,12 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations);
 
 /// Whether the ground hides a position (frame metres); empty: nothing is hidden.
 using HiddenTest = std::function<bool(const Vec3d& frame_m)>;
+
+/// Draws both layers. What is cast put over `behind`, and `front` over that, is the picture of compose(); at
+/// most two levels apart, as each layer is rounded.
+/// @param layers  its memory is used again
+void drawLayers(OverlayLayers& layers, ImageSize size, const Camera& camera, const SceneBox& box,
+                const Annotations& annotations, const HiddenTest& hidden = {});
 
 /// Draws the finished, opaque picture.
 Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
