@@ -9,7 +9,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 #include "emscape/scenario/snapshot.h"
 
 namespace emscape::playback {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "emscape/base/error.h"
-#include "emscape/render/overlay.h"
+#include "emscape/render/annotate/overlay.h"
 
 namespace emscape::view {
 namespace {

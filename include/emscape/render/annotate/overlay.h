@@ -1,15 +1,15 @@
 /// The finished picture: what was cast, on a background, with box, axes, markers, legend, time and compass.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "emscape/render/annotate/legend.h"
 #include "emscape/render/camera.h"
+#include "emscape/render/device_picture.h"
 #include "emscape/render/image.h"
-#include "emscape/render/legend.h"
 
 namespace emscape::render {
 
@@ -30,8 +30,8 @@ struct Marker {
 struct Track {
   MarkerKind kind = MarkerKind::platform;
   std::vector<Vec3d> points_m;  ///< frame metres, in the order of time
-  /// How far it has come: 2.5 is half way from points_m[2] to points_m[3]. What lies behind is drawn
-  /// brighter.
+  /// How far it has come: 2.5 is half way from points_m[2] to points_m[3]. The part behind it is
+  /// drawn brighter.
   double travelled = 0;
 };
 
@@ -54,19 +54,12 @@ struct Annotations {
   Theme theme = Theme::dark;
 };
 
-/// Space that annotations take from a picture: give it to makeCamera() so that the box does not lie below
-/// them.
+/// Space that annotations take from a picture: give it to makeCamera() so that they do not cover the
+/// box.
 FrameMargins overlayMargins(ImageSize size, const Annotations& annotations);
 
 /// Whether the ground hides a position (frame metres); empty: nothing is hidden.
 using HiddenTest = std::function<bool(const Vec3d& frame_m)>;
-
-/// What a finished picture has behind what is cast, and before it: for who puts them together elsewhere.
-struct OverlayLayers {
-  ImageSize size;
-  /// Pixels 0xAARRGGBB, premultiplied, row by row from the top. `behind` is opaque.
-  std::vector<std::uint32_t> behind, front;
-};
 
 /// Draws both layers. What is cast put over `behind`, and `front` over that, is the picture of compose(); at
 /// most two levels apart, as each layer is rounded.

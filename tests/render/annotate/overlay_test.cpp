@@ -1,4 +1,4 @@
-#include "emscape/render/overlay.h"
+#include "emscape/render/annotate/overlay.h"
 
 #include <gtest/gtest.h>
 

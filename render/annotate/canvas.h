@@ -1,4 +1,4 @@
-/// Drawing of lines, shapes and text on a picture: a thin hold on Cairo.
+/// Drawing of lines, shapes and text on a picture: a thin wrapper of Cairo.
 #pragma once
 
 #include <cstdint>

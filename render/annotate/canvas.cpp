@@ -1,4 +1,4 @@
-#include "render/canvas.h"
+#include "render/annotate/canvas.h"
 
 #include <cairo-svg.h>
 #include <cairo.h>

@@ -1,4 +1,4 @@
-#include "emscape/render/overlay.h"
+#include "emscape/render/annotate/overlay.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <cstring>
 
 #include "emscape/base/parallel.h"
+#include "render/annotate/overlay_parts.h"
 #include "render/bytes_over.h"
 #include "render/names.h"
-#include "render/overlay_parts.h"
 #include "render/rgba.h"
 
 namespace emscape::render {
@@ -22,7 +22,7 @@ constexpr Named<Theme> kThemes[] = {{Theme::dark, "dark"}, {Theme::light, "light
 constexpr double kMargin = 26;
 constexpr double kTitle = 23;
 constexpr double kCompassRadius = 40;
-constexpr double kSmallestUnit = 0.62;
+constexpr double kMinUnit = 0.62;
 
 /// Puts a cast picture over what is drawn; the only quantisation of what was cast.
 void drawCast(Canvas& canvas, const Image& cast) {
@@ -132,7 +132,7 @@ Theme parseTheme(const std::string& name) {
 }
 
 Style::Style(ImageSize size, Theme theme) {
-  unit = std::max(kSmallestUnit, std::min(size.width / 1200.0, size.height / 900.0));
+  unit = std::max(kMinUnit, std::min(size.width / 1200.0, size.height / 900.0));
   text_px *= unit;
   small_px *= unit;
   if (theme == Theme::dark) {
