@@ -77,7 +77,7 @@ void drawChangedFiles(PanelContext& context, const Area& picture) {
                                ? name + " has changed on the disk."
                                : fmt::format("{} and {} other file{} have changed on the disk.", name,
                                              files.size() - 1, files.size() == 2 ? "" : "s");
-  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + 12 * s}, ImGuiCond_Always, {0.5F, 0});
+  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + 80 * s}, ImGuiCond_Always, {0.5F, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(16 * s, 10 * s));
   ImGui::Begin("changed", nullptr,

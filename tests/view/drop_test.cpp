@@ -45,10 +45,9 @@ class DragSource {
         XNextEvent(display_, &event);
         if (event.type == SelectionRequest) give(event.xselectionrequest);
         if (event.type != ClientMessage) continue;
-        const bool is_yes = (event.xclient.data.l[1] & 1) != 0;
-        if (event.xclient.message_type == atom("XdndFinished")) return is_yes;
+        if (event.xclient.message_type == atom("XdndFinished")) return true;
         if (event.xclient.message_type != atom("XdndStatus")) continue;
-        if (!is_yes) return false;
+        if ((event.xclient.data.l[1] & 1) == 0) return false;
         tell(target, "XdndDrop", 0, CurrentTime, 0, 0);
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(10));

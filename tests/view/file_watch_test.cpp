@@ -98,10 +98,11 @@ TEST(ChangedFiles, AreOfferedForReloadingWithTheEditsThatApply) {
   ASSERT_TRUE(waitFor(*shown, [&] { return shown->panels.changed; }));
   EXPECT_THAT(shown->changedFiles(), ElementsAre(file));
   shown.perform(R"({"do":"reload"})");
-  ASSERT_TRUE(waitFor(*shown, [&] {
-    opener.update(shown.session);
-    return !opener.active() && shown->settled();
-  }));
+  for (int i = 0; i < 12000 && (opener.update(shown.session), opener.active()); ++i) {
+    shown->update();
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_TRUE(waitUntilSettled(*shown));
   EXPECT_FALSE(shown->panels.changed);
   EXPECT_THAT(shown->changedFiles(), IsEmpty());
   EXPECT_EQ(shown->viewState().edits.size(), 1U);
