@@ -184,7 +184,7 @@ TEST(ViewState, RefusalsSayWhereAndWhat) {
             "a.json:2:11: item 1 of 'size' is 0, outside the allowed 1 to 32768");
   EXPECT_EQ(refusalOf(head + "\"loop\": 1}"), "a.json:2:10: 'loop' must be true or false, not '1'");
   EXPECT_EQ(refusalOf(head + "\"play_range\": {\"begin_s\": 2, \"end_s\": 2}}"),
-            "a.json:2:39: 'end_s' is 2, not above 'begin_s', 2");
+            "a.json:2:40: 'end_s' is 2, not above 'begin_s', 2");
   EXPECT_EQ(refusalOf(head + "\"range\": {\"min\": 1, \"max\": 0.5}}"),
             "a.json:2:29: 'max' is 0.5, not above 'min', 1");
   EXPECT_EQ(refusalOf(head + "\"planes\": [\"horizontal:altitude_m=1\", \"vertical:bearing_deg=999\"]}"),
