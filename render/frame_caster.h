@@ -1,9 +1,11 @@
-/// What a renderer needs of the processor that casts its pictures. One implementation for each.
+/// Interface of a renderer to the processor that casts its pictures: one implementation for the CPU, one for
+/// CUDA.
 #pragma once
 
 #include <memory>
 
 #include "emscape/base/progress.h"
+#include "emscape/render/device_picture.h"
 #include "emscape/render/frame.h"
 #include "emscape/render/image.h"
 #include "emscape/volume/dense_volume.h"
@@ -12,7 +14,7 @@
 
 namespace emscape::render {
 
-/// Casts frames and keeps the picture of the last one where it was cast. One thread calls it.
+/// Casts frames and keeps the picture of the last one where it was cast. For use by one thread.
 class FrameCaster {
  public:
   virtual ~FrameCaster() = default;
@@ -28,13 +30,14 @@ class FrameCaster {
                            const StopFlag* stop) = 0;
   virtual FrameReport restore(const Scene& scene, const StopFlag* stop) = 0;
 
-  /// Before and after a picture is cast that is to end in an image of the caller's: so that it can be cast
-  /// into it where that is possible.
-  virtual void lend(Image& image) = 0;
-  virtual void giveBack(Image& image, const FrameReport& report) = 0;
+  /// Before and after a frame whose picture the caller wants in an image of its own: the CPU casts into it.
+  virtual void bindTarget(Image& image) = 0;
+  virtual void unbindTarget(Image& image, const FrameReport& report) = 0;
   /// The picture of the last frame.
   virtual void fetch(Image& image) = 0;
   virtual void fetch(Image8& image) = 0;
+  /// See Renderer.
+  virtual std::shared_ptr<const DevicePicture> compose(const OverlayLayers& /*layers*/) { return nullptr; }
 };
 
 /// With all threads of the CPU.

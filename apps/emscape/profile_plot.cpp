@@ -11,8 +11,8 @@
 #include "base/whole_file.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_report.h"
-#include "emscape/render/legend.h"
-#include "render/canvas.h"
+#include "emscape/render/annotate/legend.h"
+#include "render/annotate/canvas.h"
 
 namespace emscape::app {
 namespace {

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "apps/view/theme.h"
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 #include "emscape/volume/difference.h"
 
 namespace emscape::view {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "emscape/base/error.h"
-#include "emscape/render/overlay.h"
+#include "emscape/render/annotate/overlay.h"
 
 namespace emscape::view {
 namespace {
@@ -199,13 +199,13 @@ bool Session::settled() const {
 
 bool Session::isPictureSettled() const {
   return picture_ && !edit_queue_.isBusy() && status_.isSettled() && !fit_ &&
-         picture_->status.frame == status_.frame && picture_->image.size == picture_size_;
+         picture_->status.frame == status_.frame && picture_->size == picture_size_;
 }
 
 std::optional<Viewport> Session::viewport() const {
   if (!picture_) return std::nullopt;
-  return Viewport{picture_->box, picture_->image.size,
-                  render::overlayMargins(picture_->image.size, picture_->annotations)};
+  return Viewport{picture_->box, picture_->size,
+                  render::overlayMargins(picture_->size, picture_->annotations)};
 }
 
 // --- what is asked for ---

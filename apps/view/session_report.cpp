@@ -61,8 +61,8 @@ Json Session::report() const {
               {"recording", files_->recorder.running()},
               {"can_undo", canUndo()},
               {"can_redo", canRedo()},
-              {"picture_width", picture_ ? picture_->image.size.width : 0},
-              {"picture_height", picture_ ? picture_->image.size.height : 0},
+              {"picture_width", picture_ ? picture_->size.width : 0},
+              {"picture_height", picture_ ? picture_->size.height : 0},
               {"scale", window_.scale()}};
   if (picture_) {
     report["range_min"] = picture_->transfer.lowest();

@@ -7,7 +7,7 @@
 #include "apps/view/panels.h"
 #include "apps/view/theme.h"
 #include "apps/view/transfer_plot.h"
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {
 namespace {

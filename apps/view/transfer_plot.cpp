@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "apps/view/theme.h"
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {
 namespace {

@@ -232,7 +232,7 @@ TEST(CudaCast, QuantisedPictureIsThatOfThePicture) {
 
 TEST(CudaCast, PicturesDoNotDependOnThoseBefore) {
   EMSCAPE_NEEDS_GPU();
-  // Launches take their tasks in the order found by an earlier one, of another view, mode or size.
+  // Another view, mode or size before must leave nothing behind.
   std::mt19937 random(27);
   Renderer kept(onGpu());
   const ImageSize sizes[] = {{400, 300}, {401, 300}, {100, 400}};

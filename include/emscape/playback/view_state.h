@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "emscape/playback/painter.h"
+#include "emscape/render/annotate/overlay.h"
 #include "emscape/render/camera.h"
-#include "emscape/render/overlay.h"
 #include "emscape/render/render_settings.h"
 #include "emscape/render/transfer_function.h"
 #include "emscape/scenario/edit.h"

@@ -6,6 +6,7 @@
 #include "emscape/base/backend.h"
 #include "emscape/base/progress.h"
 #include "emscape/render/camera.h"
+#include "emscape/render/device_picture.h"
 #include "emscape/render/frame.h"
 #include "emscape/render/height_field.h"
 #include "emscape/render/image.h"
@@ -38,8 +39,8 @@ class Renderer {
   /// cpu or cuda.
   Backend backend() const;
 
-  /// Values on the renderer's side (host memory for the CPU, GPU memory for the GPU) are read where they lie,
-  /// not copied; reads and writes of a GPU wait for each other. Values on the other side are copied. Cheap
+  /// Values on the renderer's side (host memory for the CPU, GPU memory for the GPU) are read in place, not
+  /// copied; reads and writes of a GPU wait for each other. Values on the other side are copied. Cheap
   /// where the grid stays the same.
   /// @throws Error (other) for an empty handle, (device) if a copy does not fit
   void setVolume(const volume::Volume& volume);
@@ -68,12 +69,16 @@ class Renderer {
   /// @throws Error (device)
   FrameReport draw(const FramePlan& plan, ImageSize size, const StopFlag* stop = nullptr);
   /// Casts exactly the pixels that the last draw() left out: the picture is then bit-identical to a full one
-  /// of the same scene, which must not have changed in between. A stopped restoration begins anew.
+  /// of the same scene, which must not have changed in between. A stopped restoration starts again.
   FrameReport restore(const StopFlag* stop = nullptr);
   /// The picture of the last draw() or restore() above, as it was cast, or quantised. The latter is the cheap
   /// one on a GPU: it is quantised there. Not to be used after an incomplete frame.
   void fetch(Image& image);
   void fetch(Image8& image);
+
+  /// The same picture, quantised, between the layers of its labels: stays on the GPU. Null with the CPU.
+  /// @param layers  of the picture's size. @throws Error (device)
+  std::shared_ptr<const DevicePicture> compose(const OverlayLayers& layers);
 
   /// The same into the caller's image, which is all there is of the picture then: restore() is given the one
   /// that draw() wrote.

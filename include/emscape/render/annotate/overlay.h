@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "emscape/render/annotate/legend.h"
 #include "emscape/render/camera.h"
+#include "emscape/render/device_picture.h"
 #include "emscape/render/image.h"
-#include "emscape/render/legend.h"
 
 namespace emscape::render {
 
@@ -29,8 +30,8 @@ struct Marker {
 struct Track {
   MarkerKind kind = MarkerKind::platform;
   std::vector<Vec3d> points_m;  ///< frame metres, in the order of time
-  /// How far it has come: 2.5 is half way from points_m[2] to points_m[3]. What lies behind is drawn
-  /// brighter.
+  /// How far it has come: 2.5 is half way from points_m[2] to points_m[3]. The part behind it is
+  /// drawn brighter.
   double travelled = 0;
 };
 
@@ -53,12 +54,18 @@ struct Annotations {
   Theme theme = Theme::dark;
 };
 
-/// Space that annotations take from a picture: give it to makeCamera() so that the box does not lie below
-/// them.
+/// Space that annotations take from a picture: give it to makeCamera() so that they do not cover the
+/// box.
 FrameMargins overlayMargins(ImageSize size, const Annotations& annotations);
 
 /// Whether the ground hides a position (frame metres); empty: nothing is hidden.
 using HiddenTest = std::function<bool(const Vec3d& frame_m)>;
+
+/// Draws both layers. What is cast put over `behind`, and `front` over that, is the picture of compose(); at
+/// most two levels apart, as each layer is rounded.
+/// @param layers  its memory is used again
+void drawLayers(OverlayLayers& layers, ImageSize size, const Camera& camera, const SceneBox& box,
+                const Annotations& annotations, const HiddenTest& hidden = {});
 
 /// Draws the finished, opaque picture.
 Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,

@@ -1,10 +1,10 @@
-/// The parts of a finished picture; used by overlay.cpp alone.
+/// The parts of a finished picture's annotations; internal to this library.
 #pragma once
 
 #include <vector>
 
-#include "emscape/render/overlay.h"
-#include "render/canvas.h"
+#include "emscape/render/annotate/overlay.h"
+#include "render/annotate/canvas.h"
 
 namespace emscape::render {
 

@@ -1,4 +1,5 @@
-/// A volume as the ray casters want it: nothing of what lies below the ground reaches into the air.
+/// A volume prepared for ray casting: masked voxels repeat the first value above them, so that interpolation
+/// near the ground does not blend in the floor.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +14,9 @@
 namespace emscape::render {
 
 /// Keeps a volume and what is derived from its values. Memory is kept from one volume to the next of the same
-/// grid. Without a mask the values are read where they lie; with one they are copied, and each masked voxel
-/// takes the value of the first voxel above it that is not. Finite values are kept in 16 bits too.
-class ReadyVolume {
+/// grid. Values without a mask are read in place; values with one are copied. Finite values are also kept in
+/// 16 bits.
+class PreparedVolume {
  public:
   /// @throws Error (bad_input) unless the volume holds as many values as voxels
   void set(std::shared_ptr<const volume::DenseVolume> volume);
@@ -23,7 +24,7 @@ class ReadyVolume {
   bool isSet() const { return volume_ != nullptr; }
   const volume::DenseVolume& volume() const { return *volume_; }
   VolumeView view() const;
-  /// Every sample's value lies in its brick's range, whether taken of the values or of the codes.
+  /// Every sample is within its brick's range, read from the values or from the codes.
   volume::BricksView bricks() const;
   float highest() const { return highest_; }  ///< of all values that a sample can have
 
@@ -40,7 +41,7 @@ class ReadyVolume {
   float highest_ = 0;
   bool all_finite_ = true;
   std::vector<std::int16_t> codes_;
-  CodedValues coded_;
+  QuantizedValues coded_;
 };
 
 }  // namespace emscape::render

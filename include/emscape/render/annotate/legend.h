@@ -1,4 +1,4 @@
-/// What stands beside the picture of a volume: colour bar or categories, at round values.
+/// The legend of a picture: colour bar or categories, with ticks at round values.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "render/overlay_parts.h"
+#include "render/annotate/overlay_parts.h"
 
 namespace emscape::render {
 namespace {

@@ -1,4 +1,4 @@
-#include "render/ready_volume.h"
+#include "render/prepared_volume.h"
 
 #include <fmt/format.h>
 
@@ -22,13 +22,13 @@ void checkSize(const volume::DenseVolume& volume) {
   }
 }
 
-/// Codes of a run of values; what lies beyond the codes' range, which no sample shows, takes the nearest.
+/// Codes of a run of values. A value outside the codes' range, which no sample shows, takes the nearest code.
 /// @return whether all values are finite
-EMSCAPE_SIMD_CLONES bool encodeRun(const float* values, int count, const CodedValues& coded,
+EMSCAPE_SIMD_CLONES bool encodeRun(const float* values, int count, const QuantizedValues& coded,
                                    std::int16_t* codes) {
   const float middle = coded.middle;
   const float codes_per_unit = coded.step_per_weight > 0.0F ? 1.0F / coded.step() : 0.0F;
-  constexpr float kLargest = CodedValues::kLargest;
+  constexpr float kLargest = QuantizedValues::kLargest;
   int others = 0;
   for (int i = 0; i < count; ++i) {
     const float from_middle = values[i] - middle;
@@ -37,14 +37,15 @@ EMSCAPE_SIMD_CLONES bool encodeRun(const float* values, int count, const CodedVa
     code = code > -kLargest ? code : -kLargest;  // NaN too
     code = code < kLargest ? code : kLargest;
     // What is converted is positive, so that it is rounded.
-    codes[i] = static_cast<std::int16_t>(static_cast<int>(code + kLargest + 0.5F) - CodedValues::kLargest);
+    codes[i] =
+        static_cast<std::int16_t>(static_cast<int>(code + kLargest + 0.5F) - QuantizedValues::kLargest);
   }
   return others == 0;
 }
 
 }  // namespace
 
-void ReadyVolume::set(std::shared_ptr<const volume::DenseVolume> volume) {
+void PreparedVolume::set(std::shared_ptr<const volume::DenseVolume> volume) {
   checkSize(*volume);
   volume_ = std::move(volume);
   const auto& mask = volume_->first_valid_k;
@@ -59,7 +60,7 @@ void ReadyVolume::set(std::shared_ptr<const volume::DenseVolume> volume) {
   encode(shown);
 }
 
-void ReadyVolume::encode(const volume::DenseVolume& shown) {
+void PreparedVolume::encode(const volume::DenseVolume& shown) {
   const volume::BricksView bricks = bricks_->view();
   ranges_.assign(bricks.ranges, bricks.ranges + bricks.dims.count());
   float lowest = std::numeric_limits<float>::infinity();
@@ -70,8 +71,8 @@ void ReadyVolume::encode(const volume::DenseVolume& shown) {
   }
   // Of halves, as the difference of two floats can be infinite.
   coded_.middle = 0.5F * lowest + 0.5F * highest_;
-  const float step = (highest_ - coded_.middle) / CodedValues::kLargest;
-  coded_.step_per_weight = step / CodedValues::kWeights;
+  const float step = (highest_ - coded_.middle) / QuantizedValues::kLargest;
+  coded_.step_per_weight = step / QuantizedValues::kWeights;
   const bool too_small = highest_ > lowest && !(coded_.step_per_weight >= std::numeric_limits<float>::min());
 
   codes_.resize(shown.values.size());
@@ -87,11 +88,11 @@ void ReadyVolume::encode(const volume::DenseVolume& shown) {
   coded_.codes = all_finite_ && !too_small ? codes_.data() : nullptr;
   if (coded_.codes == nullptr) return;
 
-  // A value's code rounds; where codes are sampled, a brick's values so may lie beyond its range.
+  // Codes are rounded, so that a sampled code may be outside the range of its brick's values.
   const auto coded = [&](float value) {
     std::int16_t code = 0;
     encodeRun(&value, 1, coded_, &code);
-    return coded_.value(static_cast<float>(code * CodedValues::kWeights));
+    return coded_.value(static_cast<float>(code * QuantizedValues::kWeights));
   };
   for (volume::ValueRange& range : ranges_) {
     if (range.empty()) continue;
@@ -100,7 +101,7 @@ void ReadyVolume::encode(const volume::DenseVolume& shown) {
   }
 }
 
-void ReadyVolume::fillBelowMask() {
+void PreparedVolume::fillBelowMask() {
   filled_.grid = volume_->grid;
   filled_.values.resize(volume_->values.size());
   filled_.first_valid_k = volume_->first_valid_k;
@@ -124,13 +125,13 @@ void ReadyVolume::fillBelowMask() {
   });
 }
 
-volume::BricksView ReadyVolume::bricks() const {
+volume::BricksView PreparedVolume::bricks() const {
   volume::BricksView bricks = bricks_->view();
   bricks.ranges = ranges_.data();
   return bricks;
 }
 
-VolumeView ReadyVolume::view() const {
+VolumeView PreparedVolume::view() const {
   VolumeView view;
   view.values = masked_below_ > 0 ? filled_.values.data() : volume_->values.data();
   view.dims = volume_->grid.dims;

@@ -1,4 +1,4 @@
-#include "render/ready_volume.h"
+#include "render/prepared_volume.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@ namespace emscape::render {
 namespace {
 
 float codedValue(const VolumeView& view, std::size_t voxel) {
-  return view.coded.value(static_cast<float>(view.coded.codes[voxel] * CodedValues::kWeights));
+  return view.coded.value(static_cast<float>(view.coded.codes[voxel] * QuantizedValues::kWeights));
 }
 
-TEST(ReadyVolume, CodesAreWithinHalfAStepOfTheValues) {
+TEST(PreparedVolume, CodesAreWithinHalfAStepOfTheValues) {
   const auto volume = testing::makeEmeVolume({23, 17, 11}, 3);
-  ReadyVolume ready;
+  PreparedVolume ready;
   ready.set(volume);
   const VolumeView view = ready.view();
   ASSERT_NE(view.coded.codes, nullptr);
@@ -28,9 +28,9 @@ TEST(ReadyVolume, CodesAreWithinHalfAStepOfTheValues) {
   }
 }
 
-TEST(ReadyVolume, CodedValuesLieInTheirBricksRange) {
+TEST(PreparedVolume, CodedValuesLieInTheirBricksRange) {
   const Dims dims{30, 20, 10};
-  ReadyVolume ready;
+  PreparedVolume ready;
   ready.set(testing::makeEmeVolume(dims, 8));
   const VolumeView view = ready.view();
   const volume::BricksView bricks = ready.bricks();
@@ -48,15 +48,15 @@ TEST(ReadyVolume, CodedValuesLieInTheirBricksRange) {
   }
 }
 
-TEST(ReadyVolume, AConstantIsCodedExactly) {
-  ReadyVolume ready;
+TEST(PreparedVolume, AConstantIsCodedExactly) {
+  PreparedVolume ready;
   ready.set(testing::makeVolume({4, 4, 4}, {1, 1, 1}, [](int, int, int) { return 0.3F; }));
   EXPECT_EQ(codedValue(ready.view(), 5), 0.3F);
 }
 
-TEST(ReadyVolume, ValuesThatAreNotFiniteHaveNoCodes) {
+TEST(PreparedVolume, ValuesThatAreNotFiniteHaveNoCodes) {
   for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    ReadyVolume ready;
+    PreparedVolume ready;
     ready.set(testing::makeVolume({4, 4, 4}, {1, 1, 1},
                                   [&](int i, int, int k) { return i + k == 0 ? odd : 1.0F; }));
     EXPECT_EQ(ready.view().coded.codes, nullptr);
@@ -64,7 +64,7 @@ TEST(ReadyVolume, ValuesThatAreNotFiniteHaveNoCodes) {
   }
 }
 
-TEST(ReadyVolume, AnOutlierDoesNotCoarsenThePicture) {
+TEST(PreparedVolume, AnOutlierDoesNotCoarsenThePicture) {
   Renderer renderer;
   renderer.setVolume(testing::makeVolume({20, 20, 20}, {1, 1, 1}, [](int i, int j, int k) {
     return i + j + k == 0 ? 1e7F : static_cast<float>((7 * i + 5 * j + 3 * k) % 11) / 10;

@@ -1,4 +1,4 @@
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "emscape/base/error.h"
-#include "render/overlay_parts.h"
+#include "render/annotate/overlay_parts.h"
 
 namespace emscape::render {
 namespace {

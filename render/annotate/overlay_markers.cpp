@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
-#include "render/overlay_parts.h"
+#include "render/annotate/overlay_parts.h"
 
 namespace emscape::render {
 namespace {
