@@ -1,6 +1,7 @@
 /// A file that another program drags onto the window: both sides of XDND.
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
+#include <X11/Xutil.h>
 // X11's macros spoil other headers
 #undef None
 #undef Bool
@@ -91,10 +92,10 @@ class DragSource {
 
 /// The window with a name in its title, among all of a display.
 ::Window windowNamed(Display* display, ::Window below, const std::string& name) {
-  char* title = nullptr;
-  const bool is_named =
-      XFetchName(display, below, &title) != 0 && title && std::string(title).find(name) == 0;
-  if (title) XFree(title);
+  XTextProperty title{};
+  const bool is_named = XGetWMName(display, below, &title) != 0 && title.value &&
+                        std::string(reinterpret_cast<const char*>(title.value)).find(name) == 0;
+  if (title.value) XFree(title.value);
   if (is_named) return below;
   ::Window root = 0, parent = 0, *children = nullptr, found = 0;
   unsigned count = 0;
