@@ -59,7 +59,7 @@ ViewTrial trialOf(const BenchViewOptions& options) {
   const auto scenario = scenario::loadScenario(options.input, options.edits);
   trial.times_s = scenario::timesOf(scenario->clock);
   const scenario::Emitter& emitter = scenario->emitters.front();
-  trial.edit = scenario::Edit{"emitters.\"" + emitter.name + "\".power_w", ""};
+  trial.edit = scenario::Edit{"emitters." + scenario::pathStep(emitter.name) + ".power_w", ""};
   trial.edit_value = emitter.power_w;
   return trial;
 }

@@ -29,7 +29,7 @@ void show(const ViewOptions& options) {
   setThreadLimit(options.threads);
   std::signal(SIGPIPE, SIG_IGN);  // ffmpeg that went away is an error of the write
   // A wrong name, and all faults of a scenario, are told before a window appears.
-  if (playback::inputKindOf(options.input) == playback::InputKind::scenario &&
+  if (!options.input.empty() && playback::inputKindOf(options.input) == playback::InputKind::scenario &&
       !scenario::parseScenario(options.input, options.view.edits).scenario) {
     scenario::loadScenario(options.input, options.view.edits);
   }

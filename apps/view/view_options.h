@@ -10,7 +10,7 @@
 namespace emscape::view {
 
 struct ViewOptions {
-  std::string input;
+  std::string input;             ///< empty: none yet, the window asks for one
   std::string scenario;          ///< beside volumes; may be empty
   playback::ViewState view;      ///< shown first; its size is that of the picture
   std::string state;             ///< file that `view` was read from; empty: none, or options changed it

@@ -31,6 +31,7 @@
 #include "emscape/playback/live_view.h"
 #include "emscape/playback/opacity_preset.h"
 #include "emscape/playback/painter.h"
+#include "emscape/playback/pick.h"
 #include "emscape/playback/picture_series.h"
 #include "emscape/playback/picture_sink.h"
 #include "emscape/playback/prefetching_source.h"

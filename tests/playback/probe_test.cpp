@@ -4,6 +4,7 @@
 #include <random>
 
 #include "emscape/emfield/field_solver.h"
+#include "emscape/playback/pick.h"
 #include "emscape/playback/scene.h"
 #include "emscape/scenario/snapshot.h"
 #include "tests/playback/playback_samples.h"

@@ -1,5 +1,5 @@
 #include "apps/view/platform_drag.h"
-#include "emscape/playback/probe.h"
+#include "emscape/playback/pick.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {

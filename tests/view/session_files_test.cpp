@@ -221,7 +221,16 @@ TEST_F(Opener, EditsAreKeptAMomentLaterAndRestored) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   ASSERT_TRUE(waitForAutosave(shown_, true));
+  // A window beside it is not asked.
+  {
+    SessionSample beside(optionsFor(shippedScenario("quick.yaml")));
+    beside->shown("");
+    ASSERT_TRUE(beside.settle());
+    EXPECT_FALSE(beside->keptView());
+  }
   // The program ends before its time; another one opens the input.
+  shown_.session.reset();
+  shown_.files->autosaves.reset();
   SessionSample again(optionsFor(shippedScenario("quick.yaml")));
   SessionOpener opener(again.files, [&again](const ViewOptions& options) { return again.make(options); });
   again->shown("");

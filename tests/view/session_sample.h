@@ -26,6 +26,7 @@ using emscape::test::errorOf;
 using emscape::test::readFile;
 using emscape::test::shippedScenario;
 using emscape::test::TemporaryFolder;
+using emscape::test::writeFile;
 
 /// Notes what a session asks for.
 class NoWindow : public WindowControl {

@@ -144,6 +144,8 @@ TEST(SessionState, IsSavedAndShownAgain) {
   shown.perform(R"({"do":"bookmark","number":3})");
   shown.perform(R"({"do":"rate","value":5})");
   shown.perform(R"({"do":"loop"})");
+  shown.perform(R"({"do":"play_from","time_s":1})");
+  shown.perform(R"({"do":"timeline","from_s":0.5,"to_s":3})");
   shown.perform(R"({"do":"opacity","factor":2})");
   shown.perform(R"({"do":"panel","name":"colors","open":true})");
   ASSERT_TRUE(shown.settle());
@@ -160,6 +162,10 @@ TEST(SessionState, IsSavedAndShownAgain) {
   EXPECT_TRUE(again->picture()->image.rgba == shown->picture()->image.rgba);
   EXPECT_TRUE(again->panels.colors);
   EXPECT_TRUE(again->timeline().loop());
+  EXPECT_EQ(again->timeline().playRange().begin_s, 1);
+  EXPECT_EQ(again->timeline().playRange().end_s, shown->timeline().end_s());
+  EXPECT_EQ(again->timeline().visible().begin_s, 0.5);
+  EXPECT_EQ(again->timeline().visible().end_s, 3);
 }
 
 TEST(SessionState, AViewThatCannotBeWrittenIsTold) {
