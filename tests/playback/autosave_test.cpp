@@ -3,6 +3,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
+
 #include "base/utc.h"
 #include "tests/playback/playback_samples.h"
 

@@ -1,6 +1,7 @@
 #include "apps/view/file_watch.h"
 
 #include <atomic>
+#include <filesystem>
 #include <thread>
 
 #include "apps/view/session_opener.h"

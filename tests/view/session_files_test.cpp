@@ -1,6 +1,10 @@
 /// Opening, recent files, autosave, recording: what a session does with files, without a window.
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
 #include "apps/view/opening.h"
 #include "apps/view/recent_files.h"
 #include "apps/view/session_opener.h"
