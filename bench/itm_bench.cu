@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "bench/itm_cases.h"
+#include "apps/emscape/itm_cases.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "apps/emscape/interrupt.h"
-#include "bench/itm_cases.h"
+#include "apps/emscape/itm_cases.h"
 #include "emfield/models/diffraction_sweep.h"
 #include "emfield/models/gases.h"
 #include "emfield/models/itm.h"

@@ -13,9 +13,10 @@
 #include "emfield/models/gases.h"
 #include "emfield/models/p528.h"
 #include "emfield/models/rain.h"
-#include "emscape/base/error.h"
 #include "emscape/scenario/scenario_file.h"
 #include "tests/emfield/excess_paths.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
 
 namespace emscape::emfield {
 namespace {
@@ -106,7 +107,6 @@ Spread bisectionErrors(const scenario::Scenario& scenario, const scenario::Terra
 
 TEST(ExcessModels, HeightsBetweenEvaluationsOfEdgesAreWithinATenthOfADecibel) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
   const auto scenario = whiteMountains(1e9, 15);
   for (const auto method : {scenario::DiffractionMethod::single_edge, scenario::DiffractionMethod::deygout}) {
     scenario->emitters[0].diffraction.method = method;
@@ -118,7 +118,6 @@ TEST(ExcessModels, HeightsBetweenEvaluationsOfEdgesAreWithinATenthOfADecibel) {
 
 TEST(ExcessModels, HeightsBetweenEvaluationsOfItmAreWithinATenthOfADecibelButForItsJumps) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
   const auto scenario = whiteMountains(1e9, 15);
   scenario->emitters[0].propagation = PropagationModel::itm;
   Spread spread = bisectionErrors(*scenario, *terrain, 60);
@@ -148,7 +147,6 @@ TEST(ExcessModels, AColumnInPartsIsTheColumn) {
 
 TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
   const auto scenario = whiteMountains(1e9, 15);
   DiffractionParameters parameters;
   parameters.frequency_hz = 1e9;
@@ -180,7 +178,6 @@ TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
 
 TEST(ExcessModels, ItmStandsNearTheGroundAndGoesOverToDiffractionAboveWithoutJumps) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
   const auto scenario = whiteMountains(300e6, 15);
   std::mt19937 random(5);
   const ProfileData profile = randomProfile(*terrain, random, 250);
@@ -425,7 +422,7 @@ TEST(ExcessModels, P528BetweenTheTablesNodesIsTheCurve) {
 }
 
 TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
-  const std::filesystem::path folder = std::filesystem::path(EMSCAPE_SOURCE_DIR) / "scenarios/models";
+  const std::filesystem::path folder = test::shippedScenario("models");
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     SCOPED_TRACE(entry.path().filename());
@@ -443,13 +440,9 @@ TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
 TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {
   auto scenario = smoothEarth(PropagationModel::p528, 50e6, 20);
   scenario->emitters[0].frequency_place = {"my.yaml", 12, 7};
-  const auto messageOf = [&]() -> std::string {
-    try {
-      FieldSolver solver(scenario, nullptr, {});
-    } catch (const Error& error) {
-      return toString(error.place()) + ": " + error.message();
-    }
-    return "no error";
+  const auto messageOf = [&] {
+    const Error error = test::thrownBy([&] { FieldSolver solver(scenario, nullptr, {}); });
+    return toString(error.place()) + ": " + error.message();
   };
   EXPECT_EQ(messageOf(),
             "my.yaml:12:7: emitter 'site': 'p528': frequency 50 MHz is outside 100..30000 MHz: refused");

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <set>
 
-#include "emscape/base/error.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/scenario_file.h"
 #include "scenario/schema.h"
 #include "tests/emfield/test_scenario.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
 
 namespace emscape::emfield {
 namespace {
@@ -33,18 +34,14 @@ TEST(Quantities, StandInTheOrderOfTheEnumeration) {
 }
 
 TEST(Quantities, RefusesOthersWithTheNamesOfAll) {
-  try {
-    quantityFromName("snr");
-    ADD_FAILURE() << "nothing was thrown";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("unknown quantity 'snr'; one of power_density_dbwm2, "));
-    EXPECT_THAT(error.what(), HasSubstr("burn_through_margin_db"));
-  }
+  const std::string error = test::errorOf([] { quantityFromName("snr"); });
+  EXPECT_THAT(error, HasSubstr("unknown quantity 'snr'; one of power_density_dbwm2, "));
+  EXPECT_THAT(error, HasSubstr("burn_through_margin_db"));
 }
 
 TEST(Quantities, OfTheJammingScenarioShowWhatTheRidgeHides) {
-  auto scenario = std::make_shared<scenario::Scenario>(
-      *scenario::loadScenario(EMSCAPE_SOURCE_DIR "/scenarios/jamming.yaml"));
+  auto scenario =
+      std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("jamming.yaml")));
   scenario->region.dims = {40, 40, 16};
   const auto terrain = scenario::loadTerrain(*scenario);
   FieldSolver solver(scenario, terrain, {});

@@ -52,11 +52,11 @@ TEST_F(Autosave, OutlivesItsProgramAndIsOffered) {
 
 TEST_F(Autosave, BelongsToTheInputWhereverItIsCalledFrom) {
   const std::string input = quickScenario(folder_);
-  EXPECT_EQ(autosaveFileOf(input), autosaveFileOf((folder_ / "state/../scenario.yaml").string()));
+  EXPECT_EQ(autosaveFileOf(input), autosaveFileOf(folder_ / "state/../scenario.yaml"));
   EXPECT_EQ(autosaveFileOf(folder_.path().string()), autosaveFileOf(folder_.path().string()));
-  EXPECT_NE(autosaveFileOf(input), autosaveFileOf((folder_ / "other/scenario.yaml").string()));
+  EXPECT_NE(autosaveFileOf(input), autosaveFileOf(folder_ / "other/scenario.yaml"));
   saves_.keep(input, {});
-  EXPECT_FALSE(saves_.find((folder_ / "other/scenario.yaml").string()));
+  EXPECT_FALSE(saves_.find(folder_ / "other/scenario.yaml"));
 }
 
 TEST_F(Autosave, SaysThatTheInputWasWrittenSince) {

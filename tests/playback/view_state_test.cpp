@@ -229,7 +229,7 @@ TEST(ViewState, ATransferFunctionIsAsInItsOwnFile) {
 
 TEST(ViewState, WhatCouldNotBeReadAgainIsNotWritten) {
   const TemporaryFolder folder;
-  const std::string file = (folder / "a.view.json").string();
+  const std::string file = folder / "a.view.json";
   ViewState state;
   writeViewState(file, state);
   const std::string before = readFile(file);

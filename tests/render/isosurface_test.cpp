@@ -7,11 +7,11 @@
 #include <limits>
 #include <random>
 
-#include "emscape/base/error.h"
 #include "emscape/render/renderer.h"
 #include "render/prepared_volume.h"
 #include "render/raycast.h"
 #include "tests/render/scenes.h"
+#include "tests/support/errors.h"
 
 namespace emscape::render {
 namespace {
@@ -173,12 +173,7 @@ TEST(Isosurface, IsNotDrawnAgainstMaskedOrUnknownVoxels) {
 }
 
 std::string messageOf(double iso_value, const volume::DenseVolume& volume) {
-  try {
-    checkIsoValue(iso_value, volume);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::errorOf([&] { checkIsoValue(iso_value, volume); });
 }
 
 TEST(IsoValue, OutsideTheValuesIsRefusedWithTheirRange) {

@@ -1,10 +1,11 @@
 #include "apps/view/file_watch.h"
 
 #include <atomic>
+#include <thread>
 
 #include "apps/view/session_opener.h"
 #include "emscape/scenario/scenario_file.h"
-#include "tests/view/session_samples.h"
+#include "tests/view/session_sample.h"
 
 namespace emscape::view::test {
 namespace {
@@ -15,13 +16,9 @@ using testing::IsEmpty;
 
 constexpr double kQuick_s = 0.01;
 
-void write(const std::string& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
-
 class WatchedFolder : public testing::Test {
  protected:
-  WatchedFolder() { write(file_, "a"); }
+  WatchedFolder() { writeFile(file_, "a"); }
 
   /// What is told within a moment.
   std::vector<std::string> changes() {
@@ -46,17 +43,17 @@ class WatchedFolder : public testing::Test {
 TEST_F(WatchedFolder, AChangeIsToldOnce) {
   watch_.watch({file_});
   EXPECT_THAT(changesSoon(), IsEmpty());
-  write(file_, "longer");
+  writeFile(file_, "longer");
   EXPECT_THAT(changes(), ElementsAre(file_));
   EXPECT_THAT(changesSoon(), IsEmpty());
   EXPECT_EQ(wakes_, 1);
-  write(file_, "longer still");
+  writeFile(file_, "longer still");
   EXPECT_THAT(changes(), ElementsAre(file_));
 }
 
 TEST_F(WatchedFolder, AFileThatIsReplacedHasChanged) {
   watch_.watch({file_});
-  write(folder_ / "b", "b");
+  writeFile(folder_ / "b", "b");
   fs::last_write_time(folder_ / "b", fs::last_write_time(file_));
   fs::rename(folder_ / "b", file_);
   EXPECT_THAT(changes(), ElementsAre(file_));
@@ -66,43 +63,43 @@ TEST_F(WatchedFolder, AFileThatIsGoneIsToldWhenItIsBack) {
   watch_.watch({file_});
   fs::remove(file_);
   EXPECT_THAT(changesSoon(), IsEmpty());
-  write(file_, "back");
+  writeFile(file_, "back");
   EXPECT_THAT(changes(), ElementsAre(file_));
 }
 
 TEST_F(WatchedFolder, OnlyTheFilesThatAreAskedForCount) {
-  write(folder_ / "b.yaml", "b");
+  writeFile(folder_ / "b.yaml", "b");
   watch_.watch({file_});
-  write(folder_ / "b.yaml", "longer");
+  writeFile(folder_ / "b.yaml", "longer");
   EXPECT_THAT(changesSoon(), IsEmpty());
   watch_.watch({file_, folder_ / "b.yaml"});
   EXPECT_THAT(changesSoon(), IsEmpty());
-  write(folder_ / "b.yaml", "longer still");
+  writeFile(folder_ / "b.yaml", "longer still");
   EXPECT_THAT(changes(), ElementsAre(folder_ / "b.yaml"));
   watch_.watch({});
-  write(file_, "not asked for");
+  writeFile(file_, "not asked for");
   EXPECT_THAT(changesSoon(), IsEmpty());
 }
 
 TEST(ChangedFiles, AreOfferedForReloadingWithTheEditsThatApply) {
   const StateFolder folder;
   const std::string file = folder / "own.yaml";
-  const std::string text = readText(shippedScenario("quick.yaml"));
-  write(file, text);
-  Shown shown(optionsFor(file));
+  const std::string text = readFile(shippedScenario("quick.yaml"));
+  writeFile(file, text);
+  SessionSample shown(optionsFor(file));
   SessionOpener opener(shown.files, [&shown](const ViewOptions& options) { return shown.make(options); });
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  ASSERT_TRUE(shown.settle());
   shown.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   EXPECT_FALSE(shown->panels.changed);
-  write(file, "# another comment\n" + text);
-  ASSERT_TRUE(waitFor(*shown, [&] { return shown->panels.changed; }));
+  writeFile(file, "# another comment\n" + text);
+  ASSERT_TRUE(shown.waitUntil([&] { return shown->panels.changed; }));
   EXPECT_THAT(shown->changedFiles(), ElementsAre(file));
   shown.perform(R"({"do":"reload"})");
   for (int i = 0; i < 12000 && (opener.update(shown.session), opener.active()); ++i) {
     shown->update();
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  ASSERT_TRUE(shown.settle());
   EXPECT_FALSE(shown->panels.changed);
   EXPECT_THAT(shown->changedFiles(), IsEmpty());
   EXPECT_EQ(shown->viewState().edits.size(), 1U);
