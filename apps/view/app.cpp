@@ -13,7 +13,9 @@
 
 #include "apps/view/theme.h"
 #include "base/stopwatch.h"
+#include "emscape/base/backend.h"
 #include "emscape/base/error.h"
+#include "emscape/base/log.h"
 
 namespace emscape::view {
 namespace {
@@ -37,19 +39,28 @@ std::string titleOf(const ViewOptions& options) {
 
 }  // namespace
 
-App::App(const ViewOptions& options, const playback::ComputeTarget& target)
+App::App(const ViewOptions& options)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
       window_(titleOf(options), options.window_size.value_or(kUsualSize), options.scale),
       shares_gpu_(options.share_gpu && render::openGlSharesGpu()),
-      target_(target),
-      session_(makeSession(options)),
+      session_(makeFirstSession(options)),
       opener_(files_, [this](const ViewOptions& next) { return makeSession(next); }),
       window_fits_(options.window_size ? 0 : kWindowFits) {
   log_.write("start", {{"gl_renderer", window_.renderer()},
                        {"shares_gpu", shares_gpu_},
                        {"scale", window_.scale()},
                        {"input", options.input}});
+}
+
+std::unique_ptr<Session> App::makeFirstSession(const ViewOptions& options) {
+  return withBackendFallback(
+      parseBackend(options.backend),
+      [&](const ResolvedBackend& choice) {
+        target_ = {choice, volume::VoxelPrecision::float32};
+        return makeSession(options);
+      },
+      logInfo);
 }
 
 std::unique_ptr<Session> App::makeSession(const ViewOptions& options) {

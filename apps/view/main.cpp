@@ -2,11 +2,9 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <memory>
 #include <new>
 
 #include "apps/view/app.h"
-#include "emscape/base/backend.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
@@ -33,14 +31,7 @@ void show(const ViewOptions& options) {
       !scenario::parseScenario(options.input, options.view.edits).scenario) {
     scenario::loadScenario(options.input, options.view.edits);
   }
-  const std::unique_ptr<App> app = withBackendFallback(
-      parseBackend(options.backend),
-      [&](const ResolvedBackend& choice) {
-        return std::make_unique<App>(options,
-                                     playback::ComputeTarget{choice, volume::VoxelPrecision::float32});
-      },
-      [](const std::string& line) { logInfo(line); });
-  app->run();
+  App(options).run();
 }
 
 }  // namespace
