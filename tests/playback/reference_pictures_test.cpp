@@ -25,8 +25,10 @@ void PrintTo(const Shot& shot, std::ostream* out) {
 const Shot kShots[] = {
     {"camera", R"("camera": "orbit:azimuth_deg=215,elevation_deg=12,distance=0.9,projection=orthographic")"},
     {"ground", R"("camera": "orbit:azimuth_deg=120,elevation_deg=35,distance=0.8", "mode": "mip")"},
-    {"shading", R"("shading": true, "planes": ["vertical:bearing_deg=60,keep=left"])"},
-    {"isosurface", R"("mode": "iso", "iso_value": -40)"},
+    {"shading",
+     R"("camera": "orbit:azimuth_deg=150,elevation_deg=25,distance=0.8", "shading": true, "planes": ["vertical:bearing_deg=60,keep=left"])"},
+    {"isosurface",
+     R"("camera": "orbit:azimuth_deg=150,elevation_deg=25,distance=0.8", "mode": "iso", "iso_value": -40)"},
     {"legend", R"("theme": "light", "show_terrain": false)", 320, 240, true},
 };
 
