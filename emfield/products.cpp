@@ -1,6 +1,6 @@
 #include "emfield/products.h"
 
-#include "emfield/radar_receiver.h"
+#include "emfield/radar/receiver.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 

@@ -2,7 +2,7 @@
 #include "emfield/column_geometry.h"
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/fan_chord.h"
-#include "emfield/field_engine.h"
+#include "emfield/solver/field_engine.h"
 
 namespace emscape::emfield::cuda {
 namespace {

@@ -1,5 +1,5 @@
 // Detection statistics against closed forms; the radar equation, jamming and noise.
-#include "emfield/detection.h"
+#include "emfield/radar/detection.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "emfield/models/gases.h"
 #include "emfield/models/rain.h"
-#include "emfield/radar_equation.h"
+#include "emfield/radar/equation.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/emitter.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "emfield/radar_receiver.h"
+#include "emfield/radar/receiver.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/test_scenario.h"
 

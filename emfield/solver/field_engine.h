@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "emfield/combine.h"
-#include "emfield/field_plan.h"
 #include "emfield/grid_columns.h"
 #include "emfield/products.h"
+#include "emfield/solver/field_plan.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/volume/volume.h"

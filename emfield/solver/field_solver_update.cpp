@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "emfield/field_solver_impl.h"
+#include "emfield/solver/field_solver_impl.h"
 
 namespace emscape::emfield {
 namespace {

@@ -1,6 +1,6 @@
 // What the field takes of the memory of the host or of a GPU.
 
-#include "emfield/field_engine.h"
+#include "emfield/solver/field_engine.h"
 
 namespace emscape::emfield {
 

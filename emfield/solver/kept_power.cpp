@@ -1,6 +1,6 @@
-#include "emfield/kept_power.h"
+#include "emfield/solver/kept_power.h"
 
-#include "emfield/field_inputs.h"
+#include "emfield/solver/field_inputs.h"
 
 namespace emscape::emfield {
 

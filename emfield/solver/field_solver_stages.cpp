@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "emfield/excess/excess_model.h"
-#include "emfield/field_solver_impl.h"
 #include "emfield/model_check.h"
+#include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 

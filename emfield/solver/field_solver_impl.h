@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "emfield/field_engine.h"
-#include "emfield/field_inputs.h"
-#include "emfield/jamming.h"
+#include "emfield/link/jammers.h"
+#include "emfield/solver/field_engine.h"
+#include "emfield/solver/field_inputs.h"
 #include "emscape/emfield/field_solver.h"
 
 namespace emscape::emfield {

@@ -1,4 +1,4 @@
-#include "emfield/field_plan.h"
+#include "emfield/solver/field_plan.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "emfield/field_inputs.h"
+#include "emfield/solver/field_inputs.h"
 
 #include <algorithm>
 #include <tuple>

@@ -1,11 +1,11 @@
-#include "emfield/path_radar.h"
+#include "emfield/link/path_radar.h"
 
 #include <cmath>
 #include <vector>
 
-#include "emfield/jamming.h"
+#include "emfield/link/jammers.h"
 #include "emfield/products.h"
-#include "emfield/radar_receiver.h"
+#include "emfield/radar/receiver.h"
 #include "emscape/base/units.h"
 
 namespace emscape::emfield {

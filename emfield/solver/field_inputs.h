@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "emfield/field_engine.h"
+#include "emfield/solver/field_engine.h"
 
 namespace emscape::emfield {
 

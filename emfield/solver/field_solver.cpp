@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "emfield/excess/excess_model.h"
-#include "emfield/field_solver_impl.h"
+#include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"

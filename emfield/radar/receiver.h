@@ -1,9 +1,9 @@
 /// A scenario's radars, jammers and receivers in the terms of the radar equation and of detection.
 #pragma once
 
-#include "emfield/detection.h"
-#include "emfield/radar_equation.h"
-#include "emfield/radar_look.h"
+#include "emfield/radar/detection.h"
+#include "emfield/radar/equation.h"
+#include "emfield/radar/look.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/scenario.h"
 

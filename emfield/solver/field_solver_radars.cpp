@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "emfield/field_solver_impl.h"
-#include "emfield/radar_receiver.h"
+#include "emfield/radar/receiver.h"
+#include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/units.h"
 
 namespace emscape::emfield {

@@ -1,4 +1,4 @@
-#include "emfield/field_engine.h"
+#include "emfield/solver/field_engine.h"
 #include "emscape/base/error.h"
 
 namespace emscape::emfield {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <limits>
 
-#include "emfield/detection.h"
-#include "emfield/path_radar.h"
-#include "emfield/path_verdict.h"
+#include "emfield/link/path_radar.h"
+#include "emfield/link/path_verdict.h"
 #include "emfield/products.h"
-#include "emfield/radar_receiver.h"
+#include "emfield/radar/detection.h"
+#include "emfield/radar/receiver.h"
 #include "emfield/station.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/base/units.h"

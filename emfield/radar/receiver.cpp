@@ -1,4 +1,4 @@
-#include "emfield/radar_receiver.h"
+#include "emfield/radar/receiver.h"
 
 #include <algorithm>
 #include <cmath>

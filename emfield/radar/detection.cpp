@@ -1,4 +1,4 @@
-#include "emfield/detection.h"
+#include "emfield/radar/detection.h"
 
 #include <fmt/core.h>
 

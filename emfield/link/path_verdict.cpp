@@ -1,4 +1,4 @@
-#include "emfield/path_verdict.h"
+#include "emfield/link/path_verdict.h"
 
 #include <fmt/format.h>
 
