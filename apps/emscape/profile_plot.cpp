@@ -263,7 +263,7 @@ class ProfilePlot {
     const emfield::PathEnd& end = profile_.end;
     canvas_.text(fmt::format("{} to {:.5f}, {:.5f} deg   ({:.4g} MHz, {}, t = {:g} s)", budget_.emitter,
                              end.position.latitude_deg, end.position.longitude_deg,
-                             budget_.frequency_hz / 1e6, scenario::toString(budget_.model), budget_.time_s),
+                             budget_.frequency_hz / 1e6, toString(budget_.model), budget_.time_s),
                  {frame_.x, 26 * unit_}, 20 * unit_, kText, Align::left, Weight::bold);
     double y = 54 * unit_;
     for (const std::string& line : wrapped(budget_.verdict, frame_.width, 16 * unit_)) {

@@ -102,7 +102,7 @@ __global__ void grazeKernel(const FanPiece* pieces) {
 #pragma unroll
     for (int n = 0; n < kAhead; ++n) {
       if (begin + n >= used) break;
-      highest = steeper(highest, here[n]);
+      highest = propagation::steeper(highest, here[n]);
       slopes[(begin + n) * piece.range_stride] = highest;
     }
   }

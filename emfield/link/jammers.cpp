@@ -59,7 +59,7 @@ std::vector<JammerInSight> jammersInSight(const scenario::Snapshot& snapshot, in
     } else {
       try {
         const PathBudget budget = pathBudget(snapshot, j, {at.position, at.height_msl_m},
-                                             scenario.emitters[j].propagation, terrain, resolution);
+                                             scenario.emitters[j].propagation.model, terrain, resolution);
         jammer.power_density_wm2 = dbToRatio(budget.find("power_density_dbwm2")->value);
         ray.z += refractionLift_m(station, budget.profile.range_m, level_m);
       } catch (const Error& error) {

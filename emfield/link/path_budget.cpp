@@ -21,6 +21,7 @@ namespace {
 
 using scenario::Emitter;
 using scenario::EmitterState;
+using scenario::Quantity;
 using Kind = BudgetTerm::Kind;
 
 /// Ranges at which rays from a height touch a smooth earth at mean sea level.
@@ -113,10 +114,9 @@ void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, dou
       {"isotropic_area_dbm2", "area of an isotropic antenna", area_db, "dBm2", "lambda^2 / (4 pi)"});
   terms.push_back({"receiver_antenna_db", "receiver's antenna gain less losses", antenna_db, "dB",
                    fmt::format("receiver '{}'", receiver.name)});
-  terms.push_back(
-      {"polarization_db", "polarisation mismatch", polarization_db, "dB",
-       fmt::format("{} to {}", scenario::toString(emitter.polarization),
-                   receiver.polarization ? scenario::toString(*receiver.polarization) : "matched")});
+  terms.push_back({"polarization_db", "polarisation mismatch", polarization_db, "dB",
+                   fmt::format("{} to {}", toString(emitter.polarization),
+                               receiver.polarization ? toString(*receiver.polarization) : "matched")});
   terms.push_back({"in_band_db", "part of the signal within the receiver's band",
                    of_one_watt_dbm - 30 - area_db - antenna_db - polarization_db, "dB", ""});
   terms.push_back(
@@ -159,8 +159,8 @@ std::vector<BudgetTerm> termsOf(const scenario::Snapshot& snapshot, int emitter_
   terms.push_back({"spreading_dbm2", "spreading over the slant range", spreading_db, "dB/m2",
                    fmt::format("1 / (4 pi R^2), R = {:.3f} km", distance_m / 1000)});
   level_db += spreading_db;
-  for (const ExcessPart& part : budget.excess.parts) {
-    terms.push_back({part.key + "_db", part.label, -part.loss_db, "dB", scenario::toString(budget.model)});
+  for (const propagation::ExcessPart& part : budget.excess.parts) {
+    terms.push_back({part.key + "_db", part.label, -part.loss_db, "dB", toString(budget.model)});
     level_db -= part.loss_db;
   }
   terms.push_back({"power_density_dbwm2", "power density", level_db, "dBW/m2", "", Kind::sum});
@@ -189,13 +189,13 @@ const BudgetTerm* PathBudget::find(const std::string& key) const {
 }
 
 PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, const PathEnd& point,
-                      scenario::PropagationModel model, const scenario::Terrain* terrain,
+                      propagation::PropagationModel model, const scenario::Terrain* terrain,
                       const FanResolution& resolution) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const Emitter& emitter = scenario.emitters[emitter_index];
   const EmitterState& state = snapshot.emitters[emitter_index];
   Emitter by_model = emitter;
-  by_model.propagation = model;
+  by_model.propagation.model = model;
   PathBudget budget;
   budget.emitter = emitter.name;
   budget.time_s = snapshot.time_s;
@@ -225,7 +225,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
 
   budget.pointing = pointingOf(emitter, state.beam, ray);
   budget.obstacles = pathObstacles(profile, wavelength);
-  budget.excess = pathExcess(scenario, by_model, state, profile, terrain, resolution);
+  budget.excess = pathExcess(scenario, by_model, profile, terrain, resolution);
   budget.warnings = budget.excess.warnings;
   if (geometry.slant_range_m < geometry.far_field_m) {
     budget.warnings.push_back(
@@ -245,7 +245,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
 }
 
 PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
-                      scenario::PropagationModel model, const scenario::Terrain* terrain) {
+                      propagation::PropagationModel model, const scenario::Terrain* terrain) {
   return pathBudget(snapshot, emitter, point, model, terrain,
                     fanResolution(gridOf(snapshot.scenario->region), terrain));
 }

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emfield/models/diffraction_knife_edge.h"
-#include "emfield/models/horizon.h"
 #include "emfield/station.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/base/error.h"
+#include "propagation/diffraction/knife_edge.h"
+#include "propagation/horizon/horizon.h"
 
 namespace emscape::emfield {
 namespace {
@@ -49,7 +49,7 @@ PathObstacle obstacleAt(const PathProfile& profile, int post, double wavelength_
   obstacle.clearance_m = profile.clearance_m(post);
   obstacle.fresnel_radius_m = profile.fresnelRadius_m(post, wavelength_m);
   obstacle.nu = -std::sqrt(2.0) * obstacle.clearanceInFresnelRadii();
-  obstacle.knife_edge_db = knifeEdgeDb(obstacle.nu);
+  obstacle.knife_edge_db = propagation::knifeEdgeDb(obstacle.nu);
   obstacle.is_earth_bulge = obstacle.clearance_m < 0 && obstacle.clearance_m + profile.bulge_m(post) >= 0;
   return obstacle;
 }
@@ -90,7 +90,7 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_f
   profile.ranges_m = std::move(path.ranges_m);
   if (terrain != nullptr) checkTerrain(profile, *terrain);
 
-  const HorizonGeometry<double> geometry{begin.height_msl_m, station.effective_earth_radius_m};
+  const propagation::HorizonGeometry<double> geometry{begin.height_msl_m, station.effective_earth_radius_m};
   const double slope = geometry.slopeTo(end.height_msl_m, geometry.termsAt(profile.range_m));
   for (const double range_m : profile.ranges_m)
     profile.ray_msl_m.push_back(geometry.heightOn(slope, geometry.termsAt(range_m)));

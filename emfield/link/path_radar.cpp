@@ -12,6 +12,7 @@ namespace emscape::emfield {
 namespace {
 
 using scenario::EmitterKind;
+using scenario::Quantity;
 
 class RadarPoint {
  public:

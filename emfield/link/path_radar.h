@@ -3,7 +3,7 @@
 
 #include "emfield/terrain_fan.h"
 #include "emscape/base/vec.h"
-#include "emscape/emfield/quantities.h"
+#include "emscape/scenario/quantities.h"
 #include "emscape/scenario/snapshot.h"
 
 namespace emscape::emfield {

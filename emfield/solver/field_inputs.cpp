@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "propagation/registry/model_info.h"
+
 namespace emscape::emfield {
 namespace {
 
@@ -14,29 +16,11 @@ auto membersOf(const GeodeticPosition& position) {
   const auto& [latitude_deg, longitude_deg, height_ellipsoid_m] = position;
   return std::tie(latitude_deg, longitude_deg, height_ellipsoid_m);
 }
-auto membersOf(const scenario::DiffractionSettings& settings) {
-  const auto& [method] = settings;
-  return std::tie(method);
-}
-auto membersOf(const scenario::TwoRaySettings& settings) {
-  const auto& [sum, roughness_model] = settings;
-  return std::tie(sum, roughness_model);
-}
-auto membersOf(const scenario::ItmSettings& settings) {
-  const auto& [form, time_percent, location_percent, situation_percent, service, irregularity_m,
-               transmitter_siting, receiver_siting, place] = settings;
-  return std::tie(form, time_percent, location_percent, situation_percent, service, irregularity_m,
-                  transmitter_siting, receiver_siting);
-}
-auto membersOf(const scenario::P528Settings& settings) {
-  const auto& [time_percent, place] = settings;
-  return std::tie(time_percent);
-}
-auto membersOf(const scenario::Ground& ground) {
+auto membersOf(const propagation::Ground& ground) {
   const auto& [kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, place] = ground;
   return std::tie(kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m);
 }
-auto membersOf(const scenario::Atmosphere& atmosphere) {
+auto membersOf(const propagation::Atmosphere& atmosphere) {
   const auto& [k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
                sea_level_refractivity, climate] = atmosphere;
   return std::tie(k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
@@ -125,30 +109,23 @@ GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const sc
   // combine stage (power_w, losses_db, antenna, receiver, bandwidth_hz), the channels (kind), the snapshot
   // (platform, scan, active_s) or messages (name, places).
   const auto& [name, platform, kind, frequency_hz, bandwidth_hz, power_w, losses_db, polarization, antenna,
-               scan, propagation, diffraction, two_ray, itm, p528, receiver, active_s, place,
-               frequency_place] = plan.scenario->emitters[static_cast<std::size_t>(emitter_index)];
+               scan, propagation, receiver, active_s, place, frequency_place] =
+      plan.scenario->emitters[static_cast<std::size_t>(emitter_index)];
   GeometryInputs inputs;
   inputs.position = state.position;
   inputs.height_msl_m = state.height_msl_m;
   inputs.far_field_m = plan.far_field_m[static_cast<std::size_t>(emitter_index)];
-  inputs.frequency_hz = frequency_hz;
-  inputs.polarization = polarization;
-  inputs.propagation = propagation;
-  inputs.diffraction = diffraction;
-  inputs.two_ray = two_ray;
-  inputs.itm = itm;
-  inputs.p528 = p528;
-  inputs.ground = plan.scenario->ground;
-  inputs.atmosphere = plan.scenario->atmosphere;
+  inputs.propagation = {frequency_hz, polarization, propagation, plan.scenario->ground,
+                        plan.scenario->atmosphere};
   return inputs;
 }
 
 bool haveSameSettings(const GeometryInputs& a, const GeometryInputs& b) {
-  const auto& [position, height_msl_m, far_field_m, frequency_hz, polarization, propagation, diffraction,
-               two_ray, itm, p528, ground, atmosphere] = a;
-  return far_field_m == b.far_field_m && frequency_hz == b.frequency_hz && polarization == b.polarization &&
-         propagation == b.propagation && same(diffraction, b.diffraction) && same(two_ray, b.two_ray) &&
-         same(itm, b.itm) && same(p528, b.p528) && same(ground, b.ground) && same(atmosphere, b.atmosphere);
+  const auto& [position, height_msl_m, far_field_m, propagation] = a;
+  const auto& [frequency_hz, polarization, settings, ground, atmosphere] = propagation;
+  return far_field_m == b.far_field_m && frequency_hz == b.propagation.frequency_hz &&
+         polarization == b.propagation.polarization && areSame(settings, b.propagation.settings) &&
+         same(ground, b.propagation.ground) && same(atmosphere, b.propagation.atmosphere);
 }
 
 bool areSame(const GeometryInputs& a, const GeometryInputs& b) {

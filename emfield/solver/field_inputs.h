@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emfield/solver/field_engine.h"
+#include "propagation/inputs.h"
 
 namespace emscape::emfield {
 
@@ -17,15 +18,7 @@ struct GeometryInputs {
   GeodeticPosition position;
   double height_msl_m = 0;
   double far_field_m = 0;
-  double frequency_hz = 0;
-  scenario::Polarization polarization = scenario::Polarization::vertical;
-  scenario::PropagationModel propagation = scenario::PropagationModel::free_space;
-  scenario::DiffractionSettings diffraction;
-  scenario::TwoRaySettings two_ray;
-  scenario::ItmSettings itm;
-  scenario::P528Settings p528;
-  scenario::Ground ground;
-  scenario::Atmosphere atmosphere;
+  propagation::EmitterInputs propagation;
 };
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter, const scenario::EmitterState& state);

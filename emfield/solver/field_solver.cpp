@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/memory.h"
-#include "emfield/excess/excess_model.h"
+#include "emfield/emitter_excess.h"
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "emfield/excess/excess_model.h"
+#include "emfield/emitter_excess.h"
 #include "emfield/model_check.h"
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/error.h"
@@ -47,9 +47,9 @@ void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
   }
   const Station station =
       makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere.k_factor);
-  for (const std::string& warning :
-       pathWarnings(*setup.scenario, emitter, cache.state, pathExtent(station, setup.columns),
-                    setup.terrain.get(), findings.remarks)) {
+  const propagation::PathInputs inputs = pathInputs(*setup.scenario, emitter, station, setup.terrain.get(),
+                                                    pathExtent(station, setup.columns), setup.resolution);
+  for (const std::string& warning : pathWarnings(emitter, inputs, findings.remarks)) {
     ++cache.warnings[warning];
   }
   if (findings.near_voxels > 0) {
@@ -190,7 +190,7 @@ void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Ch
 
 VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& snapshot) {
   const Channel& channel = setup.channels[c];
-  const QuantityInfo& quantity = info(channel.quantity);
+  const scenario::QuantityInfo& quantity = scenario::info(channel.quantity);
   VolumeRequest request;
   request.channel = c;
   request.first_valid_k = &maskOf(channel, masks[c]);
@@ -201,7 +201,7 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   out.time_utc = snapshot.time_utc;
   out.floor = setup.recipes[c].product.floor;
   out.categorical = quantity.categorical;
-  if (quantity.scale != nullptr) out.extra[volume::kScaleKey] = quantity.scale;
+  if (const char* const scale = scaleOf(channel.quantity)) out.extra[volume::kScaleKey] = scale;
   out.extra["scenario"] = setup.scenario->name;
   out.extra["scenario_hash"] = setup.scenario->hash;
   std::string names, near_field;

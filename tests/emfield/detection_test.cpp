@@ -6,12 +6,12 @@
 
 #include <cmath>
 
-#include "emfield/models/gases.h"
-#include "emfield/models/rain.h"
 #include "emfield/radar/equation.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/emitter.h"
+#include "propagation/air/gases.h"
+#include "propagation/air/rain.h"
 
 namespace emscape::emfield {
 namespace {
@@ -288,7 +288,7 @@ double passedBetween(const PolarizationEllipse& a, const PolarizationEllipse& b)
 }
 
 TEST(Polarization, MismatchOfTheNamedOnesIsThatOfTheirEllipses) {
-  using scenario::Polarization;
+  using propagation::Polarization;
   const struct {
     Polarization name;
     PolarizationEllipse ellipse;

@@ -1,46 +1,13 @@
-#include "emscape/emfield/quantities.h"
-
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
 
-#include "emscape/base/error.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/scenario_file.h"
-#include "scenario/schema.h"
 #include "tests/emfield/test_scenario.h"
 
 namespace emscape::emfield {
 namespace {
-
-using ::testing::HasSubstr;
-
-TEST(Quantities, AreThoseThatAScenarioMayAskFor) {
-  std::set<std::string> computed, asked;
-  for (const QuantityInfo& entry : quantityTable()) computed.insert(entry.name);
-  const scenario::ObjectSpec& output = *scenario::scenarioSpec().find("output", nullptr)->value.object;
-  for (const std::string& name : output.find("quantities", nullptr)->value.item->choices) asked.insert(name);
-  EXPECT_EQ(computed, asked);
-}
-
-TEST(Quantities, StandInTheOrderOfTheEnumeration) {
-  for (std::size_t i = 0; i < quantityTable().size(); ++i) {
-    EXPECT_EQ(static_cast<std::size_t>(quantityTable()[i].quantity), i);
-    EXPECT_EQ(quantityFromName(quantityTable()[i].name), quantityTable()[i].quantity);
-  }
-}
-
-TEST(Quantities, RefusesOthersWithTheNamesOfAll) {
-  try {
-    quantityFromName("snr");
-    ADD_FAILURE() << "nothing was thrown";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("unknown quantity 'snr'; one of power_density_dbwm2, "));
-    EXPECT_THAT(error.what(), HasSubstr("burn_through_margin_db"));
-  }
-}
 
 TEST(Quantities, OfTheJammingScenarioShowWhatTheRidgeHides) {
   auto scenario = std::make_shared<scenario::Scenario>(
