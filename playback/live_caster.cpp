@@ -171,6 +171,7 @@ void LiveCaster::applyView(const ViewRequest& request) {
     painter_.setTheme(request.theme.value);
     changeLabels();
   }
+  if (request.on_device.version != before.on_device.version) changeLabels();
   if (request.pattern.version != before.pattern.version) {
     controller_options_.pattern = request.pattern.value;
     controller_.setOptions(controller_options_, now_ms());
@@ -336,14 +337,23 @@ void LiveCaster::publish() {
   Stopwatch watch;
   LivePicture picture;
   arena_.run([&] {
-    painter_.fetch(picture.image);
     const render::Pattern pattern = progress_.complete ? render::Pattern::full : drawn_.pattern;
     const std::string note = pictureNote(painter_.renderer().settings(), pattern);
     // The picture as it was cast takes a GPU longer to send: while it is busy the quantised one will do.
     finished_is_exact_ = progress_.complete && (controller_.state() != render::ControllerState::busy ||
                                                 painter_.renderer().backend() == Backend::cpu);
-    picture.finished = finished_is_exact_ ? painter_.picture(note) : painter_.annotated(picture.image, note);
+    if (finished_is_exact_) {
+      picture.finished = painter_.picture(note);
+      painter_.fetch(picture.image);
+    } else if (view_.on_device.value) {
+      picture.on_device = painter_.annotatedOnDevice(note);
+    }
+    if (picture.finished.rgba.empty() && !picture.on_device) {
+      painter_.fetch(busy_image_);
+      picture.finished = painter_.annotated(busy_image_, note);
+    }
   });
+  picture.size = painter_.size();
   const double labels_ms = watch.lap_ms();
   const render::Renderer& renderer = painter_.renderer();
   picture.camera = renderer.camera();
@@ -360,7 +370,7 @@ void LiveCaster::publish() {
   picture.ground = painter_.heightField();
   LiveStatus& status = picture.status;
   status.pattern = drawn_.pattern;
-  status.rays_fraction = static_cast<double>(drawn_.rays) / static_cast<double>(picture.image.size.count());
+  status.rays_fraction = static_cast<double>(drawn_.rays) / static_cast<double>(picture.size.count());
   status.cast_ms = drawn_.total_ms();
   status.labels_ms = labels_ms;
   status.shown_s = picture.volume.info().time_s;

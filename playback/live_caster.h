@@ -56,6 +56,7 @@ struct ViewRequest {
   Versioned<bool> show_terrain;
   Versioned<bool> show_emitters;
   Versioned<render::Theme> theme;
+  Versioned<bool> on_device;
 };
 
 struct CasterStatus {
@@ -158,6 +159,7 @@ class LiveCaster {
   render::FrameReport drawn_;      // the busy frame
   bool has_image_ = false;         // what was cast last can be shown again
   bool finished_is_exact_ = true;  // the picture that was published last was not quantised before its labels
+  render::Image8 busy_image_;      // memory for a picture on the way to its labels
   std::optional<Time> shown_input_;  // that the next picture is the first to show
 
   mutable std::mutex mutex_;

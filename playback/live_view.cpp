@@ -223,6 +223,10 @@ void LiveView::setTheme(render::Theme theme) {
   impl_->askView([&](ViewRequest& view) { view.theme.set(theme); });
 }
 
+void LiveView::keepOnDevice(bool keep) {
+  impl_->askView([&](ViewRequest& view) { view.on_device.set(keep); });
+}
+
 void LiveView::fitToStep() {
   impl_->askView([](ViewRequest& view) { view.colors.set({ColorOrder::Kind::step, {}, {}}); });
 }

@@ -151,6 +151,14 @@ render::Image8 Painter::annotated(const render::Image8& fetched, const std::stri
                          [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
 }
 
+std::shared_ptr<const render::DevicePicture> Painter::annotatedOnDevice(const std::string& note) {
+  if (renderer_.backend() == Backend::cpu) return nullptr;
+  annotations_.note = note;
+  render::drawLayers(layers_, style_.size, renderer_.camera(), renderer_.sceneBox(), annotations_,
+                     [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
+  return renderer_.compose(layers_);
+}
+
 render::TransferFunction Painter::functionFor(const volume::Volume& volume) const {
   if (!style_.transfer.empty()) return render::readTransferFunction(style_.transfer, volume.info());
   if (style_.function && !volume.info().categorical) {

@@ -9,6 +9,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "render/bytes_over.h"
 
 namespace emscape::render {
 namespace {
@@ -33,6 +34,11 @@ bool overlap(const Rect& a, const Rect& b) {
 
 Canvas::Canvas(ImageSize size)
     : Canvas(size, cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size.width, size.height)) {}
+
+Canvas::Canvas(ImageSize size, std::uint32_t* pixels)
+    : Canvas(size, cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(pixels),
+                                                       CAIRO_FORMAT_ARGB32, size.width, size.height,
+                                                       size.width * static_cast<int>(sizeof *pixels))) {}
 
 Canvas Canvas::forSvg(ImageSize size) {
   auto text = std::make_shared<std::string>();
@@ -79,9 +85,7 @@ Image8 Canvas::pixels() const {
           reinterpret_cast<const std::uint32_t*>(data + static_cast<std::ptrdiff_t>(y) * stride);
       std::uint8_t* out = &image.rgba[static_cast<std::size_t>(y) * size_.width * 4];
       for (int x = 0; x < size_.width; ++x) {
-        const std::uint32_t argb = row[x];
-        // The bytes R, G, B, A in the order of memory.
-        const std::uint32_t rgba = (argb & 0xFF00FF00U) | (argb >> 16 & 0xFFU) | (argb & 0xFFU) << 16;
+        const std::uint32_t rgba = redAndBlueSwapped(row[x]);
         std::memcpy(out + 4 * x, &rgba, 4);
       }
     }

@@ -49,6 +49,9 @@ enum class Align { left, center, right };
 class Canvas {
  public:
   explicit Canvas(ImageSize size);
+  /// On pixels of the caller's: size.count() of them, 0xAARRGGBB, premultiplied, row by row. They are
+  /// complete when the canvas is gone.
+  Canvas(ImageSize size, std::uint32_t* pixels);
   static Canvas forSvg(ImageSize size);
 
   ImageSize size() const { return size_; }

@@ -4,8 +4,10 @@
 #include <memory>
 
 #include "emscape/base/progress.h"
+#include "emscape/render/device_picture.h"
 #include "emscape/render/frame.h"
 #include "emscape/render/image.h"
+#include "emscape/render/overlay.h"
 #include "emscape/volume/dense_volume.h"
 #include "emscape/volume/device_volume.h"
 #include "render/scene.h"
@@ -35,6 +37,8 @@ class FrameCaster {
   /// The picture of the last frame.
   virtual void fetch(Image& image) = 0;
   virtual void fetch(Image8& image) = 0;
+  /// See Renderer.
+  virtual std::shared_ptr<const DevicePicture> compose(const OverlayLayers& /*layers*/) { return nullptr; }
 };
 
 /// With all threads of the CPU.

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "emscape/base/parallel.h"
+#include "render/bytes_over.h"
 #include "render/names.h"
 #include "render/overlay_parts.h"
 #include "render/rgba.h"
@@ -21,19 +23,6 @@ constexpr double kMargin = 26;
 constexpr double kTitle = 23;
 constexpr double kCompassRadius = 40;
 constexpr double kSmallestUnit = 0.62;
-
-/// What is seen of `back` behind `front`, of four premultiplied bytes each, rounded to nearest and clamped.
-std::uint32_t bytesOver(std::uint32_t front, std::uint32_t back) {
-  constexpr std::uint32_t kPair = 0x00FF00FFU;  // two bytes, each with room for carries
-  const std::uint32_t clear = 255 - (front >> 24);
-  const auto pairOver = [clear](std::uint32_t front_pair, std::uint32_t back_pair) {
-    std::uint32_t seen = back_pair * clear + 0x00800080U;
-    seen = (seen + (seen >> 8 & kPair)) >> 8 & kPair;  // divided by 255
-    const std::uint32_t sum = front_pair + seen;
-    return (sum | (sum >> 8 & 0x00010001U) * 255) & kPair;
-  };
-  return pairOver(front & kPair, back & kPair) | pairOver(front >> 8 & kPair, back >> 8 & kPair) << 8;
-}
 
 /// Puts a cast picture over what is drawn; the only quantisation of what was cast.
 void drawCast(Canvas& canvas, const Image& cast) {
@@ -56,8 +45,7 @@ void drawCast(Canvas& canvas, const Image8& cast) {
     for (int x = 0; x < cast.size.width; ++x) {
       std::uint32_t rgba = 0;
       std::memcpy(&rgba, pixels + 4 * x, 4);
-      const std::uint32_t front = (rgba & 0xFF00FF00U) | (rgba >> 16 & 0xFFU) | (rgba & 0xFFU) << 16;
-      row[x] = bytesOver(front, row[x]);
+      row[x] = bytesOver(redAndBlueSwapped(rgba), row[x]);
     }
   });
 }
@@ -129,6 +117,14 @@ Image8 composed(const AnyImage& cast, const Camera& camera, const SceneBox& box,
   return canvas.pixels();
 }
 
+/// Where Cairo draws: the two layers are independent of each other.
+template <class Draw>
+void drawLayer(std::vector<std::uint32_t>& pixels, ImageSize size, const Draw& draw) {
+  pixels.assign(static_cast<std::size_t>(size.count()), 0);
+  Canvas canvas(size, pixels.data());
+  draw(canvas);
+}
+
 }  // namespace
 
 Theme parseTheme(const std::string& name) {
@@ -176,6 +172,24 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
   margins.top = (has_texts ? headerHeight(style) : side_px) / size.height;
   margins.bottom = (1.1 * kMargin * style.unit + axis_px) / size.height;
   return margins;
+}
+
+void drawLayers(OverlayLayers& layers, ImageSize size, const Camera& camera, const SceneBox& box,
+                const Annotations& annotations, const HiddenTest& hidden) {
+  const Style style(size, annotations.theme);
+  const Projector projector{camera, box, size};
+  layers.size = size;
+  parallelFor(2, 1, [&](int begin, int end) {
+    for (int layer = begin; layer < end; ++layer) {
+      if (layer == 0) {
+        drawLayer(layers.behind, size,
+                  [&](Canvas& canvas) { drawBehind(canvas, style, projector, annotations); });
+      } else {
+        drawLayer(layers.front, size,
+                  [&](Canvas& canvas) { drawInFront(canvas, style, projector, annotations, hidden); });
+      }
+    }
+  });
 }
 
 Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,

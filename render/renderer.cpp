@@ -106,6 +106,10 @@ void Renderer::fetch(Image8& image) {
   impl_->caster->fetch(image);
 }
 
+std::shared_ptr<const DevicePicture> Renderer::compose(const OverlayLayers& layers) {
+  return impl_->caster->compose(layers);
+}
+
 FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, Image& image, const StopFlag* stop) {
   const std::lock_guard<std::mutex> lock(impl_->volume_mutex);
   impl_->caster->lend(image);

@@ -28,6 +28,7 @@ struct BenchViewOptions {
   std::vector<scenario::Edit> edits;
   std::string size = "1200x900";
   double idle_s = 10;
+  bool copy_pictures = false;
   std::string log;  ///< kept there; empty: not kept
 };
 
@@ -82,6 +83,7 @@ Json framesJson(const std::vector<double>& values) {
 Json jsonOf(const ViewTimes& times) {
   return {{"device", times.device},
           {"gl_renderer", times.gl_renderer},
+          {"shares_gpu", times.shares_gpu},
           {"size", fmt::format("{}x{}", times.width, times.height)},
           {"first_picture_ms", times.first_picture_ms},
           {"first_exact_ms", times.first_exact_ms},
@@ -116,7 +118,8 @@ void printTable(const ViewTimes& times) {
     row(name, fmt::format("{:.1f} / {:.1f} / {:.1f} ms", medianOf(values), quantileOf(values, 0.99),
                           quantileOf(values, 1)));
   };
-  print("{}, {}; picture {}x{}\n\n", times.device, times.gl_renderer, times.width, times.height);
+  print("{}, {}; picture {}x{}, {}\n\n", times.device, times.gl_renderer, times.width, times.height,
+        times.shares_gpu ? "from CUDA to OpenGL on the GPU" : "copied through the host's memory");
   row("start to first picture / exact",
       fmt::format("{:.0f} / {:.0f} ms", times.first_picture_ms, times.first_exact_ms));
   frames("user interface: median / 99 % / max of a frame", times.ui);
@@ -147,6 +150,7 @@ int benchView(const BenchViewOptions& options, const GlobalOptions& global) {
   std::ofstream(script) << trialScript(trialOf(options));
   std::vector<std::string> arguments{options.input, "--size", options.size, "--scale", "1",
                                      "--script",    script,   "--log",      log};
+  if (options.copy_pictures) arguments.emplace_back("--copy-pictures");
   for (const scenario::Edit& edit : options.edits)
     arguments.insert(arguments.end(), {"--set", scenario::toString(edit)});
   runWindow(global, arguments);
@@ -179,6 +183,7 @@ Example:
   command->add_option("--idle", options->idle_s, "Seconds in which nothing is done")
       ->check(CLI::Range(1.0, 600.0))
       ->capture_default_str();
+  command->add_flag("--copy-pictures", options->copy_pictures, "As of 'emscape view'");
   command->add_option("--log", options->log, "Keep the window's log in this file");
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchView(*options, global); }; });

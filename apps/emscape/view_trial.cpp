@@ -198,7 +198,11 @@ void readSeeks(const Lines& lines, ViewTimes& times) {
 
 void readFrames(const Lines& lines, ViewTimes& times) {
   for (const Json& line : lines) {
-    if (line["event"] == "start") times.gl_renderer = line["gl_renderer"];
+    if (line["event"] == "start") {
+      times.gl_renderer = line["gl_renderer"];
+      times.shares_gpu = line["shares_gpu"];
+    }
+    if (line["event"] == "no_shared_gpu") times.shares_gpu = false;
     if (line["event"] == "first_picture") {
       times.first_picture_ms = time_ms(line);
       times.device = line["device"];

@@ -25,6 +25,7 @@ std::string trialScript(const ViewTrial& trial);
 /// Times in ms; empty: not measured.
 struct ViewTimes {
   std::string device, gl_renderer;
+  bool shares_gpu = false;    ///< pictures went from CUDA to OpenGL on the GPU
   int width = 0, height = 0;  ///< of the picture
   double first_picture_ms = 0, first_exact_ms = 0;
   std::vector<double> ui;                      ///< frames of the window: events, panels, drawing commands

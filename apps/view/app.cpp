@@ -40,18 +40,23 @@ App::App(const ViewOptions& options, const playback::ComputeTarget& target)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
       window_(titleOf(options), options.window_size.value_or(kUsualSize), options.scale),
+      shares_gpu_(!options.copy_pictures && render::openGlSharesGpu()),
       target_(target),
       session_(makeSession(options)),
       opener_(files_, [this](const ViewOptions& next) { return makeSession(next); }),
       window_fits_(options.window_size ? 0 : kWindowFits) {
-  log_.write("start",
-             {{"gl_renderer", window_.renderer()}, {"scale", window_.scale()}, {"input", options.input}});
+  log_.write("start", {{"gl_renderer", window_.renderer()},
+                       {"shares_gpu", shares_gpu_},
+                       {"scale", window_.scale()},
+                       {"input", options.input}});
 }
 
 std::unique_ptr<Session> App::makeSession(const ViewOptions& options) {
   WindowControl& window = *this;
-  return std::make_unique<Session>(
+  auto session = std::make_unique<Session>(
       options, target_, window, log_, [] { Window::wake(); }, files_);
+  session->keepOnDevice(shares_gpu_);
+  return session;
 }
 
 // --- what commands ask for ---
@@ -292,9 +297,24 @@ void App::updateTexture() {
   const playback::LivePicture* picture = session_->picture();
   if (!picture || picture->status.frame == shown_picture_) return;
   Stopwatch watch;
-  texture_.set(picture->finished);
+  if (picture->on_device) {
+    showFromDevice(*picture->on_device);
+  } else {
+    texture_.set(picture->finished);
+  }
   upload_ms_ = watch.lap_ms();
   shown_picture_ = picture->status.frame;
+}
+
+/// Where the driver cannot, as in a remote session, the next pictures come through the host's memory.
+void App::showFromDevice(const render::DevicePicture& picture) {
+  try {
+    texture_.set(picture);
+  } catch (const Error& error) {
+    log_.write("no_shared_gpu", {{"reason", error.what()}});
+    shares_gpu_ = false;
+    session_->keepOnDevice(false);
+  }
 }
 
 void App::takeScreenshot() {

@@ -41,6 +41,7 @@ class App : private WindowControl {
   void handleKeys(const std::vector<InputEvent>& events);
   void drawPanels(const Layout& layout);
   void updateTexture();
+  void showFromDevice(const render::DevicePicture& picture);
   void takeScreenshot();
   double waitTime_s() const;
   void failIfNothingOpens() const;
@@ -54,6 +55,7 @@ class App : private WindowControl {
   Script script_;
   Window window_;
   PictureTexture texture_;
+  bool shares_gpu_;  // pictures go from CUDA to OpenGL on the GPU
   const playback::ComputeTarget target_;
   std::shared_ptr<Files> files_ = std::make_shared<Files>();
   std::unique_ptr<Session> session_;

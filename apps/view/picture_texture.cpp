@@ -11,24 +11,46 @@ PictureTexture::PictureTexture() {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAX_LEVEL, 0);
   glGenFramebuffers(1, &framebuffer_);
+  glGenBuffers(1, &buffer_);
 }
 
 PictureTexture::~PictureTexture() {
+  shared_buffer_.reset();
+  glDeleteBuffers(1, &buffer_);
   glDeleteFramebuffers(1, &framebuffer_);
   glDeleteTextures(1, &texture_);
 }
 
 void PictureTexture::set(const render::Image8& image) {
+  setPixels(image.size, image.rgba.data());
+}
+
+void PictureTexture::set(const render::DevicePicture& picture) {
+  if (buffer_size_ != picture.size()) {
+    shared_buffer_.reset();
+    buffer_size_ = {};
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer_);
+    glBufferData(GL_PIXEL_UNPACK_BUFFER, static_cast<GLsizeiptr>(4 * picture.size().count()), nullptr,
+                 GL_STREAM_DRAW);
+    glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    shared_buffer_ = std::make_unique<render::GlPixelBuffer>(buffer_, picture.size());
+    buffer_size_ = picture.size();
+  }
+  shared_buffer_->fill(picture);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer_);
+  setPixels(picture.size(), nullptr);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+}
+
+void PictureTexture::setPixels(render::ImageSize size, const void* pixels) {
   glBindTexture(GL_TEXTURE_2D, texture_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  if (size_ == image.size) {
-    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size_.width, size_.height, GL_RGBA, GL_UNSIGNED_BYTE,
-                    image.rgba.data());
+  if (size_ == size) {
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, size.width, size.height, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
     return;
   }
-  size_ = image.size;
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size_.width, size_.height, 0, GL_RGBA, GL_UNSIGNED_BYTE,
-               image.rgba.data());
+  size_ = size;
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.width, size.height, 0, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
   glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);

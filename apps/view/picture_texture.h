@@ -1,6 +1,9 @@
 /// The picture on the screen.
 #pragma once
 
+#include <memory>
+
+#include "emscape/render/device_picture.h"
 #include "emscape/render/image.h"
 
 namespace emscape::view {
@@ -15,15 +18,24 @@ class PictureTexture {
   PictureTexture& operator=(const PictureTexture&) = delete;
 
   void set(const render::Image8& image);
+  /// From the memory of the GPU that OpenGL draws with too. @throws Error (device); what was shown before
+  /// stays
+  void set(const render::DevicePicture& picture);
   bool isSet() const { return size_.count() > 0; }
   /// Draws the picture into the bound framebuffer, stretched to the nearest pixels where the sizes differ.
   /// @param left, bottom, width, height  in pixels of the framebuffer
   void draw(int left, int bottom, int width, int height) const;
 
  private:
+  /// Pixels come from memory, or from the bound buffer for unpacking where that is null.
+  void setPixels(render::ImageSize size, const void* pixels);
+
   unsigned texture_ = 0;
   unsigned framebuffer_ = 0;  // whose colours are the texture
   render::ImageSize size_;
+  unsigned buffer_ = 0;  // between CUDA and the texture
+  render::ImageSize buffer_size_;
+  std::unique_ptr<render::GlPixelBuffer> shared_buffer_;
 };
 
 }  // namespace emscape::view

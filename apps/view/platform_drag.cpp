@@ -14,7 +14,7 @@ std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double
   double nearest_px = kReach_px;
   for (std::size_t i = 0; i < picture.annotations.markers.size(); ++i) {
     const render::Projected at = render::project(
-        picture.camera, picture.image.size, picture.box.toDrawn(picture.annotations.markers[i].position_m));
+        picture.camera, picture.size, picture.box.toDrawn(picture.annotations.markers[i].position_m));
     const double away_px = std::hypot(at.x - x, at.y - y);
     if (!at.in_front || away_px > nearest_px) continue;
     nearest = i;
@@ -36,8 +36,7 @@ PlatformDrag::PlatformDrag(const playback::LivePicture& picture, std::size_t emi
   grip_m_ = marker.position_m;
   follows_ground_ = platform.track.front().position.height_agl_m && picture.ground && marker.ground_m;
   if (follows_ground_) grip_m_.z = *marker.ground_m;
-  const render::Projected grip =
-      render::project(picture.camera, picture.image.size, picture.box.toDrawn(grip_m_));
+  const render::Projected grip = render::project(picture.camera, picture.size, picture.box.toDrawn(grip_m_));
   offset_x_ = grip.x - x;
   offset_y_ = grip.y - y;
 }
@@ -47,9 +46,9 @@ std::optional<std::vector<scenario::Edit>> PlatformDrag::moveTo(const playback::
   const double at_x = x + offset_x_, at_y = y + offset_y_;
   const std::optional<Vec3d> position_m =
       follows_ground_ && picture.ground
-          ? playback::pickGround(picture.camera, picture.box, picture.image.size, at_x, at_y, *picture.ground,
+          ? playback::pickGround(picture.camera, picture.box, picture.size, at_x, at_y, *picture.ground,
                                  picture.settings.planes)
-          : playback::pickLevel(picture.camera, picture.box, picture.image.size, at_x, at_y, grip_m_.z);
+          : playback::pickLevel(picture.camera, picture.box, picture.size, at_x, at_y, grip_m_.z);
   if (!position_m || !picture.scenario) return std::nullopt;
   const GeodeticPosition position = GeoFrame(picture.volume.grid().frame).toGeodetic(*position_m);
   return movesOf(*picture.scenario, platform_, position.latitude_deg, position.longitude_deg);

@@ -210,8 +210,7 @@ void drawProbeMarker(const PanelContext& context, const Area& picture) {
   const std::optional<Vec3d>& point_m = session.prober().locked_m();
   if (!session.picture() || !session.prober().isOn() || !point_m) return;
   const playback::LivePicture& shown = *session.picture();
-  const render::Projected pixel =
-      render::project(shown.camera, shown.image.size, shown.box.toDrawn(*point_m));
+  const render::Projected pixel = render::project(shown.camera, shown.size, shown.box.toDrawn(*point_m));
   if (!pixel.in_front) return;
   const ImVec2 at{picture.x + static_cast<float>(pixel.x) + 0.5F,
                   picture.y + static_cast<float>(pixel.y) + 0.5F};

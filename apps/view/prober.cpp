@@ -40,8 +40,8 @@ class Prober::Reader {
       std::optional<Vec3d> position_m = question.position_m;
       if (question.pixel) {
         const auto picked =
-            playback::pick(picture.camera, picture.box, picture.image.size, question.pixel->x,
-                           question.pixel->y, volume, picture.ground.get(), picture.settings.planes);
+            playback::pick(picture.camera, picture.box, picture.size, question.pixel->x, question.pixel->y,
+                           volume, picture.ground.get(), picture.settings.planes);
         position_m.reset();
         if (picked) {
           position_m =

@@ -197,13 +197,13 @@ bool Session::settled() const {
 
 bool Session::isPictureSettled() const {
   return picture_ && !edit_queue_.isBusy() && status_.isSettled() && !fit_ &&
-         picture_->status.frame == status_.frame && picture_->image.size == picture_size_;
+         picture_->status.frame == status_.frame && picture_->size == picture_size_;
 }
 
 std::optional<Viewport> Session::viewport() const {
   if (!picture_) return std::nullopt;
-  return Viewport{picture_->box, picture_->image.size,
-                  render::overlayMargins(picture_->image.size, picture_->annotations)};
+  return Viewport{picture_->box, picture_->size,
+                  render::overlayMargins(picture_->size, picture_->annotations)};
 }
 
 // --- what is asked for ---
@@ -342,8 +342,8 @@ Json Session::report() const {
               {"recording", files_->recorder.running()},
               {"can_undo", canUndo()},
               {"can_redo", canRedo()},
-              {"picture_width", picture_ ? picture_->image.size.width : 0},
-              {"picture_height", picture_ ? picture_->image.size.height : 0},
+              {"picture_width", picture_ ? picture_->size.width : 0},
+              {"picture_height", picture_ ? picture_->size.height : 0},
               {"scale", window_.scale()}};
   if (picture_) {
     report["range_min"] = picture_->transfer.lowest();

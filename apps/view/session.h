@@ -96,6 +96,8 @@ class Session {
   /// The part of the window that the picture fills.
   void setPictureSize(render::ImageSize size);
   render::ImageSize pictureSize() const { return picture_size_; }
+  /// Whether busy pictures that a GPU casts are left there; see LivePicture::on_device.
+  void keepOnDevice(bool keep) { live_.keepOnDevice(keep); }
 
   // --- what is shown ---
   const playback::LivePicture* picture() const { return picture_.get(); }

@@ -36,9 +36,9 @@ void Session::focusGround(double x, double y) {
   const playback::LivePicture& picture = *picture_;
   const std::optional<Vec3d> ground_m =
       picture.ground
-          ? playback::pickGround(picture.camera, picture.box, picture.image.size, x, y, *picture.ground,
+          ? playback::pickGround(picture.camera, picture.box, picture.size, x, y, *picture.ground,
                                  picture.settings.planes)
-          : playback::pickLevel(picture.camera, picture.box, picture.image.size, x, y, picture.box.lower_m.z);
+          : playback::pickLevel(picture.camera, picture.box, picture.size, x, y, picture.box.lower_m.z);
   if (!ground_m) return;
   camera_.focus(*ground_m, std::min(kFocus_diagonals, camera_.spec().distance.value_or(kFocus_diagonals)),
                 *viewport());

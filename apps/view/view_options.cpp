@@ -70,6 +70,8 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
                "Compute although elevation data is missing; the holes are drawn as such");
   app.add_option("--script", options.script, "JSON lines: what to do and when (docs/viewer.md)");
   app.add_option("--log", options.log, "Writes what happens, as JSON lines");
+  app.add_flag("--copy-pictures", options.copy_pictures,
+               "Send pictures through the host's memory even where CUDA and OpenGL share a GPU");
   app.add_option("--backend", options.backend, "Where to compute: auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   app.add_option("--threads", options.threads, "Threads to use; 0: one per core")->check(CLI::Range(0, 4096));

@@ -23,6 +23,8 @@ struct ViewOptions {
   render::ControllerOptions controller;
   bool allow_missing_terrain = false;
   std::string script, log;
+  bool copy_pictures =
+      false;  ///< through the host's memory, although OpenGL draws with the GPU that casts them
   std::string backend = "auto";
   int threads = 0;
   bool quiet = false;

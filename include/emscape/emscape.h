@@ -48,6 +48,7 @@
 #include "emscape/propagation/settings.h"
 #include "emscape/render/camera.h"
 #include "emscape/render/cut_plane.h"
+#include "emscape/render/device_picture.h"
 #include "emscape/render/frame.h"
 #include "emscape/render/frame_controller.h"
 #include "emscape/render/height_field.h"

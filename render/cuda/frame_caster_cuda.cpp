@@ -4,11 +4,13 @@
 
 #include "base/cuda/cuda_memory.h"
 #include "emscape/base/device.h"
+#include "emscape/base/error.h"
 #include "render/adaptive_tolerance.h"
 #include "render/cuda/device_scene.h"
 #include "render/cuda/kept_orders.h"
 #include "render/cuda/kernels.h"
 #include "render/cuda/launch_train.h"
+#include "render/cuda/picture_memory.h"
 #include "render/frame_caster.h"
 #include "render/silhouette.h"
 #include "volume/cuda/device_storage.h"
@@ -44,6 +46,7 @@ class CudaFrameCaster : public FrameCaster {
   }
   void fetch(Image& image) override;
   void fetch(Image8& image) override;
+  std::shared_ptr<const DevicePicture> compose(const OverlayLayers& layers) override;
 
  private:
   CastLaunch begin(const Scene& scene, ImageSize size, double most_samples, bool is_frame);
@@ -79,6 +82,9 @@ class CudaFrameCaster : public FrameCaster {
   Buffer<float4> layer_;
   Buffer<float4> picture_;
   Buffer<uchar4> picture8_;
+  Buffer<std::uint32_t> behind_, front_;  ///< layers of labels
+  std::vector<std::shared_ptr<cuda::PictureMemory>>
+      finished_;  ///< pictures, those in use elsewhere among them
 
   /// What belongs to a view: the ground, and the pixels whose rays meet the box.
   struct View {
@@ -362,6 +368,23 @@ void CudaFrameCaster::fetch(Image8& image) {
   image.rgba.resize(4 * static_cast<std::size_t>(image.size.count()));
   static_assert(sizeof(uchar4) == 4, "a pixel is four bytes");
   if (!image.rgba.empty()) picture8_.download(reinterpret_cast<uchar4*>(image.rgba.data()), stream_);
+}
+
+std::shared_ptr<const DevicePicture> CudaFrameCaster::compose(const OverlayLayers& layers) {
+  const ImageSize size = layers_.size;
+  if (layers.size != size) throw Error(ErrorCode::other, "labels of another size than the picture");
+  const auto is_other_size = [&](const auto& picture) { return picture->size() != size; };
+  finished_.erase(std::remove_if(finished_.begin(), finished_.end(), is_other_size), finished_.end());
+  const auto unused = std::find_if(finished_.begin(), finished_.end(),
+                                   [](const auto& picture) { return picture.use_count() == 1; });
+  auto picture = unused != finished_.end() ? *unused : std::make_shared<cuda::PictureMemory>(size);
+  if (unused == finished_.end()) finished_.push_back(picture);
+  behind_.upload(layers.behind, stream_);
+  front_.upload(layers.front, stream_);
+  cuda::composeOverlay(static_cast<unsigned>(size.count()), behind_.data(), picture8_.data(), front_.data(),
+                       picture->pixels(), stream_);
+  stream_.wait();
+  return picture;
 }
 
 }  // namespace

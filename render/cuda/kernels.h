@@ -127,6 +127,13 @@ struct Layers {
 void showPicture(const Layers& layers, float4* picture, const Submission& to);
 void showPicture8(const Layers& layers, uchar4* picture, const Submission& to);
 
+/// A cast picture between the layers of its labels, pixel by pixel.
+/// @param count          pixels
+/// @param cast, picture  bytes r g b a; the picture is opaque where `behind` is
+/// @param behind, front  0xAARRGGBB, premultiplied
+void composeOverlay(unsigned count, const std::uint32_t* behind, const uchar4* cast,
+                    const std::uint32_t* front, uchar4* picture, cudaStream_t stream);
+
 // --- Adaptive ---
 
 /// A frame: what is cast, its `pixels` aside, and what decides which pixels are.

@@ -5,6 +5,7 @@
 
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/volume/file.h"
+#include "tests/gpu.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {
@@ -144,7 +145,7 @@ struct Expected {
 
 void expectSame(const std::shared_ptr<const LivePicture>& shown, const Expected& expected) {
   const render::Image8 full = expected.picture();
-  ASSERT_EQ(shown->image.size, full.size);
+  ASSERT_EQ(shown->size, full.size);
   EXPECT_TRUE(shown->image.rgba == full.rgba);
   EXPECT_TRUE(std::any_of(full.rgba.begin(), full.rgba.end(), [](std::uint8_t level) { return level > 0; }));
 }
@@ -264,6 +265,48 @@ TEST(LiveView, AnEventStopsARestorationAndThePictureThatSettlesShowsIt) {
     live.pass();
   }
   expectSame(live.settled(), expected);
+}
+
+TEST(LiveView, OnTheCpuBusyPicturesAreFinishedInTheHostsMemory) {
+  const TemporaryFolder folder;
+  Live live(quickScenario(folder));
+  live.settled();
+  live.view->keepOnDevice(true);
+  live.settled();
+  live.hold(ControllerState::restore);
+  live.view->setCamera({});
+  live.waitUntilHeld();
+  const auto busy = live.view->picture();
+  EXPECT_EQ(busy->on_device, nullptr);
+  EXPECT_EQ(busy->finished.size, kSize);
+  live.pass();
+}
+
+TEST(LiveView, OnAGpuBusyPicturesStayThereWhereThatIsAskedFor) {
+  EMSCAPE_NEEDS_GPU();
+  const TemporaryFolder folder;
+  LiveOptions options = quarterOptions();
+  options.target.choice = resolveBackend(Backend::cuda);
+  Live live(quickScenario(folder), options);
+  live.settled();
+  for (const bool keeps : {true, false}) {
+    live.view->keepOnDevice(keeps);
+    live.settled();
+    live.hold(ControllerState::restore);
+    live.view->setCamera({});
+    live.waitUntilHeld();
+    const auto busy = live.view->picture();
+    EXPECT_EQ(busy->size, kSize);
+    ASSERT_EQ(busy->on_device != nullptr, keeps);
+    EXPECT_EQ(busy->finished.rgba.empty(), keeps);
+    const render::Image8 picture = keeps ? busy->on_device->host() : busy->finished;
+    live.pass();
+    const auto exact = live.settled();
+    EXPECT_EQ(exact->on_device, nullptr);
+    ASSERT_EQ(exact->finished.size, picture.size);
+    // An interpolated picture of the same scene.
+    EXPECT_GT(render::compare(picture, exact->finished).psnr_db, 25) << keeps;
+  }
 }
 
 TEST(LiveView, SeekingBackComputesNothingAndAnEditDropsWhatWasComputed) {

@@ -7,6 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/render/renderer.h"
+#include "tests/render/layered_picture.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {
@@ -91,24 +92,52 @@ TEST(Overlay, EveryAnnotationIsSeen) {
   EXPECT_GT(without([](Annotations& a) { a.theme = Theme::light; }), 100000);
 }
 
-TEST(Overlay, AQuantizedPictureIsAtMostOneLevelApart) {
-  const ImageSize size{320, 240};
+/// All opacities and levels.
+Image gradients(ImageSize size) {
   Image cast(size);
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
-      const float alpha = static_cast<float>(x) / 319.0F;
-      const float level = static_cast<float>(y) / 239.0F;
+      const float alpha = static_cast<float>(x) / static_cast<float>(size.width - 1);
+      const float level = static_cast<float>(y) / static_cast<float>(size.height - 1);
       cast.at(x, y) = {alpha * level, alpha * (1 - level), alpha, alpha};
     }
   }
+  return cast;
+}
+
+int largestDifference(const Image8& a, const Image8& b) {
+  int largest = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    largest = std::max(largest, std::abs(a.rgba[i] - b.rgba[i]));
+  return largest;
+}
+
+TEST(Overlay, LayersMakeThePictureThatIsComposedAtOnce) {
+  const ImageSize size{320, 240};
+  const Image8 cast = quantize(gradients(size));
+  Annotations annotations = everything(testing::fog(0.5));
+  OverlayLayers layers;
+  for (Theme theme : {Theme::dark, Theme::light}) {
+    annotations.theme = theme;
+    const Camera camera = makeCamera({}, kBox, size, overlayMargins(size, annotations));
+    const HiddenTest hidden = [](const Vec3d& position_m) { return position_m.x > 2000; };
+    drawLayers(layers, size, camera, kBox, annotations, hidden);
+    ASSERT_EQ(layers.behind.size(), static_cast<std::size_t>(size.count()));
+    ASSERT_EQ(layers.front.size(), static_cast<std::size_t>(size.count()));
+    EXPECT_LE(largestDifference(testing::putTogether(cast, layers),
+                                compose(cast, camera, kBox, annotations, hidden)),
+              2);
+  }
+}
+
+TEST(Overlay, AQuantizedPictureIsAtMostOneLevelApart) {
+  const ImageSize size{320, 240};
+  const Image cast = gradients(size);
   const Annotations annotations = everything(testing::fog(0.5));
   const Camera camera = makeCamera({}, kBox, size, overlayMargins(size, annotations));
   const Image8 exact = compose(cast, camera, kBox, annotations);
   const Image8 quantized = compose(quantize(cast), camera, kBox, annotations);
-  int max_difference = 0;
-  for (std::size_t i = 0; i < exact.rgba.size(); ++i)
-    max_difference = std::max(max_difference, std::abs(exact.rgba[i] - quantized.rgba[i]));
-  EXPECT_LE(max_difference, 1);
+  EXPECT_LE(largestDifference(exact, quantized), 1);
 }
 
 TEST(Overlay, HiddenMarkersLookDifferent) {

@@ -85,7 +85,7 @@ TEST(SessionEdits, TheShownQuantityFollowsTheScenarioUnlessItWasChosen) {
 /// The pixel of an emitter's marker.
 render::Projected pixelOf(const Session& session, std::size_t emitter) {
   const playback::LivePicture& picture = *session.picture();
-  return render::project(picture.camera, picture.image.size,
+  return render::project(picture.camera, picture.size,
                          picture.box.toDrawn(picture.annotations.markers[emitter].position_m));
 }
 
@@ -124,7 +124,7 @@ TEST(SessionFocus, LooksAtTheGroundUnderAPixel) {
   const playback::LivePicture picture = *sample.session->picture();
   ASSERT_TRUE(picture.ground);
   const auto ground_m =
-      playback::pickGround(picture.camera, picture.box, picture.image.size, 100, 110, *picture.ground);
+      playback::pickGround(picture.camera, picture.box, picture.size, 100, 110, *picture.ground);
   ASSERT_TRUE(ground_m);
   sample.perform(R"({"do":"focus","x":100,"y":110})");
   ASSERT_TRUE(sample.session->camera().spec().target_m);

@@ -106,7 +106,7 @@ void expectThePictureOfRender(const std::string& input, RandomView& random) {
   ASSERT_TRUE(waitUntilSettled(*shown));
   const playback::LivePicture& picture = *shown->picture();
   const Rendered rendered = render(input, shown->viewState());
-  EXPECT_EQ(picture.image.size, rendered.volume.size);
+  EXPECT_EQ(picture.size, rendered.volume.size);
   EXPECT_TRUE(picture.image.rgba == rendered.volume.rgba) << playback::viewStateText(shown->viewState());
 
   const StateFolder folder;

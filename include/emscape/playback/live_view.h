@@ -13,6 +13,7 @@
 #include "emscape/playback/compute_target.h"
 #include "emscape/playback/painter.h"
 #include "emscape/render/camera.h"
+#include "emscape/render/device_picture.h"
 #include "emscape/render/frame_controller.h"
 #include "emscape/render/height_field.h"
 #include "emscape/render/image.h"
@@ -88,9 +89,13 @@ struct StateChange {
 
 /// A picture with what it shows. Does not change.
 struct LivePicture {
-  render::Image8 image;  ///< premultiplied, without background and labels
-  /// On its background, with its labels. Of an exact picture: as `emscape render` writes it.
+  render::ImageSize size;
+  /// On its background, with its labels. Of a settled picture: as `emscape render` writes it.
   render::Image8 finished;
+  /// The same on the GPU, in place of `finished`; null but for busy pictures with keepOnDevice().
+  std::shared_ptr<const render::DevicePicture> on_device;
+  /// Premultiplied, without background and labels; empty but for settled pictures.
+  render::Image8 image;
   render::Camera camera;
   render::SceneBox box;
   render::Annotations annotations;
@@ -157,6 +162,9 @@ class LiveView {
   void showTerrain(bool show);
   void showEmitters(bool show);
   void setTheme(render::Theme theme);
+  /// Whether busy pictures that a GPU casts stay in its memory, for who shows them from there. At first they
+  /// do not.
+  void keepOnDevice(bool keep);
 
   /// Colours fitted to the step on screen.
   void fitToStep();

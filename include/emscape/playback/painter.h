@@ -54,6 +54,7 @@ class Painter {
   /// The functions below change the style of the next pictures, before or after the first frame.
   /// @param size  both sides at least 1
   void setSize(render::ImageSize size);
+  render::ImageSize size() const { return style_.size; }
   /// An isosurface is not checked against the volume. @throws Error (bad_input) for a value out of its range;
   /// the settings are then as before
   void setSettings(const render::RenderSettings& settings);
@@ -91,6 +92,9 @@ class Painter {
   render::Image8 picture(const std::string& note);
   /// A picture that was fetched, on the same background with the same labels; at most one level apart.
   render::Image8 annotated(const render::Image8& fetched, const std::string& note);
+  /// The picture that annotated() gives, made and kept by the GPU; at most two levels apart. Null with the
+  /// CPU.
+  std::shared_ptr<const render::DevicePicture> annotatedOnDevice(const std::string& note);
 
  private:
   /// That of the scene below the grid of the frame, if it is to be shown.
@@ -110,6 +114,7 @@ class Painter {
   std::shared_ptr<const render::HeightField> height_field_;
   render::Renderer renderer_;
   render::Annotations annotations_;
+  render::OverlayLayers layers_;
   render::Image image_;
   bool fetched_ = false;  ///< image_ is what was drawn last
   bool has_colors_ = false;

@@ -1,6 +1,7 @@
 /// The finished picture: what was cast, on a background, with box, axes, markers, legend, time and compass.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -59,6 +60,19 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations);
 
 /// Whether the ground hides a position (frame metres); empty: nothing is hidden.
 using HiddenTest = std::function<bool(const Vec3d& frame_m)>;
+
+/// What a finished picture has behind what is cast, and before it: for who puts them together elsewhere.
+struct OverlayLayers {
+  ImageSize size;
+  /// Pixels 0xAARRGGBB, premultiplied, row by row from the top. `behind` is opaque.
+  std::vector<std::uint32_t> behind, front;
+};
+
+/// Draws both layers. What is cast put over `behind`, and `front` over that, is the picture of compose(); at
+/// most two levels apart, as each layer is rounded.
+/// @param layers  its memory is used again
+void drawLayers(OverlayLayers& layers, ImageSize size, const Camera& camera, const SceneBox& box,
+                const Annotations& annotations, const HiddenTest& hidden = {});
 
 /// Draws the finished, opaque picture.
 Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,

@@ -6,9 +6,11 @@
 #include "emscape/base/backend.h"
 #include "emscape/base/progress.h"
 #include "emscape/render/camera.h"
+#include "emscape/render/device_picture.h"
 #include "emscape/render/frame.h"
 #include "emscape/render/height_field.h"
 #include "emscape/render/image.h"
+#include "emscape/render/overlay.h"
 #include "emscape/render/render_settings.h"
 #include "emscape/render/transfer_function.h"
 #include "emscape/volume/volume.h"
@@ -74,6 +76,10 @@ class Renderer {
   /// one on a GPU: it is quantised there. Not to be used after an incomplete frame.
   void fetch(Image& image);
   void fetch(Image8& image);
+
+  /// The same picture, quantised, between the layers of its labels: stays on the GPU. Null with the CPU.
+  /// @param layers  of the picture's size. @throws Error (device)
+  std::shared_ptr<const DevicePicture> compose(const OverlayLayers& layers);
 
   /// The same into the caller's image, which is all there is of the picture then: restore() is given the one
   /// that draw() wrote.
