@@ -16,6 +16,8 @@
 namespace emscape::emfield {
 namespace {
 
+using namespace propagation;
+
 using testing::HasSubstr;
 
 constexpr Swerling kAllCases[] = {Swerling::steady, Swerling::slow_exponential, Swerling::fast_exponential,

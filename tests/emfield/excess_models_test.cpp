@@ -25,13 +25,18 @@ using namespace emscape::emfield::testing;
 using namespace propagation;
 using ::testing::HasSubstr;
 
-/// The air of a lone emitter at 52 degrees north.
-AirLoss airOf(const scenario::Scenario& scenario, double station_msl_m, const PathExtent& extent,
-              std::vector<float>& table) {
+/// The paths of a lone emitter at 52 degrees north.
+PathInputs pathsOf(const scenario::Scenario& scenario, double station_msl_m, const PathExtent& extent) {
   PathInputs inputs;
   inputs.emitter = emitterInputs(scenario, scenario.emitters[0]);
   inputs.site = {52, station_msl_m, 6371e3, 6371e3 * scenario.atmosphere.k_factor};
   inputs.extent = extent;
+  return inputs;
+}
+
+AirLoss airOf(const scenario::Scenario& scenario, double station_msl_m, const PathExtent& extent,
+              std::vector<float>& table) {
+  const PathInputs inputs = pathsOf(scenario, station_msl_m, extent);
   return airLoss(inputs, hasGases(inputs.emitter), table);
 }
 
@@ -410,7 +415,7 @@ TEST(ExcessModels, P528BetweenTheTablesNodesIsTheCurve) {
         scenario->emitters[0].frequency_hz = frequency_hz;
         scenario->emitters[0].propagation.p528.time_percent = percent;
         std::vector<float> tables;
-        const P528Excess table = p528Excess(scenario->emitters[0], tx_m, 0, {400e3, 100, 12000}, tables);
+        const P528Excess table = p528Excess(pathsOf(*scenario, tx_m, {400e3, 100, 12000}), tables);
         const auto atmosphere = std::make_shared<const P528Atmosphere>(frequency_hz);
         Spread spread;
         for (int n = 0; n < 100; ++n) {

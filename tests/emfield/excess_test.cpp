@@ -17,7 +17,7 @@ namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
-using propagation::PropagationModel;
+using namespace propagation;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
