@@ -21,7 +21,9 @@ endif()
 find_program(EMSCAPE_CCACHE ccache)
 mark_as_advanced(EMSCAPE_CCACHE)
 if(EMSCAPE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER "${EMSCAPE_CCACHE}")
+  # What ccache needs to be told before it keeps objects made with precompiled headers.
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+    "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${EMSCAPE_CCACHE}")
 endif()
 
 if(EMSCAPE_SANITIZE STREQUAL "address")

@@ -39,13 +39,8 @@ std::string withoutQuotes(const std::string& text) {
 }
 
 std::string quotedIfNeeded(const std::string& name) {
-  if (!name.empty() && name.front() != '"' && name.find('=') == std::string::npos) return name;
-  std::string quoted = "\"";
-  for (const char c : name) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
+  const bool is_plain = !name.empty() && name.front() != '"' && name.find('=') == std::string::npos;
+  return is_plain ? name : quotedName(name);
 }
 
 const std::string* nameOf(const DocumentNode& item) {
@@ -209,6 +204,15 @@ class Resolver {
 
 ResolvedPath resolvePath(const std::string& path, const DocumentNodePtr& root, const ObjectSpec& spec) {
   return Resolver(path, root, spec).resolve();
+}
+
+std::string quotedName(const std::string& name) {
+  std::string quoted = "\"";
+  for (const char c : name) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + "\"";
 }
 
 std::size_t endOfPath(const std::string& text) {

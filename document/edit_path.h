@@ -26,6 +26,9 @@ struct ResolvedPath {
 /// it does
 ResolvedPath resolvePath(const std::string& path, const DocumentNodePtr& root, const ObjectSpec& spec);
 
+/// A name in double quotes, with \" and \\ for a quote and a backslash.
+std::string quotedName(const std::string& name);
+
 /// The byte of the first '=' of "PATH=VALUE" that does not stand in a quoted name; npos if there is none.
 std::size_t endOfPath(const std::string& text);
 

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <set>
 
+#include "base/quantity_text.h"
 #include "base/utc.h"
 #include "document/text_file.h"
 
@@ -324,9 +325,9 @@ std::string rangeFault(const std::string& name, const std::string& text, double 
   }
   const bool low = spec.minimum_excluded ? value <= spec.minimum : value < spec.minimum;
   if (!low && value <= spec.maximum) return "";
-  return fmt::format("{} is {}, outside the allowed {}{} to {}{}", name, text,
-                     spec.minimum_excluded ? "above " : "", spec.minimum, spec.maximum,
-                     spec.unit.empty() ? "" : " " + spec.unit);
+  constexpr int kDigits = 12;  // limits are told in full
+  return fmt::format("{} is {}, outside the allowed {}{}", name, text, spec.minimum_excluded ? "above " : "",
+                     rangeText(spec.minimum, spec.maximum, spec.unit, kDigits));
 }
 
 std::string didYouMean(const std::string& word, const std::vector<std::string>& names, std::string* closest) {

@@ -2,11 +2,15 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "base/utc.h"
+#include "base/whole_file.h"
 #include "document/text_file.h"
 #include "emscape/base/error.h"
 #include "playback/file_names.h"
@@ -15,6 +19,9 @@ namespace emscape::playback {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Of an input: of programs that run at the same time or ended before their time.
+constexpr int kMaxFiles = 32;
 
 /// When a file was written last, in milliseconds since 1970; none if there is no such file.
 std::optional<std::int64_t> writtenAt_ms(const fs::path& file) {
@@ -34,36 +41,79 @@ fs::path stateFolder() {
   throw Error(ErrorCode::other, "neither XDG_STATE_HOME nor HOME is set: there is no folder for autosaves");
 }
 
-fs::path autosaveFileOf(const std::string& input) {
+fs::path autosaveFileOf(const std::string& input, int number) {
   const fs::path path = fs::weakly_canonical(fs::absolute(input));
   document::ContentHash hash;
   hash.add(path.string());
   const fs::path name = path.has_filename() ? path : path.parent_path();
-  return stateFolder() / "autosave" / (fileNameOf(name.stem().string()) + "-" + hash.hex() + ".view.json");
+  const std::string suffix = number == 1 ? "" : "-" + std::to_string(number);
+  return stateFolder() / "autosave" /
+         (fileNameOf(name.stem().string()) + "-" + hash.hex() + suffix + ".view.json");
 }
 
-void autosave(const std::string& input, const ViewState& state) {
-  const fs::path file = autosaveFileOf(input);
+Autosaves::Autosaves() = default;
+Autosaves::~Autosaves() = default;
+
+bool Autosaves::claim(const std::string& input, const fs::path& file) {
+  try {
+    auto lock = std::make_unique<FolderLock>(file.parent_path(), file.filename().string() + ".lock");
+    claims_[autosaveFileOf(input)] = {file, std::move(lock)};
+    return true;
+  } catch (const Error&) {  // another program's
+    return false;
+  }
+}
+
+void Autosaves::keep(const std::string& input, const ViewState& state) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const fs::path first = autosaveFileOf(input);
   std::error_code failure;
-  fs::create_directories(file.parent_path(), failure);
+  fs::create_directories(first.parent_path(), failure);
   if (failure) {
-    throw Error(ErrorCode::other, {file.parent_path().string(), 0, 0},
+    throw Error(ErrorCode::other, {first.parent_path().string(), 0, 0},
                 "the folder cannot be made: " + failure.message());
   }
-  writeViewState(file.string(), state);
+  for (int number = 1; claims_.count(first) == 0; ++number) {
+    if (number > kMaxFiles) {
+      throw Error(ErrorCode::other, {first.string(), 0, 0},
+                  "the view cannot be kept: no file beside this one is free");
+    }
+    const fs::path file = autosaveFileOf(input, number);
+    if (!writtenAt_ms(file)) claim(input, file);
+  }
+  writeViewState(claims_[first].file.string(), state);
 }
 
-std::optional<AutosavedView> findAutosave(const std::string& input) {
-  const fs::path file = autosaveFileOf(input);
+std::optional<AutosavedView> Autosaves::find(const std::string& input) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const fs::path first = autosaveFileOf(input);
+  if (claims_.count(first) == 0) {
+    std::vector<std::pair<std::int64_t, fs::path>> files;
+    for (int number = 1; number <= kMaxFiles; ++number) {
+      const fs::path file = autosaveFileOf(input, number);
+      if (const auto written_ms = writtenAt_ms(file)) files.emplace_back(*written_ms, file);
+    }
+    std::sort(files.rbegin(), files.rend());
+    for (const auto& [written_ms, file] : files) {
+      if (claim(input, file)) break;
+    }
+  }
+  const auto found = claims_.find(first);
+  if (found == claims_.end()) return std::nullopt;
+  const fs::path& file = found->second.file;
   const std::optional<std::int64_t> written_ms = writtenAt_ms(file);
   if (!written_ms) return std::nullopt;
   return AutosavedView{file, utcText(*written_ms), writtenAt_ms(input).value_or(0) > *written_ms,
                        readViewState(file.string())};
 }
 
-void removeAutosave(const std::string& input) {
+void Autosaves::remove(const std::string& input) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto claimed = claims_.find(autosaveFileOf(input));
+  if (claimed == claims_.end()) return;
   std::error_code ignored;
-  fs::remove(autosaveFileOf(input), ignored);
+  fs::remove(claimed->second.file, ignored);
+  claims_.erase(claimed);
 }
 
 }  // namespace emscape::playback

@@ -84,6 +84,7 @@ void LiveFields::run() {
 void LiveFields::open() {
   try {
     source_ = open_(stop_);
+    if (!source_) return;
     const std::lock_guard<std::mutex> lock(mutex_);
     if (const LoadedScenario* scene = source_->scene()) status_.scenario = scene->scenario;
     status_.times_s = timesOf(*source_);
@@ -104,7 +105,7 @@ void LiveFields::accept(Mailbox<FieldRequest>::Letter letter) {
 }
 
 void LiveFields::serve() {
-  if (!source_) {  // why is told already
+  if (!source_) {  // why is told already, if there was something to open
     const FieldsStatus told = status();
     fail(told.error, told.error_code);
     return;

@@ -77,7 +77,8 @@ class LiveFields {
   };
   using Open = std::function<std::unique_ptr<FrameSource>(const StopFlag& stop)>;
 
-  /// @param open   makes the source, on the thread of this object; frames of it must be independent
+  /// @param open   makes the source, on the thread of this object; frames of it must be independent; null:
+  /// there are no fields, and no request is served
   /// @param first  the first request
   LiveFields(Open open, FieldRequest first, const Options& options, Events events);
   /// close().

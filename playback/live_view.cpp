@@ -81,15 +81,18 @@ struct LiveView::Impl {
         caster(style, view, options.target, options.controller, options.cast_threads, options.niceness,
                {[this](LivePicture made, PictureProgress of_made) { publish(std::move(made), of_made); },
                 [this] { tell(); }}),
-        fields([selection = selectionOf(input, scenario, options), target = options.target](
-                   const StopFlag& stop) { return openFrameSource(selection, target, {}, &stop); },
-               field,
-               {options.cache_bytes, options.min_seek_interval_ms, options.steps_ahead, options.solve_threads,
-                solveNiceness(options)},
-               {[this](FieldDelivery delivery, Mailbox<FieldRequest>::Time asked) {
-                  caster.deliver(std::move(delivery), asked);
-                },
-                [this] { tell(); }, [this] { return caster.isDrawing(); }}) {}
+        fields(
+            [selection = selectionOf(input, scenario, options),
+             target = options.target](const StopFlag& stop) {
+              return selection.input.empty() ? nullptr : openFrameSource(selection, target, {}, &stop);
+            },
+            field,
+            {options.cache_bytes, options.min_seek_interval_ms, options.steps_ahead, options.solve_threads,
+             solveNiceness(options)},
+            {[this](FieldDelivery delivery, Mailbox<FieldRequest>::Time asked) {
+               caster.deliver(std::move(delivery), asked);
+             },
+             [this] { tell(); }, [this] { return caster.isDrawing(); }}) {}
 
   /// Each thread calls the object of the other one: both end before either object goes.
   ~Impl() {

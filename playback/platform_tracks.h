@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "emscape/playback/inputs.h"
-#include "emscape/render/overlay.h"
+#include "emscape/render/annotate/overlay.h"
 #include "emscape/volume/grid.h"
 
 namespace emscape::playback {

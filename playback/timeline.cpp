@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "emscape/base/error.h"
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 
 namespace emscape::playback {
 namespace {

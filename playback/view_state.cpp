@@ -57,6 +57,7 @@ class ViewFormat {
                  {spec::required("name", text(), ""), spec::required("camera", text(1), ""),
                   spec::optional("time_s", time, "")}};
     range_ = {"range", "", {spec::required("min", value, ""), spec::required("max", value, "")}};
+    interval_ = {"interval", "", {spec::required("begin_s", time, ""), spec::required("end_s", time, "")}};
     root_ = {
         "view",
         "",
@@ -66,6 +67,8 @@ class ViewFormat {
          spec::optional("time_s", time, ""),
          spec::optional("rate", spec::number().from(-kMaxRate).to(kMaxRate), ""),
          spec::optional("loop", boolean, ""),
+         spec::optional("play_range", spec::object(interval_), ""),
+         spec::optional("visible_time", spec::object(interval_), ""),
          spec::optional("quantity", text(), ""),
          spec::optional("range", spec::object(range_), ""),
          spec::optional("transfer", spec::object(transfer_.object()), ""),
@@ -94,7 +97,7 @@ class ViewFormat {
 
  private:
   render::TransferFormat transfer_;
-  ObjectSpec bookmark_, range_, root_;
+  ObjectSpec bookmark_, range_, interval_, root_;
 };
 
 class Reader {
@@ -112,6 +115,8 @@ class Reader {
     read(root, "time_s", state.time_s);
     read(root, "rate", state.rate);
     read(root, "loop", state.loop);
+    state.play_range = interval(root, "play_range");
+    state.visible_time = interval(root, "visible_time");
     state.quantity = root.text("quantity");
     if (root.has("range")) state.range = range(root.section("range"));
     if (root.has("transfer")) {
@@ -158,6 +163,17 @@ class Reader {
                          fmt::format("'max' is {}, not above 'min', {}", range.max, range.min));
     }
     return range;
+  }
+
+  std::optional<scenario::TimeInterval> interval(const Section& root, const std::string& key) {
+    if (!root.has(key)) return std::nullopt;
+    const Section section = root.section(key);
+    const scenario::TimeInterval interval{section.number("begin_s"), section.number("end_s")};
+    if (!(interval.begin_s < interval.end_s)) {
+      problems_.addError(section.placeOf("end_s"), fmt::format("'end_s' is {}, not above 'begin_s', {}",
+                                                               interval.end_s, interval.begin_s));
+    }
+    return interval;
   }
 
   static void readSettings(const Section& root, render::RenderSettings& settings) {
@@ -208,6 +224,10 @@ void dropColors(ViewState& state) {
 
 void addCamera(const render::CameraSpec& camera, Json& json) {
   json["camera"] = toString(camera);
+}
+
+void addInterval(const char* key, const std::optional<scenario::TimeInterval>& interval, Json& json) {
+  if (interval) json[key] = {{"begin_s", interval->begin_s}, {"end_s", interval->end_s}};
 }
 
 void addSettings(const render::RenderSettings& settings, Json& json) {
@@ -265,6 +285,8 @@ std::string viewStateText(const ViewState& state) {
   json["time_s"] = state.time_s;
   json["rate"] = state.rate;
   json["loop"] = state.loop;
+  addInterval("play_range", state.play_range, json);
+  addInterval("visible_time", state.visible_time, json);
   json["quantity"] = state.quantity;
   if (state.range) {
     json["range"]["min"] = document::shortNumber(state.range->min);

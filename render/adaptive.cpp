@@ -172,7 +172,7 @@ void queueLattice(ImageSize size, const Silhouette& inside, int first_y, std::ve
 
 }  // namespace
 
-bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double tolerance_levels, double most_rays,
+bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double tolerance_levels, double max_rays,
                          const Caster& cast) {
   const double held_levels = hold_.levels(tolerance_levels);
   double rays = 0;
@@ -198,7 +198,7 @@ bool AdaptiveFrame::draw(Image& image, const Silhouette& inside, double toleranc
     });
     if (!castQueued()) return false;
   }
-  hold_.drawn(held_levels, rays, most_rays);
+  hold_.drawn(held_levels, rays, max_rays);
   return true;
 }
 

@@ -1,8 +1,8 @@
 /// The pattern `adaptive`: rays are cast where the picture cannot be predicted.
 ///
-/// A lattice of every fourth pixel is cast. What lies between is filled in four passes, at half and then at a
-/// quarter of its distance: the centres of the cells, then the middles of their sides. Each such midpoint is
-/// predicted from the pixels that are known by then (adaptive_predict.h); where the prediction's estimated
+/// A lattice of every fourth pixel is cast. The pixels between are filled in four passes, at half and then at
+/// a quarter of its distance: the centres of the cells, then the middles of their sides. Each such midpoint
+/// is predicted from the pixels that are known by then (adaptive_predict.h); where the prediction's estimated
 /// error exceeds a tolerance the ray is cast. Rays are collected a pass at a time and cast together.
 #pragma once
 
@@ -33,10 +33,10 @@ class AdaptiveFrame {
   /// @param inside  the pixels that may show something; one row for each of the image's
   /// @param tolerance_levels  see kDefaultTolerance_levels; 0: only what is predicted without doubt is not
   /// cast
-  /// @param most_rays  > 0: while frames cast more, the tolerance is raised from one frame to the next, and
+  /// @param max_rays  > 0: while frames cast more, the tolerance is raised from one frame to the next, and
   /// lowered again when they do not
   /// @return false if it was stopped
-  bool draw(Image& image, const Silhouette& inside, double tolerance_levels, double most_rays,
+  bool draw(Image& image, const Silhouette& inside, double tolerance_levels, double max_rays,
             const Caster& cast);
 
   /// The pixels of the last frame that were predicted, those with the largest estimated error first (to a
@@ -52,7 +52,7 @@ class AdaptiveFrame {
   void joinQueues();
 
   ImageSize size_;
-  ToleranceHold hold_;
+  ToleranceController hold_;
   std::vector<std::uint8_t> classes_;       ///< of the estimated error, a byte a pixel; 0: is as it was cast
   std::vector<std::vector<Pixel>> queues_;  ///< rays to be cast, by rows of blocks
   std::vector<Pixel> queue_;                ///< the same, joined

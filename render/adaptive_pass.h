@@ -33,11 +33,11 @@ constexpr int kErrorClasses = 16;
 
 /// Class of an estimated error: 1 for less than 1/64 level, one more for every doubling.
 EMSCAPE_HD inline std::uint8_t errorClassOf(float error_levels) {
-  constexpr int kSmallestExponent = 127 - 6;
+  constexpr int kMinExponent = 127 - 6;
   std::int32_t bits = 0;
   static_assert(sizeof bits == sizeof error_levels, "float has 32 bits");
   std::memcpy(&bits, &error_levels, sizeof bits);
-  const int error_class = (bits >> 23) - kSmallestExponent + 2;
+  const int error_class = (bits >> 23) - kMinExponent + 2;
   const int held = error_class > 1 ? error_class : 1;
   return static_cast<std::uint8_t>(held < kErrorClasses ? held : kErrorClasses - 1);
 }
@@ -48,7 +48,7 @@ EMSCAPE_HD bool contains(const Known& known, int x, int y) {
   return x >= 0 && y >= 0 && x < known.size.width && y < known.size.height;
 }
 
-/// Along the direction (dx, dy) from a midpoint whose two nearest pixels lie in the picture. What lies beyond
+/// Along the direction (dx, dy) from a midpoint whose two nearest pixels are in the picture. What is beyond
 /// its edge follows from the curvature on the other side.
 template <class Known>
 EMSCAPE_HD Along<typename Known::Color> alongFrom(const Known& known, int x, int y, int dx, int dy) {

@@ -1,7 +1,7 @@
 /// Predicting a pixel from the known ones around it, and by how much the prediction may be wrong: single
 /// source for host and device over plain data.
 ///
-/// A midpoint lies half-way between two known pixels along each of two directions. Along a direction the four
+/// A midpoint is half-way between two known pixels along each of two directions. Along a direction the four
 /// nearest known pixels give a cubic prediction, (9 (a + b) - (c + d)) / 16, that may leave the linear one,
 /// (a + b) / 2, by no more than a quarter of the step between a and b: edges do not ring. The direction along
 /// which the picture changes less counts more.

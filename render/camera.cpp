@@ -16,9 +16,9 @@ namespace {
 
 constexpr double kLeastFov_deg = 1;
 constexpr double kLargestFov_deg = 150;
-constexpr double kLeastDistance = 0.01;
-constexpr double kLargestDistance = 1000;
-constexpr double kLargestExaggeration = 20;
+constexpr double kMinDistance = 0.01;
+constexpr double kMaxDistance = 1000;
+constexpr double kMaxExaggeration = 20;
 /// The drawn box is to be at least this high, relative to its longer side.
 constexpr double kHeightWanted = 0.32;
 
@@ -48,7 +48,7 @@ const std::vector<NumberKey>& ownKeys(CameraSpec::Kind kind) {
   static const std::vector<NumberKey> orbit{
       {"azimuth_deg", -360, 360, [](CameraSpec& s, double v) { s.azimuth_deg = v; }},
       {"elevation_deg", -90, 90, [](CameraSpec& s, double v) { s.elevation_deg = v; }},
-      {"distance", kLeastDistance, kLargestDistance, [](CameraSpec& s, double v) { s.distance = v; }}};
+      {"distance", kMinDistance, kMaxDistance, [](CameraSpec& s, double v) { s.distance = v; }}};
   static const std::vector<NumberKey> lookat{
       {"eye_x_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.eye_m).x = v; }},
       {"eye_y_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.eye_m).y = v; }},
@@ -204,7 +204,7 @@ double niceVerticalExaggeration(const volume::Grid& grid) {
   for (double nice : {1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 15.0}) {
     if (nice >= wanted) return nice;
   }
-  return kLargestExaggeration;
+  return kMaxExaggeration;
 }
 
 SceneBox sceneBoxOf(const volume::Grid& grid, double vertical_exaggeration) {

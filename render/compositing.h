@@ -1,4 +1,4 @@
-/// How the samples of a ray become a pixel: one small functor a mode, plain data for host and device.
+/// How the samples of a ray become a pixel: one small functor per mode, plain data for host and device.
 #pragma once
 
 #include <cmath>
@@ -20,7 +20,7 @@ EMSCAPE_HD inline Rgba shortened(const Rgba& sample, float part) {
 }
 
 /// 0..1; NaN is 0.
-EMSCAPE_HD inline float heldToUnit(float value) {
+EMSCAPE_HD inline float saturate(float value) {
 #if defined(__CUDA_ARCH__)
   return __saturatef(value);  // part of the instruction before
 #else
@@ -38,7 +38,7 @@ struct TransferView {
   float scale = 0;   ///< f per unit of the value
 
   /// f of a value, clamped to 0..1; NaN is 0.
-  EMSCAPE_HD float normalized(float value) const { return heldToUnit((value - lowest) * scale); }
+  EMSCAPE_HD float normalized(float value) const { return saturate((value - lowest) * scale); }
   EMSCAPE_HD int index(float f) const {
     return static_cast<int>(multiplyAdd(f, static_cast<float>(last), 0.5F));
   }
@@ -55,24 +55,56 @@ struct TransferView {
 ///                         allows); ahead.exceeds(next, f): whether any sample from there on can exceed f
 ///   kEndsItself           add() changes nothing once done() is true: done() need not be asked after each
 ///   kParts                parts of a ray that can be composited apart and joined; 1: it cannot be divided
-///   behind(), join(part)  a part that lies behind what is composited so far, and that part taken in
+///   behind(), join(part)  a compositor for a part behind what is composited so far; adds that part
 ///   nearlyDone()          true where done() is, and where rounding might make it so: of parts that were
-///                         composited without knowing what lies before them
+///                         composited without knowing what is in front of them
 ///   sample result(transfer)      the ray's colour, premultiplied
 /// `volume_highest_f` is the largest f that any sample can have.
 
-/// Opacity beyond which what lies behind does not matter; rays that are cast exactly go on to the end.
+/// Opacity beyond which a ray ends; rays that are cast exactly go on to the end.
 constexpr float kOpaqueEnough = 0.99F;
 constexpr float kNeverOpaqueEnough = 2.0F;
 
-constexpr int kMostRayParts = 8;
-constexpr int kRayHalves = 2;  ///< parts are joined to halves first, those to the ray
+constexpr int kMaxRayParts = 8;
+
+/// The parts of a ray, joined to two halves and these to the ray: every caster adds them up in this order, so
+/// that a pixel is the same to the last bit.
+template <class Compositor>
+class JoinedParts {
+ public:
+  EMSCAPE_HD explicit JoinedParts(const Compositor& before) : before_(before), half_(before.behind()) {}
+
+  /// The compositor of the next part.
+  EMSCAPE_HD Compositor behind() const { return half_.behind(); }
+  /// @param count  of parts that were joined before; of one half
+  EMSCAPE_HD void join(const Compositor& parts, int count = 1) {
+    half_.join(parts);
+    count_ += count;
+    if (count_ == Compositor::kParts / 2) beginHalf();
+  }
+  EMSCAPE_HD bool nearlyDone() const { return half_.nearlyDone(); }
+  /// What is composited so far.
+  EMSCAPE_HD Compositor whole() const {
+    Compositor ray = before_;
+    ray.join(half_);
+    return ray;
+  }
+
+ private:
+  EMSCAPE_HD void beginHalf() {
+    before_ = whole();
+    half_ = before_.behind();
+  }
+
+  Compositor before_, half_;
+  int count_ = 0;
+};
 
 /// Direct volume rendering: emission and absorption.
 struct DvrCompositor {
   static constexpr bool kNeedsColor = true;
   static constexpr bool kEndsItself = true;
-  static constexpr int kParts = kMostRayParts;
+  static constexpr int kParts = kMaxRayParts;
   float opaque_enough = kOpaqueEnough;
   float opacity_before = 0;  ///< of the parts before this one
   Rgba sum;
@@ -108,7 +140,7 @@ struct DvrCompositor {
 struct MipCompositor {
   static constexpr bool kNeedsColor = false;
   static constexpr bool kEndsItself = true;
-  static constexpr int kParts = kMostRayParts;
+  static constexpr int kParts = kMaxRayParts;
   float volume_highest = 1;
   float highest = -1;
 
@@ -132,12 +164,12 @@ struct MipCompositor {
   }
 };
 
-/// Maximum intensity difference accumulation (Bruckner and Groeller 2009): a new maximum fades what lies
-/// before it. gamma = -1 is DVR, 0 is MIDA; above 0 the picture blends towards MIP.
+/// Maximum intensity difference accumulation (Bruckner and Groeller 2009): a new maximum fades what is
+/// in front of it. gamma = -1 is DVR, 0 is MIDA; above 0 the picture blends towards MIP.
 struct MidaCompositor {
   static constexpr bool kNeedsColor = true;
   static constexpr bool kEndsItself = false;  // what is ahead decides
-  static constexpr int kParts = 1;            // a later maximum fades what lies before it
+  static constexpr int kParts = 1;            // a later maximum fades what is in front of it
   float gamma = 0;
   float opaque_enough = kOpaqueEnough;
   MipCompositor mip;

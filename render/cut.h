@@ -66,16 +66,16 @@ struct CutView {
   }
 };
 
-/// Distances along a ray, from its origin, that samples are taken between.
+/// Distances along a ray, from its origin, between which samples are taken.
 struct RayBounds {
   float begin = 0;
   float end = 1e30F;
 };
 
-/// What planes leave of a pixel's ray.
+/// The part of a pixel's ray that planes leave.
 struct CutRay {
   RayBounds bounds;  ///< of samples
-  Rgba section;      ///< what lies behind them; transparent: no section, or none that shows
+  Rgba section;      ///< what is behind them; transparent: no section, or none that shows
 };
 
 }  // namespace emscape::render

@@ -1,4 +1,5 @@
-/// What a renderer needs of the processor that casts its pictures. One implementation for each.
+/// Interface of a renderer to the processor that casts its pictures: one implementation for the CPU, one for
+/// CUDA.
 #pragma once
 
 #include <memory>
@@ -7,14 +8,13 @@
 #include "emscape/render/device_picture.h"
 #include "emscape/render/frame.h"
 #include "emscape/render/image.h"
-#include "emscape/render/overlay.h"
 #include "emscape/volume/dense_volume.h"
 #include "emscape/volume/device_volume.h"
 #include "render/scene.h"
 
 namespace emscape::render {
 
-/// Casts frames and keeps the picture of the last one where it was cast. One thread calls it.
+/// Casts frames and keeps the picture of the last one where it was cast. For use by one thread.
 class FrameCaster {
  public:
   virtual ~FrameCaster() = default;
@@ -30,10 +30,9 @@ class FrameCaster {
                            const StopFlag* stop) = 0;
   virtual FrameReport restore(const Scene& scene, const StopFlag* stop) = 0;
 
-  /// Before and after a picture is cast that is to end in an image of the caller's: so that it can be cast
-  /// into it where that is possible.
-  virtual void lend(Image& image) = 0;
-  virtual void giveBack(Image& image, const FrameReport& report) = 0;
+  /// Before and after a frame whose picture the caller wants in an image of its own: the CPU casts into it.
+  virtual void bindTarget(Image& image) = 0;
+  virtual void unbindTarget(Image& image, const FrameReport& report) = 0;
   /// The picture of the last frame.
   virtual void fetch(Image& image) = 0;
   virtual void fetch(Image8& image) = 0;

@@ -13,7 +13,7 @@ namespace emscape::render {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr double kLargestPosts = 1 << 28;
+constexpr double kMaxPosts = 1 << 28;
 /// Thickness of the block below the lowest of ground and box, as a part of the box's height.
 constexpr double kPlinth = 0.025;
 /// Hatching lines of a pit across the longer side of the ground.
@@ -70,7 +70,7 @@ struct PostRange {
 PostRange cover(double first_m, double spacing_m, double lower_m, double upper_m) {
   const double first = std::floor((lower_m - first_m) / spacing_m);
   const double last = std::max(first + 1, std::ceil((upper_m - first_m) / spacing_m));
-  if (std::abs(first) > 1e9 || last - first >= kLargestPosts) {
+  if (std::abs(first) > 1e9 || last - first >= kMaxPosts) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("height field with posts {} m apart is too fine for a box of {} m", spacing_m,
                             upper_m - lower_m));
@@ -98,10 +98,10 @@ void GroundSurface::crop(const HeightField& field, const volume::Grid& grid) {
   const Vec3d upper = grid.upper_m();
   const PostRange x = cover(field.first_x_m, field.spacing_x_m, lower.x, upper.x);
   const PostRange y = cover(field.first_y_m, field.spacing_y_m, lower.y, upper.y);
-  if (static_cast<double>(x.count) * y.count > kLargestPosts) {
+  if (static_cast<double>(x.count) * y.count > kMaxPosts) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("ground of {} x {} posts below the volume: at most {} are drawn", x.count,
-                            y.count, kLargestPosts));
+                            y.count, kMaxPosts));
   }
   view_.columns = x.count;
   view_.rows = y.count;

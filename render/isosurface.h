@@ -3,7 +3,7 @@
 
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
-#include "render/ray_pieces.h"
+#include "render/ray_segments.h"
 #include "render/volume_view.h"
 
 namespace emscape::render {
@@ -30,22 +30,22 @@ struct FieldPoint {
 };
 
 template <class Sampler>
-EMSCAPE_HD FieldPoint fieldPoint(const VolumeView& volume, const RayPieces& pieces, float distance) {
+EMSCAPE_HD FieldPoint fieldPoint(const VolumeView& volume, const RaySegments& segments, float distance) {
   FieldPoint point;
   point.distance = distance;
-  point.known = Sampler::sample(volume, pieces.at(distance), point.value);
+  point.known = Sampler::sample(volume, segments.at(distance), point.value);
   return point;
 }
 
 /// The crossing between two points on either side of the surface: bisected a fixed number of times, then
-/// linear. Not found if a masked or NaN sample lies between.
+/// linear. Not found if a masked or NaN sample is between.
 /// @accuracy 1/256 of the distance of the points for any field; for smooth ones about the square of that
 template <class Sampler>
-EMSCAPE_HD IsoHit refineCrossing(const VolumeView& volume, const RayPieces& pieces, float iso,
+EMSCAPE_HD IsoHit refineCrossing(const VolumeView& volume, const RaySegments& segments, float iso,
                                  FieldPoint near, FieldPoint far) {
   constexpr int kBisections = 8;
   for (int i = 0; i < kBisections; ++i) {
-    const FieldPoint middle = fieldPoint<Sampler>(volume, pieces, 0.5F * (near.distance + far.distance));
+    const FieldPoint middle = fieldPoint<Sampler>(volume, segments, 0.5F * (near.distance + far.distance));
     if (!middle.known) return {};
     const bool crossed = (middle.value >= iso) != (near.value >= iso);
     (crossed ? far : near) = middle;
@@ -58,32 +58,32 @@ EMSCAPE_HD IsoHit refineCrossing(const VolumeView& volume, const RayPieces& piec
   return hit;
 }
 
-/// The first crossing of the surface, in either direction, between neighbouring joints of a ray's pieces
+/// The first crossing of the surface, in either direction, between neighbouring joints of a ray's segments
 /// that are neither masked nor NaN.
 /// @param enters  the ray enters the box at its start (it does not begin inside): a start inside the surface
 ///                is a hit
 template <class Sampler>
-EMSCAPE_HD IsoHit firstCrossing(const VolumeView& volume, const SkipView& skip, const RayPieces& pieces,
+EMSCAPE_HD IsoHit firstCrossing(const VolumeView& volume, const SkipView& skip, const RaySegments& segments,
                                 float iso, bool enters) {
   FieldPoint last;
   int next_brick = 0;
-  for (int n = 0; n <= pieces.count;) {
-    const FieldPoint point = fieldPoint<Sampler>(volume, pieces, pieces.joint(n));
+  for (int n = 0; n <= segments.count;) {
+    const FieldPoint point = fieldPoint<Sampler>(volume, segments, segments.joint(n));
     if (n == 0 && enters && point.known && point.value >= iso) return {true, true, 0.0F, point.value};
     if (last.known && point.known && (last.value >= iso) != (point.value >= iso)) {
-      const IsoHit hit = refineCrossing<Sampler>(volume, pieces, iso, last, point);
+      const IsoHit hit = refineCrossing<Sampler>(volume, segments, iso, last, point);
       if (hit.found) return hit;
     }
     last = point;
     int ahead = 1;
     if (skip.levels != nullptr && n >= next_brick) {
-      const BrickStep brick = skip.at(volume, pieces.at(point.distance), pieces.per_voxel);
-      const int inside = pieces.stepsIn(brick.leave);  // joint n + inside surely lies in the brick
+      const BrickStep brick = skip.at(volume, segments.at(point.distance), segments.per_voxel);
+      const int inside = segments.stepsIn(brick.leave);  // joint n + inside is certainly in the brick
       next_brick = n + inside + 1;
       if (skip.levels[brick.index] < SkipView::kNever && inside > 1) ahead = inside;
     }
     // The last joint in a brick without the surface is on the same side as this one.
-    n = n < pieces.count && n + ahead > pieces.count ? pieces.count : n + ahead;
+    n = n < segments.count && n + ahead > segments.count ? segments.count : n + ahead;
   }
   return {};
 }

@@ -1,4 +1,4 @@
-/// How much work a picture is, whatever a renderer does to avoid some of it.
+/// Number of rays and samples of a picture without early termination and skipping.
 #pragma once
 
 #include <vector>

@@ -1,11 +1,11 @@
 /// Casting one pixel of a scene: single source for host and device over plain data.
 ///
 /// Rays live in *index space*, where voxel (i, j, k) has its centre at (i, j, k): there every voxel is a unit
-/// cube, and lengths along a ray are in voxels whatever the spacing and the vertical exaggeration. A ray
-/// crosses the box of voxels, -0.5 .. dims - 0.5 along each axis; it is cut into pieces of one step from
-/// where it enters, the last one shorter, and sampled in the middle of each piece with the opacity of the
-/// piece's length. Homogeneous fog so is exact for every step. No jitter: a pixel depends on its coordinates
-/// and the scene alone.
+/// cube, and lengths along a ray are in voxels for any spacing and vertical exaggeration. A ray
+/// crosses the box of voxels, -0.5 .. dims - 0.5 along each axis; it is cut into segments of one step from
+/// where it enters, the last one shorter, and sampled in the middle of each segment with the opacity of the
+/// segment's length. Hence homogeneous fog is exact for any step length. No jitter: a pixel depends on its
+/// coordinates and the scene alone.
 #pragma once
 
 #include "base/device_math.h"
@@ -15,7 +15,7 @@
 #include "render/cut.h"
 #include "render/ground.h"
 #include "render/isosurface.h"
-#include "render/ray_pieces.h"
+#include "render/ray_segments.h"
 #include "render/rgba.h"
 #include "render/shading.h"
 #include "render/volume_view.h"
@@ -64,7 +64,7 @@ struct RayIntervalOf {
 };
 using RayInterval = RayIntervalOf<double>;
 
-/// One axis' share of a box test. Rays that lie in a face count as outside.
+/// The box test for one axis. Rays in the plane of a face count as outside.
 template <class Real>
 EMSCAPE_HD inline void clipAxis(Real origin, Real direction, Real lower, Real upper,
                                 RayIntervalOf<Real>& interval) {
@@ -169,59 +169,43 @@ struct RaycastTask {
                                                     volume_highest_f);
   }
 
-  /// The same with the transfer function's colours from anywhere.
+  /// The same with the transfer function's colours from another memory.
   /// @param kMayShade  false: without the code for shading; shades_fog must not be set
-  /// @param kBatch  so many samples are fetched before the first is composited, to wait for them once; what
-  ///                comes out does not depend on it
+  /// @param kBatch  number of samples that are fetched before the first is composited; the result does not
+  ///                depend on it
   template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
   EMSCAPE_HD Rgba castVolume(int x, int y, RayBounds bounds, const Colors& colors, float highest_f) const {
-    Compositor compositor(opaque_enough, mida_gamma, highest_f);
-    const RayPieces pieces = piecesOf(x, y, bounds);
-    constexpr int kHalves = Compositor::kParts == 1 ? 1 : kRayHalves;
-    for (int half = 0; half < kHalves && pieces.count > 0; ++half) {
-      Compositor next = compositor.behind();
-      const bool done = castHalf<Compositor, Sampler, kMayShade, kBatch>(pieces, half, colors, next);
-      compositor.join(next);
+    const RaySegments segments = segmentsOf(x, y, bounds);
+    JoinedParts<Compositor> ray(Compositor(opaque_enough, mida_gamma, highest_f));
+    for (int part = 0; part < Compositor::kParts && segments.count > 0; ++part) {
+      Compositor next = ray.behind();
+      const bool done = castPart<Compositor, Sampler, kMayShade, kBatch>(segments, part, colors, next);
+      ray.join(next);
       if (done) break;
     }
-    return compositor.result(transfer);
-  }
-
-  /// One half of the parts of a ray, or the only part. @return whether nothing behind it matters
-  template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
-  EMSCAPE_HD bool castHalf(const RayPieces& pieces, int half, const Colors& colors,
-                           Compositor& compositor) const {
-    constexpr int kPartsOfHalf = Compositor::kParts == 1 ? 1 : Compositor::kParts / kRayHalves;
-    for (int n = 0; n < kPartsOfHalf; ++n) {
-      Compositor next = compositor.behind();
-      const bool done =
-          castPart<Compositor, Sampler, kMayShade, kBatch>(pieces, half * kPartsOfHalf + n, colors, next);
-      compositor.join(next);
-      if (done) return true;
-    }
-    return false;
+    return ray.whole().result(transfer);
   }
 
   /// One of Compositor::kParts parts of a ray, the first one in front.
   /// @return whether nothing behind it matters
   template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
-  EMSCAPE_HD bool castPart(const RayPieces& pieces, int part, const Colors& colors,
+  EMSCAPE_HD bool castPart(const RaySegments& segments, int part, const Colors& colors,
                            Compositor& compositor) const {
     constexpr int kParts = Compositor::kParts;
-    // Whole batches, whatever kBatch is, and nearly as many in each part.
-    const int batches = (pieces.whole + kMostRayParts - 1) / kMostRayParts;
-    const int begin = batches * part / kParts * kMostRayParts;
-    const int next = batches * (part + 1) / kParts * kMostRayParts;
-    const int end = next < pieces.whole ? next : pieces.whole;
-    return march<Compositor, Sampler, kMayShade, kBatch>(pieces, begin, end, part + 1 == kParts, colors,
+    // Whole batches for any kBatch, and nearly as many in each part.
+    const int batches = (segments.whole + kMaxRayParts - 1) / kMaxRayParts;
+    const int begin = batches * part / kParts * kMaxRayParts;
+    const int next = batches * (part + 1) / kParts * kMaxRayParts;
+    const int end = next < segments.whole ? next : segments.whole;
+    return march<Compositor, Sampler, kMayShade, kBatch>(segments, begin, end, part + 1 == kParts, colors,
                                                          compositor);
   }
 
-  /// The pieces of a pixel's ray in the volume, none where it does not meet it.
-  EMSCAPE_HD RayPieces piecesOf(int x, int y, RayBounds bounds) const {
+  /// The segments of a pixel's ray in the volume, none where it does not meet it.
+  EMSCAPE_HD RaySegments segmentsOf(int x, int y, RayBounds bounds) const {
     const Ray ray = camera.ray(x, y);
     const RayInterval inside = insideOf(ray, bounds);
-    return piecesOf(ray, inside.end > inside.begin ? inside : RayInterval{});
+    return segmentsOf(ray, inside.end > inside.begin ? inside : RayInterval{});
   }
 
   /// The isosurface as a pixel shows it, premultiplied.
@@ -230,31 +214,32 @@ struct RaycastTask {
     const Ray ray = camera.ray(x, y);
     const RayInterval inside = insideOf(ray, bounds);
     if (!(inside.end > inside.begin)) return {};
-    const RayPieces pieces = piecesOf(ray, inside);
-    const IsoHit hit = firstCrossing<Sampler>(volume, skip, pieces, iso.value, inside.begin > 0.0);
+    const RaySegments segments = segmentsOf(ray, inside);
+    const IsoHit hit = firstCrossing<Sampler>(volume, skip, segments, iso.value, inside.begin > 0.0);
     if (!hit.found) return {};
     const Rgba color{iso.r * iso.opacity, iso.g * iso.opacity, iso.b * iso.opacity, iso.opacity};
-    const Vec3f to_viewer = shading.toViewer(pieces.direction);
-    if (hit.cap) return shading.lit(color, entryNormal(volume, pieces.start, pieces.direction), to_viewer);
-    const Vec3f gradient = gradientAt<Sampler>(volume, pieces.at(hit.distance), hit.value);
+    const Vec3f to_viewer = shading.toViewer(segments.direction);
+    if (hit.cap)
+      return shading.lit(color, entryNormal(volume, segments.start, segments.direction), to_viewer);
+    const Vec3f gradient = gradientAt<Sampler>(volume, segments.at(hit.distance), hit.value);
     if (!ShadingView::isSlope(gradient)) return color;
     return shading.lit(color, shading.normal(gradient), to_viewer);
   }
 
  private:
-  /// Whole pieces begin .. end of a ray, and the last one, which is shorter, if that is asked for.
+  /// Whole segments begin .. end of a ray, and the last one, which is shorter, if that is asked for.
   /// @return whether nothing behind them matters
   template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
-  EMSCAPE_HD bool march(const RayPieces& pieces, int begin, int end, bool with_last, const Colors& colors,
+  EMSCAPE_HD bool march(const RaySegments& segments, int begin, int end, bool with_last, const Colors& colors,
                         Compositor& compositor) const {
-    LookAhead ahead(skip, volume, pieces);
-    const Vec3f to_viewer = kMayShade ? shading.toViewer(pieces.direction) : Vec3f{};
-    // Takes the sample of piece n, of `part` of a step. @return whether nothing behind it matters
+    OccupancyLookahead ahead(skip, volume, segments);
+    const Vec3f to_viewer = kMayShade ? shading.toViewer(segments.direction) : Vec3f{};
+    // Takes the sample of segment n, of `part` of a step. @return whether nothing behind it matters
     const auto take = [&](int n, float part, float value, float f, Rgba sample) {
       if (compositor.ignores(f, sample)) return false;
       if constexpr (Compositor::kNeedsColor) {
         if (kMayShade && shading.shades_fog && sample.a > 0.0F) {
-          const Vec3f gradient = gradientAt<Sampler>(volume, pieces.at(pieces.middle(n)), value);
+          const Vec3f gradient = gradientAt<Sampler>(volume, segments.at(segments.middle(n)), value);
           sample = shading.litFog(sample, gradient * transfer.scale, to_viewer);
         }
         if (part < 1.0F) sample = shortened(sample, part);
@@ -266,29 +251,29 @@ struct RaycastTask {
       return Compositor::kNeedsColor ? colors.at(transfer.index(f)) : Rgba{};
     };
     const float shift = Sampler::kShift;
-    const Vec3f fetch_start = pieces.start + Vec3f{shift, shift, shift};
-    int next_brick = 0;  // the first sample that may lie in another brick than the last one looked at
+    const Vec3f fetch_start = segments.start + Vec3f{shift, shift, shift};
+    int next_brick = 0;  // the first sample that may be in another brick than the last one tested
     for (int n = begin; n < end;) {
       if (skip.levels != nullptr && n >= next_brick) {
-        const BrickStep brick = skip.at(volume, pieces.at(pieces.wholeMiddle(n)), pieces.per_voxel);
-        next_brick = n + 1 + pieces.stepsIn(brick.leave);
+        const BrickStep brick = skip.at(volume, segments.at(segments.wholeMiddle(n)), segments.per_voxel);
+        next_brick = n + 1 + segments.stepsIn(brick.leave);
         if (compositor.canSkip(skip.levels[brick.index])) {
           n = next_brick;
           continue;
         }
       }
-      // Stage by stage and with few branches, so that the waits of a batch fall together.
+      // Stage by stage and with few branches, so that the fetches of a batch overlap.
       float values[kBatch];
       float fs[kBatch];
       Rgba samples[kBatch];
       EMSCAPE_UNROLL
       for (int i = 0; i < kBatch; ++i) {
-        values[i] = Sampler::fetch(volume, pieces.from(fetch_start, pieces.wholeMiddle(n + i)));
+        values[i] = Sampler::fetch(volume, segments.from(fetch_start, segments.wholeMiddle(n + i)));
       }
       if (volume.masked_below > 0) {
         EMSCAPE_UNROLL
         for (int i = 0; i < kBatch; ++i) {
-          if (nearestIsMasked(volume, pieces.at(pieces.wholeMiddle(n + i)))) values[i] = NAN;
+          if (nearestIsMasked(volume, segments.at(segments.wholeMiddle(n + i)))) values[i] = NAN;
         }
       }
       EMSCAPE_UNROLL
@@ -310,12 +295,12 @@ struct RaycastTask {
       n += kBatch;
     }
     float value = 0;
-    if (!with_last || pieces.whole == pieces.count ||
-        !Sampler::sample(volume, pieces.at(pieces.middle(pieces.whole)), value)) {
+    if (!with_last || segments.whole == segments.count ||
+        !Sampler::sample(volume, segments.at(segments.middle(segments.whole)), value)) {
       return false;
     }
     const float f = transfer.normalized(value);
-    return take(pieces.whole, quotient(pieces.last(), step_voxels), value, f, colorOf(f));
+    return take(segments.whole, quotient(segments.last(), step_voxels), value, f, colorOf(f));
   }
 
   EMSCAPE_HD RayInterval insideOf(const Ray& ray, RayBounds bounds) const {
@@ -330,7 +315,7 @@ struct RaycastTask {
     const bool known = Sampler::sample(volume, vecCast<float>(ray.origin + ray.direction * distance), value);
     return cut.color(transfer, known, value);
   }
-  EMSCAPE_HD RayPieces piecesOf(const Ray& ray, const RayInterval& inside) const {
+  EMSCAPE_HD RaySegments segmentsOf(const Ray& ray, const RayInterval& inside) const {
     return {vecCast<float>(ray.origin + ray.direction * inside.begin), vecCast<float>(ray.direction),
             static_cast<float>(inside.end - inside.begin), step_voxels};
   }

@@ -65,7 +65,7 @@ void fillFromRowsBeside(Image& image, int y) {
   for (int x = 0; x < width; x += 2) row[x] = Arithmetic::mean(above[x], below[x]);
 }
 
-/// Fills some rows. Rows beside each other may be filled at the same time: of other rows only source pixels
+/// Fills some rows. Neighbouring rows may be filled at the same time: of other rows only source pixels
 /// are read.
 template <class Arithmetic>
 void fillRows(Pattern pattern, Image& image, int begin, int end) {

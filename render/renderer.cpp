@@ -15,7 +15,7 @@ struct Renderer::Impl {
   Backend backend = Backend::cpu;
   std::unique_ptr<FrameCaster> caster;
   Scene scene;
-  std::mutex volume_mutex;  ///< whoever sets the volume, and whoever draws it
+  std::mutex volume_mutex;  ///< held while the volume is set, and while it is drawn
 
   FrameReport draw(const FramePlan& plan, ImageSize size, const StopFlag* stop) {
     scene.prepare();
@@ -112,17 +112,17 @@ std::shared_ptr<const DevicePicture> Renderer::compose(const OverlayLayers& laye
 
 FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, Image& image, const StopFlag* stop) {
   const std::lock_guard<std::mutex> lock(impl_->volume_mutex);
-  impl_->caster->lend(image);
+  impl_->caster->bindTarget(image);
   const FrameReport report = impl_->draw(plan, size, stop);
-  impl_->caster->giveBack(image, report);
+  impl_->caster->unbindTarget(image, report);
   return report;
 }
 
 FrameReport Renderer::restore(Image& image, const StopFlag* stop) {
   const std::lock_guard<std::mutex> lock(impl_->volume_mutex);
-  impl_->caster->lend(image);
+  impl_->caster->bindTarget(image);
   const FrameReport report = impl_->restore(stop);
-  impl_->caster->giveBack(image, report);
+  impl_->caster->unbindTarget(image, report);
   return report;
 }
 

@@ -1,4 +1,4 @@
-/// A scene as it was set, and what follows from it on the host, prepared when it is needed.
+/// A scene as it was set, and what the host derives from it when it is needed.
 #pragma once
 
 #include <memory>
@@ -15,11 +15,10 @@
 
 namespace emscape::render {
 
-/// Everything but the values of the volume. One thread uses it.
+/// Everything but the values of the volume. For use by one thread.
 class Scene {
  public:
-  /// Numbers that grow whenever what they stand for has changed, so that whoever derives more from it knows
-  /// what to derive anew.
+  /// Revision counters, one per input. Dependents compare them to decide what to derive again.
   struct Versions {
     unsigned table = 0;   ///< the transfer function's table
     unsigned levels = 0;  ///< what skipRule() says

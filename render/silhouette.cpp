@@ -22,7 +22,7 @@ constexpr double kEyeAtBox = 1e-4;
 struct PlanePoint {
   double x = 0, y = 0;
 };
-/// A piece of a row of pixels, in fractions.
+/// An interval of a row of pixels, in fractions.
 struct Extent {
   double least = 1e300, largest = -1e300;
 

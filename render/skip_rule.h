@@ -1,4 +1,4 @@
-/// What SkipView says of a brick, from the range of its values: single source for host and device.
+/// SkipView's entries of a brick, from the range of its values: single source for host and device.
 #pragma once
 
 #include "emscape/base/host_device.h"
@@ -47,20 +47,20 @@ struct SkipRule {
   }
 };
 
-/// Whether looking for bricks to skip pays on a GPU. It costs a part of the frame whatever is found: on an
-/// H100, while they were always looked for, about 0.14 of a full frame of DVR, 0.24 of one with a quarter of
-/// the rays, 0.5 of one of MIDA. Of the samples in bricks that can be skipped two thirds are saved, as rays
-/// go in groups that skip together. MIDA moreover skips only what lies below its maximum so far. Maximum
-/// projection and isosurfaces skip most of a volume whatever it holds.
+/// Whether testing for bricks to skip pays on a GPU. It costs a part of the frame if anything is skipped or
+/// not: on an H100, while they were always looked for, about 0.14 of a full frame of DVR, 0.24 of one with a
+/// quarter of the rays, 0.5 of one of MIDA. Of the samples in bricks that can be skipped two thirds are
+/// saved, as rays go in groups that skip together. MIDA moreover skips only what is below its maximum so far.
+/// Maximum projection and isosurfaces skip most of any volume.
 /// @param skippable_share  of the bricks, 0..1: those of a level below SkipView::kNever
 inline bool skippingPays(CompositingMode mode, double skippable_share) {
-  constexpr double kLeastShareDvr = 0.3;
-  constexpr double kLeastShareMida = 0.8;
+  constexpr double kMinShareDvr = 0.3;
+  constexpr double kMinShareMida = 0.8;
   switch (mode) {
     case CompositingMode::dvr:
-      return skippable_share >= kLeastShareDvr;
+      return skippable_share >= kMinShareDvr;
     case CompositingMode::mida:
-      return skippable_share >= kLeastShareMida;
+      return skippable_share >= kMinShareMida;
     case CompositingMode::mip:
     case CompositingMode::iso:
       break;

@@ -16,7 +16,7 @@ Rgb rgbOf(unsigned hex) {
           static_cast<float>(hex & 255U) / 255.0F};
 }
 
-Rgb mixed(const Rgb& a, const Rgb& b, float f) {
+Rgb lerp(const Rgb& a, const Rgb& b, float f) {
   return {a.r + f * (b.r - a.r), a.g + f * (b.g - a.g), a.b + f * (b.b - a.b)};
 }
 
@@ -51,14 +51,14 @@ const std::vector<ColorMap>& colorMaps() {
 /// Okabe and Ito, Color Universal Design (2008), without black.
 constexpr unsigned kCategoryColors[] = {0xe69f00, 0x56b4e9, 0x009e73, 0xf0e442, 0x0072b2, 0xd55e00, 0xcc79a7};
 
-/// Opacity (of one reference step) of the default function where a part of all values lies below; the last is
-/// the largest value.
+/// Opacity (of one reference step) of the default function at a quantile of the values; the last is the
+/// maximum.
 struct QuantileOpacity {
   double quantile, opacity;
 };
 constexpr QuantileOpacity kQuantileOpacity[] = {{0.5, 0.0},    {0.8, 0.0025}, {0.93, 0.008}, {0.98, 0.025},
                                                 {0.995, 0.07}, {0.999, 0.14}, {0.9999, 0.3}};
-/// What of the weakest values the colours leave out.
+/// Fraction of the range, from below, that is not coloured.
 constexpr double kColorsFrom = 0.3;
 /// Values that the quantiles are taken from, about.
 constexpr long long kQuantileSample = 200000;
@@ -197,7 +197,7 @@ Rgb ColorMap::at(double position) const {
   if (above == points.begin()) return points.front().color;
   if (above == points.end()) return points.back().color;
   const Point& below = *(above - 1);
-  return mixed(below.color, above->color, static_cast<float>((position - below.at) / (above->at - below.at)));
+  return lerp(below.color, above->color, static_cast<float>((position - below.at) / (above->at - below.at)));
 }
 
 const ColorMap& colorMap(const std::string& name) {
@@ -226,7 +226,7 @@ Rgb TransferFunction::color(double value) const {
   if (above == colors.begin()) return colors.front().color;
   if (above == colors.end()) return colors.back().color;
   const ColorPoint& below = *(above - 1);
-  return mixed(below.color, above->color, static_cast<float>((value - below.at) / (above->at - below.at)));
+  return lerp(below.color, above->color, static_cast<float>((value - below.at) / (above->at - below.at)));
 }
 
 double TransferFunction::opacity(double value) const {

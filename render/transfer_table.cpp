@@ -9,7 +9,7 @@ namespace emscape::render {
 namespace {
 
 constexpr int kEntries = 4096;
-constexpr double kMostCategories = 65536;
+constexpr double kMaxCategories = 65536;
 
 Rgba premultiplied(const Rgb& color, double opacity) {
   const float a = static_cast<float>(opacity);
@@ -25,7 +25,7 @@ TransferTable::TransferTable(const TransferFunction& function, double step_voxel
   highest_ = function.highest();
   if (function.categorical) {
     lowest_ = -1;  // none
-    highest_ = std::clamp(std::floor(highest_ + 0.5), 0.0, kMostCategories);
+    highest_ = std::clamp(std::floor(highest_ + 0.5), 0.0, kMaxCategories);
     entries = static_cast<int>(highest_ - lowest_) + 1;
   }
   std::vector<double> opacities;

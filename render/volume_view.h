@@ -12,9 +12,9 @@
 
 namespace emscape::render {
 
-/// The values of a volume once more, in 16 bits: what the processor's vectors of rays gather, as half as much
-/// memory streams by. A value is middle + step * code.
-struct CodedValues {
+/// The values of a volume quantized to 16 bits, for the gathers of the CPU's ray packets: half the memory
+/// traffic. A value is middle + step * code.
+struct QuantizedValues {
   /// Widest sum of two neighbours' codes with weights that add up to it, in 32 bits.
   static constexpr std::int32_t kWeights = 32767;
   static constexpr std::int32_t kLargest = 32767;  ///< codes are -kLargest..kLargest
@@ -28,7 +28,7 @@ struct CodedValues {
   EMSCAPE_HD float step() const { return step_per_weight * static_cast<float>(kWeights); }
 };
 
-/// Values as a ReadyVolume holds them. Positions are in index space: voxel (i, j, k) has its centre at
+/// Values as a PreparedVolume holds them. Positions are in index space: voxel (i, j, k) has its centre at
 /// (i, j, k).
 struct VolumeView {
   const float* values = nullptr;  ///< masked voxels hold the value of the first above them that is not
@@ -38,7 +38,7 @@ struct VolumeView {
   bool all_finite = true;                       ///< no value is NaN or infinite
   std::uint64_t texture = 0;                    ///< on a GPU: of the values, which are null then
   const volume::SparseBlock* sparse = nullptr;  ///< on a GPU, where there is no texture; see SparseVoxels
-  CodedValues coded;
+  QuantizedValues coded;
 
   EMSCAPE_HD Vec3d lower() const { return {-0.5, -0.5, -0.5}; }
   EMSCAPE_HD Vec3d upper() const { return {dims.x - 0.5, dims.y - 0.5, dims.z - 0.5}; }
@@ -86,7 +86,7 @@ EMSCAPE_HD inline bool nearestIsMasked(const VolumeView& volume, const Vec3f& po
 }
 
 /// What samplers have in common. Nothing is drawn where the nearest voxel is masked, and where there is no
-/// value (NaN). Sampler: fetch(volume, shifted), the value whatever is masked; kShift is to be added to each
+/// value (NaN). Sampler: fetch(volume, shifted), the value, masked or not; kShift is to be added to each
 /// coordinate before.
 template <class Sampler>
 struct SamplerOf {
@@ -101,8 +101,8 @@ struct SamplerOf {
   }
 };
 
-/// Trilinear between voxel centres. What lies below ground does not bleed into the air, as masked voxels hold
-/// the value above them.
+/// Trilinear between voxel centres. The floor below the ground does not bleed into the air, as masked voxels
+/// hold the value above them.
 template <class Voxels>
 struct TrilinearSamplerOf : SamplerOf<TrilinearSamplerOf<Voxels>> {
   EMSCAPE_HD static float fetch(const VolumeView& volume, const Vec3f& position) {
@@ -131,17 +131,17 @@ struct NearestSamplerOf : SamplerOf<NearestSamplerOf<Voxels>> {
 };
 using NearestSampler = NearestSamplerOf<ArrayVoxels>;
 
-/// What a ray finds of the brick around a position.
+/// The brick around a position of a ray.
 struct BrickStep {
   long long index = 0;
-  float leave = 0;  ///< voxels along the ray that surely stay in it
+  float leave = 0;  ///< voxels along the ray that are certainly inside it
 };
 
 /// Which bricks need no sampling, for the transfer function and the mode in force.
 struct SkipView {
   static constexpr int kEdgeBits = 3;
   static constexpr float kNever = 2.0F;
-  /// Samples nearer to a face (voxels) than rounding can tell apart are looked at anew.
+  /// Samples nearer to a face (voxels) than rounding can distinguish are tested again.
   static constexpr float kFaceMargin = 1e-3F;
 
   const float* highest = nullptr;  ///< one a brick: no f of a sample in it is larger

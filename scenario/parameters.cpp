@@ -220,14 +220,4 @@ std::vector<Edit> editsForChoice(const Scenario& scenario, const std::string& pa
   return edits;
 }
 
-std::string pathStep(const std::string& name) {
-  if (!name.empty() && name.find_first_of(".\"=\\") == std::string::npos) return name;
-  std::string quoted = "\"";
-  for (const char c : name) {
-    if (c == '"' || c == '\\') quoted += '\\';
-    quoted += c;
-  }
-  return quoted + "\"";
-}
-
 }  // namespace emscape::scenario

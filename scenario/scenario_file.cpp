@@ -342,6 +342,17 @@ std::vector<Edit> Scenario::edits() const {
   return all;
 }
 
+std::vector<std::string> filesOf(const Scenario& scenario) {
+  std::vector<std::string> files{scenario.file};
+  if (scenario.source) {
+    for (const auto& [file, digest] : scenario.source->files.digests) files.push_back(file);
+  }
+  if (scenario.terrain) {
+    files.insert(files.end(), scenario.terrain->files.begin(), scenario.terrain->files.end());
+  }
+  return files;
+}
+
 std::string scenarioJsonSchema() {
   return document::jsonSchema(
       scenarioSpec(), "Emscape scenario",

@@ -131,6 +131,11 @@ Edit parseEdit(const std::string& text) {
   return {text.substr(0, end), text.substr(end + 1)};
 }
 
+std::string pathStep(const std::string& name) {
+  const bool is_plain = !name.empty() && name.find_first_of(".\"=\\") == std::string::npos;
+  return is_plain ? name : document::quotedName(name);
+}
+
 std::string toString(const Edit& edit) {
   return edit.path + "=" + edit.value;
 }

@@ -28,7 +28,7 @@ struct BenchViewOptions {
   std::vector<scenario::Edit> edits;
   std::string size = "1200x900";
   double idle_s = 10;
-  bool copy_pictures = false;
+  bool share_gpu = false;
   std::string log;  ///< kept there; empty: not kept
 };
 
@@ -59,7 +59,7 @@ ViewTrial trialOf(const BenchViewOptions& options) {
   const auto scenario = scenario::loadScenario(options.input, options.edits);
   trial.times_s = scenario::timesOf(scenario->clock);
   const scenario::Emitter& emitter = scenario->emitters.front();
-  trial.edit = scenario::Edit{"emitters.\"" + emitter.name + "\".power_w", ""};
+  trial.edit = scenario::Edit{"emitters." + scenario::pathStep(emitter.name) + ".power_w", ""};
   trial.edit_value = emitter.power_w;
   return trial;
 }
@@ -150,7 +150,7 @@ int benchView(const BenchViewOptions& options, const GlobalOptions& global) {
   std::ofstream(script) << trialScript(trialOf(options));
   std::vector<std::string> arguments{options.input, "--size", options.size, "--scale", "1",
                                      "--script",    script,   "--log",      log};
-  if (options.copy_pictures) arguments.emplace_back("--copy-pictures");
+  if (options.share_gpu) arguments.emplace_back("--share-gpu");
   for (const scenario::Edit& edit : options.edits)
     arguments.insert(arguments.end(), {"--set", scenario::toString(edit)});
   runWindow(global, arguments);
@@ -183,7 +183,7 @@ Example:
   command->add_option("--idle", options->idle_s, "Seconds in which nothing is done")
       ->check(CLI::Range(1.0, 600.0))
       ->capture_default_str();
-  command->add_flag("--copy-pictures", options->copy_pictures, "As of 'emscape view'");
+  command->add_flag("--share-gpu", options->share_gpu, "As of 'emscape view'");
   command->add_option("--log", options->log, "Keep the window's log in this file");
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchView(*options, global); }; });

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "apps/emscape/interrupt.h"
-#include "bench/itm_cases.h"
+#include "apps/emscape/itm_cases.h"
 #include "emscape/base/units.h"
 #include "propagation/air/gases.h"
 #include "propagation/air/rain.h"

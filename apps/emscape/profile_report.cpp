@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantity_text.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_report.h"
 
@@ -159,8 +160,8 @@ Json toJson(const ProfileReport& report) {
 
 void printAsTable(const ProfileReport& report) {
   const PathBudget& budget = report.budget;
-  print("Path from '{}' at t = {:g} s ({}), {:g} MHz\n\n", budget.emitter, budget.time_s, report.time_utc,
-        budget.frequency_hz / 1e6);
+  print("Path from '{}' at t = {:g} s ({}), {}\n\n", budget.emitter, budget.time_s, report.time_utc,
+        quantityText(budget.frequency_hz, "Hz"));
   printGeometry(budget);
   printObstacles(budget);
   printBudget(budget);

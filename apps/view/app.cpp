@@ -13,7 +13,9 @@
 
 #include "apps/view/theme.h"
 #include "base/stopwatch.h"
+#include "emscape/base/backend.h"
 #include "emscape/base/error.h"
+#include "emscape/base/log.h"
 
 namespace emscape::view {
 namespace {
@@ -31,24 +33,34 @@ constexpr render::ImageSize kUsualSize{1200, 900};
 
 std::string titleOf(const ViewOptions& options) {
   const std::filesystem::path path = std::filesystem::path(options.input).lexically_normal();
+  if (path.empty()) return "emscape";
   return (path.has_filename() ? path : path.parent_path()).filename().string() + " — emscape";
 }
 
 }  // namespace
 
-App::App(const ViewOptions& options, const playback::ComputeTarget& target)
+App::App(const ViewOptions& options)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
       window_(titleOf(options), options.window_size.value_or(kUsualSize), options.scale),
-      shares_gpu_(!options.copy_pictures && render::openGlSharesGpu()),
-      target_(target),
-      session_(makeSession(options)),
+      shares_gpu_(options.share_gpu && render::openGlSharesGpu()),
+      session_(makeFirstSession(options)),
       opener_(files_, [this](const ViewOptions& next) { return makeSession(next); }),
       window_fits_(options.window_size ? 0 : kWindowFits) {
   log_.write("start", {{"gl_renderer", window_.renderer()},
                        {"shares_gpu", shares_gpu_},
                        {"scale", window_.scale()},
                        {"input", options.input}});
+}
+
+std::unique_ptr<Session> App::makeFirstSession(const ViewOptions& options) {
+  return withBackendFallback(
+      parseBackend(options.backend),
+      [&](const ResolvedBackend& choice) {
+        target_ = {choice, volume::VoxelPrecision::float32};
+        return makeSession(options);
+      },
+      logInfo);
 }
 
 std::unique_ptr<Session> App::makeSession(const ViewOptions& options) {
@@ -165,6 +177,7 @@ bool App::panelsChanged() {
 
 void App::run() {
   session_->shown("");
+  if (!session_->hasInput()) session_->perform({"open"});
   // What is being written is finished, and its faults are told, before the window goes.
   while (!quits_ || session_->writing()) {
     window_.waitEvents(waitTime_s());
@@ -254,13 +267,13 @@ void App::draw(const Layout& layout) {
 
 void App::handleKeys(const std::vector<InputEvent>& events) {
   const Panels& panels = session_->panels;
-  const bool typing =
-      ImGui::GetIO().WantTextInput || panels.open || panels.record || panels.restore || panels.unsaved;
+  const bool typing = ImGui::GetIO().WantTextInput || panels.record || panels.restore || panels.unsaved;
   for (const InputEvent& event : events) {
     if (event.kind != InputEvent::Kind::key || event.action == GLFW_RELEASE) continue;
     const KeyChord chord = chordOf(event);
-    if (chord.key.empty() || (typing && chord.key != "Esc" && chord.key != "F1" && chord.key != "F12"))
-      continue;
+    if (chord.key.empty()) continue;
+    const bool is_for_panel = typing || (panels.open && !chord.control);
+    if (is_for_panel && chord.key != "Esc" && chord.key != "F1" && chord.key != "F12") continue;
     const bool flying = window_.buttonDown(GLFW_MOUSE_BUTTON_RIGHT) && !chord.control;
     if (flying && chord.key.size() == 1 && std::string("WASDQE").find(chord.key) != std::string::npos)
       continue;
@@ -281,6 +294,7 @@ void App::drawPanels(const Layout& layout) {
     drawTimeline(context, layout.timeline);
     drawStatusBar(context, layout.status);
   }
+  drawStart(context, layout.picture);
   drawProbeMarker(context, layout.picture);
   drawProbe(context, layout.picture);
   drawNotice(context, layout.picture);
@@ -288,6 +302,7 @@ void App::drawPanels(const Layout& layout) {
   drawGoToTime(context);
   drawFileBrowser(context);
   drawRecording(context, layout.picture);
+  drawChangedFiles(context, layout.picture);
   drawRestoreQuestion(context);
   drawUnsavedQuestion(context);
 }

@@ -16,8 +16,9 @@ namespace emscape::view {
 
 class App : private WindowControl {
  public:
-  /// @throws Error (device) without a display or OpenGL; (bad_input) for the script; (other) for the log
-  App(const ViewOptions& options, const playback::ComputeTarget& target);
+  /// @throws Error (device) without a display or OpenGL, or without the GPU that the options ask for;
+  /// (bad_input) for the script; (other) for the log
+  explicit App(const ViewOptions& options);
 
   /// Until the user, the script or a signal ends it.
   /// @throws Error as the input's that cannot be opened, (check_failed) by the script
@@ -45,6 +46,8 @@ class App : private WindowControl {
   void takeScreenshot();
   double waitTime_s() const;
   void failIfNothingOpens() const;
+  /// On the GPU or, where that fails and the options leave the choice, on the CPU.
+  std::unique_ptr<Session> makeFirstSession(const ViewOptions& options);
   std::unique_ptr<Session> makeSession(const ViewOptions& options);
   void handleRequests();
   bool panelsChanged();
@@ -56,7 +59,7 @@ class App : private WindowControl {
   Window window_;
   PictureTexture texture_;
   bool shares_gpu_;  // pictures go from CUDA to OpenGL on the GPU
-  const playback::ComputeTarget target_;
+  playback::ComputeTarget target_;
   std::shared_ptr<Files> files_ = std::make_shared<Files>();
   std::unique_ptr<Session> session_;
   SessionOpener opener_;

@@ -127,6 +127,12 @@ void drawFileBrowser(PanelContext& context) {
   const bool views = browser.purpose() == FileBrowser::Purpose::view;
   if (ImGui::Begin(views ? "Load a view###open" : "Open###open", &session.panels.open,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav)) {
+    constexpr std::size_t kRecent = 4;
+    if (!views && !session.hasInput() && !session.files().recent.empty()) {
+      ImGui::TextColored(accentColor(session.theme()), "Opened last");
+      drawRecentFiles(context, kRecent);
+      ImGui::Spacing();
+    }
     drawPathBar(context);
     const float below = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y;
     ImGui::BeginChild("entries", {0, -below}, true, ImGuiWindowFlags_NoNav);

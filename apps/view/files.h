@@ -1,12 +1,14 @@
 /// What the sessions of a window share: files that are opened one after another, and the recording.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/view/file_browser.h"
 #include "apps/view/recorder.h"
+#include "emscape/playback/autosave.h"
 #include "emscape/playback/view_state.h"
 
 namespace emscape::view {
@@ -25,6 +27,8 @@ struct Files {
   std::vector<std::string> recent;  ///< the newest first
   FileBrowser browser;
   Recorder recorder;
+  /// Of this program; kept by jobs that run.
+  std::shared_ptr<playback::Autosaves> autosaves = std::make_shared<playback::Autosaves>();
   std::optional<OpenRequest> request;  ///< for the window, which takes it
   bool is_opening = false;             ///< something was asked for that is not on screen yet
 };

@@ -2,11 +2,9 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <memory>
 #include <new>
 
 #include "apps/view/app.h"
-#include "emscape/base/backend.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
@@ -29,18 +27,11 @@ void show(const ViewOptions& options) {
   setThreadLimit(options.threads);
   std::signal(SIGPIPE, SIG_IGN);  // ffmpeg that went away is an error of the write
   // A wrong name, and all faults of a scenario, are told before a window appears.
-  if (playback::inputKindOf(options.input) == playback::InputKind::scenario &&
+  if (!options.input.empty() && playback::inputKindOf(options.input) == playback::InputKind::scenario &&
       !scenario::parseScenario(options.input, options.view.edits).scenario) {
     scenario::loadScenario(options.input, options.view.edits);
   }
-  const std::unique_ptr<App> app = withBackendFallback(
-      parseBackend(options.backend),
-      [&](const ResolvedBackend& choice) {
-        return std::make_unique<App>(options,
-                                     playback::ComputeTarget{choice, volume::VoxelPrecision::float32});
-      },
-      [](const std::string& line) { logInfo(line); });
-  app->run();
+  App(options).run();
 }
 
 }  // namespace

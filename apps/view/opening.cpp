@@ -74,9 +74,17 @@ Opening prepareOpening(const OpenRequest& request, const ViewOptions& present) {
   ViewOptions& options = opening.options;
   switch (contentOf(request.file)) {
     case Content::colors:
+      if (present.input.empty()) {
+        throw Error(ErrorCode::bad_input, {request.file, 0, 0},
+                    "colours, which need a volume: open a scenario or volumes first");
+      }
       opening.colors = request.file;
       return opening;
     case Content::view:
+      if (present.input.empty()) {
+        throw Error(ErrorCode::bad_input, {request.file, 0, 0},
+                    "a view of some input: open the scenario or the volumes first");
+      }
       options.view = playback::readViewState(request.file);
       if (options.view.open_panels.empty()) options.view.open_panels = present.view.open_panels;
       options.state = request.file;

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "apps/view/theme.h"
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 #include "emscape/volume/difference.h"
 
 namespace emscape::view {
@@ -35,7 +36,7 @@ bool isChecked(const Session& session, const std::string& name) {
   return name == "Help" && panels.help;
 }
 
-void drawRecentFiles(PanelContext& context) {
+void drawRecentMenu(PanelContext& context) {
   const std::vector<std::string> recent = context.session.files().recent;
   if (!ImGui::BeginMenu("Open recent", !recent.empty())) return;
   for (std::size_t i = 0; i < recent.size(); ++i) {
@@ -45,13 +46,38 @@ void drawRecentFiles(PanelContext& context) {
 }
 
 bool isEnabled(const Session& session, const std::string& name) {
+  static const std::set<std::string> kNeedInput{"Reload",          "Save the view", "Load a view",
+                                                "Copy as command", "Record",        "Picture alone"};
+  if (!session.hasInput() && kNeedInput.count(name) != 0) return false;
   if (name == "Undo") return session.canUndo();
   if (name == "Redo") return session.canRedo();
   if (name == "Save the changed scenario") return session.scenario() != nullptr;
   if (name == "Restore kept edits" || name == "Discard kept edits") return session.keptView().has_value();
   if (name == "Cancel the recording") return session.files().recorder.running();
-  if (name == "Open the input before this") return session.files().recent.size() > 1;
+  if (name == "Open the input before this")
+    return session.files().recent.size() > (session.hasInput() ? 1 : 0);
   return true;
+}
+
+/// What the picture is, how it was made and how long that took; the last parts are left out where the room
+/// (pixels) does not suffice.
+std::string statusText(const Session& session, float room) {
+  const playback::LiveStatus& status = session.status();
+  std::vector<std::string> parts;
+  if (volume::isDifference(session.picture()->volume.info())) parts.emplace_back("DIFFERENCE");
+  parts.emplace_back(session.exact() ? "exact" : "approximate");
+  parts.push_back(fmt::format("{}{}, {:.0f} % of rays", session.pattern() ? "" : "auto: ",
+                              render::toString(status.pattern), 100 * status.rays_fraction));
+  parts.push_back(fmt::format("cast {:.0f} ms", status.cast_ms));
+  if (status.field_ms > 0) parts.push_back(fmt::format("field {:.0f} ms", status.field_ms));
+  parts.push_back(status.device);
+  std::string text;
+  for (const std::string& part : parts) {
+    const std::string longer = text + (text.empty() ? "" : "   ·   ") + part;
+    if (!text.empty() && ImGui::CalcTextSize(longer.c_str()).x > room) break;
+    text = longer;
+  }
+  return text;
 }
 
 }  // namespace
@@ -64,9 +90,10 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
     return layout;
   }
   const float status_height = 30 * scale;
-  const bool has_side = panels.scenario || panels.colors || panels.planes;
+  const bool has_side = session.hasInput() && (panels.scenario || panels.colors || panels.planes);
   const float side_width = has_side ? std::min(340 * scale, 0.45F * width) : 0;
-  const float timeline_height = panels.timeline ? std::min(timelineHeight(session, scale), 0.4F * height) : 0;
+  const bool has_timeline = session.hasInput() && panels.timeline;
+  const float timeline_height = has_timeline ? std::min(timelineHeight(session, scale), 0.4F * height) : 0;
   layout.menu_height = ImGui::GetFrameHeight();
   layout.status = {0, height - status_height, width, status_height};
   layout.timeline = {0, layout.status.y - timeline_height, width, timeline_height};
@@ -74,6 +101,15 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
   layout.side = {width - side_width, layout.menu_height, side_width, middle};
   layout.picture = {0, layout.menu_height, std::max(1.0F, width - side_width), middle};
   return layout;
+}
+
+float roomInLine(float spacing) {
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  return right - ImGui::GetItemRectMax().x - spacing;
+}
+
+void sameLineIfRoom(float width, float spacing) {
+  if (roomInLine(spacing) >= width) ImGui::SameLine(0, spacing);
 }
 
 void perform(PanelContext& context, const char* command) {
@@ -91,7 +127,7 @@ void drawMenuBar(PanelContext& context) {
                           isEnabled(context.session, action.name))) {
         perform(context, action.command);
       }
-      if (action.name == std::string("Open the input before this")) drawRecentFiles(context);
+      if (action.name == std::string("Open the input before this")) drawRecentMenu(context);
     }
     ImGui::EndMenu();
   }
@@ -120,7 +156,8 @@ void drawSidePanel(PanelContext& context, const Area& area) {
     if (panels.scenario) ImGui::Separator();
   }
   if (panels.scenario) {
-    ImGui::BeginChild("scenario");
+    // The panel scrolls where the others leave too little.
+    ImGui::BeginChild("scenario", {0, std::max(ImGui::GetContentRegionAvail().y, 200 * context.scale)});
     drawScenarioPanel(context);
     ImGui::EndChild();
   }
@@ -134,7 +171,8 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   place(area);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(12 * s, 5 * s));
   ImGui::Begin("status", nullptr, kFixedPanel | ImGuiWindowFlags_NoScrollbar);
-  const char* name = session.picture() ? render::toString(status.state) : "OPENING";
+  const bool is_opening = session.hasInput() || session.files().is_opening;
+  const char* name = session.picture() ? render::toString(status.state) : is_opening ? "OPENING" : "EMPTY";
   const ImVec4 color = session.picture() ? stateColor(status.state) : mutedColor(session.theme());
   // The badge: state on its colour.
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -147,19 +185,13 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   ImGui::Dummy({badge_width, text.y});
   if (session.picture()) {
     ImGui::SameLine(0, 12 * s);
-    std::string left = session.exact() ? "exact" : "approximate";
-    if (volume::isDifference(session.picture()->volume.info())) left = "DIFFERENCE   ·   " + left;
-    left += fmt::format("   ·   {}{}, {:.0f} % of rays   ·   cast {:.0f} ms",
-                        session.pattern() ? "" : "auto: ", render::toString(status.pattern),
-                        100 * status.rays_fraction, status.cast_ms);
-    if (status.field_ms > 0) left += fmt::format("   ·   field {:.0f} ms", status.field_ms);
-    left += "   ·   " + status.device;
-    ImGui::TextUnformatted(left.c_str());
     const std::string right = status.shown_s == status.asked_s
                                   ? fmt::format("t = {:g} s", status.shown_s)
                                   : fmt::format("asked {:g} s, shown {:g} s", status.asked_s, status.shown_s);
-    const float width = ImGui::CalcTextSize(right.c_str()).x;
-    ImGui::SameLine(std::max(ImGui::GetCursorPosX(), area.width - width - 12 * s));
+    const float right_x = area.width - ImGui::CalcTextSize(right.c_str()).x - 12 * s;
+    const float room = right_x - ImGui::GetCursorPosX() - 12 * s;
+    ImGui::TextUnformatted(statusText(session, room).c_str());
+    ImGui::SameLine(std::max(ImGui::GetCursorPosX(), right_x));
     if (status.shown_s == status.asked_s) {
       ImGui::TextUnformatted(right.c_str());
     } else {
@@ -176,7 +208,7 @@ void drawNotice(PanelContext& context, const Area& picture) {
   std::string text = session.notice().text;
   ImVec4 color =
       session.notice().is_error ? errorColor(session.theme()) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
-  if (text.empty() && !session.picture()) {
+  if (text.empty() && !session.picture() && (session.hasInput() || session.files().is_opening)) {
     text = "opening …";
     color = mutedColor(session.theme());
   }
@@ -218,7 +250,7 @@ void drawHelp(PanelContext& context) {
       for (const Gesture& gesture : gestures()) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::TextUnformatted(gesture.gesture);
+        ImGui::TextWrapped("%s", gesture.gesture);
         ImGui::TableNextColumn();
         ImGui::TextWrapped("%s", gesture.does);
         ImGui::TableNextColumn();
@@ -233,9 +265,9 @@ void drawHelp(PanelContext& context) {
           for (const KeyChord& chord : chordsOf(action)) keys += (keys.empty() ? "" : ", ") + toString(chord);
           ImGui::TableNextRow();
           ImGui::TableNextColumn();
-          ImGui::TextUnformatted(keys.c_str());
+          ImGui::TextWrapped("%s", keys.c_str());
           ImGui::TableNextColumn();
-          ImGui::TextUnformatted(action.name);
+          ImGui::TextWrapped("%s", action.name);
           ImGui::TableNextColumn();
           ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
           ImGui::TextWrapped("%s", action.command_line);

@@ -32,6 +32,11 @@ struct PanelContext {
   float scale = 1;
 };
 
+/// Space that is left in the line behind the item drawn last (pixels).
+float roomInLine(float spacing);
+/// Goes on in the line of the item drawn last if there is room for so much (pixels), else in the next one.
+void sameLineIfRoom(float width, float spacing = 0);
+
 /// Runs the command of an action, as its key would.
 void perform(PanelContext& context, const char* command);
 
@@ -48,6 +53,10 @@ float timelineHeight(const Session& session, float scale);
 /// Its buttons: transport_panel.cpp.
 void drawTransport(PanelContext& context);
 void drawStatusBar(PanelContext& context, const Area& area);
+/// In place of the picture as long as nothing is open: what can be done.
+void drawStart(PanelContext& context, const Area& picture);
+/// The inputs that were opened last, to be chosen. @param most  so many of them
+void drawRecentFiles(PanelContext& context, std::size_t most);
 /// The notice, and what is shown before the first picture.
 void drawNotice(PanelContext& context, const Area& picture);
 void drawProbe(PanelContext& context, const Area& picture);
@@ -60,5 +69,7 @@ void drawFileBrowser(PanelContext& context);
 void drawRecording(PanelContext& context, const Area& picture);
 void drawRestoreQuestion(PanelContext& context);
 void drawUnsavedQuestion(PanelContext& context);
+/// Files that have changed on the disk, at the top of the picture.
+void drawChangedFiles(PanelContext& context, const Area& picture);
 
 }  // namespace emscape::view

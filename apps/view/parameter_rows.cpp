@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "apps/view/theme.h"
+#include "base/quantity_text.h"
 
 namespace emscape::view {
 namespace {
@@ -57,11 +58,8 @@ constexpr std::array<SliderRange, 33> kSliderRanges{{
     {"floor", -200, 0},
     {"count_threshold_dbwm2", -150, 0},
 }};
-/// Frequencies are shown in MHz.
-double unitOf(const Parameter& parameter) {
-  return parameter.unit == "Hz" ? 1e6 : 1;
-}
-
+/// Significant digits of numbers that are typed, and of those that a slider gives.
+constexpr int kTypedDigits = 10, kDraggedDigits = 5;
 /// Wider ranges than this are typed, and what means a place.
 constexpr double kWidestSlider = 1000;
 
@@ -75,8 +73,8 @@ std::optional<SliderRange> sliderRangeOf(const Parameter& parameter) {
   return SliderRange{"", parameter.minimum, parameter.maximum};
 }
 
-std::string numberText(double value) {
-  return fmt::format("{:.10g}", value);
+std::string numberText(double value, int digits = kTypedDigits) {
+  return fmt::format("{:.{}g}", value, digits);
 }
 
 std::string tooltipOf(const Parameter& parameter) {
@@ -84,8 +82,7 @@ std::string tooltipOf(const Parameter& parameter) {
   const bool is_number =
       parameter.type == Parameter::Type::number || parameter.type == Parameter::Type::integer;
   if (is_number && (std::isfinite(parameter.minimum) || std::isfinite(parameter.maximum))) {
-    text += fmt::format("{}{:g} .. {:g} {}", text.empty() ? "" : "\n", parameter.minimum, parameter.maximum,
-                        parameter.unit);
+    text += (text.empty() ? "" : "\n") + rangeText(parameter.minimum, parameter.maximum, parameter.unit);
   }
   if (!parameter.is_given) text += text.empty() ? "default" : "\ndefault";
   return text + fmt::format("{}--set '{}=…'", text.empty() ? "" : "\n", parameter.path);
@@ -152,8 +149,7 @@ void ParameterRows::drawGroup(const ParameterGroup& group) {
 
 void ParameterRows::drawRow(const Parameter& parameter) {
   ImGui::PushID(parameter.key.c_str());
-  const bool is_typed = parameter.unit == "Hz";
-  label(parameter.name + (is_typed ? ", MHz" : ""), tooltipOf(parameter), edited_.count(parameter.path) > 0);
+  label(parameter.name, tooltipOf(parameter), edited_.count(parameter.path) > 0);
   drawLabelMenu(parameter);
   ImGui::TableNextColumn();
   ImGui::SetNextItemWidth(-1);
@@ -188,14 +184,21 @@ void ParameterRows::drawLabelMenu(const Parameter& parameter) const {
 void ParameterRows::drawNumber(const Parameter& parameter) {
   const std::optional<SliderRange> range = sliderRangeOf(parameter);
   if (!range || parameter.value.empty()) return drawTypedNumber(parameter);
-  double value = std::strtod(parameter.value.c_str(), nullptr);
-  const double low = std::min(range->min, value), high = std::max(range->max, value);
+  const double given = std::strtod(parameter.value.c_str(), nullptr);
+  // What is shown, and typed after Ctrl + click, is in the unit with its prefix.
+  const PrefixedUnit unit = prefixedUnit(given, parameter.unit);
+  double value = given / unit.factor;
+  const double low = std::min(range->min, given) / unit.factor,
+               high = std::max(range->max, given) / unit.factor;
   const bool is_integer = parameter.type == Parameter::Type::integer;
-  const std::string format =
-      (is_integer ? "%.0f" : "%.6g") + (parameter.unit.empty() ? "" : " " + parameter.unit);
+  // Dear ImGui takes the precision for the smallest number of a logarithmic slider.
+  const char* number = is_integer ? "%.0f" : range->is_logarithmic ? "%.12g" : "%.6g";
+  const std::string format = number + (unit.unit.empty() ? "" : " " + unit.unit);
   if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format.c_str(),
                           range->is_logarithmic ? ImGuiSliderFlags_Logarithmic : 0)) {
-    context_.session.dragValue(parameter.path, numberText(value));
+    context_.session.dragValue(
+        parameter.path,
+        numberText(value * unit.factor, ImGui::GetIO().WantTextInput ? kTypedDigits : kDraggedDigits));
   }
   if (ImGui::IsItemDeactivated()) context_.session.endDrag();
 }
@@ -230,16 +233,17 @@ void ParameterRows::drawText(const Parameter& parameter) {
   set(parameter.path, typed->empty() ? "null" : is_text ? Json(*typed).dump() : *typed);
 }
 
+/// A number without a unit is in the unit that was shown.
 void ParameterRows::drawTypedNumber(const Parameter& parameter) {
-  const double unit = unitOf(parameter);
   const double value = std::strtod(parameter.value.c_str(), nullptr);
   const std::optional<std::string> typed =
-      drawField(parameter, parameter.value.empty() ? "" : numberText(value / unit), "by default");
+      drawField(parameter, parameter.value.empty() ? "" : quantityText(value, parameter.unit, kTypedDigits),
+                "by default");
   if (!typed) return;
-  char* rest = nullptr;
-  const double number = std::strtod(typed->c_str(), &rest);
-  const bool is_number = !typed->empty() && *rest == '\0';  // else the check of the scenario says what it is
-  set(parameter.path, typed->empty() ? "null" : is_number ? numberText(number * unit) : *typed);
+  const std::optional<double> number =
+      parseQuantity(*typed, parameter.unit, prefixedUnit(value, parameter.unit, kTypedDigits).factor);
+  // The check of the scenario says what is wrong with another text.
+  set(parameter.path, typed->empty() ? "null" : number ? numberText(*number) : *typed);
 }
 
 void ParameterRows::drawRejection(const std::string& path) {

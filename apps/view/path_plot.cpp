@@ -8,7 +8,7 @@
 #include "apps/view/theme.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_report.h"
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {
 namespace {

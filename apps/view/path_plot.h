@@ -4,7 +4,7 @@
 #include <imgui.h>
 
 #include "emscape/emfield/path_budget.h"
-#include "emscape/render/overlay.h"
+#include "emscape/render/annotate/overlay.h"
 
 namespace emscape::view {
 

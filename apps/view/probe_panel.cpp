@@ -8,6 +8,7 @@
 #include "apps/view/path_plot.h"
 #include "apps/view/theme.h"
 #include "emscape/emfield/path_report.h"
+#include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {
 namespace {
@@ -71,7 +72,8 @@ void drawTerms(const emfield::PathBudget& budget, render::Theme theme, float s) 
   for (const emfield::BudgetTerm& term : budget.terms) {
     const bool is_sum = term.kind == emfield::BudgetTerm::Kind::sum;
     const std::string value =
-        emfield::valueText(term.value) + (term.unit.empty() || std::isinf(term.value) ? "" : " " + term.unit);
+        emfield::valueText(term.value) +
+        (term.unit.empty() || std::isinf(term.value) ? "" : " " + render::unitText(term.unit));
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::TextWrapped("%s%s", is_sum ? "= " : "", term.label.c_str());
@@ -134,14 +136,15 @@ void drawEmitters(PanelContext& context, const ProbeResult& result) {
         ImGuiTreeNodeFlags_Framed | ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen,
         "%s", emitter.emitter.c_str());
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    const ImVec2 text = ImGui::CalcTextSize(contribution.text.c_str());
+    const std::string value = render::unitText(contribution.text);
+    const ImVec2 text = ImGui::CalcTextSize(value.c_str());
     const float free = high.x - low.x - ImGui::CalcTextSize(emitter.emitter.c_str()).x - 48 * context.scale;
     if (text.x < free) {
       ImGui::GetWindowDrawList()->AddText(
           {high.x - text.x - 8 * context.scale, (low.y + high.y - text.y) / 2},
-          ImGui::ColorConvertFloat4ToU32(accentColor(context.session.theme())), contribution.text.c_str());
+          ImGui::ColorConvertFloat4ToU32(accentColor(context.session.theme())), value.c_str());
     } else if (!is_open) {
-      ImGui::TextWrapped("%s", contribution.text.c_str());
+      ImGui::TextWrapped("%s", value.c_str());
     }
     if (is_open && emitter.budget) drawPath(context, *emitter.budget);
     if (is_open && !emitter.budget) ImGui::TextWrapped("%s", emitter.refusal.c_str());
@@ -159,10 +162,11 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
   ImGui::SetWindowFontScale(1.25F);
   ImGui::PushStyleColor(ImGuiCol_Text,
                         is_value ? accentColor(theme) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
-  ImGui::TextWrapped("%s", reading.text.c_str());
+  ImGui::TextWrapped("%s", render::unitText(reading.text).c_str());
   ImGui::PopStyleColor();
   ImGui::SetWindowFontScale(1);
-  ImGui::TextDisabled("%s", result.quantity.c_str());
+  const std::string& unit = context.session.picture()->volume.info().unit;
+  ImGui::TextDisabled("%s", render::quantityTitle(result.quantity, unit).c_str());
   drawPlace(result, theme, context.scale);
   if (reading.emitters.empty()) return;
   ImGui::Spacing();

@@ -10,6 +10,7 @@
 #include "emscape/base/error.h"
 #include "emscape/emfield/path_report.h"
 #include "emscape/playback/edit_history.h"
+#include "emscape/playback/pick.h"
 
 namespace emscape::view {
 namespace {

@@ -1,5 +1,8 @@
-/// Questions that wait for an answer: edits of an earlier run, edits that are not saved.
+/// Questions that wait for an answer: edits of an earlier run, edits that are not saved, files that have
+/// changed.
 #include <fmt/format.h>
+
+#include <filesystem>
 
 #include "apps/view/panels.h"
 #include "apps/view/theme.h"
@@ -62,6 +65,33 @@ void drawRestoreQuestion(PanelContext& context) {
   if (ImGui::Button("Later (Esc)")) session.panels.restore = false;
   ImGui::TextDisabled("Later: it is kept until the next edit.");
   endQuestion();
+}
+
+void drawChangedFiles(PanelContext& context, const Area& picture) {
+  Session& session = context.session;
+  const std::vector<std::string>& files = session.changedFiles();
+  if (!session.panels.changed || files.empty()) return;
+  const float s = context.scale;
+  const std::string name = std::filesystem::path(files.front()).filename().string();
+  const std::string text = files.size() == 1
+                               ? name + " has changed on the disk."
+                               : fmt::format("{} and {} other file{} have changed on the disk.", name,
+                                             files.size() - 1, files.size() == 2 ? "" : "s");
+  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + 80 * s}, ImGuiCond_Always, {0.5F, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(16 * s, 10 * s));
+  ImGui::Begin("changed", nullptr,
+               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoDecoration |
+                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::SameLine(0, 16 * s);
+  if (ImGui::Button("Reload (F5)")) perform(context, R"({"do":"reload"})");
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("Edits that still apply are kept");
+  ImGui::SameLine();
+  if (ImGui::Button("Not now")) session.panels.changed = false;
+  ImGui::End();
+  ImGui::PopStyleVar(2);
 }
 
 void drawUnsavedQuestion(PanelContext& context) {

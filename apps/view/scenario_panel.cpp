@@ -198,18 +198,18 @@ void drawSections(PanelContext& context, PanelState& state, const std::vector<Se
 
 void drawHead(PanelContext& context, const PanelState& state) {
   const Session& session = context.session;
-  const auto button = [&](const char* name, const char* command, bool enabled, const char* tip) {
+  const auto button = [&](const char* name, const char* command, bool enabled, const char* tip,
+                          float spacing) {
+    sameLineIfRoom(ImGui::CalcTextSize(name).x + 2 * ImGui::GetStyle().FramePadding.x, spacing);
     ImGui::BeginDisabled(!enabled);
     if (ImGui::SmallButton(name)) perform(context, command);
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", tip);
   };
-  ImGui::SameLine(0, 16 * context.scale);
-  button("undo", R"({"do":"undo"})", session.canUndo(), "Ctrl+Z");
-  ImGui::SameLine();
-  button("redo", R"({"do":"redo"})", session.canRedo(), "Ctrl+Shift+Z");
-  ImGui::SameLine();
-  button("copy as command", R"({"do":"copy_command"})", true, "Ctrl+Shift+C");
+  const float spacing = ImGui::GetStyle().ItemSpacing.x;
+  button("undo", R"({"do":"undo"})", session.canUndo(), "Ctrl+Z", 2 * spacing);
+  button("redo", R"({"do":"redo"})", session.canRedo(), "Ctrl+Shift+Z", spacing);
+  button("copy as command", R"({"do":"copy_command"})", true, "Ctrl+Shift+C", spacing);
   if (!state.edited.empty()) {
     ImGui::TextDisabled("%zu value%s changed", state.edited.size(), state.edited.size() == 1 ? "" : "s");
   }

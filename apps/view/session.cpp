@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "emscape/base/error.h"
-#include "emscape/render/overlay.h"
+#include "emscape/render/annotate/overlay.h"
 
 namespace emscape::view {
 namespace {
@@ -34,10 +34,6 @@ playback::PictureStyle styleOf(const ViewOptions& options) {
   return style;
 }
 
-double rounded(double value, double unit) {
-  return std::round(value / unit) * unit;
-}
-
 }  // namespace
 
 Session::Session(const ViewOptions& options, const playback::ComputeTarget& target, WindowControl& window,
@@ -54,7 +50,9 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       files_(files ? std::move(files) : std::make_shared<Files>()),
       opened_unsaved_(options.unsaved_edits),
       has_kept_(options.unsaved_edits),
+      file_watch_(wake_),
       jobs_(wake_) {
+  watchFiles();
   showView(options.view);
   if (options.view.range && !options.view.transfer && options.transfer.empty()) {
     live_.setRange(*options.view.range);
@@ -106,10 +104,13 @@ void Session::takeScenario() {
   timeline_.setSteps(std::move(times_s));
   if (is_first) {
     timeline_.seek(options_.view.time_s);
+    if (const auto& part = options_.view.play_range) timeline_.setPlayRange(part->begin_s, part->end_s);
+    if (const auto& part = options_.view.visible_time) timeline_.setVisible(part->begin_s, part->end_s);
     asked_s_ = timeline_.step_s();
     if (live_.scenario()) {
       edits_.emplace(live_.scenario());
       shown_scenario_ = edits_->scenario();
+      watchFiles();
       shown_quantity_ = quantity_.empty() ? shown_scenario_->output.quantities.front() : quantity_;
     }
   }
@@ -160,6 +161,7 @@ bool Session::update() {
     if (!told_error_.empty()) tell(told_error_, true);
   }
   if (const auto recorded = files_->recorder.takeOutcome()) tell(recorded->text, recorded->is_error);
+  takeChangedFiles();
   writePendingPicture();
   keepEdits(now_s);
   const bool notice_ends = !notice_.text.empty() && now_s - notice_.since_s > (notice_.is_error ? 12 : 4);
@@ -216,145 +218,6 @@ void Session::setSettings(const render::RenderSettings& settings) {
   settings_ = settings;
   if (settings.mode != render::CompositingMode::iso) fog_mode_ = settings.mode;
   live_.setSettings(settings);
-}
-
-void Session::changeScenario(const std::vector<scenario::Edit>& edits) {
-  if (!edits_) throw Error(ErrorCode::bad_input, "there is no scenario to change");
-  edit_queue_.set(edits);
-}
-
-void Session::drag(const std::vector<scenario::Edit>& edits) {
-  if (edits_) edit_queue_.drag(edits);
-}
-
-void Session::endDrag() {
-  edit_queue_.endDrag();
-  if (!std::exchange(dragging_, false)) return;
-  if (transfer_) transfer_->endDrag();
-  noteSteps();
-}
-
-void Session::cancelDrag() {
-  edit_queue_.cancelDrag();
-}
-
-void Session::takeEdits() {
-  if (!edits_) return;
-  for (const playback::EditQueue::Outcome& outcome : edit_queue_.update(*edits_)) {
-    touched_ = true;
-    if (!outcome.error.empty()) {
-      rejection_ = Rejection{outcome.edits, outcome.error};
-      tell(outcome.error, true);
-      continue;
-    }
-    rejection_.reset();
-    for (const scenario::Edit& edit : outcome.edits) {
-      log_.write("edit", {{"path", edit.path}, {"value", edit.value}});
-    }
-  }
-  noteSteps();
-  if (edits_->scenario() != shown_scenario_) showScenario();
-}
-
-void Session::noteSteps() {
-  if (edits_) undo_order_.note(History::scenario, edits_->stepsMade());
-  if (transfer_) undo_order_.note(History::transfer, transfer_->stepsMade());
-}
-
-void Session::askUndo(bool undo) {
-  endDrag();
-  if (edit_queue_.isBusy()) {
-    edit_queue_.then([this, undo] { undoOrRedo(undo); });
-  } else {
-    undoOrRedo(undo);
-  }
-}
-
-void Session::undoOrRedo(bool undo) {
-  noteSteps();
-  const std::optional<History> history = undo ? undo_order_.undo() : undo_order_.redo();
-  if (history == History::scenario) {
-    undo ? edits_->undo() : edits_->redo();
-    showScenario();
-  } else if (history == History::transfer) {
-    changeTransfer([undo](playback::TransferEditor& editor) { undo ? editor.undo() : editor.redo(); });
-  }
-}
-
-void Session::showScenario() {
-  touched_ = true;
-  shown_scenario_ = edits_->scenario();
-  timeline_.setScenario(*shown_scenario_);
-  live_.setScenario(shown_scenario_);
-  // Without a choice of the user the first quantity of the scenario is shown, as `render` does.
-  const std::string quantity = quantity_.empty() ? shown_scenario_->output.quantities.front() : quantity_;
-  if (std::exchange(shown_quantity_, quantity) == quantity) return;
-  takes_colors_ = true;
-  live_.setQuantity(quantity);
-}
-
-// --- what is reported ---
-
-Json Session::report() const {
-  const render::CameraSpec& camera = camera_.spec();
-  Json report{{"frame", status_.frame},
-              {"state", render::toString(status_.state)},
-              {"pattern", render::toString(status_.pattern)},
-              {"rays_fraction", rounded(status_.rays_fraction, 1e-4)},
-              {"cast_ms", rounded(status_.cast_ms, 1e-2)},
-              {"labels_ms", rounded(status_.labels_ms, 1e-2)},
-              {"field_ms", rounded(status_.field_ms, 1e-2)},
-              {"input_to_picture_ms", rounded(status_.input_to_picture_ms, 1e-2)},
-              {"input_to_frame_ms", rounded(status_.input_to_frame_ms, 1e-2)},
-              {"fields_computed", status_.fields_computed},
-              {"asked_s", timeline_.step_s()},
-              {"shown_s", status_.shown_s},
-              {"exact", exact()},
-              {"settled", settled()},
-              {"computing", status_.computing},
-              {"cached_steps", status_.cached_steps.size()},
-              {"device", status_.device},
-              {"error", notice_.is_error ? notice_.text : std::string()},
-              {"playing", timeline_.playing()},
-              {"rate", timeline_.rate()},
-              {"loop", timeline_.loop()},
-              {"play_from_s", timeline_.playRange().begin_s},
-              {"play_to_s", timeline_.playRange().end_s},
-              {"visible_from_s", timeline_.visible().begin_s},
-              {"visible_to_s", timeline_.visible().end_s},
-              {"azimuth_deg", rounded(camera.azimuth_deg, 1e-6)},
-              {"elevation_deg", rounded(camera.elevation_deg, 1e-6)},
-              {"distance", camera.distance.value_or(0)},
-              {"mode", render::toString(settings_.mode)},
-              {"iso_value", std::isnan(settings_.iso_value) ? Json() : Json(settings_.iso_value)},
-              {"theme", theme_ == render::Theme::dark ? "dark" : "light"},
-              {"terrain", show_terrain_},
-              {"emitters", show_emitters_},
-              {"planes", std::count_if(settings_.planes.begin(), settings_.planes.end(),
-                                       [](const render::CutPlane& plane) { return plane.on; })},
-              {"compare", compares_},
-              {"edits", edits_ ? edits_->edits().size() : 0},
-              {"unsaved", hasUnsavedEdits()},
-              {"input", options_.input},
-              {"working", working()},
-              {"kept", kept_view_.has_value()},
-              {"copied", copied_},
-              {"recording", files_->recorder.running()},
-              {"can_undo", canUndo()},
-              {"can_redo", canRedo()},
-              {"picture_width", picture_ ? picture_->size.width : 0},
-              {"picture_height", picture_ ? picture_->size.height : 0},
-              {"scale", window_.scale()}};
-  if (picture_) {
-    report["range_min"] = picture_->transfer.lowest();
-    report["quantity"] = picture_->volume.info().quantity;
-    report["range_max"] = picture_->transfer.highest();
-  }
-  report.update(probeReport());
-  report.update(transferReport());
-  report["rss_mib"] = rounded(residentMemory_mib(), 0.1);
-  report["cpu_s"] = rounded(processorTime_s(), 1e-3);
-  return report;
 }
 
 }  // namespace emscape::view

@@ -1,7 +1,6 @@
 /// What is looked at and how: everything behind the window but drawing and input. No OpenGL, no ImGui.
 #pragma once
 
-#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -12,7 +11,9 @@
 #include "apps/view/camera_control.h"
 #include "apps/view/command.h"
 #include "apps/view/event_log.h"
+#include "apps/view/file_watch.h"
 #include "apps/view/files.h"
+#include "apps/view/open_panels.h"
 #include "apps/view/prober.h"
 #include "apps/view/undo_order.h"
 #include "apps/view/value_summary.h"
@@ -26,22 +27,6 @@
 #include "playback/edit_queue.h"
 
 namespace emscape::view {
-
-/// Which panels are open.
-struct Panels {
-  bool scenario = true, colors = false, timeline = true, help = false, time = false, probe = false;
-  bool planes = false;
-  bool open = false, record = false;      ///< the file browser; what is to be recorded
-  bool restore = false, unsaved = false;  ///< questions
-  bool hidden = false;                    ///< all of them, for a moment
-};
-/// The panels by the names that scripts and view files use, but for `hidden`.
-struct PanelName {
-  const char* name;
-  bool Panels::*open;
-  bool stays;  ///< a view keeps it; the others are open for a moment
-};
-const std::vector<PanelName>& panelNames();
 
 /// A line that tells the user what came of a command.
 struct Notice {
@@ -118,6 +103,8 @@ class Session {
 
   // --- files: session_state.cpp, session_files.cpp ---
   const ViewOptions& options() const { return options_; }
+  /// Something is open, or being opened first; else the window asks for it.
+  bool hasInput() const { return !options_.input.empty(); }
   Files& files() { return *files_; }
   const Files& files() const { return *files_; }
   /// All that is asked for: the view that a file keeps.
@@ -125,6 +112,8 @@ class Session {
   bool hasUnsavedEdits() const;
   /// What an earlier run left when it ended before its time.
   const std::optional<playback::AutosavedView>& keptView() const { return kept_view_; }
+  /// Files of the input that have changed on the disk since they were read.
+  const std::vector<std::string>& changedFiles() const { return changed_files_; }
   /// The session gives way to another one. @param keeps_edits  unsaved edits are offered when the input is
   /// opened again
   void leave(bool keeps_edits);
@@ -185,6 +174,8 @@ class Session {
   void changePlane(const Command& command);
   void browse(FileBrowser::Purpose purpose);
   void ask(OpenRequest request);
+  /// @throws Error (bad_input) if nothing is open
+  void requireInput() const;
   void showView(const playback::ViewState& view);
   void noteSavedView(const std::string& file);
   std::optional<render::TransferFunction> colorsInUse() const;
@@ -193,6 +184,8 @@ class Session {
   void copyCommand();
   void writePendingPicture();
   void lookForKeptView();
+  void watchFiles();
+  void takeChangedFiles();
   void keepEdits(double now_s);
   void keepView();
   void dropKeptView();
@@ -277,6 +270,8 @@ class Session {
   std::optional<double> keep_at_s_;
   bool has_kept_;  // an autosave, which a regular end removes
   std::optional<playback::AutosavedView> kept_view_;
+  FileWatch file_watch_;
+  std::vector<std::string> changed_files_;
   Notice notice_;
   BackgroundJobs jobs_;  // the first to go
 };

@@ -5,7 +5,7 @@
 
 #include "apps/view/session.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/probe.h"
+#include "emscape/playback/pick.h"
 
 namespace emscape::view {
 namespace {

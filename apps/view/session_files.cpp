@@ -1,6 +1,7 @@
 /// Verbs of files: opening, reloading, saving, autosaves, the end.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "apps/view/recent_files.h"
@@ -25,6 +26,10 @@ std::string newPictureName() {
 
 // --- opening ---
 
+void Session::requireInput() const {
+  if (!hasInput()) throw Error(ErrorCode::bad_input, "nothing is open: open a scenario or volumes first");
+}
+
 void Session::browse(FileBrowser::Purpose purpose) {
   files_->browser.open(purpose, std::filesystem::path(options_.input).parent_path());
   panels.open = true;
@@ -39,9 +44,37 @@ void Session::ask(OpenRequest request) {
 void Session::shown(const std::string& left_out) {
   if (!left_out.empty()) tell("these edits do not apply any more: " + left_out, true);
   jobs_.run([this, input = options_.input]() -> BackgroundJobs::Finish {
-    return [this, recent = addRecentFile(input)] { files_->recent = recent; };
+    return [this, recent = input.empty() ? readRecentFiles() : addRecentFile(input)] {
+      files_->recent = recent;
+    };
   });
-  if (options_.offers_kept_view) lookForKeptView();
+  if (options_.offers_kept_view && hasInput()) lookForKeptView();
+}
+
+// --- changes on the disk ---
+
+void Session::watchFiles() {
+  std::vector<std::string> files;
+  for (const std::string& file : {options_.input, options_.scenario}) {
+    if (!file.empty()) files.push_back(file);
+  }
+  if (edits_) {
+    const std::vector<std::string> named = scenario::filesOf(*edits_->scenario());
+    files.insert(files.end(), named.begin(), named.end());
+  }
+  file_watch_.watch(files);
+}
+
+void Session::takeChangedFiles() {
+  const std::vector<std::string> changed = file_watch_.takeChanged();
+  if (changed.empty()) return;
+  for (const std::string& file : changed) {
+    if (std::find(changed_files_.begin(), changed_files_.end(), file) == changed_files_.end()) {
+      changed_files_.push_back(file);
+    }
+    log_.write("changed_on_disk", {{"file", file}});
+  }
+  panels.changed = touched_ = true;
 }
 
 // --- edits ---
@@ -76,8 +109,8 @@ void Session::saveScenario(const std::string& given_file, bool then_quits) {
 }
 
 void Session::lookForKeptView() {
-  jobs_.run([this, input = options_.input]() -> BackgroundJobs::Finish {
-    std::optional<playback::AutosavedView> found = playback::findAutosave(input);
+  jobs_.run([this, autosaves = files_->autosaves, input = options_.input]() -> BackgroundJobs::Finish {
+    std::optional<playback::AutosavedView> found = autosaves->find(input);
     return [this, found = std::move(found)] {
       kept_view_ = found;
       if (found && options_.script.empty()) panels.restore = true;
@@ -105,8 +138,9 @@ void Session::keepEdits(double now_s) {
 void Session::keepView() {
   has_kept_ = true;
   kept_view_.reset();  // replaced
-  jobs_.run([this, input = options_.input, view = viewState()]() -> BackgroundJobs::Finish {
-    playback::autosave(input, view);
+  jobs_.run([this, autosaves = files_->autosaves, input = options_.input,
+             view = viewState()]() -> BackgroundJobs::Finish {
+    autosaves->keep(input, view);
     return [this] { log_.write("autosave"); };
   });
 }
@@ -114,8 +148,8 @@ void Session::keepView() {
 void Session::dropKeptView() {
   if (!has_kept_) return;
   has_kept_ = false;
-  jobs_.run([input = options_.input]() -> BackgroundJobs::Finish {
-    playback::removeAutosave(input);
+  jobs_.run([autosaves = files_->autosaves, input = options_.input]() -> BackgroundJobs::Finish {
+    autosaves->remove(input);
     return {};
   });
 }
@@ -146,7 +180,7 @@ std::vector<Verb> Session::fileVerbs() {
        {{"number", kNumber, false}},
        "Opens one of the inputs that were opened last, 1..10; default: the one before this",
        [](Session& session, const Command& command) {
-         const auto number = static_cast<std::size_t>(command.number("number", 2));
+         const auto number = static_cast<std::size_t>(command.number("number", session.hasInput() ? 2 : 1));
          const std::vector<std::string>& recent = session.files_->recent;
          if (number < 1 || number > recent.size()) {
            throw Error(ErrorCode::bad_input, fmt::format("open_recent: there are {} inputs", recent.size()));
@@ -157,6 +191,7 @@ std::vector<Verb> Session::fileVerbs() {
        {},
        "Reads the input again; edits that still apply are kept",
        [](Session& session, const Command&) {
+         session.requireInput();
          session.ask({session.options_.input, session.options_.scenario, session.viewState(),
                       session.hasUnsavedEdits()});
        }},

@@ -15,6 +15,8 @@ std::string pictureText(playback::ViewState view) {
   view.open_panels.clear();
   view.rate = 1;
   view.loop = false;
+  view.play_range.reset();
+  view.visible_time.reset();
   return playback::viewStateText(view);
 }
 
@@ -39,9 +41,12 @@ playback::ViewState Session::viewState() const {
   for (const auto& bookmark : bookmarks_) {
     if (bookmark) view.bookmarks.push_back(*bookmark);
   }
-  view.time_s = timeline_.times_s().empty() ? options_.view.time_s : timeline_.step_s();
+  const bool is_open = !timeline_.times_s().empty();
+  view.time_s = is_open ? timeline_.step_s() : options_.view.time_s;
   view.rate = timeline_.rate();
   view.loop = timeline_.loop();
+  view.play_range = is_open ? timeline_.playPart() : options_.view.play_range;
+  view.visible_time = is_open ? timeline_.visiblePart() : options_.view.visible_time;
   view.quantity = quantity_;
   view.transfer = colorsInUse();
   view.range = picture_ ? picture_->range : options_.view.range;
@@ -100,6 +105,7 @@ void Session::noteSavedView(const std::string& file) {
 }
 
 void Session::saveView(const std::string& given_file) {
+  requireInput();
   const std::string file = given_file.empty() ? besideInput(options_.input, ".view.json") : given_file;
   jobs_.run([this, file, view = viewState()]() -> BackgroundJobs::Finish {
     playback::writeViewState(file, view);
@@ -157,6 +163,7 @@ std::vector<Verb> Session::stateVerbs() {
        "Writes the picture alone as `emscape render` draws it, as soon as it is exact; default: a new "
        "emscape-NNNN.png",
        [](Session& session, const Command& command) {
+         session.requireInput();
          session.picture_file_ = command.has("file") ? command.text("file") : newPictureName();
        }},
       {"copy_command",

@@ -22,7 +22,7 @@ const std::vector<PanelName>& panelNames() {
       {"timeline", &Panels::timeline, true}, {"help", &Panels::help, false},
       {"time", &Panels::time, false},        {"open", &Panels::open, false},
       {"record", &Panels::record, false},    {"restore", &Panels::restore, false},
-      {"unsaved", &Panels::unsaved, false},
+      {"unsaved", &Panels::unsaved, false},  {"changed", &Panels::changed, false},
   };
   return all;
 }
@@ -32,7 +32,7 @@ std::vector<Verb> Session::windowVerbs() {
       {"panel",
        {{"name", kText}, {"open", kBoolean, false}},
        "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, record, "
-       "restore, all",
+       "restore, unsaved, changed, all",
        [](Session& session, const Command& command) {
          const std::string name = command.text("name");
          if (name == "all") {

@@ -3,9 +3,9 @@
 
 #include <imgui.h>
 
+#include "emscape/render/annotate/overlay.h"
 #include "emscape/render/camera.h"
 #include "emscape/render/frame_controller.h"
-#include "emscape/render/overlay.h"
 #include "emscape/scenario/emitter.h"
 
 namespace emscape::view {

@@ -7,6 +7,7 @@
 #include "apps/view/panels.h"
 #include "apps/view/theme.h"
 #include "apps/view/transfer_plot.h"
+#include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {
 namespace {
@@ -24,7 +25,7 @@ bool typed(const char* id, double& value, const char* format, float width) {
 
 /// printf-like format of a value with its unit.
 std::string formatOf(const char* before, const std::string& unit) {
-  std::string text = unit;
+  std::string text = render::unitText(unit);
   for (std::size_t at = 0; (at = text.find('%', at)) != std::string::npos; at += 2) text.insert(at, "%");
   return fmt::format("{}%.5g {}", before, text);
 }

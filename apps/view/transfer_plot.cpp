@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "apps/view/theme.h"
-#include "emscape/render/legend.h"
+#include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {
 namespace {
@@ -243,7 +243,7 @@ void handleMouse(PanelContext& context, const Plot& plot) {
   if (!ImGui::IsItemActive() && io.MousePos.y < plot.bottom()) {
     const std::string hint = under ? "drag moves, right click removes" : "click adds a point";
     ImGui::SetTooltip("%s", fmt::format("{:.4g} {}\n{}", plot.value(io.MousePos.x),
-                                        session.transfer()->function().unit, hint)
+                                        render::unitText(session.transfer()->function().unit), hint)
                                 .c_str());
   }
 }
@@ -276,7 +276,7 @@ void drawTransferPlot(PanelContext& context) {
   drawColorBar(list, plot, function, s);
   drawEnds(list, plot, function, theme, s);
   drawPoints(list, plot, editor, theme, s);
-  drawTicks(list, plot, function.unit, theme, s);
+  drawTicks(list, plot, render::unitText(function.unit), theme, s);
   list.PopClipRect();
   ImGui::Dummy({width, ImGui::GetTextLineHeight() - 2 * s});
 }

@@ -102,25 +102,27 @@ void drawRate(PanelContext& context) {
   if (ImGui::Checkbox("loop", &loop)) session.perform({"loop", {{"on", loop}}});
 }
 
-/// The time that is asked for, and the one on screen as long as it is another.
+/// The time that is asked for, and the one on screen as long as it is another; what there is room for.
 void drawTimes(const PanelContext& context) {
   const Session& session = context.session;
   const playback::Timeline& timeline = session.timeline();
-  const float s = context.scale;
+  const float spacing = 18 * context.scale;
   const double asked_s = timeline.step_s();
-  std::string now = fmt::format("t = {:g} s", asked_s);
-  if (!timeline.times_s().empty()) {
-    now += fmt::format("   step {} of {}", timeline.step() + 1, timeline.times_s().size());
-  }
-  ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(now.c_str());
+  const auto draw = [&](const std::string& text, const ImVec4& color) {
+    if (roomInLine(spacing) < ImGui::CalcTextSize(text.c_str()).x) return;
+    ImGui::SameLine(0, spacing);
+    ImGui::TextColored(color, "%s", text.c_str());
+  };
+  const ImVec4 ink = ImGui::GetStyleColorVec4(ImGuiCol_Text), muted = mutedColor(session.theme());
+  draw(fmt::format("t = {:g} s", asked_s), ink);
   if (session.picture() && session.status().shown_s != asked_s) {
-    ImGui::SameLine(0, 18 * s);
-    ImGui::TextColored(stateColor(render::ControllerState::busy), "shown %s",
-                       fmt::format("{:g} s", session.status().shown_s).c_str());
-  } else if (const auto scenario = session.scenario(); scenario && !scenario->clock.epoch_utc.empty()) {
-    ImGui::SameLine(0, 18 * s);
-    ImGui::TextColored(mutedColor(session.theme()), "%s", scenario::utcAt(scenario->clock, asked_s).c_str());
+    draw(fmt::format("shown {:g} s", session.status().shown_s), stateColor(render::ControllerState::busy));
+  }
+  if (!timeline.times_s().empty()) {
+    draw(fmt::format("step {} of {}", timeline.step() + 1, timeline.times_s().size()), ink);
+  }
+  if (const auto scenario = session.scenario(); scenario && !scenario->clock.epoch_utc.empty()) {
+    draw(scenario::utcAt(scenario->clock, asked_s), muted);
   }
 }
 
@@ -130,7 +132,6 @@ void drawTransport(PanelContext& context) {
   drawButtons(context);
   ImGui::SameLine(0, 14 * context.scale);
   drawRate(context);
-  ImGui::SameLine(0, 18 * context.scale);
   drawTimes(context);
 }
 

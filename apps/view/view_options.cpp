@@ -16,6 +16,7 @@ The window shows the picture while it changes, interpolated if need be, and make
 F1 lists keys and mouse; --script runs the same actions without hands.
 
 Examples:
+  emscape view
   emscape view scenarios/jacksboro.yaml
   emscape view scenarios/jacksboro.yaml --state jacksboro.view.json
   emscape view out/jacksboro.pvd --scenario scenarios/jacksboro.yaml --scale 2
@@ -34,9 +35,10 @@ struct Typed {
 };
 
 void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
-  app.add_option("INPUT", options.input,
-                 "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes")
-      ->required();
+  app.add_option(
+      "INPUT", options.input,
+      "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes; without it the window "
+      "asks for one");
   app.add_option("--scenario", options.scenario, "Scenario whose ground and emitters are drawn with volumes");
   app.add_option("--state", typed.state,
                  "View file: camera, colours, time, edits and the rest; options that are given count more");
@@ -70,12 +72,23 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
                "Compute although elevation data is missing; the holes are drawn as such");
   app.add_option("--script", options.script, "JSON lines: what to do and when (docs/viewer.md)");
   app.add_option("--log", options.log, "Writes what happens, as JSON lines");
-  app.add_flag("--copy-pictures", options.copy_pictures,
-               "Send pictures through the host's memory even where CUDA and OpenGL share a GPU");
+  app.add_flag("--share-gpu", options.share_gpu,
+               "Hand pictures from CUDA to OpenGL on the GPU while they change, where both are on one; "
+               "experimental");
   app.add_option("--backend", options.backend, "Where to compute: auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   app.add_option("--threads", options.threads, "Threads to use; 0: one per core")->check(CLI::Range(0, 4096));
   app.add_flag("--quiet,-q", options.quiet, "Only warnings and errors on standard error");
+}
+
+/// Without INPUT there is nothing that these would apply to: what is opened later is shown as at the start.
+void refuseOptionsOfInput(const CLI::App& app) {
+  for (const char* name :
+       {"--scenario", "--state", "--set", "--compare", "--time", "--quantity", "--mode", "--camera",
+        "--range", "--transfer", "--exaggeration", "--plane", "--step", "--shading"}) {
+    if (app.count(name) == 0) continue;
+    throw Error(ErrorCode::usage, std::string(name) + " needs INPUT\nTry 'emscape view --help'.");
+  }
 }
 
 /// What is shown first: the view of --state, or the default one, with the options that are given.
@@ -119,7 +132,6 @@ std::optional<ViewOptions> parseOptions(int argc, char** argv) {
   app.add_flag("--manual-tables", prints_manual, "Prints the tables of docs/viewer.md")->group("");
   app.option_defaults()->always_capture_default();
   addOptions(app, options, typed);
-  app.get_option("INPUT")->required(false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -132,7 +144,7 @@ std::optional<ViewOptions> parseOptions(int argc, char** argv) {
     std::cout << manualTables();
     return std::nullopt;
   }
-  if (options.input.empty()) throw Error(ErrorCode::usage, "INPUT is required\nTry 'emscape view --help'.");
+  if (options.input.empty()) refuseOptionsOfInput(app);
   readView(app, typed, options);
   if (typed.rays != "auto") options.controller.pattern = render::parsePattern(typed.rays);
   options.controller.budget_ms = typed.budget_ms;

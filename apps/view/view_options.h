@@ -10,7 +10,7 @@
 namespace emscape::view {
 
 struct ViewOptions {
-  std::string input;
+  std::string input;             ///< empty: none yet, the window asks for one
   std::string scenario;          ///< beside volumes; may be empty
   playback::ViewState view;      ///< shown first; its size is that of the picture
   std::string state;             ///< file that `view` was read from; empty: none, or options changed it
@@ -23,8 +23,7 @@ struct ViewOptions {
   render::ControllerOptions controller;
   bool allow_missing_terrain = false;
   std::string script, log;
-  bool copy_pictures =
-      false;  ///< through the host's memory, although OpenGL draws with the GPU that casts them
+  bool share_gpu = false;  ///< busy pictures go from CUDA to OpenGL on the GPU, if both are on one
   std::string backend = "auto";
   int threads = 0;
   bool quiet = false;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "apps/view/input_queue.h"
+#include "emscape/render/annotate/overlay.h"
 #include "emscape/render/image.h"
-#include "emscape/render/overlay.h"
 
 struct GLFWwindow;
 

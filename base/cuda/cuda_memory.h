@@ -176,7 +176,6 @@ class TimeMark {
   TimeMark& operator=(const TimeMark&) = delete;
 
   void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "cudaEventRecord"); }
-  cudaEvent_t event() const { return event_; }
   /// Waits until the stream has come here. @param earlier  was recorded before, on the same stream
   double since_ms(const TimeMark& earlier) const {
     float ms = 0;

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/quantity_text.h"
 #include "emfield/link/path_radar.h"
 #include "emfield/link/path_verdict.h"
 #include "emfield/products.h"
@@ -83,7 +84,7 @@ double boresightDensity_dbwm2(const Emitter& emitter, const PathBudget& budget) 
 void addRadiatedTerms(const Emitter& emitter, const PathPointing& pointing, std::vector<BudgetTerm>& terms) {
   const double power_dbw = ratioToDb(emitter.power_w);
   terms.push_back({"transmitter_power_dbw", "transmitter power", power_dbw, "dBW",
-                   fmt::format("{:g} W at {:g} MHz", emitter.power_w, emitter.frequency_hz / 1e6)});
+                   quantityText(emitter.power_w, "W") + " at " + quantityText(emitter.frequency_hz, "Hz")});
   terms.push_back({"transmit_losses_db", "transmit losses", -emitter.losses_db, "dB", ""});
   terms.push_back({"antenna_gain_dbi", "antenna gain, at its maximum", emitter.antenna->gain_dbi, "dBi",
                    emitter.antenna->description});
@@ -130,8 +131,9 @@ void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const 
                                ? "beam where the scan has it"
                                : "beam on the target";
   terms.push_back({"snr_db", "echo's signal-to-noise, one pulse", radar.snr_db, "dB",
-                   fmt::format("there and back, {}; target of {:g} m2, noise figure {:g} dB, {:g} MHz", look,
-                               receiver.target_rcs_m2, receiver.noise_figure_db, receiver.bandwidth_hz / 1e6),
+                   fmt::format("there and back, {}; target of {:g} m2, noise figure {:g} dB, {}", look,
+                               receiver.target_rcs_m2, receiver.noise_figure_db,
+                               quantityText(receiver.bandwidth_hz, "Hz")),
                    Kind::sum});
   if (std::isfinite(radar.jammer_to_signal_db)) {
     terms.push_back({"jammer_to_signal_db", "jamming over the echo", radar.jammer_to_signal_db, "dB",

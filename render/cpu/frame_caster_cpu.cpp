@@ -8,7 +8,7 @@
 #include "render/cpu/raycast_cpu.h"
 #include "render/frame_caster.h"
 #include "render/ground_layer.h"
-#include "render/ready_volume.h"
+#include "render/prepared_volume.h"
 
 namespace emscape::render {
 namespace {
@@ -21,8 +21,8 @@ class CpuFrameCaster : public FrameCaster {
   FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size, const StopFlag* stop) override;
   FrameReport restore(const Scene& scene, const StopFlag* stop) override;
 
-  void lend(Image& image) override { std::swap(picture_, image); }
-  void giveBack(Image& image, const FrameReport& /*report*/) override { std::swap(picture_, image); }
+  void bindTarget(Image& image) override { std::swap(picture_, image); }
+  void unbindTarget(Image& image, const FrameReport& /*report*/) override { std::swap(picture_, image); }
   void fetch(Image& image) override { image = picture_; }
   void fetch(Image8& image) override { image = quantize(picture_); }
 
@@ -36,12 +36,12 @@ class CpuFrameCaster : public FrameCaster {
   bool castMissing(const Scene& scene, FrameReport& report, const StopFlag* stop);
   void composeGround();
 
-  ReadyVolume volume_;
+  PreparedVolume volume_;
   SkipLevels skip_;
   bool skip_current_ = false;
   Scene::Versions seen_;  ///< what the members here were derived from
 
-  GroundLayer ground_layer_;  ///< of the camera; its size is 0 x 0 when it must be computed anew
+  GroundLayer ground_layer_;  ///< of the camera; its size is 0 x 0 when it must be computed again
   Image volume_layer_;        ///< the volume alone, cut off by the ground
   Image picture_;
   Pattern drawn_ = Pattern::full;  ///< of the last frame
@@ -113,8 +113,8 @@ bool CpuFrameCaster::drawAdaptive(const Scene& scene, const FramePlan& plan, boo
       narrowSilhouette(prepared.camera, visibleBoxes(prepared.skip, prepared.volume.dims), silhouette_);
     }
   }
-  const double most_rays = std::max(plan.ray_share * static_cast<double>(hits), 1.0);
-  report.complete = adaptive_.draw(image, silhouette_, plan.tolerance_levels, most_rays,
+  const double max_rays = std::max(plan.ray_share * static_cast<double>(hits), 1.0);
+  report.complete = adaptive_.draw(image, silhouette_, plan.tolerance_levels, max_rays,
                                    [&](const std::vector<Pixel>& pixels) {
                                      Stopwatch watch;
                                      const bool complete = castCpu(cast, pixels, image, stop, report.samples);

@@ -75,13 +75,13 @@ struct Rays {
   M enters;         ///< rays that begin outside the box
 };
 
-/// The pieces that rays are sampled in; see RayPieces. Counts are whole numbers.
-struct Pieces {
+/// The segments that rays are sampled in; see RaySegments. Counts are whole numbers.
+struct Segments {
   F step, per_step, length;
   F whole, count;
-  F last;  ///< length of the last piece, if it is shorter than a step
+  F last;  ///< length of the last segment, if it is shorter than a step
 
-  HWY_INLINE Pieces(const Rays& rays, float step_voxels)
+  HWY_INLINE Segments(const Rays& rays, float step_voxels)
       : step(hn::Set(kF, step_voxels)),
         per_step(hn::Set(kF, 1.0F / step_voxels)),
         length(rays.length),
@@ -135,26 +135,27 @@ class PairReader {
 };
 #endif
 
-/// Reads pairs of neighbouring codes, and weighs them: code times CodedValues::kWeights where both are one.
+/// Reads pairs of neighbouring codes, and weighs them: code times QuantizedValues::kWeights where both are
+/// one.
 class CodePairs {
  public:
   /// @param index     in codes
   /// @param fraction  0..1, from the first code of a pair to the second
   HWY_INLINE CodePairs(I index, F fraction)
       : offset_(hn::ShiftLeft<1>(index)),
-        second_(hn::NearestInt(fraction * hn::Set(kF, static_cast<float>(CodedValues::kWeights)))) {}
+        second_(hn::NearestInt(fraction * hn::Set(kF, static_cast<float>(QuantizedValues::kWeights)))) {}
 
 #if HWY_TARGET == HWY_SCALAR
   HWY_INLINE F read(const std::int16_t* codes) const {
     const std::int16_t* pair = codes + hn::GetLane(offset_) / 2;
     const std::int32_t second = hn::GetLane(second_);
-    return hn::Set(kF, static_cast<float>(pair[0] * (CodedValues::kWeights - second) + pair[1] * second));
+    return hn::Set(kF, static_cast<float>(pair[0] * (QuantizedValues::kWeights - second) + pair[1] * second));
   }
 #else
   HWY_INLINE F read(const std::int16_t* codes) const {
     const hn::Repartition<std::int16_t, TagI> pairs;
     const I zero = hn::Zero(kI);
-    const I weights = hn::Or(hn::ShiftLeft<16>(second_), hn::Set(kI, CodedValues::kWeights) - second_);
+    const I weights = hn::Or(hn::ShiftLeft<16>(second_), hn::Set(kI, QuantizedValues::kWeights) - second_);
     const I pair = hn::GatherOffset(kI, reinterpret_cast<const std::int32_t*>(codes), offset_);
     I unused = zero;
     return hn::ConvertTo(kF, hn::ReorderWidenMulAccumulate(kI, hn::BitCast(pairs, pair),
@@ -182,7 +183,7 @@ struct CellAxis {
   }
 };
 
-HWY_INLINE F mix(F a, F b, F fraction) {
+HWY_INLINE F lerp(F a, F b, F fraction) {
   return hn::MulAdd(fraction, b - a, a);
 }
 
@@ -195,9 +196,9 @@ struct ValueReader {
     pairs.read(volume.values + row, v010, v110);
     pairs.read(volume.values + layer, v001, v101);
     pairs.read(volume.values + layer + row, v011, v111);
-    const F below = mix(mix(v000, v100, x), mix(v010, v110, x), y);
-    const F above = mix(mix(v001, v101, x), mix(v011, v111, x), y);
-    return mix(below, above, z);
+    const F below = lerp(lerp(v000, v100, x), lerp(v010, v110, x), y);
+    const F above = lerp(lerp(v001, v101, x), lerp(v011, v111, x), y);
+    return lerp(below, above, z);
   }
 };
 
@@ -205,10 +206,10 @@ struct ValueReader {
 struct CodedReader {
   static HWY_INLINE F cell(const VolumeView& volume, long long row, long long layer, I low, F x, F y, F z) {
     const CodePairs pairs(low, x);
-    const CodedValues& coded = volume.coded;
-    const F below = mix(pairs.read(coded.codes), pairs.read(coded.codes + row), y);
-    const F above = mix(pairs.read(coded.codes + layer), pairs.read(coded.codes + layer + row), y);
-    return hn::MulAdd(mix(below, above, z), hn::Set(kF, coded.step_per_weight), hn::Set(kF, coded.middle));
+    const QuantizedValues& coded = volume.coded;
+    const F below = lerp(pairs.read(coded.codes), pairs.read(coded.codes + row), y);
+    const F above = lerp(pairs.read(coded.codes + layer), pairs.read(coded.codes + layer + row), y);
+    return hn::MulAdd(lerp(below, above, z), hn::Set(kF, coded.step_per_weight), hn::Set(kF, coded.middle));
   }
 };
 

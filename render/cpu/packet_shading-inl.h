@@ -80,8 +80,8 @@ class Light {
     const F strength = hn::IfThenElseZero(any, squared / (squared + hn::Set(kF, kFaint)));
     const Vec3F up{hn::IfThenElse(any, gradient.x, hn::Set(kF, 1.0F)), gradient.y, gradient.z};
     const Color shaded = lit(sample, normal(up));
-    return {mix(sample.r, shaded.r, strength), mix(sample.g, shaded.g, strength),
-            mix(sample.b, shaded.b, strength), sample.a};
+    return {lerp(sample.r, shaded.r, strength), lerp(sample.g, shaded.g, strength),
+            lerp(sample.b, shaded.b, strength), sample.a};
   }
 
  private:

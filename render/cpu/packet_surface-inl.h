@@ -28,7 +28,7 @@ class SurfaceSearch {
         rays_(rays),
         iso_(hn::Set(kF, task.iso.value)),
         bricks_(task, rays.direction),
-        pieces_(rays, task.step_voxels) {}
+        segments_(rays, task.step_voxels) {}
 
   HWY_INLINE Color color() {
     const F zero = hn::Zero(kF);
@@ -45,7 +45,7 @@ class SurfaceSearch {
       Points near = last;
       Points far = last;
       while (!hn::AllFalse(kF, active)) {
-        const Points point = pointsAt(pieces_.joint(n), active);
+        const Points point = pointsAt(segments_.joint(n), active);
         const M inside = hn::Ge(point.value, iso_);
         const M at_entry = hn::And(hn::And(hn::Eq(n, zero), rays_.enters), hn::And(point.known, inside));
         cap = hn::Or(cap, at_entry);
@@ -57,12 +57,12 @@ class SurfaceSearch {
         crossed = hn::Or(crossed, across);
         last = chosen(active, point, last);
         n = hn::IfThenElse(active, next(n, point.distance, active, next_brick), n);
-        active = hn::AndNot(hn::Or(across, at_entry), hn::And(active, hn::Le(n, pieces_.count)));
+        active = hn::AndNot(hn::Or(across, at_entry), hn::And(active, hn::Le(n, segments_.count)));
       }
       if (hn::AllFalse(kF, crossed)) break;
       const M refined = refine(crossed, near, far, hit);
       found = hn::Or(found, refined);
-      active = hn::And(hn::AndNot(refined, crossed), hn::Le(n, pieces_.count));
+      active = hn::And(hn::AndNot(refined, crossed), hn::Le(n, segments_.count));
     }
     return shaded(found, cap, hit);
   }
@@ -89,14 +89,15 @@ class SurfaceSearch {
       I brick;
       const F leave = bricks_.look(rays_.start.along(rays_.direction, distance), brick);
       const F level = hn::GatherIndex(kF, task_.skip.levels, brick);
-      const F inside = hn::Min(hn::Floor(leave * pieces_.per_step), pieces_.count);
+      const F inside = hn::Min(hn::Floor(leave * segments_.per_step), segments_.count);
       next_brick = hn::IfThenElse(look, n + inside + one, next_brick);
       const M skips =
           hn::And(look, hn::And(hn::Lt(level, hn::Set(kF, SkipView::kNever)), hn::Gt(inside, one)));
       ahead = hn::IfThenElse(skips, inside, one);
     }
     const F to = n + ahead;
-    return hn::IfThenElse(hn::And(hn::Lt(n, pieces_.count), hn::Gt(to, pieces_.count)), pieces_.count, to);
+    return hn::IfThenElse(hn::And(hn::Lt(n, segments_.count), hn::Gt(to, segments_.count)), segments_.count,
+                          to);
   }
 
   /// See refineCrossing(). @return lanes whose crossing lies between known values
@@ -111,7 +112,7 @@ class SurfaceSearch {
       near = chosen(across, near, middle);
     }
     const F part = (iso_ - near.value) / (far.value - near.value);
-    hit = chosen(lanes, {mix(near.distance, far.distance, part), iso_, lanes}, hit);
+    hit = chosen(lanes, {lerp(near.distance, far.distance, part), iso_, lanes}, hit);
     return lanes;
   }
 
@@ -166,7 +167,7 @@ class SurfaceSearch {
   const Rays& rays_;
   const F iso_;
   const BrickWalk bricks_;
-  const Pieces pieces_;
+  const Segments segments_;
 };
 
 }  // namespace HWY_NAMESPACE

@@ -112,14 +112,14 @@ HWY_INLINE Rays setRays(const RaycastTask& task, const Pixel* pixels, const RayB
           hn::Gt(hn::Load(f, parts[7]), hn::Zero(f))};
 }
 
-/// See LookAhead.
+/// See OccupancyLookahead.
 class LanesAhead {
  public:
-  HWY_INLINE LanesAhead(const RaycastTask& task, const Rays& rays, const Pieces& pieces,
+  HWY_INLINE LanesAhead(const RaycastTask& task, const Rays& rays, const Segments& segments,
                         const BrickWalk& bricks)
       : task_(task),
         rays_(rays),
-        pieces_(pieces),
+        segments_(segments),
         bricks_(bricks),
         highest_(hn::Zero(kF)),
         until_(hn::Zero(kF)) {}
@@ -134,13 +134,13 @@ class LanesAhead {
  private:
   HWY_INLINE void walk(M lanes, F next) {
     highest_ = hn::IfThenElse(lanes, hn::Set(kF, -1.0F), highest_);
-    until_ = hn::IfThenElse(lanes, pieces_.count, until_);
-    for (M on = hn::And(lanes, hn::Lt(next, pieces_.count)); !hn::AllFalse(kF, on);
-         on = hn::And(on, hn::Lt(next, pieces_.count))) {
+    until_ = hn::IfThenElse(lanes, segments_.count, until_);
+    for (M on = hn::And(lanes, hn::Lt(next, segments_.count)); !hn::AllFalse(kF, on);
+         on = hn::And(on, hn::Lt(next, segments_.count))) {
       I brick;
-      const F leave = bricks_.look(rays_.start.along(rays_.direction, pieces_.middle(next)), brick);
+      const F leave = bricks_.look(rays_.start.along(rays_.direction, segments_.middle(next)), brick);
       const F found = hn::GatherIndex(kF, task_.skip.highest, brick);
-      next = hn::Min(next + hn::Set(kF, 1.0F) + hn::Floor(leave * pieces_.per_step), pieces_.count);
+      next = hn::Min(next + hn::Set(kF, 1.0F) + hn::Floor(leave * segments_.per_step), segments_.count);
       const M higher = hn::And(on, hn::Ge(found, highest_));
       highest_ = hn::IfThenElse(higher, found, highest_);
       until_ = hn::IfThenElse(higher, next, until_);
@@ -149,7 +149,7 @@ class LanesAhead {
 
   const RaycastTask& task_;
   const Rays& rays_;
-  const Pieces& pieces_;
+  const Segments& segments_;
   const BrickWalk& bricks_;
   F highest_, until_;
 };
@@ -224,10 +224,10 @@ template <class Lanes, class Reader, bool kShades>
 HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long& samples) {
   const F one = hn::Set(kF, 1.0F);
   const F half = hn::Set(kF, 0.5F);
-  const Pieces pieces(rays, task.step_voxels);
+  const Segments segments(rays, task.step_voxels);
   const BrickWalk bricks(task, rays.direction);
   const Light light(task.shading, rays.direction);
-  LanesAhead ahead(task, rays, pieces, bricks);
+  LanesAhead ahead(task, rays, segments, bricks);
   Lanes lanes;
   // The sample of some lanes; returns those that it changed.
   const auto take = [&](const Vec3F& position, M shown, bool last) HWY_ATTR {
@@ -242,14 +242,14 @@ HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long
         const Vec3F gradient = gradientAt(task.volume, position, value, visible);
         color = light.litFog(color, {gradient.x * scale, gradient.y * scale, gradient.z * scale});
       }
-      if (last) color = color.shortened(pieces.last * pieces.per_step);
+      if (last) color = color.shortened(segments.last * segments.per_step);
     }
     return lanes.add(task, shown, f, color);
   };
 
   F n = hn::Zero(kF);
   F next_brick = hn::Zero(kF);
-  M active = hn::Lt(n, pieces.whole);
+  M active = hn::Lt(n, segments.whole);
   M unchanged = active;  // lanes whose last sample changed nothing
   while (true) {
     // Lanes in a new brick look whether they can pass over it, and over those behind it. While most lanes
@@ -258,25 +258,25 @@ HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long
     if (task.skip.levels != nullptr && 2 * hn::CountTrue(kF, look) >= hn::CountTrue(kF, active)) {
       while (!hn::AllFalse(kF, look)) {
         I brick;
-        const F leave = bricks.look(rays.start.along(rays.direction, (n + half) * pieces.step), brick);
-        const F beyond = hn::Min(n + one + hn::Floor(leave * pieces.per_step), pieces.whole);
+        const F leave = bricks.look(rays.start.along(rays.direction, (n + half) * segments.step), brick);
+        const F beyond = hn::Min(n + one + hn::Floor(leave * segments.per_step), segments.whole);
         next_brick = hn::IfThenElse(look, beyond, next_brick);
         look = hn::And(look, lanes.canSkip(hn::GatherIndex(kF, task.skip.levels, brick)));
         n = hn::IfThenElse(look, beyond, n);
-        active = hn::And(active, hn::Lt(n, pieces.whole));
+        active = hn::And(active, hn::Lt(n, segments.whole));
         look = hn::And(look, active);
       }
     }
     if (hn::AllFalse(kF, active)) break;
-    const Vec3F position = rays.start.along(rays.direction, (n + half) * pieces.step);
+    const Vec3F position = rays.start.along(rays.direction, (n + half) * segments.step);
     unchanged = hn::Not(take(position, active, false));
     samples += static_cast<long long>(hn::CountTrue(kF, active));
     n = n + one;
-    active = hn::And(lanes.live(task, ahead, active, n), hn::Lt(n, pieces.whole));
+    active = hn::And(lanes.live(task, ahead, active, n), hn::Lt(n, segments.whole));
   }
-  const M rest = lanes.live(task, ahead, hn::Lt(pieces.whole, pieces.count), pieces.whole);
+  const M rest = lanes.live(task, ahead, hn::Lt(segments.whole, segments.count), segments.whole);
   if (!hn::AllFalse(kF, rest)) {
-    take(rays.start.along(rays.direction, pieces.middle(pieces.whole)), rest, true);
+    take(rays.start.along(rays.direction, segments.middle(segments.whole)), rest, true);
   }
   return lanes.result(task);
 }
@@ -348,16 +348,16 @@ namespace emscape::render {
 HWY_EXPORT(cast);
 
 bool packetsCanCast(const VolumeView& volume) {
-  constexpr long long kMostVoxels = 1LL << 31;
-  return volume.all_finite && volume.dims.x >= 2 && volume.dims.count() < kMostVoxels;
+  constexpr long long kMaxVoxels = 1LL << 31;
+  return volume.all_finite && volume.dims.x >= 2 && volume.dims.count() < kMaxVoxels;
 }
 
 namespace {
 /// Whether a volume's codes are as good as its values: what they round is hidden by the transfer table.
-bool codesServe(const CodedValues& coded, const Dims& dims, const TransferView& transfer) {
-  constexpr long long kMostCodes = 1LL << 30;  // their places in bytes are 32-bit numbers
-  constexpr float kCoarsest = 1.0F / 4096;     // of the transfer function's interval
-  return coded.codes != nullptr && dims.count() < kMostCodes && coded.step() * transfer.scale <= kCoarsest;
+bool codesServe(const QuantizedValues& coded, const Dims& dims, const TransferView& transfer) {
+  constexpr long long kMaxCodes = 1LL << 30;  // their places in bytes are 32-bit numbers
+  constexpr float kCoarsest = 1.0F / 4096;    // of the transfer function's interval
+  return coded.codes != nullptr && dims.count() < kMaxCodes && coded.step() * transfer.scale <= kCoarsest;
 }
 }  // namespace
 

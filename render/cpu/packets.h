@@ -15,7 +15,7 @@ bool packetsCanCast(const VolumeView& volume);
 
 /// Casts the volume as some pixels show it (see RaycastTask::castVolume()), with the widest vectors that the
 /// processor has.
-/// @param pixels  neighbours beside each other make good packets
+/// @param pixels  packets are fast where neighbours in the list are neighbours in the picture
 /// @param bounds  of the samples on each ray; null: none
 /// @param fronts  receives `count` colours
 /// @return samples taken

@@ -16,7 +16,7 @@ namespace {
 constexpr int kTile = 16;
 constexpr int kTilePixels = kTile * kTile;
 
-/// The places of a tile along a Z-shaped curve, so that 4, 8 or 16 in a row lie close together.
+/// The pixels of a tile along a Z-order curve, so that 4, 8 or 16 in a row are close together.
 constexpr std::array<Pixel, kTilePixels> zOrder() {
   std::array<Pixel, kTilePixels> places{};
   for (int n = 0; n < kTilePixels; ++n) {
@@ -69,10 +69,10 @@ bool isSet(const StopFlag* stop) {
   return stop != nullptr && stop->load(std::memory_order_relaxed);
 }
 
-/// Casts pieces of at most kTilePixels pixels.
-class PieceCaster {
+/// Casts groups of at most kTilePixels pixels.
+class GroupCaster {
  public:
-  explicit PieceCaster(const CpuCast& cast)
+  explicit GroupCaster(const CpuCast& cast)
       : cast_(cast),
         in_packets_(!cast.plain && !cast.nearest && packetsCanCast(cast.task.volume)),
         plain_(cast.nearest ? plainOf<NearestSampler>(cast.mode) : plainOf<TrilinearSampler>(cast.mode)),
@@ -133,7 +133,7 @@ class PieceCaster {
 
 bool castCpu(const CpuCast& cast, const Lattice& lattice, Image& image, const StopFlag* stop,
              long long& samples) {
-  const PieceCaster cast_piece(cast);
+  const GroupCaster cast_group(cast);
   const int tile_columns = (lattice.columns + kTile - 1) / kTile;
   const int tile_rows = (lattice.rows + kTile - 1) / kTile;
   std::atomic<long long> taken{0};
@@ -151,7 +151,7 @@ bool castCpu(const CpuCast& cast, const Lattice& lattice, Image& image, const St
             static_cast<std::uint16_t>(lattice.first_x + column * lattice.step_x),
             static_cast<std::uint16_t>(lattice.first_y + row * lattice.step_y)};
       }
-      taken += cast_piece(pixels.data(), count, image);
+      taken += cast_group(pixels.data(), count, image);
     }
   });
   samples += taken;
@@ -160,14 +160,14 @@ bool castCpu(const CpuCast& cast, const Lattice& lattice, Image& image, const St
 
 bool castCpu(const CpuCast& cast, const std::vector<Pixel>& pixels, Image& image, const StopFlag* stop,
              long long& samples) {
-  const PieceCaster cast_piece(cast);
+  const GroupCaster cast_group(cast);
   const int count = static_cast<int>(pixels.size());
   std::atomic<long long> taken{0};
   parallelFor((count + kTilePixels - 1) / kTilePixels, 1, [&](int begin, int end) {
-    for (int piece = begin; piece < end && !isSet(stop); ++piece) {
-      const int first = piece * kTilePixels;
+    for (int group = begin; group < end && !isSet(stop); ++group) {
+      const int first = group * kTilePixels;
       taken +=
-          cast_piece(&pixels[static_cast<std::size_t>(first)], std::min(kTilePixels, count - first), image);
+          cast_group(&pixels[static_cast<std::size_t>(first)], std::min(kTilePixels, count - first), image);
     }
   });
   samples += taken;

@@ -5,10 +5,9 @@
 namespace emscape::render::cuda {
 namespace {
 
-/// The class of this thread's pixel; 0: it has none, or one that was cast.
-__device__ int classOfThread(const std::uint8_t* classes, ImageSize size, const Place& place) {
-  if (place.column >= size.width || place.row >= size.height) return 0;
-  return classes[pixelIndex(size, place.column, place.row)];
+/// The class of this thread's pixel (x, y); 0: there is none, or it was cast.
+__device__ int classOfThread(const std::uint8_t* classes, ImageSize size, int& x, int& y) {
+  return pixelOfThread(size, x, y) ? classes[pixelIndex(size, x, y)] : 0;
 }
 
 __global__ void __launch_bounds__(kTileThreads)
@@ -16,7 +15,8 @@ __global__ void __launch_bounds__(kTileThreads)
   __shared__ unsigned found[kErrorClasses];
   if (threadIdx.x < kErrorClasses) found[threadIdx.x] = 0;
   __syncthreads();
-  const int error_class = classOfThread(classes, size, placeOfThread(size.width));
+  int x = 0, y = 0;
+  const int error_class = classOfThread(classes, size, x, y);
   if (error_class > 0) atomicAdd(&found[error_class], 1U);
   __syncthreads();
   if (threadIdx.x < kErrorClasses && found[threadIdx.x] > 0) {
@@ -30,8 +30,8 @@ __global__ void __launch_bounds__(kTileThreads)
   __shared__ unsigned first[kErrorClasses];
   if (threadIdx.x < kErrorClasses) found[threadIdx.x] = 0;
   __syncthreads();
-  const Place place = placeOfThread(size.width);
-  const int error_class = classOfThread(classes, size, place);
+  int x = 0, y = 0;
+  const int error_class = classOfThread(classes, size, x, y);
   const unsigned rank = error_class > 0 ? atomicAdd(&found[error_class], 1U) : 0;
   __syncthreads();
   if (threadIdx.x < kErrorClasses && found[threadIdx.x] > 0) {
@@ -41,8 +41,7 @@ __global__ void __launch_bounds__(kTileThreads)
   }
   __syncthreads();
   if (error_class > 0) {
-    list[first[error_class] + rank] = {static_cast<std::uint16_t>(place.column),
-                                       static_cast<std::uint16_t>(place.row)};
+    list[first[error_class] + rank] = {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
   }
 }
 
@@ -50,7 +49,7 @@ __global__ void __launch_bounds__(kTileThreads)
 
 void listPredicted(const std::uint8_t* classes, ImageSize size, ClassCounts* counts, Pixel* list,
                    cudaStream_t stream) {
-  const unsigned blocks = tileCount(size.width, size.height);
+  const unsigned blocks = tileCount(size);
   countClasses<<<blocks, kTileThreads, 0, stream>>>(classes, size, counts);
   emscape::cuda::checkLaunch("countClasses");
   placePixels<<<blocks, kTileThreads, 0, stream>>>(classes, size, counts, list);

@@ -1,4 +1,4 @@
-/// What the blocks of all kernels that cast have in common. For .cu files.
+/// Block size, barrier and ray bounds of all kernels that cast. For .cu files.
 #pragma once
 
 #include <cuda_pipeline.h>
@@ -8,12 +8,12 @@
 
 namespace emscape::render::cuda {
 
-/// Threads of a block, one block a multiprocessor. Warps take pixels independently of each other.
+/// Threads of a block, one block per multiprocessor. Warps take pixels independently of each other.
 constexpr int kCastThreads = 768;
 constexpr unsigned kCastWarps = kCastThreads / 32;
 
-/// A barrier after which what the block's threads copy to shared memory, by __pipeline_memcpy_async() too, is
-/// there.
+/// A barrier: all copies of the block's threads to shared memory, by __pipeline_memcpy_async() too, are
+/// complete.
 __device__ inline void waitForCopies() {
   __pipeline_wait_prior(0);
   __syncthreads();

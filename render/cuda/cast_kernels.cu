@@ -46,47 +46,47 @@ class SharedColors {
 __global__ void __launch_bounds__(kTileThreads)
     groundRays(const __grid_constant__ RaycastTask task, float* distances, float4* colors) {
   const ImageSize size = task.camera.size;
-  const Place place = placeOfThread(size.width);
-  if (place.column >= size.width || place.row >= size.height) return;
-  const long long index = pixelIndex(size, place.column, place.row);
-  const GroundHit hit = task.groundAt(place.column, place.row);
+  int x = 0, y = 0;
+  if (!pixelOfThread(size, x, y)) return;
+  const long long index = pixelIndex(size, x, y);
+  const GroundHit hit = task.groundAt(x, y);
   distances[index] = hit.found ? static_cast<float>(hit.distance) : INFINITY;
   if (hit.found) colors[index] = toFloat4(hit.color);
 }
 
 template <class Launch>
-void startSampling(const Launch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
+void startSampling(const Launch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
   const bool shades = launch.task.shading.shades_fog;
   switch (sampling) {
     case Sampling::sparse:
     case Sampling::sparse_nearest:
-      return castSparse(launch, mode, sampling, to);
+      return castSparse(launch, mode, sampling, stream);
     case Sampling::nearest:
-      return startVolume<NearestTextureSampler, GlobalColors, false>(launch, mode, to);
+      return startVolume<NearestTextureSampler, GlobalColors, false>(launch, mode, stream);
     case Sampling::accurate:
-      return shades ? startVolume<AccurateSampler, GlobalColors, true>(launch, mode, to)
-                    : startVolume<AccurateSampler, GlobalColors, false>(launch, mode, to);
+      return shades ? startVolume<AccurateSampler, GlobalColors, true>(launch, mode, stream)
+                    : startVolume<AccurateSampler, GlobalColors, false>(launch, mode, stream);
     case Sampling::filtered:
       break;
   }
-  return shades ? startVolume<FilteredSampler, SharedColors, true>(launch, mode, to)
-                : startVolume<FilteredSampler, SharedColors, false>(launch, mode, to);
+  return shades ? startVolume<FilteredSampler, SharedColors, true>(launch, mode, stream)
+                : startVolume<FilteredSampler, SharedColors, false>(launch, mode, stream);
 }
 
 }  // namespace
 
-void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
-  startSampling(launch, mode, sampling, to);
+void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
+  startSampling(launch, mode, sampling, stream);
 }
 
 void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling,
-                  const Submission& to) {
-  startSampling(launch, mode, sampling, to);
+                  cudaStream_t stream) {
+  startSampling(launch, mode, sampling, stream);
 }
 
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream) {
   const ImageSize size = task.camera.size;
-  groundRays<<<tileCount(size.width, size.height), kTileThreads, 0, stream>>>(task, distances, colors);
+  groundRays<<<tileCount(size), kTileThreads, 0, stream>>>(task, distances, colors);
   emscape::cuda::checkLaunch("groundRays");
 }
 

@@ -1,23 +1,19 @@
-/// Rays as kernels cast them, whatever they sample. For .cu files.
+/// Kernels that cast rays, for any sampler. For .cu files.
 #pragma once
 
 #include <algorithm>
-#include <cstring>
-#include <type_traits>
 
 #include "base/cuda/cuda_memory.h"
-#include "render/cuda/kernels.h"
-#include "render/cuda/pixel_tile.h"
-#include "render/cuda/warp_tasks.h"
+#include "render/cuda/cast_block.h"
 
 namespace emscape::render::cuda {
 
 /// Samples fetched at a time: with few rays, and at the end of a launch, too few threads are left to hide the
-/// wait for one. More registers a thread mean fewer threads.
+/// latency of one. More registers per thread mean fewer threads.
 template <class Compositor>
 constexpr int kBatch = Compositor::kEndsItself ? 8 : 4;
 
-/// The table where it lies.
+/// The table in global memory.
 class GlobalColors {
  public:
   static unsigned sharedBytes(const CastLaunch& /*launch*/) { return 0; }
@@ -42,13 +38,9 @@ struct VolumeRay {
   __device__ static Compositor begin(const CastLaunch& launch) {
     return {launch.task.opaque_enough, launch.task.mida_gamma, *launch.volume_highest_f};
   }
-  __device__ static bool castHalf(const CastLaunch& launch, const RayPieces& pieces, int half,
+  __device__ static bool castPart(const CastLaunch& launch, const RaySegments& segments, int part,
                                   const Colors& colors, Compositor& compositor) {
-    return launch.task.castHalf<Compositor, Sampler, kMayShade, kFetched>(pieces, half, colors, compositor);
-  }
-  __device__ static bool castPart(const CastLaunch& launch, const RayPieces& pieces, int part,
-                                  const Colors& colors, Compositor& compositor) {
-    return launch.task.castPart<Compositor, Sampler, kMayShade, kFetched>(pieces, part, colors, compositor);
+    return launch.task.castPart<Compositor, Sampler, kMayShade, kFetched>(segments, part, colors, compositor);
   }
 };
 template <class Sampler>
@@ -61,116 +53,86 @@ struct SurfaceRay {
   }
 };
 
-/// What another thread of the warp holds. All threads call it.
-template <class Value>
-__device__ Value fromLane(const Value& value, unsigned lane) {
-  constexpr unsigned kWords = sizeof(Value) / sizeof(unsigned);
-  static_assert(kWords * sizeof(unsigned) == sizeof(Value) && std::is_trivially_copyable_v<Value>, "words");
-  unsigned words[kWords];
-  memcpy(words, &value, sizeof value);
-  for (unsigned& word : words) word = __shfl_sync(~0U, word, static_cast<int>(lane));
-  Value other = value;
-  memcpy(&other, words, sizeof other);
-  return other;
-}
-
-/// All threads of a warp call it.
-template <class RayKind>
-__device__ void castTask(const CastLaunch& launch, const typename RayKind::Colors& colors,
-                         const WarpTask& task, unsigned lane) {
-  const Pixel pixel = task.pixel;
-  float4& target = launch.layer.at(pixel.x, pixel.y);
-  if constexpr (RayKind::kParts == 1) {
-    if (!task.has_pixel) return;
-    target = toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, boundsOf(launch, pixel)));
-  } else {
-    const RayPieces pieces =
-        launch.task.piecesOf(pixel.x, pixel.y, task.has_pixel ? boundsOf(launch, pixel) : RayBounds{0, 0});
-    typename RayKind::Compositor whole = RayKind::begin(launch);
-    bool done = pieces.count == 0;
-    // Every sample is taken in one place: kernels begin with waiting for their instructions.
-    int half = task.in_halves && lane >= 16 ? 1 : 0;
-    int end = task.in_halves ? half + 1 : kRayHalves;
-    for (bool again = false;; again = true) {
-      for (; half < end && !done; ++half) {
-        auto next = whole.behind();
-        done = RayKind::castHalf(launch, pieces, half, colors, next);
-        whole.join(next);
-      }
-      if (!task.in_halves || again) break;
-      auto joined = whole;
-      joined.join(fromLane(whole, lane % 16 + 16));
-      if (lane >= 16) return;
-      if (done) break;
-      if (!joined.nearlyDone()) {
-        whole = joined;
-        break;
-      }
-      end = kRayHalves;  // the other half once more, now that it is known what lies before
-    }
-    if (task.has_pixel) target = toFloat4(whole.result(launch.task.transfer));
+/// Hands out 0, 1, 2, ... to warps, all threads of which call it.
+/// @param next   0, as it is again after the last number
+/// @param count  of numbers that are asked for in all
+__device__ inline unsigned nextNumber(unsigned* next, unsigned count) {
+  unsigned number = 0;
+  if (threadIdx.x % 32 == 0) {
+    number = atomicAdd(next, 1U);
+    if (number + 1 == count) *next = 0;
   }
+  return __shfl_sync(~0U, number, 0);
 }
 
-/// A thread a ray, or two where a ray is long.
+/// One thread per ray. Warps take the tiles that show something one by one, as each of them is done with the
+/// last; the others, which take no time, are shared out evenly.
 template <class RayKind>
 __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__ CastLaunch launch) {
   const typename RayKind::Colors colors(launch);
-  const WarpTasks<(RayKind::kParts > 1)> tasks(launch);
-  TileQueue queue(launch.next_tile, tasks.count());
-  const unsigned lane = threadIdx.x % 32;
-  unsigned number = 0;
-  while (queue.take(lane, number)) {
-    for (unsigned n = 0; n < tasks.tasksOf(number); ++n) {
-      castTask<RayKind>(launch, colors, tasks.of(number, n, lane), lane);
+  const unsigned lane = threadIdx.x % 32, warp = threadIdx.x / 32 * gridDim.x + blockIdx.x;
+  const unsigned warps = gridDim.x * kCastWarps;
+  const unsigned shown = launch.pixels.shownTiles(), all = launch.pixels.allTiles();
+  waitForCopies();
+  bool asks = true;
+  for (unsigned tile = warp;;) {  // the first one needs no asking
+    if (asks && tile >= shown) {
+      asks = false;
+      tile = shown + warp;
     }
+    if (tile >= all) return;
+    Pixel pixel;
+    if (launch.pixels.pixelOf(tile, lane, pixel)) {
+      launch.layer.at(pixel.x, pixel.y) =
+          toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, boundsOf(launch, pixel)));
+    }
+    tile = asks ? warps + nextNumber(launch.next_tile, shown) : tile + warps;
   }
 }
 
 /// What the largest table takes of a block's shared memory.
-constexpr int kMostSharedBytes = (kMostHalfColors + 1) * static_cast<int>(sizeof(HalfColor));
+constexpr int kMaxSharedBytes = (kMaxHalfColors + 1) * static_cast<int>(sizeof(HalfColor));
 
 /// Allows a kernel the shared memory that the largest table takes. @return its blocks that run at a time
 template <class Launch>
 unsigned residentBlocks(void (*kernel)(Launch)) {
   emscape::cuda::check(
-      cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, kMostSharedBytes),
+      cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, kMaxSharedBytes),
       "cudaFuncSetAttribute");
   int device = 0, multiprocessors = 0, blocks = 0;
   emscape::cuda::check(cudaGetDevice(&device), "cudaGetDevice");
   emscape::cuda::check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device),
                        "cudaDeviceGetAttribute");
   emscape::cuda::check(
-      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, kCastThreads, kMostSharedBytes),
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, kCastThreads, kMaxSharedBytes),
       "cudaOccupancyMaxActiveBlocksPerMultiprocessor");
   return static_cast<unsigned>(multiprocessors * std::max(blocks, 1));
 }
 
 template <class RayKind>
-void start(const CastLaunch& launch, const Submission& to) {
-  const PixelSet& pixels = launch.pixels;
-  const long long rays = pixels.list != nullptr ? pixels.end - pixels.first : pixels.lattice.count();
+void start(const CastLaunch& launch, cudaStream_t stream) {
+  const long long rays = launch.pixels.rays();
   if (rays == 0) return;
   static const unsigned resident = residentBlocks(castRays<RayKind>);
   const auto blocks = static_cast<unsigned>(std::min<long long>((rays + 31) / 32, resident));
-  to.start("castRays", castRays<RayKind>, {blocks, kCastThreads, RayKind::Colors::sharedBytes(launch)},
-           launch);
+  castRays<RayKind><<<blocks, kCastThreads, RayKind::Colors::sharedBytes(launch), stream>>>(launch);
+  emscape::cuda::checkLaunch("castRays");
 }
 
 /// @param launch  a CastLaunch, or another for which there is a start()
 template <class Sampler, class Colors, bool kMayShade, class Launch>
-void startVolume(const Launch& launch, CompositingMode mode, const Submission& to) {
+void startVolume(const Launch& launch, CompositingMode mode, cudaStream_t stream) {
   switch (mode) {
     case CompositingMode::mida:
-      return start<VolumeRay<MidaCompositor, Sampler, Colors, kMayShade>>(launch, to);
+      return start<VolumeRay<MidaCompositor, Sampler, Colors, kMayShade>>(launch, stream);
     case CompositingMode::mip:
-      return start<VolumeRay<MipCompositor, Sampler, GlobalColors, false>>(launch, to);
+      return start<VolumeRay<MipCompositor, Sampler, GlobalColors, false>>(launch, stream);
     case CompositingMode::iso:
-      return start<SurfaceRay<Sampler>>(launch, to);
+      return start<SurfaceRay<Sampler>>(launch, stream);
     case CompositingMode::dvr:
       break;
   }
-  return start<VolumeRay<DvrCompositor, Sampler, Colors, kMayShade>>(launch, to);
+  return start<VolumeRay<DvrCompositor, Sampler, Colors, kMayShade>>(launch, stream);
 }
 
 }  // namespace emscape::render::cuda

@@ -6,23 +6,23 @@ namespace emscape::render::cuda {
 namespace {
 
 template <class Launch>
-void startSparse(const Launch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
+void startSparse(const Launch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
   if (sampling == Sampling::sparse_nearest) {
-    return startVolume<NearestSamplerOf<GridVoxels>, GlobalColors, false>(launch, mode, to);
+    return startVolume<NearestSamplerOf<GridVoxels>, GlobalColors, false>(launch, mode, stream);
   }
   using Sampler = TrilinearSamplerOf<GridVoxels>;
-  return launch.task.shading.shades_fog ? startVolume<Sampler, GlobalColors, true>(launch, mode, to)
-                                        : startVolume<Sampler, GlobalColors, false>(launch, mode, to);
+  return launch.task.shading.shades_fog ? startVolume<Sampler, GlobalColors, true>(launch, mode, stream)
+                                        : startVolume<Sampler, GlobalColors, false>(launch, mode, stream);
 }
 
 }  // namespace
 
-void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
-  startSparse(launch, mode, sampling, to);
+void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
+  startSparse(launch, mode, sampling, stream);
 }
 
-void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to) {
-  startSparse(launch, mode, sampling, to);
+void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream) {
+  startSparse(launch, mode, sampling, stream);
 }
 
 }  // namespace emscape::render::cuda

@@ -11,12 +11,12 @@ template <class Sampler>
 __global__ void __launch_bounds__(kTileThreads)
     cutRays(const __grid_constant__ RaycastTask task, const __grid_constant__ CutLayer layer) {
   const ImageSize size = task.camera.size;
-  const Place place = placeOfThread(size.width);
-  if (place.column >= size.width || place.row >= size.height) return;
-  const long long index = pixelIndex(size, place.column, place.row);
+  int x = 0, y = 0;
+  if (!pixelOfThread(size, x, y)) return;
+  const long long index = pixelIndex(size, x, y);
   const bool has_ground = layer.ground_distances != nullptr;
   const float ground = has_ground ? layer.ground_distances[index] : INFINITY;
-  const CutRay ray = task.cutRay<Sampler>(place.column, place.row, ground);
+  const CutRay ray = task.cutRay<Sampler>(x, y, ground);
   layer.begins[index] = ray.bounds.begin;
   layer.limits[index] = ray.bounds.end;
   if (ray.section.a > 0.0F) {
@@ -31,7 +31,7 @@ __global__ void __launch_bounds__(kTileThreads)
 template <class Sampler>
 void start(const RaycastTask& task, const CutLayer& layer, cudaStream_t stream) {
   const ImageSize size = task.camera.size;
-  cutRays<Sampler><<<tileCount(size.width, size.height), kTileThreads, 0, stream>>>(task, layer);
+  cutRays<Sampler><<<tileCount(size), kTileThreads, 0, stream>>>(task, layer);
   emscape::cuda::checkLaunch("cutRays");
 }
 

@@ -1,4 +1,4 @@
-/// What kernels read of a scene, in the GPU's memory. For the neighbours of .cu files.
+/// A scene in the memory of the GPU, as kernels read it.
 #pragma once
 
 #include <vector>
@@ -13,15 +13,15 @@ namespace emscape::render::cuda {
 /// Copies what has changed, on a stream.
 class DeviceScene {
  public:
-  /// The volume's values are others than before.
+  /// The volume's values have changed.
   void volumeChanged() { levels_current_ = false; }
   /// Whether update() has nothing to do. @param scene  prepared
   bool isCurrent(const Scene& scene) const;
   /// @param storage  of the volume, which may be read on the stream
   void update(const Scene& scene, const volume::DeviceStorage& storage, cudaStream_t stream);
 
-  /// To be cast on the device, of what was updated; pixels and layer are left open. Bricks are not looked for
-  /// where that does not pay by what is known, which lags a frame behind the volume.
+  /// The scene as it was updated, for launches; pixels and layer are left open. Whether skipping bricks pays
+  /// is known one frame late.
   CastLaunch launch(const Scene& scene, const volume::DeviceStorage& storage, Sampling sampling,
                     ImageSize size) const;
 
@@ -30,7 +30,7 @@ class DeviceScene {
   void updateGround(const Scene& scene, cudaStream_t stream);
   void updateLevels(const Scene& scene, const volume::BricksView& bricks, cudaStream_t stream);
 
-  Scene::Versions seen_;  ///< what the members here were made of
+  Scene::Versions seen_;  ///< from which the members here were made
 
   emscape::cuda::Buffer<Rgba> samples_, projected_, opaque_;
   emscape::cuda::Buffer<HalfColor> half_colors_;
@@ -39,7 +39,7 @@ class DeviceScene {
   emscape::cuda::Buffer<float> highest_, levels_;
   emscape::cuda::Buffer<BrickSummary> summary_;
   bool levels_current_ = false;
-  emscape::cuda::Readback<BrickSummary> found_;  ///< comes after the frame that it was found for
+  emscape::cuda::Readback<BrickSummary> found_;  ///< arrives after the frame for which it was computed
   double skippable_share_ = 1;                   ///< of the bricks, as far as is known
 
   emscape::cuda::Buffer<float> heights_;

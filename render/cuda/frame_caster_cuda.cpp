@@ -7,9 +7,7 @@
 #include "emscape/base/error.h"
 #include "render/adaptive_tolerance.h"
 #include "render/cuda/device_scene.h"
-#include "render/cuda/kept_orders.h"
 #include "render/cuda/kernels.h"
-#include "render/cuda/launch_train.h"
 #include "render/cuda/picture_memory.h"
 #include "render/frame_caster.h"
 #include "render/silhouette.h"
@@ -19,13 +17,12 @@ namespace emscape::render {
 namespace {
 
 using cuda::CastLaunch;
-using cuda::LaunchTrain;
 using cuda::Sampling;
 using emscape::cuda::Buffer;
 using emscape::cuda::check;
 
-/// Samples of one launch, about: what a stop waits for at most. A restoration, which nobody waits for, is
-/// cast in smaller steps.
+/// Approximate number of samples of one launch: a stop waits for one launch at most. A restoration, for which
+/// nobody waits, is cast in smaller steps.
 constexpr double kFrameSamples = 1 << 30;
 constexpr double kRestorationSamples = 1 << 27;
 
@@ -40,8 +37,8 @@ class CudaFrameCaster : public FrameCaster {
 
   std::size_t volumeBytes() const override { return volume_ ? volume_->bytes() : 0; }
 
-  void lend(Image& /*image*/) override {}
-  void giveBack(Image& image, const FrameReport& report) override {
+  void bindTarget(Image& /*image*/) override {}
+  void unbindTarget(Image& image, const FrameReport& report) override {
     if (report.complete) fetch(image);
   }
   void fetch(Image& image) override;
@@ -49,26 +46,27 @@ class CudaFrameCaster : public FrameCaster {
   std::shared_ptr<const DevicePicture> compose(const OverlayLayers& layers) override;
 
  private:
-  CastLaunch begin(const Scene& scene, ImageSize size, double most_samples, bool is_frame);
+  CastLaunch begin(const Scene& scene, ImageSize size, const StopFlag* stop, double max_samples);
+  bool isStopped(const StopFlag* stop);
+  void beginTime();
   CastLaunch prepare(const Scene& scene, ImageSize size);
   void findGround(const Scene& scene, const CastLaunch& launch);
   void findSections(CastLaunch& launch);
   void findInside(const Scene& scene, ImageSize size);
   void finish(FrameReport& report);
-  bool castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices, LaunchTrain& train,
+  bool castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices, const StopFlag* stop,
                     FrameReport& report);
-  bool castAdaptive(const CastLaunch& launch, const FramePlan& plan, LaunchTrain& train);
+  bool castAdaptive(const CastLaunch& launch, const FramePlan& plan, const StopFlag* stop);
   void countAdaptive(const FramePlan& plan, FrameReport& report);
-  bool castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report);
-  void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, to_); }
+  bool castPredicted(CastLaunch launch, const StopFlag* stop, FrameReport& report);
+  void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, stream_); }
 
   const volume::VoxelPrecision precision_;
   emscape::cuda::Stream stream_;
   emscape::cuda::TimeMark begin_, end_;  ///< of the last frame, or restoration
-  cuda::FrameGraph graph_{begin_, end_};
-  cuda::Submission to_{stream_};  ///< where a frame's kernels go
-  bool at_once_ = false;          ///< to graph_
-  long long most_rays_ = 0;       ///< of a launch that can be stopped after
+  bool is_begun_ = false;                ///< begin_ is recorded
+  long long max_rays_ = 0;               ///< of a launch
+  bool is_cast_ = false;                 ///< a launch of the frame, at least in part
 
   volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
   std::shared_ptr<const volume::DeviceVolume> volume_;
@@ -78,15 +76,14 @@ class CudaFrameCaster : public FrameCaster {
 
   cuda::Layers layers_;  ///< of the picture that was drawn last
   Buffer<unsigned> next_tile_;
-  cuda::KeptOrders orders_;
   Buffer<float4> layer_;
   Buffer<float4> picture_;
   Buffer<uchar4> picture8_;
   Buffer<std::uint32_t> behind_, front_;  ///< layers of labels
-  std::vector<std::shared_ptr<cuda::PictureMemory>>
-      finished_;  ///< pictures, those in use elsewhere among them
+  /// Composed pictures, those in use elsewhere among them.
+  std::vector<std::shared_ptr<cuda::PictureMemory>> finished_;
 
-  /// What belongs to a view: the ground, and the pixels whose rays meet the box.
+  /// Results for one view: the ground, and the pixels whose rays meet the box.
   struct View {
     unsigned version = 0;
     ImageSize size;
@@ -103,7 +100,7 @@ class CudaFrameCaster : public FrameCaster {
   Buffer<Span> inside_;
 
   FramePlan drawn_;
-  ToleranceHold hold_;
+  ToleranceController hold_;
   double tolerance_levels_ = 0;  ///< of the last adaptive frame
   Buffer<std::uint8_t> classes_;
   Buffer<unsigned> rays_;     ///< one: how many all adaptive frames have cast, modulo 2^32
@@ -127,7 +124,7 @@ void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volu
   scene_.volumeChanged();
 }
 
-/// Rays of a launch that a ray's longest way through the volume makes at most so many samples of.
+/// Number of rays that take at most so many samples, even if each crosses the volume along its diagonal.
 long long raysFor(const CastLaunch& launch, double samples) {
   const Dims& dims = launch.task.volume.dims;
   const double longest =
@@ -135,23 +132,31 @@ long long raysFor(const CastLaunch& launch, double samples) {
   return std::max<long long>(static_cast<long long>(samples * launch.task.step_voxels / longest), 1);
 }
 
-/// The time of a frame begins with the first work that the GPU is given, but for findInside()'s few
-/// kilobytes.
-/// @param most_samples  of a launch that a stop waits for; is_frame: no restoration
-CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, double most_samples, bool is_frame) {
+/// The time of a frame, or restoration, begins with the first work that the GPU is given for it, but for
+/// findInside()'s few kilobytes.
+void CudaFrameCaster::beginTime() {
+  if (!is_begun_) begin_.record(stream_);
+  is_begun_ = true;
+}
+
+/// Before each launch that casts: waits for the one before, so that a stop waits for one launch at most.
+bool CudaFrameCaster::isStopped(const StopFlag* stop) {
+  if (stop == nullptr) return false;
+  if (is_cast_) stream_.wait();
+  is_cast_ = true;
+  return stop->load(std::memory_order_relaxed);
+}
+
+/// @param max_samples  of a launch that a stop waits for
+CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, const StopFlag* stop,
+                                  double max_samples) {
   volume_->storage().beginReading(stream_);
   const bool is_prepared = scene_.isCurrent(scene) && !scene.isCut() &&
                            (!scene.ground() || ground_view_.holds(scene.versions().view, size));
-  if (!is_prepared) begin_.record(stream_);
+  is_begun_ = is_cast_ = false;
+  if (!is_prepared) beginTime();
   const CastLaunch launch = prepare(scene, size);
-  most_rays_ = raysFor(launch, most_samples);
-  at_once_ = is_prepared && is_frame && size.count() <= most_rays_;
-  if (at_once_) {
-    graph_.begin();
-  } else if (is_prepared) {
-    begin_.record(stream_);
-  }
-  to_ = cuda::Submission(stream_, at_once_ ? &graph_ : nullptr);
+  max_rays_ = stop != nullptr ? raysFor(launch, max_samples) : size.count();
   return launch;
 }
 
@@ -199,7 +204,7 @@ void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
   ground_view_ = {version, size};
 }
 
-/// Sections belong to a frame, as they show the volume's values.
+/// Found for every frame, as sections show the volume's values.
 void CudaFrameCaster::findSections(CastLaunch& launch) {
   const std::size_t pixels = picture8_.size();
   cut_begins_.resize(pixels);
@@ -218,8 +223,8 @@ void CudaFrameCaster::findSections(CastLaunch& launch) {
   layers_.ground_colors = cut_colors_.data();
 }
 
-/// By the host, before a frame's time begins: the GPU would wait for it. Wide, as the GPU's quotients are not
-/// exact in the last two bits of a double, the host's are: a ray may meet the box by so little.
+/// By the host, before a frame's time begins, as the GPU would wait for it. Wide, as the GPU's quotients are
+/// not exact in the last two bits of a double: a ray may meet the box on one side alone.
 void CudaFrameCaster::findInside(const Scene& scene, ImageSize size) {
   const unsigned version = scene.versions().view;
   if (inside_view_.holds(version, size)) return;
@@ -237,14 +242,13 @@ FrameReport CudaFrameCaster::draw(const Scene& scene, const FramePlan& plan, Ima
   drawn_ = plan;
   if (size.count() == 0) return report;
   if (plan.pattern == Pattern::adaptive) findInside(scene, size);
-  const CastLaunch launch = begin(scene, size, kFrameSamples, true);
-  LaunchTrain train(stream_, stop, most_rays_);
+  const CastLaunch launch = begin(scene, size, stop, kFrameSamples);
   layers_.pattern = plan.pattern;
   layers_.interpolation = plan.interpolation;
   if (plan.pattern == Pattern::adaptive) {
-    report.complete = castAdaptive(launch, plan, train);
+    report.complete = castAdaptive(launch, plan, stop);
   } else {
-    report.complete = castLattices(launch, sourceLattices(plan.pattern, size), train, report);
+    report.complete = castLattices(launch, sourceLattices(plan.pattern, size), stop, report);
   }
   finish(report);
   if (plan.pattern == Pattern::adaptive && report.complete) countAdaptive(plan, report);
@@ -256,23 +260,19 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   report.pattern = drawn_.pattern;
   const ImageSize size = layers_.size;
   if (size.count() == 0) return report;
-  const CastLaunch launch = begin(scene, size, kRestorationSamples, false);
-  LaunchTrain train(stream_, stop, most_rays_);
+  const CastLaunch launch = begin(scene, size, stop, kRestorationSamples);
   report.complete = drawn_.pattern == Pattern::adaptive
-                        ? castPredicted(launch, train, report)
-                        : castLattices(launch, missingLattices(drawn_.pattern, size), train, report);
+                        ? castPredicted(launch, stop, report)
+                        : castLattices(launch, missingLattices(drawn_.pattern, size), stop, report);
   finish(report);
   return report;
 }
 
-/// Everything is launched: shows the picture and waits for it.
+/// After the last launch: makes the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
-  if (report.complete) showPicture8(layers_, picture8_.data(), to_);
-  if (at_once_) {
-    graph_.submit(stream_);
-  } else {
-    end_.record(stream_);
-  }
+  beginTime();
+  if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
+  end_.record(stream_);
   volume_->storage().endReading(stream_);
   stream_.wait();
   report.cast_ms = end_.since_ms(begin_);
@@ -280,20 +280,19 @@ void CudaFrameCaster::finish(FrameReport& report) {
 
 /// @return false if it was stopped
 bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices,
-                                   LaunchTrain& train, FrameReport& report) {
+                                   const StopFlag* stop, FrameReport& report) {
   for (const Lattice& lattice : lattices) {
     const int rows = static_cast<int>(
-        std::min<long long>(std::max<long long>(train.mostRays() / lattice.columns, 1), lattice.rows));
+        std::min<long long>(std::max<long long>(max_rays_ / lattice.columns, 1), lattice.rows));
     for (int row = 0; row < lattice.rows; row += rows) {
-      if (!train.goOn()) return false;
-      CastLaunch part = launch;
-      Lattice& band = part.pixels.lattice;
-      band = lattice;
+      if (isStopped(stop)) return false;
+      Lattice band = lattice;
       band.first_y += row * lattice.step_y;
       band.rows = std::min(rows, lattice.rows - row);
-      if (band.rows == lattice.rows) orders_.lend(part, stream_);
+      CastLaunch part = launch;
+      part.pixels.tiles = cuda::longestFirst(launch.task, band);
+      beginTime();
       cast(part);
-      train.launched();
     }
     report.rays += lattice.count();
   }
@@ -301,14 +300,14 @@ bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<L
 }
 
 /// @return false if it was stopped
-bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& plan, LaunchTrain& train) {
+bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& plan, const StopFlag* stop) {
   classes_.resize(picture8_.size());
   if (rays_.size() == 0) {
     rays_.resize(1);
     check(cudaMemsetAsync(rays_.data(), 0, sizeof(unsigned), stream_), "cudaMemset");
   }
   tolerance_levels_ = hold_.levels(plan.tolerance_levels);
-  if (!train.goOn()) {
+  if (isStopped(stop)) {
     check(cudaMemsetAsync(classes_.data(), 0, classes_.size(), stream_), "cudaMemset");
     return false;
   }
@@ -317,22 +316,23 @@ bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& pl
   adaptive.tolerance_levels = static_cast<float>(tolerance_levels_);
   adaptive.classes = classes_.data();
   adaptive.rays = rays_.data();
-  cuda::castAdaptive(adaptive, mode_, sampling_, to_);
-  train.launched();
+  beginTime();
+  cuda::castAdaptive(adaptive, mode_, sampling_, stream_);
   return true;
 }
 
-/// How many rays the frame came to, for the report and for the tolerance of the next one.
+/// Counts the rays of the frame, for its report and for the tolerance of the next one.
 void CudaFrameCaster::countAdaptive(const FramePlan& plan, FrameReport& report) {
   unsigned rays = 0;
   rays_.download(&rays, stream_);
   report.rays = rays - std::exchange(rays_before_, rays);
-  const double most_rays = std::max(plan.ray_share * static_cast<double>(silhouette_.count()), 1.0);
-  hold_.drawn(tolerance_levels_, static_cast<double>(report.rays), most_rays);
+  const double max_rays = std::max(plan.ray_share * static_cast<double>(silhouette_.count()), 1.0);
+  hold_.drawn(tolerance_levels_, static_cast<double>(report.rays), max_rays);
 }
 
 /// Casts what the last adaptive frame predicted, the worst first. @return false if it was stopped
-bool CudaFrameCaster::castPredicted(CastLaunch launch, LaunchTrain& train, FrameReport& report) {
+bool CudaFrameCaster::castPredicted(CastLaunch launch, const StopFlag* stop, FrameReport& report) {
+  beginTime();
   queue_.resize(classes_.size());
   counts_.resize(1);
   check(cudaMemsetAsync(counts_.data(), 0, sizeof(cuda::ClassCounts), stream_), "cudaMemset");
@@ -341,14 +341,13 @@ bool CudaFrameCaster::castPredicted(CastLaunch launch, LaunchTrain& train, Frame
   counts_.download(&counts, stream_);
   unsigned missing = 0;
   for (const unsigned found : counts.found) missing += found;
-  const auto most = static_cast<unsigned>(std::min<long long>(train.mostRays(), layers_.size.count()));
+  const auto most = static_cast<unsigned>(std::min<long long>(max_rays_, layers_.size.count()));
   launch.pixels.list = queue_.data();
   for (unsigned first = 0; first < missing; first += most) {
-    if (!train.goOn()) return false;
+    if (isStopped(stop)) return false;
     launch.pixels.first = first;
     launch.pixels.end = std::min(first + most, missing);
     cast(launch);
-    train.launched();
   }
   report.rays = missing;
   return true;
@@ -358,7 +357,7 @@ void CudaFrameCaster::fetch(Image& image) {
   if (image.size != layers_.size) image = Image(layers_.size);
   if (image.pixels.empty()) return;
   picture_.resize(picture8_.size());
-  showPicture(layers_, picture_.data(), cuda::Submission(stream_));
+  showPicture(layers_, picture_.data(), stream_);
   static_assert(sizeof(Rgba) == sizeof(float4), "a pixel is four floats");
   picture_.download(reinterpret_cast<float4*>(image.pixels.data()), stream_);
 }

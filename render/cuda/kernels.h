@@ -9,7 +9,7 @@
 
 #include "render/adaptive_pass.h"
 #include "render/compositing.h"
-#include "render/cuda/submission.h"
+#include "render/cuda/tile_order.h"
 #include "render/raycast.h"
 #include "render/reconstruction.h"
 #include "render/silhouette.h"
@@ -18,8 +18,8 @@
 
 namespace emscape::render::cuda {
 
-/// The volume alone as it is cast: a colour for each pixel of the picture. Pixels whose x is even or odd, and
-/// y, lie apart in four planes: so the source pixels of a pattern lie together.
+/// The volume alone as it is cast: a colour per pixel of the picture, in four planes by odd and even x and y.
+/// So the source pixels of a pattern are contiguous.
 struct Layer {
   float4* pixels = nullptr;
   ImageSize size;
@@ -35,12 +35,26 @@ struct Layer {
 
 // --- Casting ---
 
-/// Which pixels a launch casts: those of a lattice, or a part of a list.
+/// Which pixels a launch casts: those of a lattice, or a part of a list. A warp casts 32 of them at a time.
 struct PixelSet {
-  Lattice lattice;
+  TileOrder tiles;              ///< of the lattice
   const Pixel* list = nullptr;  ///< null: the lattice
   unsigned first = 0;           ///< of the list
   unsigned end = 0;             ///< of the list, one beyond the last
+
+  EMSCAPE_HD long long rays() const { return list != nullptr ? end - first : tiles.lattice.count(); }
+  /// Tiles, or 32 pixels of the list each; the first shownTiles() of them show something.
+  EMSCAPE_HD unsigned allTiles() const {
+    return list != nullptr ? (end - first + 31) / 32 : tiles.allTiles();
+  }
+  EMSCAPE_HD unsigned shownTiles() const { return list != nullptr ? allTiles() : tiles.shownTiles(); }
+  /// @return false: there is no such pixel
+  EMSCAPE_HD bool pixelOf(unsigned tile, unsigned lane, Pixel& pixel) const {
+    if (list == nullptr) return tiles.pixelOf(tile, lane, pixel);
+    const unsigned n = first + tile * 32 + lane;
+    if (n < end) pixel = list[n];
+    return n < end;
+  }
 };
 
 enum class Sampling {
@@ -51,57 +65,31 @@ enum class Sampling {
   sparse_nearest
 };
 
-/// A transfer function's colours as the kernels that filter hold them in shared memory: r g, b a as halves.
+/// A colour of the transfer function's table in shared memory: r g, b a as halves.
 struct HalfColor {
   std::uint32_t rg = 0, ba = 0;
 };
-/// Entries that fit.
-constexpr int kMostHalfColors = 4096;
-
-/// In which order the tasks of a lattice are cast: see OrderFinder. Right for any view of that lattice, and
-/// fast for those close to the one it was found for.
-struct alignas(16) TaskOrder {
-  static constexpr int kAlong = 38;  ///< cells, in either direction
-  static constexpr unsigned kCells = kAlong * kAlong;
-
-  /// What it is an order of.
-  struct Shape {
-    int columns = 0, rows = 0;  ///< of the lattice; 0: of nothing
-    int tile_width = 0;         ///< pixels
-    unsigned warps = 0;         ///< of the launch
-    bool has_halves = false;    ///< rays may be cast in halves
-
-    EMSCAPE_HD bool operator==(const Shape& other) const {
-      return columns == other.columns && rows == other.rows && tile_width == other.tile_width &&
-             warps == other.warps && has_halves == other.has_halves;
-    }
-  };
-  Shape shape;
-  unsigned shown = 0, all = 0;              ///< tiles, or halves of them, that show something; all of them
-  unsigned carriers = 0, carried = 0;       ///< numbers that carry others, and how many each
-  unsigned short entries[2 * kCells] = {};  ///< cell * kPortions + portion; see Portion
-};
+/// Entries that fit into shared memory.
+constexpr int kMaxHalfColors = 4096;
 
 struct CastLaunch {
-  RaycastTask task;  ///< volume_highest_f does not count
+  RaycastTask task;  ///< without volume_highest_f
   PixelSet pixels;
   const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for Sampling::filtered
   const float* volume_highest_f = nullptr;  ///< one
-  const float* limits = nullptr;            ///< one a pixel: where the ground is, or a section; null: nowhere
-  const float* begins = nullptr;            ///< one a pixel: where planes let its ray begin; null: not cut
-  unsigned* next_tile = nullptr;            ///< 0, before each launch and after it; one a stream
-  const TaskOrder* order = nullptr;         ///< an earlier launch found it, or all 0; null: there is none
-  TaskOrder* next_order = nullptr;          ///< another, that receives the one for this view; null with order
+  const float* limits = nullptr;  ///< one per pixel: where the ground is, or a section; null: nowhere
+  const float* begins = nullptr;  ///< one per pixel: where planes let its ray begin; null: not cut
+  unsigned* next_tile = nullptr;  ///< queue counter: zero between launches; one per stream
   Layer layer;
 };
-void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);
+void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 /// The same for a sparse sampling alone.
-void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);
+void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 
 /// Where every pixel's ray meets the ground (infinity: nowhere), and its colour there.
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream);
 
-/// What planes leave of every pixel's ray; arrays of one a pixel.
+/// The part of every pixel's ray that planes leave; arrays with one element per pixel.
 struct CutLayer {
   const float* ground_distances = nullptr;  ///< null: no ground
   const float4* ground_colors = nullptr;
@@ -115,7 +103,7 @@ void castCut(const RaycastTask& task, Sampling sampling, const CutLayer& layer, 
 
 // --- The picture ---
 
-/// The volume's layer and what lies behind it, the ground or a section.
+/// The volume's layer, and the ground or a section behind it.
 struct Layers {
   ImageSize size;
   Pattern pattern = Pattern::full;  ///< of the layer: which of its pixels count; adaptive: all
@@ -124,8 +112,8 @@ struct Layers {
   const float* ground_distances = nullptr;  ///< null: no ground
   const float4* ground_colors = nullptr;
 };
-void showPicture(const Layers& layers, float4* picture, const Submission& to);
-void showPicture8(const Layers& layers, uchar4* picture, const Submission& to);
+void showPicture(const Layers& layers, float4* picture, cudaStream_t stream);
+void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream);
 
 /// A cast picture between the layers of its labels, pixel by pixel.
 /// @param count          pixels
@@ -139,17 +127,18 @@ void composeOverlay(unsigned count, const std::uint32_t* behind, const uchar4* c
 /// A frame: what is cast, its `pixels` aside, and what decides which pixels are.
 struct AdaptiveLaunch : CastLaunch {
   static constexpr int kPassCount = static_cast<int>(std::size(kPasses));
-  const Span* inside = nullptr;  ///< one a row
+  Pass passes[kPassCount] = {kPasses[0], kPasses[1], kPasses[2], kPasses[3]};
+  const Span* inside = nullptr;  ///< one per row
   float tolerance_levels = 0;
   std::uint8_t* classes =
-      nullptr;               ///< receives those of the estimated error, one a pixel; see errorClassOf()
+      nullptr;               ///< receives those of the estimated error, one per pixel; see errorClassOf()
   unsigned* rays = nullptr;  ///< is increased by the number of rays cast
 };
+static_assert(sizeof(AdaptiveLaunch) <= 4096, "what a kernel's parameters may take");
 /// Casts the frame and predicts what it does not cast; the whole layer is written.
-void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling,
-                  const Submission& to);
+void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 /// The same for a sparse sampling alone.
-void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, const Submission& to);
+void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 
 /// Counters for listPredicted(): how many pixels there are of each class, and how many are placed.
 struct ClassCounts {
@@ -162,7 +151,7 @@ void listPredicted(const std::uint8_t* classes, ImageSize size, ClassCounts* cou
 
 // --- Bricks ---
 
-/// What the bricks of a volume come to.
+/// Summary of a volume's bricks.
 struct BrickSummary {
   float highest_f = 0;     ///< the largest f of all
   unsigned skippable = 0;  ///< how many have a level below SkipView::kNever

@@ -17,22 +17,6 @@ struct alignas(2 * sizeof(Pixel)) PixelPair {
   Pixel left, right;
 };
 
-/// What kernels before this one on the stream have written can be read: it may be launched while they end.
-__device__ inline void waitForKernelsBefore() {
-#if __CUDA_ARCH__ >= 900
-  asm volatile("griddepcontrol.wait;" ::: "memory");
-#endif
-}
-
-/// Whether kernels can be launched while those before them end.
-bool launchesEarly() {
-  int device = 0, major = 0;
-  emscape::cuda::check(cudaGetDevice(&device), "cudaGetDevice");
-  emscape::cuda::check(cudaDeviceGetAttribute(&major, cudaDevAttrComputeCapabilityMajor, device),
-                       "cudaDeviceGetAttribute");
-  return major >= 9;
-}
-
 /// @param Pixel  of the picture: Rgba or Rgba8
 template <class Arithmetic, bool kHasGround, class Pixel>
 __global__ void __launch_bounds__(kCellColumns* kCellRows)
@@ -45,7 +29,6 @@ __global__ void __launch_bounds__(kCellColumns* kCellRows)
     return static_cast<unsigned>(py) * static_cast<unsigned>(size.width) + static_cast<unsigned>(px);
   };
 
-  waitForKernelsBefore();
   Rgba ground[2][2];  // transparent where there is none
   if constexpr (kHasGround) {
     unsigned indices[4];
@@ -99,7 +82,7 @@ auto kernelFor(const Layers& layers) {
 }
 
 template <class Pixel>
-void show(const Layers& layers, Pixel* picture, const Submission& to) {
+void show(const Layers& layers, Pixel* picture, cudaStream_t stream) {
   if (layers.size.count() == 0) return;
   const auto blocks = [](int pixels, unsigned cells) {
     return (static_cast<unsigned>(pixels) + 2 * cells - 1) / (2 * cells);
@@ -108,19 +91,17 @@ void show(const Layers& layers, Pixel* picture, const Submission& to) {
   const auto kernel = layers.interpolation == Interpolation::float32
                           ? kernelFor<FloatArithmetic, Pixel>(layers)
                           : kernelFor<Bits8Arithmetic, Pixel>(layers);
-  static const bool early = launchesEarly();
-  to.start("fillPicture", kernel,
-           {grid, dim3(kCellColumns, kCellRows), 0, early ? LaunchKind::early : LaunchKind::plain}, layers,
-           picture);
+  kernel<<<grid, dim3(kCellColumns, kCellRows), 0, stream>>>(layers, picture);
+  emscape::cuda::checkLaunch("fillPicture");
 }
 
 }  // namespace
 
-void showPicture(const Layers& layers, float4* picture, const Submission& to) {
-  show(layers, reinterpret_cast<Rgba*>(picture), to);
+void showPicture(const Layers& layers, float4* picture, cudaStream_t stream) {
+  show(layers, reinterpret_cast<Rgba*>(picture), stream);
 }
-void showPicture8(const Layers& layers, uchar4* picture, const Submission& to) {
-  show(layers, reinterpret_cast<Rgba8*>(picture), to);
+void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream) {
+  show(layers, reinterpret_cast<Rgba8*>(picture), stream);
 }
 
 }  // namespace emscape::render::cuda

@@ -1,4 +1,4 @@
-/// How threads share out pixels. For .cu files.
+/// Which pixel a thread takes, and conversions of colours. For .cu files.
 #pragma once
 
 #include "render/reconstruction.h"
@@ -6,27 +6,26 @@
 
 namespace emscape::render::cuda {
 
-/// Threads of a block; they take a square of kTile x kTile places, a warp 8 x 4 of them, so that the rays of
-/// a warp lie close together.
+/// Threads of a block; they take a square of kTile x kTile pixels, a warp 8 x 4 of them, so that the rays of
+/// a warp are close together.
 constexpr int kTile = 16;
 constexpr int kTileThreads = kTile * kTile;
 
-inline unsigned tileCount(int columns, int rows) {
-  return static_cast<unsigned>((columns + kTile - 1) / kTile) *
-         static_cast<unsigned>((rows + kTile - 1) / kTile);
+/// Blocks for all pixels.
+inline unsigned tileCount(ImageSize size) {
+  return static_cast<unsigned>((size.width + kTile - 1) / kTile) *
+         static_cast<unsigned>((size.height + kTile - 1) / kTile);
 }
 
-struct Place {
-  int column = 0, row = 0;
-};
-/// The place of this thread among tiles that lie in rows.
-__device__ inline Place placeOfThread(int columns) {
-  const int tile_columns = (columns + kTile - 1) / kTile;
+/// The pixel of this thread, of blocks whose squares are numbered row by row. @return false: there is none
+__device__ inline bool pixelOfThread(ImageSize size, int& x, int& y) {
+  const int tile_columns = (size.width + kTile - 1) / kTile;
   const int tile = static_cast<int>(blockIdx.x);
   const int warp = static_cast<int>(threadIdx.x) / 32;
   const int lane = static_cast<int>(threadIdx.x) % 32;
-  return {tile % tile_columns * kTile + warp % 2 * 8 + lane % 8,
-          tile / tile_columns * kTile + warp / 2 * 4 + lane / 8};
+  x = tile % tile_columns * kTile + warp % 2 * 8 + lane % 8;
+  y = tile / tile_columns * kTile + warp / 2 * 4 + lane / 8;
+  return x < size.width && y < size.height;
 }
 
 __device__ inline long long pixelIndex(ImageSize size, int x, int y) {

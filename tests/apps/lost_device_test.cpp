@@ -8,7 +8,7 @@
 #include <regex>
 
 #include "tests/apps/program.h"
-#include "tests/gpu.h"
+#include "tests/support/gpu.h"
 
 namespace emscape::test {
 namespace {

@@ -4,10 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 namespace emscape::test {
@@ -21,16 +18,9 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
-fs::path makeTemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "emscape_apps_XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error("mkdtemp failed");
-  return name;
-}
-
 }  // namespace
 
-RunningProgram::RunningProgram(const Arguments& arguments, const std::string& shell_prefix)
-    : output_(makeTemporaryFolder()) {
+RunningProgram::RunningProgram(const Arguments& arguments, const std::string& shell_prefix) {
   std::string command = shell_prefix + " exec " + quoted(besideThisProgram("emscape"));
   for (const std::string& argument : arguments) command += " " + quoted(argument);
   command +=
@@ -51,10 +41,8 @@ ProgramResult RunningProgram::wait() {
   int status = 0;
   while (waitpid(process_, &status, 0) < 0 && errno == EINTR) {
   }
-  ProgramResult result{WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status),
-                       readFile(output_ / "out"), readFile(output_ / "err")};
-  fs::remove_all(output_);
-  return result;
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), readFile(output_ / "out"),
+          readFile(output_ / "err")};
 }
 
 std::string besideThisProgram(const std::string& name) {
@@ -63,37 +51,6 @@ std::string besideThisProgram(const std::string& name) {
 
 ProgramResult run(const Arguments& arguments, const std::string& shell_prefix) {
   return RunningProgram(arguments, shell_prefix).wait();
-}
-
-TemporaryFolder::TemporaryFolder() : path_(makeTemporaryFolder()) {}
-
-TemporaryFolder::~TemporaryFolder() {
-  std::error_code ignored;
-  fs::remove_all(path_, ignored);
-}
-
-std::vector<std::string> TemporaryFolder::files() const {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::recursive_directory_iterator(path_)) {
-    if (entry.is_regular_file()) names.push_back(fs::relative(entry.path(), path_).string());
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::string readFile(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-void writeFile(const fs::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
-
-std::string shippedScenario(const std::string& name) {
-  return (fs::path(EMSCAPE_SOURCE_DIR) / "scenarios" / name).string();
 }
 
 const std::string& quick() {
@@ -105,9 +62,7 @@ std::string longScenario(const TemporaryFolder& folder, int duration_s) {
   std::string text = readFile(quick());
   text.replace(text.find("duration_s: 4"), 13, "duration_s: " + std::to_string(duration_s));
   text.replace(text.find("[40, 40, 20]"), 12, "[60, 60, 40]");
-  const std::string file = folder / "long.yaml";
-  writeFile(file, text);
-  return file;
+  return folder.write("long.yaml", text);
 }
 
 }  // namespace emscape::test

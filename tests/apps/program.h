@@ -3,9 +3,11 @@
 
 #include <sys/types.h>
 
-#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::test {
 
@@ -26,7 +28,7 @@ class RunningProgram {
   ProgramResult wait();
 
  private:
-  std::filesystem::path output_;
+  TemporaryFolder output_;
   pid_t process_ = -1;
 };
 
@@ -36,28 +38,7 @@ std::string besideThisProgram(const std::string& name);
 /// Runs `emscape ARGUMENTS` to its end.
 ProgramResult run(const Arguments& arguments, const std::string& shell_prefix = "");
 
-/// A folder of its own for a test, gone when it ends.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  /// Names of all files below, sorted.
-  std::vector<std::string> files() const;
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string readFile(const std::filesystem::path& file);
-void writeFile(const std::filesystem::path& file, const std::string& text);
-/// scenarios/NAME of the source tree.
-std::string shippedScenario(const std::string& name);
-/// The smallest of them.
+/// scenarios/quick.yaml, the smallest of them.
 const std::string& quick();
 /// The same with more voxels and a step a second, written into a folder: it can be interrupted.
 std::string longScenario(const TemporaryFolder& folder, int duration_s);

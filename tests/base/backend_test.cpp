@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/base/error.h"
+#include "tests/support/errors.h"
 
 namespace emscape {
 namespace {
@@ -35,13 +35,8 @@ TEST(Backend, NamesAreReadAsTheyAreWritten) {
 }
 
 TEST(Backend, UnknownNameIsAUsageError) {
-  try {
-    parseBackend("gpu");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage);
-    EXPECT_STREQ(error.what(), "backend 'gpu' must be auto, cpu or cuda");
-  }
+  EXPECT_EQ(test::errorOf([] { parseBackend("gpu"); }, ErrorCode::usage),
+            "backend 'gpu' must be auto, cpu or cuda");
 }
 
 TEST(Backend, AutoTakesTheGpuThatAnswersAndSaysSo) {
@@ -66,13 +61,8 @@ TEST(Backend, WhatIsAskedForIsTakenWithoutAWord) {
 }
 
 TEST(Backend, DemandedCudaThatCannotBeHadIsADeviceError) {
-  try {
-    resolveBackend(Backend::cuda, noGpu());
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::device);
-    EXPECT_STREQ(error.what(), "backend cuda: no GPU answers");
-  }
+  EXPECT_EQ(test::errorOf([] { resolveBackend(Backend::cuda, noGpu()); }, ErrorCode::device),
+            "backend cuda: no GPU answers");
 }
 
 TEST(Backend, TheMachinesOwnAnswerIsOneOfTheTwo) {

@@ -10,7 +10,8 @@
 #include <numeric>
 
 #include "tests/base/lose_device.h"
-#include "tests/gpu.h"
+#include "tests/support/errors.h"
+#include "tests/support/gpu.h"
 
 namespace emscape::cuda {
 namespace {
@@ -19,13 +20,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 std::string messageOf(const std::function<void()>& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::device);
-    return error.what();
-  }
-  return "";
+  return test::errorOf(work, ErrorCode::device);
 }
 
 TEST(CudaMemory, GivesBackWhatWasCopiedIntoIt) {

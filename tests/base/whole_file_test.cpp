@@ -8,8 +8,9 @@
 #include <fstream>
 #include <string>
 
-#include "emscape/base/error.h"
-#include "tests/file_size_limit.h"
+#include "tests/support/errors.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape {
 namespace {
@@ -19,31 +20,18 @@ using ::testing::HasSubstr;
 
 class WholeFile : public ::testing::Test {
  protected:
-  WholeFile() {
-    std::string pattern = (fs::temp_directory_path() / "emscape-test-XXXXXX").string();
-    folder_ = mkdtemp(pattern.data());
-  }
-  ~WholeFile() override { fs::remove_all(folder_); }
-
   static std::string errorOf(const std::function<void()>& body) {
-    try {
-      body();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::other);
-      return error.what();
-    }
-    ADD_FAILURE() << "no Error was thrown";
-    return "";
+    return test::errorOf(body, ErrorCode::other);
   }
   static std::string textOf(const fs::path& path) {
     const auto bytes = readWhole(path);
     return {bytes.begin(), bytes.end()};
   }
   long filesInFolder() const {
-    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+    return std::distance(fs::directory_iterator(folder_.path()), fs::directory_iterator());
   }
 
-  fs::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(WholeFile, AppearsWithItsText) {
@@ -76,24 +64,28 @@ TEST_F(WholeFile, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
 }
 
 TEST_F(WholeFile, NamesAMissingFolder) {
-  EXPECT_THAT(errorOf([&] { writeWhole(folder_ / "none" / "a", [](std::ostream&) {}); }),
-              HasSubstr((folder_ / "none" / "a").string() + ": cannot write: the folder " +
-                        (folder_ / "none").string() + " does not exist"));
+  EXPECT_THAT(
+      errorOf([&] { writeWhole(folder_ / "none/a", [](std::ostream&) {}); }),
+      HasSubstr(folder_ / "none/a" + ": cannot write: the folder " + folder_ / "none" + " does not exist"));
 }
 
 TEST_F(WholeFile, RefusesFoldersAndDevices) {
-  EXPECT_THAT(errorOf([&] { writeWhole(folder_, [](std::ostream&) {}); }),
+  EXPECT_THAT(errorOf([&] { writeWhole(folder_.path(), [](std::ostream&) {}); }),
               HasSubstr("a folder of that name exists"));
   EXPECT_THAT(errorOf([] { writeWhole("/dev/full", [](std::ostream&) {}); }),
               HasSubstr("not a regular file"));
 }
 
 TEST_F(WholeFile, NamesAMissingPermission) {
-  if (geteuid() == 0) GTEST_SKIP() << "root may write everywhere";
-  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
-  EXPECT_THAT(errorOf([&] { writeWhole(folder_ / "a", [](std::ostream&) {}); }),
-              HasSubstr("Permission denied"));
-  fs::permissions(folder_, fs::perms::owner_all);
+  fs::permissions(folder_.path(), fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
+                                      fs::perms::others_exec);
+  const uid_t user = geteuid();
+  constexpr uid_t kNobody = 65534;  // root may write everywhere
+  ASSERT_EQ(seteuid(user == 0 ? kNobody : user), 0);
+  const std::string error = errorOf([&] { writeWhole(folder_ / "a", [](std::ostream&) {}); });
+  ASSERT_EQ(seteuid(user), 0);
+  EXPECT_THAT(error, HasSubstr("Permission denied"));
+  fs::permissions(folder_.path(), fs::perms::owner_all);
 }
 
 TEST_F(WholeFile, IsGoneWhenTheDiskIsFull) {
@@ -122,7 +114,7 @@ TEST_F(WholeFile, TemporariesOfKilledRunsAreKnownAndRemoved) {
   EXPECT_FALSE(isTemporary(".part-12"));
   std::ofstream(mine) << "running";
   std::ofstream(folder_ / "a.vdb.part-999999999") << "killed";  // beyond the greatest process number
-  EXPECT_EQ(removeStaleTemporaries(folder_), 1);
+  EXPECT_EQ(removeStaleTemporaries(folder_.path()), 1);
   EXPECT_TRUE(fs::exists(mine));
   publish(mine, folder_ / "a.vdb");
   EXPECT_EQ(textOf(folder_ / "a.vdb"), "running");
@@ -139,7 +131,7 @@ TEST_F(WholeFile, OnlyTheTemporariesOfAFileThatDeadProcessesLeftAreRemovedWithIt
   removeStaleTemporariesOf(folder_ / "film.mp4");
   EXPECT_FALSE(fs::exists(folder_ / "film.mp4.part-999999999"));
   EXPECT_EQ(filesInFolder(), 3);
-  EXPECT_NO_THROW(removeStaleTemporariesOf(folder_ / "none" / "film.mp4"));
+  EXPECT_NO_THROW(removeStaleTemporariesOf(folder_ / "none/film.mp4"));
 }
 
 TEST_F(WholeFile, TheTemporaryOfAProcessThatEndedButWasNotWaitedForIsStale) {
@@ -148,7 +140,7 @@ TEST_F(WholeFile, TheTemporaryOfAProcessThatEndedButWasNotWaitedForIsStale) {
   siginfo_t ended{};
   waitid(P_PID, static_cast<id_t>(process), &ended, WEXITED | WNOWAIT);
   std::ofstream(folder_ / ("a.vdb.part-" + std::to_string(process))) << "killed";
-  EXPECT_EQ(removeStaleTemporaries(folder_), 1);
+  EXPECT_EQ(removeStaleTemporaries(folder_.path()), 1);
   waitpid(process, nullptr, 0);
 }
 
@@ -166,7 +158,7 @@ TEST_F(WholeFile, AppendingMakesTheFileAndAddsToIt) {
   appendToFile(folder_ / "a", "one\n");
   appendToFile(folder_ / "a", "two\n");
   EXPECT_EQ(textOf(folder_ / "a"), "one\ntwo\n");
-  EXPECT_THAT(errorOf([&] { appendToFile(folder_ / "none" / "a", "x"); }), HasSubstr("cannot write"));
+  EXPECT_THAT(errorOf([&] { appendToFile(folder_ / "none/a", "x"); }), HasSubstr("cannot write"));
 }
 
 TEST_F(WholeFile, ADigestIsTheSizeAndTheCrc32OfTheContent) {
@@ -179,23 +171,14 @@ TEST_F(WholeFile, ADigestIsTheSizeAndTheCrc32OfTheContent) {
   EXPECT_NE(digestOf(folder_ / "large"), digest);
   writeWhole(folder_ / "empty", [](std::ostream&) {});
   EXPECT_EQ(digestOf(folder_ / "empty"), (FileDigest{0, 0}));
-  try {
-    digestOf(folder_ / "none");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("none: cannot read: No such file or directory"));
-  }
+  EXPECT_THAT(test::errorOf([&] { digestOf(folder_ / "none"); }),
+              HasSubstr("none: cannot read: No such file or directory"));
 }
 
 TEST_F(WholeFile, ReadingNamesTheCause) {
-  try {
-    readWhole(folder_ / "none");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    EXPECT_THAT(error.what(), HasSubstr("none: there is no such file"));
-  }
-  EXPECT_THROW(readWhole(folder_), Error);
+  EXPECT_THAT(test::errorOf([&] { readWhole(folder_ / "none"); }, ErrorCode::bad_input),
+              HasSubstr("none: there is no such file"));
+  EXPECT_THROW(readWhole(folder_.path()), Error);
 }
 
 }  // namespace

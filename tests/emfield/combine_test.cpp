@@ -8,6 +8,7 @@
 
 #include "emscape/emfield/field_solver.h"
 #include "tests/emfield/test_scenario.h"
+#include "tests/support/files.h"
 
 namespace emscape::emfield {
 namespace {
@@ -37,15 +38,14 @@ struct NamedAntenna {
 };
 
 std::vector<NamedAntenna> antennas() {
-  return {
-      {"isotropic", scenario::makeIsotropic(3)},
-      {"narrow gaussian", scenario::makeGaussian(40, 2, 3, -40)},
-      {"wide gaussian", scenario::makeGaussian(10, 120, 60, -20)},
-      {"gaussian without side lobes", scenario::makeGaussian(30, 4, 4, -200)},
-      {"cosecant squared", scenario::makeCosecant2(34, 2, 5, 40, -40)},
-      {"sinc", scenario::makeSinc(30, 6, 6, -50)},
-      {"array", scenario::makePhasedArray(30, 16, 16, 0.5, 1)},
-      {"measured", scenario::readMsi(std::string(EMSCAPE_SOURCE_DIR) + "/scenarios/data/sector_450mhz.msi")}};
+  return {{"isotropic", scenario::makeIsotropic(3)},
+          {"narrow gaussian", scenario::makeGaussian(40, 2, 3, -40)},
+          {"wide gaussian", scenario::makeGaussian(10, 120, 60, -20)},
+          {"gaussian without side lobes", scenario::makeGaussian(30, 4, 4, -200)},
+          {"cosecant squared", scenario::makeCosecant2(34, 2, 5, 40, -40)},
+          {"sinc", scenario::makeSinc(30, 6, 6, -50)},
+          {"array", scenario::makePhasedArray(30, 16, 16, 0.5, 1)},
+          {"measured", scenario::readMsi(test::shippedScenario("data/sector_450mhz.msi"))}};
 }
 
 TEST(Combine, RowsGiveWhatThePlainFunctionGives) {

@@ -8,11 +8,12 @@
 #include <random>
 
 #include "emscape/base/device.h"
-#include "emscape/base/error.h"
 #include "emscape/emfield/field_solver.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"
+#include "tests/support/errors.h"
+#include "tests/support/gpu.h"
 
 namespace emscape::emfield {
 namespace {
@@ -25,10 +26,7 @@ constexpr double kLatitude_deg = 44.5, kLongitude_deg = -71.5;
 
 class CudaField : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const Device device = findDevice();
-    if (!device.usable) GTEST_SKIP() << "no GPU: " << device.why_not;
-  }
+  void SetUp() override { EMSCAPE_NEEDS_GPU(); }
 };
 
 scenario::AntennaPtr antennaOf(int kind) {
@@ -237,7 +235,6 @@ TEST_F(CudaField, EveryModelIsTheCpus) {
 
 TEST_F(CudaField, IsTheCpusOverRealTerrain) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (terrain == nullptr) GTEST_SKIP() << "no reference elevation data";
   std::mt19937 random(3);
   const auto scenario = randomScenario(random, FrameKind::altitude,
                                        {PropagationModel::horizon, PropagationModel::diffraction}, 1700);
@@ -356,14 +353,10 @@ TEST_F(CudaField, TooLittleMemoryIsSaidBeforeAnythingIsComputed) {
   scenario->output.quantities = {"power_density_dbwm2"};
   FieldOptions options;
   options.backend = Backend::cuda;
-  try {
-    FieldSolver solver(scenario, nullptr, options);
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::device);
-    EXPECT_THAT(error.what(), HasSubstr("the field of 4000 x 4000 x 2000 voxels, 8 emitters"));
-    EXPECT_THAT(error.what(), HasSubstr("MiB are free"));
-  }
+  const std::string error =
+      test::errorOf([&] { FieldSolver solver(scenario, nullptr, options); }, ErrorCode::device);
+  EXPECT_THAT(error, HasSubstr("the field of 4000 x 4000 x 2000 voxels, 8 emitters"));
+  EXPECT_THAT(error, HasSubstr("MiB are free"));
 }
 
 }  // namespace

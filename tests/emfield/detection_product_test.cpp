@@ -5,8 +5,8 @@
 
 #include <random>
 
-#include "emscape/base/error.h"
 #include "tests/emfield/radar_duel.h"
+#include "tests/support/errors.h"
 
 namespace emscape::emfield {
 namespace {
@@ -213,13 +213,9 @@ TEST(RadarChannels, NeedARadar) {
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
   addEmitter(*scenario, middleOf(*scenario), plainEmitter("radio", 0));
   for (const char* quantity : {"snr_db", "detection_probability", "jammer_to_signal_db"}) {
-    try {
-      east(scenario, quantity, 0);
-      ADD_FAILURE() << "nothing was thrown";
-    } catch (const Error& error) {
-      EXPECT_THAT(error.what(), ::testing::HasSubstr(std::string("quantity '") + quantity +
-                                                     "' needs an emitter of kind 'radar'"));
-    }
+    EXPECT_THAT(
+        test::errorOf([&] { east(scenario, quantity, 0); }),
+        ::testing::HasSubstr(std::string("quantity '") + quantity + "' needs an emitter of kind 'radar'"));
   }
 }
 

@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "emfield/radar/equation.h"
-#include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/emitter.h"
 #include "propagation/air/gases.h"
 #include "propagation/air/rain.h"
+#include "tests/support/errors.h"
 
 namespace emscape::emfield {
 namespace {
@@ -27,15 +27,8 @@ double probability(const Detector& detector, double snr) {
   return detectionProbability(detector, detectionThreshold(detector), snr);
 }
 
-template <class Do>
-std::string messageOf(Do run) {
-  try {
-    run();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    return error.what();
-  }
-  return "nothing was thrown";
+std::string messageOf(const std::function<void()>& run) {
+  return test::errorOf(run, ErrorCode::bad_input);
 }
 
 TEST(Detection, ThresholdOfOnePulseIsTheLogarithmOfPfa) {

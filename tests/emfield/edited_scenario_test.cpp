@@ -6,10 +6,11 @@
 #include <functional>
 #include <random>
 
-#include "emscape/base/device.h"
-#include "emscape/base/error.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/test_scenario.h"
+#include "tests/support/errors.h"
+#include "tests/support/gpu.h"
+#include "tests/support/on_backends.h"
 
 namespace emscape::emfield {
 namespace {
@@ -458,7 +459,12 @@ TEST(EditedScenario, EqualsANewSolverWithABoundOnTheCaches) {
 }
 
 /// Edits that compute echoes alone, and then one for which the power of all emitters is added up again.
-void checkEchoesThenPower(const FieldOptions& options) {
+class EditedEchoes : public test::OnBackends {};
+EMSCAPE_ON_BACKENDS(EditedEchoes);
+
+TEST_P(EditedEchoes, ThenPowerEqualANewSolver) {
+  FieldOptions options;
+  options.backend = GetParam();
   Random random(9);
   auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
   scenario->output.quantities = {"power_density_dbwm2", "detection_probability"};
@@ -481,21 +487,8 @@ void checkEchoesThenPower(const FieldOptions& options) {
   expectEqualSolvers(solver, fresh);
 }
 
-TEST(EditedScenario, EqualsANewSolverWhereEchoesChangedBeforePower) {
-  checkEchoesThenPower({});
-}
-
-TEST(CudaEditedScenario, EqualsANewSolverWhereEchoesChangedBeforePower) {
-  const Device device = findDevice();
-  if (!device.usable) GTEST_SKIP() << device.why_not;
-  FieldOptions options;
-  options.backend = Backend::cuda;
-  checkEchoesThenPower(options);
-}
-
 TEST(CudaEditedScenario, EqualsANewSolver) {
-  const Device device = findDevice();
-  if (!device.usable) GTEST_SKIP() << device.why_not;
+  EMSCAPE_NEEDS_GPU();
   Random random(8);
   FieldOptions options;
   options.backend = Backend::cuda;
@@ -608,15 +601,10 @@ TEST_F(EditedOnce, OtherElevationFilesMustBeGiven) {
   auto snapshot = scenario::snapshotAt(scenario_, nullptr, 0);
   edited->terrain = scenario::TerrainSpec{{"other.tif"}, {}, {}};
   snapshot.scenario = edited;
-  try {
-    solver_->update(snapshot);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "test.yaml: the edited scenario names other elevation files: they must be loaded and given to the "
-        "update");
-  }
+  EXPECT_EQ(
+      test::errorOf([&] { solver_->update(snapshot); }),
+      "test.yaml: the edited scenario names other elevation files: they must be loaded and given to the "
+      "update");
 }
 
 TEST(EditedScenario, AnUpdateThatFailsOverAHoleCanBeFollowedByOthers) {
@@ -630,13 +618,9 @@ TEST(EditedScenario, AnUpdateThatFailsOverAHoleCanBeFollowedByOthers) {
   edited->emitters[3].propagation.model = PropagationModel::diffraction;
   edited->platforms[3].track.front().position.latitude_deg = kLatitude_deg + 0.24;
   edited->platforms[3].track.front().position.longitude_deg = kLongitude_deg + 0.24;
-  try {
-    solver.update(scenario::snapshotAt(edited, terrain.get(), 0));
-    FAIL() << "the path crosses the hole";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.hint(), Hint::allow_missing_terrain);
-    EXPECT_THAT(error.what(), HasSubstr("emitter 'radio': the path to latitude"));
-  }
+  const Error error = test::thrownBy([&] { solver.update(scenario::snapshotAt(edited, terrain.get(), 0)); });
+  EXPECT_EQ(error.hint(), Hint::allow_missing_terrain);  // the path crosses the hole
+  EXPECT_THAT(error.what(), HasSubstr("emitter 'radio': the path to latitude"));
   const auto moved = std::make_shared<Scenario>(*scenario);
   moved->emitters[0].power_w = 5;
   solver.update(scenario::snapshotAt(moved, terrain.get(), 2));

@@ -10,6 +10,7 @@
 #include "scenario/schema.h"
 #include "scenario/source.h"
 #include "tests/scenario/random_edits.h"
+#include "tests/support/files.h"
 
 namespace emscape::emfield {
 namespace {
@@ -40,7 +41,7 @@ void expectTheSameVolumes(const FieldSolver& updated, const FieldSolver& fresh) 
 class EditedText : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(EditedText, EqualsANewSolverBitForBit) {
-  const std::filesystem::path folder = std::filesystem::path(EMSCAPE_SOURCE_DIR) / "scenarios";
+  const std::filesystem::path folder = emscape::test::shippedScenario("");
   auto scenario = std::make_shared<const Scenario>([&] {
     Scenario small = *scenario::loadScenario((folder / GetParam()).string());
     small.set("region.dims", "[14, 12, 10]");
@@ -78,7 +79,9 @@ TEST_P(EditedText, EqualsANewSolverBitForBit) {
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, EditedText,
                          ::testing::Values("jacksboro.yaml", "jamming.yaml", "eme_200.yaml", "quick.yaml"),
-                         [](const auto& scenario) { return std::filesystem::path(scenario.param).stem().string(); });
+                         [](const auto& scenario) {
+                           return std::filesystem::path(scenario.param).stem().string();
+                         });
 
 }  // namespace
 }  // namespace emscape::emfield

@@ -17,6 +17,8 @@
 #include "propagation/p528/p528.h"
 #include "propagation/registry/model_info.h"
 #include "tests/emfield/excess_paths.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
 
 namespace emscape::emfield {
 namespace {
@@ -123,7 +125,6 @@ Spread bisectionErrors(const scenario::Scenario& scenario, const scenario::Terra
 
 TEST(ExcessModels, HeightsBetweenEvaluationsOfEdgesAreWithinATenthOfADecibel) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
   const auto scenario = whiteMountains(1e9, 15);
   for (const auto method :
        {propagation::DiffractionMethod::single_edge, propagation::DiffractionMethod::deygout}) {
@@ -136,7 +137,6 @@ TEST(ExcessModels, HeightsBetweenEvaluationsOfEdgesAreWithinATenthOfADecibel) {
 
 TEST(ExcessModels, HeightsBetweenEvaluationsOfItmAreWithinATenthOfADecibelButForItsJumps) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
   const auto scenario = whiteMountains(1e9, 15);
   scenario->emitters[0].propagation.model = PropagationModel::itm;
   Spread spread = bisectionErrors(*scenario, *terrain, 60);
@@ -166,7 +166,6 @@ TEST(ExcessModels, AColumnInPartsIsTheColumn) {
 
 TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
   const auto scenario = whiteMountains(1e9, 15);
   DiffractionParameters parameters;
   parameters.frequency_hz = 1e9;
@@ -199,7 +198,6 @@ TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
 
 TEST(ExcessModels, ItmStandsNearTheGroundAndGoesOverToDiffractionAboveWithoutJumps) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
   const auto scenario = whiteMountains(300e6, 15);
   std::mt19937 random(5);
   const ProfileData profile = randomProfile(*terrain, random, 250);
@@ -441,7 +439,7 @@ TEST(ExcessModels, P528BetweenTheTablesNodesIsTheCurve) {
 }
 
 TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
-  const std::filesystem::path folder = std::filesystem::path(EMSCAPE_SOURCE_DIR) / "scenarios/models";
+  const std::filesystem::path folder = test::shippedScenario("models");
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     SCOPED_TRACE(entry.path().filename());
@@ -459,13 +457,9 @@ TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
 TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {
   auto scenario = smoothEarth(PropagationModel::p528, 50e6, 20);
   scenario->emitters[0].frequency_place = {"my.yaml", 12, 7};
-  const auto messageOf = [&]() -> std::string {
-    try {
-      FieldSolver solver(scenario, nullptr, {});
-    } catch (const Error& error) {
-      return toString(error.place()) + ": " + error.message();
-    }
-    return "no error";
+  const auto messageOf = [&] {
+    const Error error = test::thrownBy([&] { FieldSolver solver(scenario, nullptr, {}); });
+    return toString(error.place()) + ": " + error.message();
   };
   EXPECT_EQ(messageOf(),
             "my.yaml:12:7: emitter 'site': 'p528': frequency 50 MHz is outside 100..30000 MHz: refused");

@@ -36,7 +36,6 @@ TEST(ExcessCode, KeepsDecibelsToHalfAStepAndSaturates) {
 
 TEST(Excess, DiffractionInTheFieldAgreesWithTheModelPathByPathOverRealTerrain) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
-  if (!terrain) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
     for (const double frequency_hz : {100e6, 1e9, 10e9}) {
       SCOPED_TRACE(::testing::Message() << toString(frame) << ", " << frequency_hz << " Hz");

@@ -7,11 +7,11 @@
 
 #include <cmath>
 
-#include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/scenario_file.h"
 #include "tests/emfield/test_scenario.h"
+#include "tests/support/errors.h"
 
 namespace emscape::emfield {
 namespace {
@@ -251,24 +251,15 @@ TEST(FieldSolver, RefusesAFieldThatDoesNotFitIntoMemoryBeforeItComputes) {
     scenario->emitters.push_back(scenario->emitters.front());
     scenario->emitters.back().name += std::to_string(n);
   }
-  try {
-    FieldSolver solver(scenario, nullptr, {});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("128 x 128 x 1024 voxels"));
-    EXPECT_THAT(error.what(), HasSubstr("MiB of the host's memory, of which"));
-  }
+  const std::string error = test::errorOf([&] { FieldSolver solver(scenario, nullptr, {}); });
+  EXPECT_THAT(error, HasSubstr("128 x 128 x 1024 voxels"));
+  EXPECT_THAT(error, HasSubstr("MiB of the host's memory, of which"));
 }
 
 TEST(FieldSolver, RefusesWhatItCannotCompute) {
   const auto scenario = battlefield();
-  const auto messageOf = [&](const FieldOptions& options) -> std::string {
-    try {
-      FieldSolver solver(scenario, nullptr, options);
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "no error";
+  const auto messageOf = [&](const FieldOptions& options) {
+    return test::errorOf([&] { FieldSolver solver(scenario, nullptr, options); });
   };
   FieldOptions options;
   options.quantities = {"power"};

@@ -10,13 +10,13 @@
 #include "emscape/base/units.h"
 #include "emscape/emfield/field_solver.h"
 #include "tests/emfield/test_scenario.h"
-#include "tests/reference_dir.h"
+#include "tests/support/files.h"
+#include "tests/support/reference_data.h"
 
 namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
-using test::referenceFile;
 
 constexpr double kSpacing_m = 1000;
 
@@ -41,9 +41,8 @@ std::vector<std::vector<std::string>> csvRows(const std::string& file) {
 class FreeSpaceTable : public ::testing::Test {
  protected:
   void SetUp() override {
-    const auto file = referenceFile("reference/radar/freespace_conversions_derived.csv");
-    if (!file) GTEST_SKIP() << "reference data are absent";
-    for (const auto& cells : csvRows(*file)) {
+    const std::string file = test::sourceFile("tests/data/reference/radar/freespace_conversions_derived.csv");
+    for (const auto& cells : csvRows(file)) {
       rows_.push_back({std::stod(cells[0]) * 1e6, std::stod(cells[1]) * 1e3, std::stod(cells[2]),
                        std::stod(cells[3]), std::stod(cells[4]), std::stod(cells[5]), std::stod(cells[6])});
     }
@@ -125,8 +124,9 @@ class RadarEquation : public ::testing::Test {
 };
 
 TEST_F(RadarEquation, AgreesWithPublishedWorkedExamples) {
-  const auto file = referenceFile("reference/radar/radar_equation_worked_examples.csv");
-  if (!file) GTEST_SKIP() << "reference data are absent";
+  const std::string name = "reference/radar/radar_equation_worked_examples.csv";
+  const auto file = test::referenceFile(name);
+  if (!file) GTEST_SKIP() << test::notInRepository(name);
   // Five significant digits of the expected range or power.
   constexpr double kTolerance_db = 5e-4;
   for (const auto& cells : csvRows(*file)) {

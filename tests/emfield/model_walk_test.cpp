@@ -123,11 +123,7 @@ DiffractionModel<double> diffractionAt(double frequency_hz, const PathProfile& p
 
 class ModelWalk : public ::testing::Test {
  protected:
-  void SetUp() override {
-    terrain_ = whiteMountainsTile();
-    if (!terrain_) GTEST_SKIP() << "no dem/N44W072.hgt among the reference data";
-  }
-  scenario::TerrainPtr terrain_;
+  const scenario::TerrainPtr terrain_ = whiteMountainsTile();
 };
 
 TEST_F(ModelWalk, DiffractionHasNoJumps) {

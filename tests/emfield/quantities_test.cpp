@@ -5,13 +5,15 @@
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/scenario_file.h"
 #include "tests/emfield/test_scenario.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
 
 namespace emscape::emfield {
 namespace {
 
 TEST(Quantities, OfTheJammingScenarioShowWhatTheRidgeHides) {
-  auto scenario = std::make_shared<scenario::Scenario>(
-      *scenario::loadScenario(EMSCAPE_SOURCE_DIR "/scenarios/jamming.yaml"));
+  auto scenario =
+      std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("jamming.yaml")));
   scenario->region.dims = {40, 40, 16};
   const auto terrain = scenario::loadTerrain(*scenario);
   FieldSolver solver(scenario, terrain, {});

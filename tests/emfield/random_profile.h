@@ -10,7 +10,7 @@
 #include "emscape/base/geo_frame.h"
 #include "emscape/scenario/terrain.h"
 #include "propagation/diffraction/diffraction.h"
-#include "tests/reference_dir.h"
+#include "tests/support/files.h"
 
 namespace emscape::emfield::testing {
 
@@ -24,13 +24,12 @@ struct ProfileData {
   TerrainProfile view() const { return {range_m.data(), height_msl_m.data(), int(range_m.size())}; }
 };
 
-/// The White Mountains' tile of the reference elevation data; null where it is absent.
+/// The tile of the White Mountains in tests/data, all but its edges.
 inline scenario::TerrainPtr whiteMountainsTile() {
-  const auto file = test::referenceFile("dem/N44W072.hgt");
-  if (!file) return nullptr;
+  const std::string file = test::sourceFile("tests/data/dem/N44W072.tif");
   scenario::TerrainSpec spec;
-  spec.files = {*file};
-  spec.places = {{*file}};
+  spec.files = {file};
+  spec.places = {{file}};
   return scenario::Terrain::load(spec, {44.01, 44.99, -71.99, -71.01});
 }
 

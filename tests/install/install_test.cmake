@@ -47,17 +47,24 @@ function(check_headers)
   run(${CMAKE_COMMAND} --build "${work_dir}/headers/build")
 endfunction()
 
-function(check_examples)
-  set(build "${work_dir}/examples")
-  run(${CMAKE_COMMAND} -S "${source_dir}/examples" -B "${build}" -G "${generator}"
+# Builds a project against what was installed.
+function(build_project source build)
+  run(${CMAKE_COMMAND} -S "${source}" -B "${build}" -G "${generator}"
       -D "CMAKE_CXX_COMPILER=${compiler}" -D "CMAKE_PREFIX_PATH=${prefix}")
   run(${CMAKE_COMMAND} --build "${build}")
+endfunction()
+
+function(check_examples)
+  set(build "${work_dir}/examples")
+  build_project("${source_dir}/examples" "${build}")
   set(scenario "${source_dir}/scenarios/jacksboro.yaml")
   run("${build}/field" "${scenario}" 0 "${work_dir}/field.vdb")
   if(NOT output MATCHES "power_density_dbwm2: -?[0-9.]+\\.\\.-?[0-9.]+ dBW/m2\nat half the power: up to -?[0-9.]+ dBW/m2\n")
     message(FATAL_ERROR "field printed: ${output}")
   endif()
   run("${build}/picture" "${scenario}" 40 "${work_dir}/picture.png")
+  build_project("${source_dir}/tests/install/picture_check" "${work_dir}/picture_check")
+  run("${work_dir}/picture_check/picture_check" "${work_dir}/picture.png")
   run("${build}/series" "${scenario}" "${work_dir}/series")
   foreach(file field.vdb picture.png series/jacksboro_0001.vti series/jacksboro.pvd)
     if(NOT EXISTS "${work_dir}/${file}")

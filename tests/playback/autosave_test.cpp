@@ -1,5 +1,8 @@
 #include "emscape/playback/autosave.h"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "base/utc.h"
 #include "tests/playback/playback_samples.h"
 
@@ -16,19 +19,20 @@ class Autosave : public testing::Test {
   ~Autosave() override { unsetenv("XDG_STATE_HOME"); }
 
   const TemporaryFolder folder_;
+  Autosaves saves_;
 };
 
 TEST_F(Autosave, OutlivesItsProgramAndIsOffered) {
   const std::string input = quickScenario(folder_);
-  EXPECT_FALSE(findAutosave(input));
+  EXPECT_FALSE(saves_.find(input));
   ViewState state;
   state.edits = {{"emitters.radar.power_w", "500"}};
   state.time_s = 3;
-  autosave(input, state);
+  saves_.keep(input, state);
   state.edits.push_back({"emitters.radar.losses_db", "5"});
-  autosave(input, state);
+  saves_.keep(input, state);
 
-  const std::optional<AutosavedView> found = findAutosave(input);
+  const std::optional<AutosavedView> found = saves_.find(input);
   ASSERT_TRUE(found);
   EXPECT_EQ(viewStateText(found->state), viewStateText(state));
   EXPECT_FALSE(found->input_changed);
@@ -37,36 +41,112 @@ TEST_F(Autosave, OutlivesItsProgramAndIsOffered) {
   int files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder_ / "state/emscape")) {
     if (!entry.is_regular_file()) continue;
-    ++files;
+    if (entry.path().extension() != ".lock") ++files;
     EXPECT_THAT(entry.path().filename().string(), testing::StartsWith("scenario-"));
   }
   EXPECT_EQ(files, 1);
 
-  removeAutosave(input);
-  EXPECT_FALSE(findAutosave(input));
+  saves_.remove(input);
+  EXPECT_FALSE(saves_.find(input));
 }
 
 TEST_F(Autosave, BelongsToTheInputWhereverItIsCalledFrom) {
   const std::string input = quickScenario(folder_);
-  EXPECT_EQ(autosaveFileOf(input), autosaveFileOf((folder_ / "state/../scenario.yaml").string()));
+  EXPECT_EQ(autosaveFileOf(input), autosaveFileOf(folder_ / "state/../scenario.yaml"));
   EXPECT_EQ(autosaveFileOf(folder_.path().string()), autosaveFileOf(folder_.path().string()));
-  EXPECT_NE(autosaveFileOf(input), autosaveFileOf((folder_ / "other/scenario.yaml").string()));
-  autosave(input, {});
-  EXPECT_FALSE(findAutosave((folder_ / "other/scenario.yaml").string()));
+  EXPECT_NE(autosaveFileOf(input), autosaveFileOf(folder_ / "other/scenario.yaml"));
+  saves_.keep(input, {});
+  EXPECT_FALSE(saves_.find(folder_ / "other/scenario.yaml"));
 }
 
 TEST_F(Autosave, SaysThatTheInputWasWrittenSince) {
   const std::string input = quickScenario(folder_);
-  autosave(input, {});
+  saves_.keep(input, {});
   fs::last_write_time(input, fs::last_write_time(autosaveFileOf(input)) + std::chrono::seconds(5));
-  EXPECT_TRUE(findAutosave(input)->input_changed);
+  EXPECT_TRUE(saves_.find(input)->input_changed);
 }
 
 TEST_F(Autosave, ADamagedOneIsAnErrorThatNamesIt) {
   const std::string input = quickScenario(folder_);
-  autosave(input, {});
+  saves_.keep(input, {});
   writeFile(autosaveFileOf(input), "{\"schema_version\": 1, \"time_s\": ");
-  EXPECT_THAT(errorOf([&] { findAutosave(input); }), HasSubstr(autosaveFileOf(input).string() + ":1:"));
+  EXPECT_THAT(errorOf([&] { saves_.find(input); }), HasSubstr(autosaveFileOf(input).string() + ":1:"));
+}
+
+/// A program that keeps a view and ends when it is told to, without leaving anything in order.
+class OtherProgram {
+ public:
+  OtherProgram(const std::string& input, const ViewState& state) {
+    int to_child[2], to_parent[2];
+    if (pipe(to_child) != 0 || pipe(to_parent) != 0) return;
+    process_ = fork();
+    char sign = 0;
+    if (process_ == 0) {
+      Autosaves saves;
+      saves.keep(input, state);
+      close(to_child[1]);
+      const bool has_told = ::write(to_parent[1], "k", 1) == 1;
+      _exit(has_told && ::read(to_child[0], &sign, 1) >= 0 ? 0 : 1);
+    }
+    close(to_child[0]);
+    end_ = to_child[1];
+    EXPECT_EQ(::read(to_parent[0], &sign, 1), 1);
+    close(to_parent[0]);
+    close(to_parent[1]);
+  }
+  ~OtherProgram() { end(); }
+
+  void end() {
+    if (process_ <= 0) return;
+    close(end_);
+    waitpid(process_, nullptr, 0);
+    process_ = -1;
+  }
+
+ private:
+  pid_t process_ = -1;
+  int end_ = -1;
+};
+
+TEST_F(Autosave, IsNotOfferedWhileItsProgramRuns) {
+  const std::string input = quickScenario(folder_);
+  ViewState state;
+  state.time_s = 3;
+  OtherProgram other(input, state);
+  EXPECT_FALSE(saves_.find(input));
+  other.end();
+  const std::optional<AutosavedView> found = saves_.find(input);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->state.time_s, 3);
+  Autosaves third;
+  EXPECT_FALSE(third.find(input));  // who found it has it
+}
+
+TEST_F(Autosave, ProgramsThatRunAtTheSameTimeHaveOneEach) {
+  const std::string input = quickScenario(folder_);
+  ViewState state;
+  state.time_s = 3;
+  OtherProgram other(input, state);
+  state.time_s = 4;
+  saves_.keep(input, state);
+  EXPECT_EQ(saves_.find(input)->file, autosaveFileOf(input, 2));
+  EXPECT_EQ(saves_.find(input)->state.time_s, 4);
+  other.end();
+  saves_.remove(input);
+  EXPECT_EQ(saves_.find(input)->state.time_s, 3);
+  saves_.remove(input);
+  EXPECT_TRUE(fs::is_empty(stateFolder() / "autosave"));
+}
+
+TEST_F(Autosave, IsNotReplacedByAProgramThatWasNotOfferedIt) {
+  const std::string input = quickScenario(folder_);
+  ViewState state;
+  state.time_s = 3;
+  OtherProgram(input, state).end();
+  saves_.keep(input, {});
+  EXPECT_EQ(saves_.find(input)->file, autosaveFileOf(input, 2));
+  Autosaves next;
+  EXPECT_EQ(next.find(input)->state.time_s, 3);
 }
 
 TEST_F(Autosave, RelativeStateFoldersAreIgnored) {

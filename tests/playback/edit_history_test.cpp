@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 /// The text of a scenario with its edits.
 std::string textOf(const TemporaryFolder& folder, const scenario::Scenario& scenario) {
-  saveScenario(scenario, (folder / "saved.yaml").string());
+  saveScenario(scenario, folder / "saved.yaml");
   return readFile(folder / "saved.yaml");
 }
 
@@ -147,7 +147,7 @@ TEST(EditHistory, ACommandMakesTheSameEdits) {
   history.set("emitters.radar.scan.elevation_deg", "7");
   history.set("name", "the colonel's");
   const std::string command = commandText("render", *history.scenario());
-  EXPECT_EQ(command, "emscape render " + (folder / "scenario.yaml").string() +
+  EXPECT_EQ(command, "emscape render " + folder / "scenario.yaml" +
                          " --set emitters.radar.power_w=500 --set emitters.radar.scan.elevation_deg=7"
                          " --set 'name=the colonel'\\''s'");
 }

@@ -5,8 +5,8 @@
 
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/volume/file.h"
-#include "tests/gpu.h"
 #include "tests/playback/playback_samples.h"
+#include "tests/support/gpu.h"
 
 namespace emscape::playback::test {
 namespace {

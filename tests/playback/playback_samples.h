@@ -6,73 +6,36 @@
 
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <mutex>
-#include <sstream>
 #include <string>
 #include <vector>
 
-#include "emscape/base/error.h"
 #include "emscape/playback/clock.h"
 #include "emscape/playback/frame_source.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::playback::test {
 
-/// A folder of the running test's own, gone when it ends.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "emscape-test-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-inline std::string readFile(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-inline void writeFile(const std::filesystem::path& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
-
-/// The message of the Error that `body` must throw.
-inline std::string errorOf(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no Error was thrown";
-  return "";
-}
+using emscape::test::errorOf;
+using emscape::test::readFile;
+using emscape::test::TemporaryFolder;
+using emscape::test::writeFile;
 
 /// scenarios/quick.yaml with each text `from` replaced by `to`, in a folder of the test's. @return the file
 inline std::string quickScenario(const TemporaryFolder& folder,
                                  const std::vector<std::pair<std::string, std::string>>& replaced = {}) {
-  std::string text = readFile(std::filesystem::path(EMSCAPE_SOURCE_DIR) / "scenarios/quick.yaml");
+  std::string text = readFile(emscape::test::shippedScenario("quick.yaml"));
   for (const auto& [from, to] : replaced) {
     const std::size_t at = text.find(from);
     if (at == std::string::npos) throw std::runtime_error("quick.yaml does not hold " + from);
     text.replace(at, from.size(), to);
   }
-  writeFile(folder / "scenario.yaml", text);
-  return (folder / "scenario.yaml").string();
+  return folder.write("scenario.yaml", text);
 }
 
 /// Made-up frames: one volume of 8 x 8 x 8 voxels each; the first has the value of the index and a half.

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "emscape/emfield/field_solver.h"
+#include "emscape/playback/pick.h"
 #include "emscape/playback/scene.h"
 #include "emscape/scenario/snapshot.h"
 #include "tests/playback/playback_samples.h"
@@ -233,7 +234,7 @@ TEST(Probe, AgreesWithTheVoxelAndWithTheBudgetOfThePath) {
 }
 
 TEST(Probe, KnowsHeightsOverRealGroundAndSaysWhatIsBelowIt) {
-  const std::string file = EMSCAPE_SOURCE_DIR "/scenarios/jacksboro.yaml";
+  const std::string file = emscape::test::shippedScenario("jacksboro.yaml");
   const Solved solved = solve(file, {{"region.dims", "[40, 40, 20]"}});
   const volume::Grid& grid = solved.volume->grid;
   const auto ground = heightFieldOf(*solved.input.terrain, grid);

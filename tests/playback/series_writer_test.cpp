@@ -70,7 +70,7 @@ class SeriesWriter : public testing::Test {
                  Stopped);
   }
 
-  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
+  std::string operator/(const std::string& name) const { return folder_ / name; }
   /// Contents of all files of a folder by name.
   std::map<std::string, std::string> contents(const std::string& folder) const {
     std::map<std::string, std::string> files;
@@ -86,10 +86,10 @@ class SeriesWriter : public testing::Test {
     return files;
   }
   json stateOf(const std::string& folder) const {
-    return json::parse(readFile(folder_ / folder / "series.json"));
+    return json::parse(readFile(folder_ / folder + "/series.json"));
   }
   std::vector<json> journalOf(const std::string& folder) const {
-    std::istringstream lines(readFile(folder_ / folder / "series.steps"));
+    std::istringstream lines(readFile(folder_ / folder + "/series.steps"));
     std::vector<json> records;
     for (std::string line; std::getline(lines, line);) records.push_back(json::parse(line));
     return records;

@@ -45,6 +45,8 @@ class RandomState {
     for (unsigned i = below(4); i > 0; --i) state.edits.push_back({"emitters.\"a=b\".power_w", text()});
     if (coin()) state.compare = kOriginal;
     for (unsigned i = below(3); i > 0; --i) state.open_panels.push_back("panel " + std::to_string(i));
+    if (coin()) state.play_range = interval();
+    if (coin()) state.visible_time = interval();
     return state;
   }
 
@@ -53,6 +55,10 @@ class RandomState {
   bool coin() { return below(2) == 0; }
   double uniform(double from, double to) { return std::uniform_real_distribution<double>(from, to)(random_); }
   std::optional<double> maybe(double value) { return coin() ? std::optional<double>(value) : std::nullopt; }
+  scenario::TimeInterval interval() {
+    const double begin_s = uniform(-10, 100);
+    return {begin_s, begin_s + uniform(1e-3, 1000)};
+  }
   std::string text() {
     static const char* const kTexts[] = {
         "ridge", "",   "a: b # c", "\"quoted\" \\ text", "two\nlines\t", "\xC3\xA9\xE2\x82\xAC", "[1, 2]",
@@ -124,6 +130,12 @@ TEST(ViewState, RandomStatesAreReadBackToTheBit) {
     ASSERT_EQ(read.time_s, state.time_s);
     ASSERT_EQ(read.rate, state.rate);
     ASSERT_EQ(read.loop, state.loop);
+    for (const auto part : {&ViewState::play_range, &ViewState::visible_time}) {
+      ASSERT_EQ((read.*part).has_value(), (state.*part).has_value());
+      if (!(state.*part)) continue;
+      ASSERT_EQ((read.*part)->begin_s, (state.*part)->begin_s);
+      ASSERT_EQ((read.*part)->end_s, (state.*part)->end_s);
+    }
     ASSERT_EQ(read.quantity, state.quantity);
     ASSERT_EQ(read.range, state.range);
     ASSERT_EQ(read.transfer.has_value(), state.transfer.has_value());
@@ -171,6 +183,8 @@ TEST(ViewState, RefusalsSayWhereAndWhat) {
   EXPECT_EQ(refusalOf(head + "\"size\": [0, 10]}"),
             "a.json:2:11: item 1 of 'size' is 0, outside the allowed 1 to 32768");
   EXPECT_EQ(refusalOf(head + "\"loop\": 1}"), "a.json:2:10: 'loop' must be true or false, not '1'");
+  EXPECT_EQ(refusalOf(head + "\"play_range\": {\"begin_s\": 2, \"end_s\": 2}}"),
+            "a.json:2:40: 'end_s' is 2, not above 'begin_s', 2");
   EXPECT_EQ(refusalOf(head + "\"range\": {\"min\": 1, \"max\": 0.5}}"),
             "a.json:2:29: 'max' is 0.5, not above 'min', 1");
   EXPECT_EQ(refusalOf(head + "\"planes\": [\"horizontal:altitude_m=1\", \"vertical:bearing_deg=999\"]}"),
@@ -215,7 +229,7 @@ TEST(ViewState, ATransferFunctionIsAsInItsOwnFile) {
 
 TEST(ViewState, WhatCouldNotBeReadAgainIsNotWritten) {
   const TemporaryFolder folder;
-  const std::string file = (folder / "a.view.json").string();
+  const std::string file = folder / "a.view.json";
   ViewState state;
   writeViewState(file, state);
   const std::string before = readFile(file);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "propagation/diffraction/diffraction.h"
-#include "tests/reference_dir.h"
+#include "tests/support/reference_data.h"
 
 namespace emscape::propagation {
 namespace {
@@ -67,7 +67,7 @@ std::map<std::string, double> readLog(const fs::path& path) {
 
 TEST(DiffractionP1812, MeetsTheIntermediatesOfTheValidationSet) {
   const auto root = test::referenceFile("reference/p1812");
-  if (!root) GTEST_SKIP() << "no p1812 below " << test::referenceDir();
+  if (!root) GTEST_SKIP() << test::notInRepository("reference/p1812");
   int cases = 0;
   for (const auto& entry : fs::directory_iterator(fs::path(*root) / "results")) {
     const std::string name = entry.path().stem().string();  // PROFILE_N_log

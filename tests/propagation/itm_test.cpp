@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "emfield/check/reference_table.h"
-#include "tests/reference_dir.h"
 
 namespace emscape::propagation {
 namespace {

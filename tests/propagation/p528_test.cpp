@@ -7,10 +7,10 @@
 #include <cmath>
 #include <limits>
 
-#include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "propagation/air/gases.h"
 #include "propagation/p528/variability.h"
+#include "tests/support/errors.h"
 
 namespace emscape::propagation {
 namespace {
@@ -20,13 +20,9 @@ P528Curve curveOf(double frequency_hz, double first_m, double second_m, bool ver
 }
 
 std::string messageOf(double frequency_hz, double first_m, double second_m) {
-  try {
-    P528Curve(std::make_shared<P528Atmosphere>(1e9), frequency_hz, first_m, second_m);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    return error.what();
-  }
-  return "nothing was thrown";
+  return test::errorOf(
+      [&] { P528Curve(std::make_shared<P528Atmosphere>(1e9), frequency_hz, first_m, second_m); },
+      ErrorCode::bad_input);
 }
 
 TEST(P528, RefusesWhatIsOutsideItsLimits) {

@@ -44,12 +44,12 @@ struct Drawing {
       ++casts[static_cast<std::size_t>(p.y) * image.size.width + p.x];
     }
   }
-  void draw(const Silhouette& inside, double tolerance_levels, double most_rays = 1e9) {
+  void draw(const Silhouette& inside, double tolerance_levels, double max_rays = 1e9) {
     std::fill(casts.begin(), casts.end(), 0);
     for (Rgba& pixel : image.pixels) pixel = gray(std::nan(""));
     rays = 0;
     EXPECT_TRUE(
-        frame.draw(image, inside, tolerance_levels, most_rays, [this](const std::vector<Pixel>& pixels) {
+        frame.draw(image, inside, tolerance_levels, max_rays, [this](const std::vector<Pixel>& pixels) {
           cast(pixels);
           return true;
         }));
@@ -196,9 +196,9 @@ TEST(Adaptive, KeepsToItsShareOfRaysAfterSomeFrames) {
   const Silhouette all = whole(size);
   drawing.draw(all, 0.5);
   EXPECT_GT(drawing.rays, size.count() / 2);
-  const double most_rays = 0.25 * static_cast<double>(size.count());
-  for (int frame = 0; frame < 12; ++frame) drawing.draw(all, 0.5, most_rays);
-  EXPECT_NEAR(drawing.rays, most_rays, 0.05 * most_rays);
+  const double max_rays = 0.25 * static_cast<double>(size.count());
+  for (int frame = 0; frame < 12; ++frame) drawing.draw(all, 0.5, max_rays);
+  EXPECT_NEAR(drawing.rays, max_rays, 0.05 * max_rays);
   for (int frame = 0; frame < 20; ++frame) drawing.draw(all, 0.5);
   EXPECT_GT(drawing.rays, size.count() / 2) << "the tolerance is that asked for again";
 }
@@ -328,9 +328,9 @@ TEST(AdaptiveTolerance, StaysInItsBoundsAndMovesAtMostByAFactorOfTwo) {
   EXPECT_EQ(nextTolerance_levels(1, 0, 1), 0.5);
   double tolerance = 1;
   for (int frame = 0; frame < 20; ++frame) tolerance = nextTolerance_levels(tolerance, 1000, 1);
-  EXPECT_EQ(tolerance, kLargestTolerance_levels);
+  EXPECT_EQ(tolerance, kMaxTolerance_levels);
   for (int frame = 0; frame < 20; ++frame) tolerance = nextTolerance_levels(tolerance, 0, 1);
-  EXPECT_EQ(tolerance, kLeastTolerance_levels);
+  EXPECT_EQ(tolerance, kMinTolerance_levels);
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "tests/support/errors.h"
 
 namespace emscape::render {
 namespace {
@@ -15,13 +15,7 @@ constexpr ImageSize kSize{1200, 900};
 const SceneBox kBox{{-15000, -15000, 0}, {15000, 15000, 6000}, 2.0};
 
 std::string refusalOf(const std::string& text) {
-  try {
-    parseCamera(text);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage);
-    return error.what();
-  }
-  return "accepted";
+  return test::errorOf([&] { parseCamera(text); }, ErrorCode::usage);
 }
 
 void expectBoxInside(const Camera& camera, ImageSize size, const FrameMargins& margins) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <vector>
 
 #include "emscape/base/error.h"
@@ -77,7 +78,7 @@ TEST(Compositing, MidaWithGammaOneIsMip) {
   expectNear(composite<MidaCompositor>(1).result(transfer), projected[2]);  // f = 0.9
 }
 
-/// What lies ahead, as LookAhead tells it.
+/// The maximum ahead, in place of OccupancyLookahead.
 struct Ahead {
   float highest;
   bool exceeds(int /*next*/, float f) const { return highest > f; }
@@ -133,6 +134,50 @@ TEST(Compositing, DvrEndsEarlyUnlessExact) {
   Ahead more{1};
   EXPECT_TRUE(early.done(more, 1));
   EXPECT_FALSE(exact.done(more, 1));
+}
+
+/// A ray of a sample per part, cast by some threads that take as many parts each.
+template <class Compositor>
+Compositor joined(const std::vector<Rgba>& samples, int threads) {
+  const Compositor begin(kNeverOpaqueEnough, 0, 1);
+  const int parts = Compositor::kParts / threads;
+  JoinedParts<Compositor> ray(begin);
+  for (int thread = 0; thread < threads; ++thread) {
+    JoinedParts<Compositor> own = thread == 0 ? ray : JoinedParts<Compositor>(begin);
+    for (int part = thread * parts; part < (thread + 1) * parts; ++part) {
+      Compositor next = own.behind();
+      const Rgba& sample = samples[static_cast<std::size_t>(part)];
+      next.add(sample.a, sample);
+      own.join(next);
+    }
+    if (thread == 0) {
+      ray = own;
+    } else {
+      ray.join(own.whole(), parts);
+    }
+  }
+  return ray.whole();
+}
+
+TEST(JoinedParts, ARayIsTheSameToTheBitForAnyNumberOfThreads) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> unit(0, 1);
+  for (int ray = 0; ray < 200; ++ray) {
+    std::vector<Rgba> samples;
+    for (int part = 0; part < kMaxRayParts; ++part) {
+      const float a = 0.5F * unit(random);
+      samples.push_back({a * unit(random), a * unit(random), a * unit(random), a});
+    }
+    const Rgba one = joined<DvrCompositor>(samples, 1).sum;
+    for (const int threads : {2, 8}) {
+      const Rgba several = joined<DvrCompositor>(samples, threads).sum;
+      EXPECT_EQ(several.r, one.r);
+      EXPECT_EQ(several.g, one.g);
+      EXPECT_EQ(several.b, one.b);
+      EXPECT_EQ(several.a, one.a);
+      EXPECT_EQ(joined<MipCompositor>(samples, threads).highest, joined<MipCompositor>(samples, 1).highest);
+    }
+  }
 }
 
 TEST(Compositing, ModesHaveNames) {

@@ -3,7 +3,7 @@
 
 #include "emscape/volume/device_volume.h"
 #include "render/cuda/device_scene.h"
-#include "render/ready_volume.h"
+#include "render/prepared_volume.h"
 #include "tests/render/cuda_scenes.h"
 
 namespace emscape::render {
@@ -34,7 +34,7 @@ TransferFunction functionOf(const volume::DenseVolume& volume) {
 }
 
 SkipLevels levelsOnHost(const Scene& scene, const std::shared_ptr<volume::DenseVolume>& volume) {
-  ReadyVolume ready;
+  PreparedVolume ready;
   ready.set(volume);
   return skipLevels(scene.skipRule(), ready.bricks());
 }

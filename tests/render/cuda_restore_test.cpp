@@ -5,7 +5,6 @@
 #include <thread>
 
 #include "emscape/base/error.h"
-#include "render/reconstruction.h"
 #include "tests/render/cuda_scenes.h"
 
 namespace emscape::render {
@@ -13,46 +12,6 @@ namespace {
 
 using testing::makeEmeVolume;
 using testing::onGpu;
-using testing::setRandomScene;
-
-TEST(CudaRestore, IsBitIdenticalToAFullCast) {
-  EMSCAPE_NEEDS_GPU();
-  std::mt19937 random(7);
-  Renderer renderer(onGpu());
-  for (int scene = 0; scene < 60; ++scene) {
-    const ImageSize size{1 + static_cast<int>(random() % 70), 1 + static_cast<int>(random() % 70)};
-    setRandomScene(renderer, random, size);
-    const Image full = renderer.render(size);
-    for (const Pattern pattern : allPatterns()) {
-      Image image = renderer.render(size, {pattern});
-      const FrameReport report = renderer.restore(image);
-      EXPECT_TRUE(report.complete);
-      if (pattern != Pattern::adaptive) {
-        EXPECT_EQ(report.rays, pixelCount(missingLattices(pattern, size)));
-      }
-      EXPECT_TRUE(image.pixels == full.pixels)
-          << scene << " " << toString(pattern) << " " << toString(renderer.settings().mode);
-    }
-  }
-}
-
-TEST(CudaRestore, OfACutVolumeIsBitIdenticalToAFullCast) {
-  EMSCAPE_NEEDS_GPU();
-  std::mt19937 random(8);
-  Renderer renderer(onGpu());
-  for (int scene = 0; scene < 40; ++scene) {
-    const ImageSize size{1 + static_cast<int>(random() % 70), 1 + static_cast<int>(random() % 70)};
-    setRandomScene(renderer, random, size);
-    testing::addRandomPlanes(renderer, random);
-    const Image full = renderer.render(size);
-    for (const Pattern pattern : allPatterns()) {
-      Image image = renderer.render(size, {pattern});
-      renderer.restore(image);
-      EXPECT_TRUE(image.pixels == full.pixels)
-          << scene << " " << toString(pattern) << " " << toString(renderer.settings().mode);
-    }
-  }
-}
 
 /// A large picture of many samples, so that a restoration takes many launches.
 void setLongScene(Renderer& renderer, ImageSize size) {
@@ -92,20 +51,6 @@ TEST(CudaRestore, CanBeStoppedInBetweenAndBegunAnew) {
     Image image;
     renderer.fetch(image);
     EXPECT_TRUE(image.pixels == full.pixels) << toString(pattern);
-  }
-}
-
-TEST(CudaDraw, TellsWhenItWasStopped) {
-  EMSCAPE_NEEDS_GPU();
-  std::mt19937 random(3);
-  Renderer renderer(onGpu());
-  const ImageSize size{64, 64};
-  setRandomScene(renderer, random, size);
-  for (const Pattern pattern : {Pattern::full, Pattern::adaptive}) {
-    StopFlag stop{true};
-    EXPECT_FALSE(renderer.draw({pattern}, size, &stop).complete);
-    stop = false;
-    EXPECT_TRUE(renderer.draw({pattern}, size, &stop).complete);
   }
 }
 

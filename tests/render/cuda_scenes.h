@@ -4,15 +4,13 @@
 #include <random>
 
 #include "emscape/render/renderer.h"
-#include "tests/gpu.h"
 #include "tests/render/random_scene.h"
+#include "tests/support/gpu.h"
 
 namespace emscape::render::testing {
 
 inline RendererOptions onGpu() {
-  RendererOptions options;
-  options.backend = Backend::cuda;
-  return options;
+  return on(Backend::cuda);
 }
 
 /// The same random scene for both.

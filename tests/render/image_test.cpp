@@ -5,21 +5,17 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
-#include "emscape/base/error.h"
 #include "render/rgba.h"
+#include "tests/support/errors.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::render {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-std::string temporary(const std::string& name) {
-  return (std::filesystem::temp_directory_path() / ("emscape_image_test_" + name)).string();
-}
 
 Image8 image8(int width, int height, std::vector<std::uint8_t> rgba) {
   return {{width, height}, std::move(rgba)};
@@ -44,7 +40,8 @@ TEST(Image, SizesAreParsedStrictly) {
 }
 
 TEST(Png, ReadsBackWhatWasWritten) {
-  const std::string file = temporary("opaque.png");
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "opaque.png";
   const Image8 opaque = image8(2, 2, {1, 2, 3, 255, 255, 0, 7, 255, 0, 0, 0, 255, 90, 80, 70, 255});
   writePng(file, opaque);
   EXPECT_EQ(readPng(file).rgba, opaque.rgba);
@@ -53,23 +50,15 @@ TEST(Png, ReadsBackWhatWasWritten) {
   const Image8 read = readPng(file);
   EXPECT_EQ(read.size, clear.size);
   for (std::size_t i = 0; i < clear.rgba.size(); ++i) EXPECT_NEAR(read.rgba[i], clear.rgba[i], 1);
-  std::filesystem::remove(file);
 }
 
 TEST(Png, FailuresNameTheFileAndLeaveNothing) {
-  const std::string file = temporary("missing_folder") + "/picture.png";
-  try {
-    writePng(file, image8(1, 1, {1, 2, 3, 255}));
-    FAIL() << "written";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("picture.png"));
-  }
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "missing_folder/picture.png";
+  EXPECT_THAT(test::errorOf([&] { writePng(file, image8(1, 1, {1, 2, 3, 255})); }), HasSubstr("picture.png"));
   EXPECT_FALSE(std::filesystem::exists(file));
-  const std::string broken = temporary("broken.png");
-  std::ofstream(broken) << "not a picture";
-  EXPECT_THROW(readPng(broken), Error);
+  EXPECT_THROW(readPng(folder.write("broken.png", "not a picture")), Error);
   EXPECT_THROW(readPng(file), Error);
-  std::filesystem::remove(broken);
 }
 
 TEST(ImageDifference, CountsAsThePapersTablesDo) {

@@ -7,11 +7,11 @@
 #include <limits>
 #include <random>
 
-#include "emscape/base/error.h"
 #include "emscape/render/renderer.h"
+#include "render/prepared_volume.h"
 #include "render/raycast.h"
-#include "render/ready_volume.h"
 #include "tests/render/scenes.h"
+#include "tests/support/errors.h"
 
 namespace emscape::render {
 namespace {
@@ -45,7 +45,7 @@ struct SphereField {
 
 /// A volume as a ray caster sees it.
 struct Scene {
-  ReadyVolume ready;
+  PreparedVolume ready;
   VolumeView view;
 
   explicit Scene(std::shared_ptr<const volume::DenseVolume> volume) {
@@ -55,9 +55,9 @@ struct Scene {
   /// The first crossing on the way from one point of index space to another, both in the box.
   IsoHit cross(const Vec3d& from, const Vec3d& to, float iso, float step, bool enters = false) const {
     const Vec3d along = to - from;
-    const RayPieces pieces(vecCast<float>(from), vecCast<float>(normalized(along)),
-                           static_cast<float>(length(along)), step);
-    return firstCrossing<TrilinearSampler>(view, {}, pieces, iso, enters);
+    const RaySegments segments(vecCast<float>(from), vecCast<float>(normalized(along)),
+                               static_cast<float>(length(along)), step);
+    return firstCrossing<TrilinearSampler>(view, {}, segments, iso, enters);
   }
 };
 
@@ -136,7 +136,7 @@ TEST(Isosurface, IsMetFromBothSides) {
   EXPECT_NEAR(scene.cross({19, 1, 1}, {0, 1, 1}, 7.25F, 1).distance, 19 - 7.25, 1e-3);
 }
 
-TEST(Isosurface, IsMetInTheLastShorterPiece) {
+TEST(Isosurface, IsMetInTheLastShorterSegment) {
   const auto volume =
       makeVolume({20, 2, 2}, {1, 1, 1}, [](int i, int, int) { return static_cast<float>(i); });
   const Scene scene(volume);
@@ -173,12 +173,7 @@ TEST(Isosurface, IsNotDrawnAgainstMaskedOrUnknownVoxels) {
 }
 
 std::string messageOf(double iso_value, const volume::DenseVolume& volume) {
-  try {
-    checkIsoValue(iso_value, volume);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::errorOf([&] { checkIsoValue(iso_value, volume); });
 }
 
 TEST(IsoValue, OutsideTheValuesIsRefusedWithTheirRange) {

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "emscape/render/overlay.h"
+#include "emscape/render/device_picture.h"
 #include "render/bytes_over.h"
 
 namespace emscape::render::testing {

@@ -14,8 +14,8 @@ namespace {
 using testing::HasSubstr;
 
 double shareOf(Pattern pattern) {
-  for (const Rung& rung : patternLadder()) {
-    if (rung.pattern == pattern) return rung.ray_share;
+  for (const QualityLevel& level : qualityLevels()) {
+    if (level.pattern == pattern) return level.ray_share;
   }
   return 1;
 }
@@ -46,11 +46,11 @@ std::function<double(int)> always(double full_ms) {
   return [full_ms](int) { return full_ms; };
 }
 
-TEST(PatternChoice, LadderHasFewerRaysOnEveryRung) {
-  ASSERT_FALSE(patternLadder().empty());
-  EXPECT_EQ(patternLadder().front().pattern, Pattern::full);
-  for (std::size_t n = 1; n < patternLadder().size(); ++n) {
-    EXPECT_LT(patternLadder()[n].ray_share, patternLadder()[n - 1].ray_share);
+TEST(PatternChoice, LevelsHaveFewerAndFewerRays) {
+  ASSERT_FALSE(qualityLevels().empty());
+  EXPECT_EQ(qualityLevels().front().pattern, Pattern::full);
+  for (std::size_t n = 1; n < qualityLevels().size(); ++n) {
+    EXPECT_LT(qualityLevels()[n].ray_share, qualityLevels()[n - 1].ray_share);
   }
 }
 
@@ -100,7 +100,7 @@ TEST(PatternChoice, GoesUpOnlyWhenClearlyInTimeAndAfterSeveralFrames) {
   int frames = 1;
   while (!choice.add(costOf(Pattern::quarter, 60))) ++frames;
   EXPECT_EQ(choice.pattern(), Pattern::columns);
-  EXPECT_LE(frames, PatternChoice::kLeastPatience);
+  EXPECT_LE(frames, PatternChoice::kMinPatience);
   EXPECT_THAT(choice.reason(), HasSubstr("columns is expected to take 30.0 ms"));
 }
 
@@ -108,7 +108,7 @@ TEST(PatternChoice, WaitsSeveralFramesBeforeItGoesUpAgain) {
   PatternChoice choice(40);
   play(choice, 2, always(100));
   ASSERT_EQ(choice.pattern(), Pattern::quarter);
-  for (int n = 1; n < PatternChoice::kLeastPatience; ++n) EXPECT_FALSE(choice.add({2, 0})) << n;
+  for (int n = 1; n < PatternChoice::kMinPatience; ++n) EXPECT_FALSE(choice.add({2, 0})) << n;
   EXPECT_TRUE(choice.add({2, 0}));
   EXPECT_EQ(choice.pattern(), Pattern::full);  // 8 ms: past columns
 }
@@ -131,7 +131,7 @@ TEST(PatternChoice, OneFieldUpdateNowAndThenDoesNotHoldItDown) {
 TEST(PatternChoice, SaysThatNothingHasFewerRays) {
   PatternChoice choice(40);
   play(choice, 30, always(4000));
-  EXPECT_EQ(choice.pattern(), patternLadder().back().pattern);
+  EXPECT_EQ(choice.pattern(), qualityLevels().back().pattern);
   EXPECT_THAT(choice.reason(), HasSubstr("no pattern has fewer rays"));
 }
 
@@ -227,9 +227,9 @@ TEST(PatternChoice, NeverFlapsMoreThanStated) {
           down += shareOf(choice.pattern()) < share ? 1 : 0;
         }
         EXPECT_LE(up, 6 + kFrames / 72) << noise << " " << penalty << " " << full_ms;
-        EXPECT_LE(down, static_cast<int>(patternLadder().size() - 1) * (up + 1));
+        EXPECT_LE(down, static_cast<int>(qualityLevels().size() - 1) * (up + 1));
         if (noise == 0) {
-          EXPECT_LE(up, 6 + kFrames / PatternChoice::kMostPatience) << full_ms;
+          EXPECT_LE(up, 6 + kFrames / PatternChoice::kMaxPatience) << full_ms;
         }
       }
     }

@@ -9,22 +9,30 @@
 #include "emscape/base/error.h"
 #include "render/reconstruction.h"
 #include "tests/render/random_scene.h"
+#include "tests/support/on_backends.h"
 
 namespace emscape::render {
 namespace {
 
 using testing::makeEmeVolume;
+using testing::on;
 using testing::setRandomScene;
 
-TEST(Restore, IsBitIdenticalToAFullCast) {
+class Restore : public test::OnBackends {};
+EMSCAPE_ON_BACKENDS(Restore);
+
+TEST_P(Restore, IsBitIdenticalToAFullCast) {
+  const bool gpu = GetParam() == Backend::cuda;
+  const unsigned longest = gpu ? 70 : 40;  // several tiles of a launch
   std::mt19937 random(7);
-  Renderer renderer;  // kept: nothing of an earlier scene may remain
-  for (int scene = 0; scene < 40; ++scene) {
-    const ImageSize size{1 + static_cast<int>(random() % 40), 1 + static_cast<int>(random() % 40)};
+  Renderer renderer(on(GetParam()));  // kept: nothing of an earlier scene may remain
+  for (int scene = 0; scene < (gpu ? 60 : 40); ++scene) {
+    const ImageSize size{1 + static_cast<int>(random() % longest), 1 + static_cast<int>(random() % longest)};
     setRandomScene(renderer, random, size);
     const Image full = renderer.render(size);
     for (Pattern pattern : allPatterns()) {
       for (Interpolation interpolation : {Interpolation::float32, Interpolation::bits8}) {
+        if (gpu && interpolation == Interpolation::bits8) continue;  // quantises the pixels it reads, too
         Image image = renderer.render(size, {pattern, interpolation});
         const FrameReport report = renderer.restore(image);
         EXPECT_TRUE(report.complete);
@@ -51,16 +59,20 @@ TEST(Cast, SourcePixelsAreThoseOfTheFullCast) {
   }
 }
 
-TEST(Cast, TellsWhenItWasStopped) {
+class Draw : public test::OnBackends {};
+EMSCAPE_ON_BACKENDS(Draw);
+
+TEST_P(Draw, TellsWhenItWasStopped) {
   std::mt19937 random(3);
-  Renderer renderer;
+  Renderer renderer(on(GetParam()));
   const ImageSize size{64, 64};
   setRandomScene(renderer, random, size);
-  StopFlag stop{true};
-  Image image;
-  EXPECT_FALSE(renderer.draw({}, size, image, &stop).complete);
-  stop = false;
-  EXPECT_TRUE(renderer.draw({}, size, image, &stop).complete);
+  for (const Pattern pattern : {Pattern::full, Pattern::adaptive}) {
+    StopFlag stop{true};
+    EXPECT_FALSE(renderer.draw({pattern}, size, &stop).complete);
+    stop = false;
+    EXPECT_TRUE(renderer.draw({pattern}, size, &stop).complete);
+  }
 }
 
 TEST(Renderer, ShowsTheVolumeThatWasSetLast) {
@@ -91,9 +103,13 @@ TEST(Renderer, TakesTheBackendThatAutomaticResolvesTo) {
   EXPECT_EQ(renderer.backend(), resolveBackend(Backend::automatic).backend);
 }
 
-TEST(Renderer, RefusesWhatItCannotDraw) {
-  Renderer renderer;
+class Refusals : public test::OnBackends {};
+EMSCAPE_ON_BACKENDS(Refusals);
+
+TEST_P(Refusals, OfWhatCannotBeDrawn) {
+  Renderer renderer(on(GetParam()));
   EXPECT_THROW(renderer.sceneBox(), Error);
+  EXPECT_THROW(renderer.draw({}, {8, 8}), Error);
   EXPECT_THROW(renderer.setVolume(volume::Volume()), Error);
   auto volume = makeEmeVolume({4, 4, 4});
   volume->values.pop_back();

@@ -8,12 +8,19 @@
 #include <vector>
 
 #include "emscape/render/height_field.h"
+#include "emscape/render/renderer.h"
 #include "emscape/render/transfer_function.h"
 #include "emscape/volume/dense_volume.h"
 
 namespace emscape::render::testing {
 
 using ValueAt = std::function<float(int, int, int)>;
+
+inline RendererOptions on(Backend backend) {
+  RendererOptions options;
+  options.backend = backend;
+  return options;
+}
 
 /// A volume in a frame where its box begins at the origin.
 inline std::shared_ptr<volume::DenseVolume> makeVolume(Dims dims, Vec3d spacing_m, const ValueAt& value) {

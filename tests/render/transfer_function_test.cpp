@@ -7,9 +7,10 @@
 #include <filesystem>
 #include <random>
 
-#include "emscape/base/error.h"
 #include "render/transfer_table.h"
 #include "tests/render/scenes.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
 
 namespace emscape::render {
 namespace {
@@ -27,13 +28,7 @@ volume::VolumeInfo decibels() {
 }
 
 std::string refusalOf(const std::string& text) {
-  try {
-    parseTransferFunction(text, "tf.json", decibels());
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    return error.what();
-  }
-  return "accepted";
+  return test::errorOf([&] { parseTransferFunction(text, "tf.json", decibels()); }, ErrorCode::bad_input);
 }
 
 TEST(TransferFunction, IsLinearBetweenPointsAndConstantOutside) {
@@ -249,27 +244,18 @@ TEST(TransferFile, AnotherUnitIsRefused) {
   function.unit = "";
   EXPECT_NO_THROW(requireUnitOf(function, decibels()));
   function.unit = "dB";
-  try {
-    requireUnitOf(function, decibels());
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("unit 'dB' is not that of the volume: power_density_dbwm2 is in 'dBW/m2'"));
-  }
+  EXPECT_THAT(test::errorOf([&] { requireUnitOf(function, decibels()); }),
+              HasSubstr("unit 'dB' is not that of the volume: power_density_dbwm2 is in 'dBW/m2'"));
 }
 
 TEST(TransferFile, AMissingFileIsNamed) {
-  try {
-    readTransferFunction("/no/such/file.json", decibels());
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("/no/such/file.json"));
-  }
+  EXPECT_THAT(test::errorOf([] { readTransferFunction("/no/such/file.json", decibels()); }),
+              HasSubstr("/no/such/file.json"));
 }
 
 TEST(TransferFile, EveryShippedFunctionReads) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(EMSCAPE_SOURCE_DIR "/scenarios/transfer")) {
+  for (const auto& entry : std::filesystem::directory_iterator(test::shippedScenario("transfer"))) {
     volume::VolumeInfo info = decibels();
     if (entry.path().filename() == "snr_db.json") info.unit = "dB";
     if (entry.path().filename() == "field_strength_dbuvm.json") info.unit = "dBuV/m";

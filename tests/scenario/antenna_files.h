@@ -3,54 +3,38 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <cstdio>
-#include <fstream>
 #include <functional>
 #include <string>
 
-#include "emscape/base/error.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {
 
-/// A file in the tests' temporary folder, removed at the end of its scope.
+/// A file in a folder of its own, removed at the end of its scope.
 class TemporaryFile {
  public:
-  TemporaryFile(const std::string& name, const std::string& content) : path_(pathOf(name)) {
-    rewrite(content);
-  }
-  ~TemporaryFile() { std::remove(path_.c_str()); }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  TemporaryFile(const std::string& name, const std::string& content) : path_(folder_.write(name, content)) {}
 
-  void rewrite(const std::string& content) const { std::ofstream(path_, std::ios::binary) << content; }
+  void rewrite(const std::string& content) const { test::writeFile(path_, content); }
   const std::string& path() const { return path_; }
 
  private:
-  /// Tests of one program run side by side: the running test's name keeps their files apart.
-  static std::string pathOf(const std::string& name) {
-    const testing::TestInfo* test = testing::UnitTest::GetInstance()->current_test_info();
-    return testing::TempDir() + "emscape_" + std::to_string(::getpid()) + "_" + test->test_suite_name() +
-           "_" + test->name() + "_" + name;
-  }
-
+  test::TemporaryFolder folder_;
   std::string path_;
 };
 
 /// Expects an Error (bad_input) at line:column of the file (0: none) whose message holds `part`.
 inline void expectFault(const std::function<void()>& read, const std::string& file, int line, int column,
                         const std::string& part) {
-  try {
-    read();
-    ADD_FAILURE() << "no error; expected: " << part;
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    EXPECT_EQ(error.place().file, file);
-    EXPECT_EQ(error.place().line, line) << error.what();
-    EXPECT_EQ(error.place().column, column) << error.what();
-    EXPECT_THAT(error.message(), testing::HasSubstr(part));
-  }
+  const Error error = test::thrownBy(read);
+  EXPECT_EQ(error.code(), ErrorCode::bad_input);
+  EXPECT_EQ(error.place().file, file);
+  EXPECT_EQ(error.place().line, line) << error.what();
+  EXPECT_EQ(error.place().column, column) << error.what();
+  EXPECT_THAT(error.message(), testing::HasSubstr(part));
 }
 
 /// Reads a file cut off after each of its bytes, and with each byte replaced by one that hurts, another at

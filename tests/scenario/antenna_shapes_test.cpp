@@ -8,10 +8,10 @@
 #include <limits>
 #include <string>
 
-#include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "scenario/antenna/pattern.h"
 #include "tests/scenario/antenna_directions.h"
+#include "tests/support/errors.h"
 
 namespace emscape::scenario {
 namespace {
@@ -67,13 +67,7 @@ double worstOfView_db(const AntennaPtr& antenna, double az_range_deg, double el_
 }
 
 void expectError(const std::function<void()>& action, const std::string& part) {
-  try {
-    action();
-    ADD_FAILURE() << "no error; expected: " << part;
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    EXPECT_THAT(error.what(), HasSubstr(part));
-  }
+  EXPECT_THAT(test::errorOf(action, ErrorCode::bad_input), HasSubstr(part));
 }
 
 TEST(IsotropicAntenna, HasItsGainEverywhere) {

@@ -12,7 +12,7 @@ namespace emscape::scenario {
 namespace {
 
 std::filesystem::path brokenFolder() {
-  return std::filesystem::path(EMSCAPE_SOURCE_DIR) / "tests/scenario/broken";
+  return test::sourceFile("tests/scenario/broken");
 }
 
 std::vector<std::string> brokenScenarios() {
@@ -54,7 +54,7 @@ TEST_P(BrokenScenario, IsToldWithItsPlaces) {
   const std::filesystem::path file = brokenFolder() / (GetParam() + ".yaml");
   const ParseResult result = parseScenario(file.string());
   EXPECT_EQ(result.scenario, nullptr);
-  const auto expectations = expectationsOf(test::readText(file), file.filename().string());
+  const auto expectations = expectationsOf(test::readFile(file), file.filename().string());
   ASSERT_FALSE(expectations.empty());
   ASSERT_EQ(result.problems.size(), expectations.size()) << told(result.problems);
   for (std::size_t i = 0; i < expectations.size(); ++i) {
@@ -80,17 +80,11 @@ TEST(BrokenScenarios, AreAtLeastThirty) {
 
 TEST(BrokenScenarios, LoadingListsAllProblemsOneALine) {
   const std::string file = (brokenFolder() / "73_many_faults.yaml").string();
-  try {
-    loadScenario(file);
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    const std::string message = error.what();
-    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 5);
-    EXPECT_EQ(message.compare(0, file.size(), file), 0) << message;
-    EXPECT_NE(message.find(file + ":29:5: unknown key 'power'; write 'power_w' (W)"), std::string::npos)
-        << message;
-  }
+  const std::string message = test::errorOf([&] { loadScenario(file); }, ErrorCode::bad_input);
+  EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 5);
+  EXPECT_EQ(message.compare(0, file.size(), file), 0) << message;
+  EXPECT_NE(message.find(file + ":29:5: unknown key 'power'; write 'power_w' (W)"), std::string::npos)
+      << message;
 }
 
 class DamagedScenario : public ::testing::Test {
@@ -129,7 +123,7 @@ emitters:
   - {name: j, platform: ship on its way, kind: jammer, frequency_hz: 1e9, power_w: 4, antenna: *horn}
 output: {quantities: [snr_db], combine: per_emitter}
 )";
-  test::ScratchFolder folder_;
+  test::TemporaryFolder folder_;
 
   /// Whatever the damage, there is either a scenario or an error that says where.
   void parse(const std::string& text) {

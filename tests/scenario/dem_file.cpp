@@ -1,5 +1,6 @@
 #include "tests/scenario/dem_file.h"
 
+#include <cpl_conv.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
@@ -79,6 +80,22 @@ std::array<double, 2> projected(const std::string& crs, double latitude_deg, dou
   if (!transformation || !transformation->Transform(1, &x, &y))
     throw std::runtime_error("cannot project to " + crs);
   return {x, y};
+}
+
+void convertDem(const std::string& from, const std::string& driver, const std::string& to) {
+  GDALAllRegister();
+  const std::unique_ptr<GDALDataset> source(GDALDataset::Open(from.c_str()));
+  if (!source) throw std::runtime_error("cannot read " + from);
+  const std::unique_ptr<GDALDataset> copy(
+      GetGDALDriverManager()
+          ->GetDriverByName(driver.c_str())
+          ->CreateCopy(to.c_str(), source.get(), true, nullptr, nullptr, nullptr));
+  if (!copy) throw std::runtime_error("cannot write " + to);
+}
+
+void unpackGz(const std::string& from, const std::string& to) {
+  if (CPLCopyFile(to.c_str(), ("/vsigzip/" + from).c_str()) != 0)
+    throw std::runtime_error("cannot unpack " + from);
 }
 
 }  // namespace emscape::test

@@ -36,4 +36,9 @@ DemFile geographicPointDem(double west_deg, double north_deg, double step_deg, i
 /// A CRS's coordinates (east, north) of a point of WGS84.
 std::array<double, 2> projected(const std::string& crs, double latitude_deg, double longitude_deg);
 
+/// Writes a raster in another format. @param driver  GDAL's name of the format
+void convertDem(const std::string& from, const std::string& driver, const std::string& to);
+/// Unpacks a .gz file.
+void unpackGz(const std::string& from, const std::string& to);
+
 }  // namespace emscape::test

@@ -21,7 +21,7 @@ using document::DocumentNode;
 using document::DocumentNodePtr;
 using document::NodeKind;
 using document::ValueType;
-using test::ScratchFolder;
+using test::TemporaryFolder;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -67,23 +67,20 @@ class EditScenario : public ::testing::Test {
   std::string saved(const Scenario& scenario) {
     const std::string file = (folder_.path() / "saved.yaml").string();
     saveScenario(scenario, file);
-    return test::readText(file);
+    return test::readFile(file);
   }
-  ScratchFolder folder_;
+  TemporaryFolder folder_;
 };
 
 std::string faultOf(Scenario& scenario, const std::string& path, const std::string& value) {
   const std::string hash = scenario.hash;
   const auto source = scenario.source;
-  try {
-    scenario.set(path, value);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
+  const std::string fault = test::errorOf([&] { scenario.set(path, value); }, ErrorCode::bad_input);
+  if (!fault.empty()) {
     EXPECT_EQ(scenario.hash, hash) << "unchanged";
     EXPECT_EQ(scenario.source, source) << "unchanged";
-    return error.what();
   }
-  return "";
+  return fault;
 }
 
 TEST_F(EditScenario, ChangesTheValueAndNothingElseOfTheText) {
@@ -229,7 +226,7 @@ TEST_F(EditScenario, AllFaultsOfSeveralEditsAreTold) {
 }
 
 TEST_F(EditScenario, UnchangedAntennasAndTerrainStay) {
-  Scenario scenario = *loadScenario(std::string(EMSCAPE_SOURCE_DIR) + "/scenarios/jacksboro.yaml");
+  Scenario scenario = *loadScenario(test::shippedScenario("jacksboro.yaml"));
   const Scenario before = scenario;
   scenario.set("emitters." + scenario.emitters[0].name + ".power_w", "7");
   scenario.set("emitters." + scenario.emitters[1].name + ".antenna.gain_dbi", "7");
@@ -261,7 +258,7 @@ TEST_F(EditScenario, SavesToAnotherFolderWithNamesOfFilesThatStillLead) {
   std::filesystem::create_directories(folder_.path() / "deep/er");
   const std::string file = (folder_.path() / "deep/er/t.yaml").string();
   saveScenario(scenario, file);
-  EXPECT_THAT(test::readText(file), HasSubstr("track: {file: ../../track.csv} # where"));
+  EXPECT_THAT(test::readFile(file), HasSubstr("track: {file: ../../track.csv} # where"));
   EXPECT_EQ(loadScenario(file)->platforms[2].track.size(), 2u);
 }
 
@@ -389,13 +386,8 @@ TEST(ParseEdit, EndsThePathAtTheFirstEqualsSignOutsideQuotes) {
   EXPECT_EQ(parseEdit("a.\"x=y\".b=1"), (Edit{"a.\"x=y\".b", "1"}));
   EXPECT_EQ(parseEdit("a="), (Edit{"a", ""}));
   for (const char* text : {"", "a", "=1", "a.\"b=1"}) {
-    try {
-      parseEdit(text);
-      FAIL() << text;
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::usage);
-      EXPECT_THAT(error.what(), HasSubstr("write PATH=VALUE"));
-    }
+    EXPECT_THAT(test::errorOf([&] { parseEdit(text); }, ErrorCode::usage), HasSubstr("write PATH=VALUE"))
+        << text;
   }
 }
 
@@ -408,9 +400,9 @@ std::vector<std::string> messagesOf(const std::vector<Problem>& problems) {
 
 /// An edit and a file that is written anew with the value must mean the same, for every key of the table.
 TEST(EditEveryKey, EqualsAFileWithThatValue) {
-  ScratchFolder folder;
+  TemporaryFolder folder;
   for (const char* data : {"track.csv", "sector.msi", "valid.yaml"})
-    folder.write(data, test::readText(test::testData() / data));
+    folder.write(data, test::readFile(test::testData() / data));
   RandomEdits random(7);
   int sound = 0, all = 0;
   for (const std::string& original :
@@ -426,7 +418,7 @@ TEST(EditEveryKey, EqualsAFileWithThatValue) {
       ASSERT_NO_THROW(applyEdit(source, {path, value}));
       const std::string anew = folder.write("anew.json", document::flowText(*source.root, true));
       const ParseResult read = parseScenario(anew);
-      ASSERT_EQ(edited.scenario != nullptr, read.scenario != nullptr) << test::readText(anew);
+      ASSERT_EQ(edited.scenario != nullptr, read.scenario != nullptr) << test::readFile(anew);
       if (!edited.scenario) return;
       ++sound;
       EXPECT_EQ(messagesOf(edited.problems), messagesOf(read.problems));
@@ -442,9 +434,9 @@ TEST(EditEveryKey, EqualsAFileWithThatValue) {
 }
 
 TEST(EditAtRandom, NeverCrashesAndKeepsTheTextInStep) {
-  ScratchFolder folder;
+  TemporaryFolder folder;
   for (const char* data : {"track.csv", "sector.msi", "valid.yaml"})
-    folder.write(data, test::readText(test::testData() / data));
+    folder.write(data, test::readFile(test::testData() / data));
   for (const std::string& file :
        {(folder.path() / "valid.yaml").string(), folder.write("small.yaml", kSmall)}) {
     RandomEdits random(11);

@@ -6,6 +6,8 @@
 #include <functional>
 
 #include "emscape/scenario/scenario_file.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
 
 namespace emscape::scenario {
 namespace {
@@ -14,7 +16,7 @@ using testing::Contains;
 using testing::HasSubstr;
 
 std::shared_ptr<const Scenario> shipped(const char* name) {
-  return loadScenario(std::string(EMSCAPE_SOURCE_DIR) + "/scenarios/" + name);
+  return loadScenario(test::shippedScenario(name));
 }
 
 const Parameter* find(const ParameterGroup& group, const std::string& path) {
@@ -129,13 +131,9 @@ TEST(EditsForChoice, ChangeToEveryPatternScanModelAndKindAndBack) {
 
 TEST(EditsForChoice, SayWhatHasNoCommonValue) {
   const auto scenario = shipped("jacksboro.yaml");
-  try {
-    editsForChoice(*scenario, "emitters.jammer.antenna.pattern", "cuts");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    EXPECT_THAT(error.message(), HasSubstr("'cuts' needs 'azimuth_file', which has no common value"));
-  }
+  EXPECT_THAT(test::errorOf([&] { editsForChoice(*scenario, "emitters.jammer.antenna.pattern", "cuts"); },
+                            ErrorCode::bad_input),
+              HasSubstr("'cuts' needs 'azimuth_file', which has no common value"));
 }
 
 TEST(PathStep, QuotesNamesThatNeedIt) {

@@ -25,8 +25,8 @@ class ScenarioYaml : public ::testing::Test {
   std::shared_ptr<const Scenario> load(const std::string& text, const std::string& name = "scenario.yaml") {
     return loadScenario(folder_.write(name, text));
   }
-  const std::string valid_ = test::readText(test::testData() / "valid.yaml");
-  test::ScratchFolder folder_;
+  const std::string valid_ = test::readFile(test::testData() / "valid.yaml");
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(ScenarioYaml, ReadsEverySection) {
@@ -215,10 +215,10 @@ TEST_F(ScenarioYaml, HashFollowsTheScenarioAndEveryNamedFile) {
   EXPECT_THAT(before, ::testing::MatchesRegex("[0-9a-f]{16}"));
   EXPECT_EQ(load(valid_)->hash, before);
   EXPECT_NE(load(valid_ + "# remark\n")->hash, before);
-  folder_.write("track.csv", replaced(test::readText(test::testData() / "track.csv"), "950", "951"));
+  folder_.write("track.csv", replaced(test::readFile(test::testData() / "track.csv"), "950", "951"));
   const std::string other_track = load(valid_)->hash;
   EXPECT_NE(other_track, before);
-  folder_.write("sector.msi", replaced(test::readText(test::testData() / "sector.msi"), "12.00", "13.00"));
+  folder_.write("sector.msi", replaced(test::readFile(test::testData() / "sector.msi"), "12.00", "13.00"));
   EXPECT_NE(load(valid_)->hash, other_track);
 }
 
@@ -262,9 +262,8 @@ TEST_F(ScenarioYaml, TrackMayHaveBlankLinesRemarksAndAttitude) {
 }
 
 TEST(ScenarioSchema, ShippedFileIsWhatTheTableSays) {
-  const auto shipped =
-      std::filesystem::path(EMSCAPE_SOURCE_DIR) / "scenarios/schema/emscape-scenario.schema.json";
-  EXPECT_TRUE(test::readText(shipped) == scenarioJsonSchema())
+  const std::string shipped = test::shippedScenario("schema/emscape-scenario.schema.json");
+  EXPECT_TRUE(test::readFile(shipped) == scenarioJsonSchema())
       << "write what scenarioJsonSchema() gives to " << shipped;
 }
 

@@ -9,6 +9,7 @@
 #include "emscape/base/units.h"
 #include "scenario/antenna_shapes.h"
 #include "scenario/terrain/view.h"
+#include "tests/support/errors.h"
 
 namespace emscape::scenario {
 namespace {
@@ -68,14 +69,10 @@ void expectVector(const Vec3d& actual, const Vec3d& expected) {
 }
 
 void expectMessage(const Scenario& scenario, const Terrain* terrain, double t_s, const std::string& message) {
-  try {
-    snap(scenario, t_s, terrain);
-    FAIL() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    EXPECT_EQ(error.place().line, 12);
-    EXPECT_NE(error.message().find(message), std::string::npos) << error.message();
-  }
+  const Error error = test::thrownBy([&] { snap(scenario, t_s, terrain); });
+  EXPECT_EQ(error.code(), ErrorCode::bad_input);
+  EXPECT_EQ(error.place().line, 12);
+  EXPECT_NE(error.message().find(message), std::string::npos) << error.message();
 }
 
 TEST(Snapshot, SaysWhenItIs) {

@@ -2,7 +2,6 @@
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,8 @@
 #include "emscape/scenario/terrain.h"
 #include "scenario/terrain/view.h"
 #include "tests/scenario/dem_file.h"
+#include "tests/support/errors.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {
 namespace {
@@ -29,36 +30,26 @@ double flat(double, double) {
 
 class TerrainFileTest : public testing::Test {
  protected:
-  TerrainFileTest() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("emscape_terrain_file_" + std::to_string(::getpid()) + info->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~TerrainFileTest() override { std::filesystem::remove_all(folder_); }
-
   std::string write(const std::string& name, const DemFile& file) const {
     file.write(folder_ / name);
-    return (folder_ / name).string();
+    return folder_ / name;
   }
 
   /// The message of loading a file over a box; nothing may be printed meanwhile.
   std::string problemOf(const std::string& file, const SourceLocation& place = {}) const {
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
-    std::string message;
-    try {
-      Terrain::load({{file}, {place}, VerticalDatum::egm96}, {49, 50, 10, 11});
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::bad_input);
-      message = error.what();
-    }
+    const std::string message = test::errorOf(
+        [&] {
+          Terrain::load({{file}, {place}, VerticalDatum::egm96}, {49, 50, 10, 11});
+        },
+        ErrorCode::bad_input);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
     return message;
   }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TerrainPtr load(const std::vector<std::string>& files, const GeoBox& box) {
@@ -71,8 +62,7 @@ TEST_F(TerrainFileTest, FeetBecomeMetres) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
   file.unit = "ft";
   EXPECT_NEAR(load({write("ft.tif", file)}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 30.48, 1e-4);
-  EXPECT_THAT(Terrain::describe((folder_ / "ft.tif").string()).notes,
-              Contains(HasSubstr("'ft' are converted")));
+  EXPECT_THAT(Terrain::describe(folder_ / "ft.tif").notes, Contains(HasSubstr("'ft' are converted")));
   file.unit = "US survey foot";
   EXPECT_NEAR(load({write("us.tif", file)}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100 * 1200 / 3937.0,
               1e-4);
@@ -243,7 +233,7 @@ TEST_F(TerrainFileTest, AVirtualMosaicIsReadWhereTheBoxIs) {
       <SimpleSource><SourceFilename relativeToVRT="1">w.tif</SourceFilename><SourceBand>1</SourceBand>
         <SrcRect xOff="0" yOff="0" xSize="100" ySize="100"/><DstRect xOff="0" yOff="0" xSize="100" ySize="100"/>
       </SimpleSource></VRTRasterBand></VRTDataset>)";
-  const TerrainPtr terrain = load({(folder_ / "m.vrt").string()}, {49.2, 49.8, 10.5, 11.5});
+  const TerrainPtr terrain = load({folder_ / "m.vrt"}, {49.2, 49.8, 10.5, 11.5});
   EXPECT_EQ(terrain->heightMsl_m(49.5, 10.7), 100);
   EXPECT_TRUE(std::isnan(terrain->heightMsl_m(49.5, 11.2)));
   EXPECT_LT(terrain->view().rasters[0].columns, 110);
@@ -256,7 +246,7 @@ TEST_F(TerrainFileTest, AVirtualMosaicWithoutItsTilesIsAnError) {
       <SimpleSource><SourceFilename relativeToVRT="1">gone.tif</SourceFilename><SourceBand>1</SourceBand>
         <SrcRect xOff="0" yOff="0" xSize="100" ySize="100"/><DstRect xOff="0" yOff="0" xSize="100" ySize="100"/>
       </SimpleSource></VRTRasterBand></VRTDataset>)";
-  EXPECT_THAT(problemOf((folder_ / "m.vrt").string()), AllOf(HasSubstr("m.vrt"), HasSubstr("gone.tif")));
+  EXPECT_THAT(problemOf(folder_ / "m.vrt"), AllOf(HasSubstr("m.vrt"), HasSubstr("gone.tif")));
 }
 
 // --- what a file says of itself
@@ -306,18 +296,17 @@ TEST_F(TerrainFileTest, DescribeRepeatsTheVerticalDatumOfTheFile) {
 // --- faults
 
 TEST_F(TerrainFileTest, AMissingFileIsNamed) {
-  const std::string file = (folder_ / "none.tif").string();
+  const std::string file = folder_ / "none.tif";
   EXPECT_EQ(problemOf(file), "elevation file " + file + ": no such file");
   EXPECT_EQ(problemOf(file, {"s.yaml", 7, 12}), "s.yaml:7:12: elevation file " + file + ": no such file");
 }
 
 TEST_F(TerrainFileTest, WhatIsNoRasterIsRefused) {
   std::ofstream(folder_ / "notes.tif") << "not a raster";
-  EXPECT_THAT(problemOf((folder_ / "notes.tif").string()),
-              AllOf(HasSubstr("notes.tif"), HasSubstr("not a raster")));
-  EXPECT_THAT(problemOf(folder_.string()), HasSubstr("not a raster"));
+  EXPECT_THAT(problemOf(folder_ / "notes.tif"), AllOf(HasSubstr("notes.tif"), HasSubstr("not a raster")));
+  EXPECT_THAT(problemOf(folder_.path().string()), HasSubstr("not a raster"));
   std::ofstream(folder_ / "empty.dt1").flush();
-  EXPECT_THAT(problemOf((folder_ / "empty.dt1").string()), HasSubstr("not a raster"));
+  EXPECT_THAT(problemOf(folder_ / "empty.dt1"), HasSubstr("not a raster"));
 }
 
 TEST_F(TerrainFileTest, AbsurdPositionsAreRefused) {
@@ -335,7 +324,7 @@ TEST_F(TerrainFileTest, AbsurdPositionsAreRefused) {
 
 TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {
   const auto vrt = [&](const std::string& source, const std::string& size = "10") {
-    const std::string file = (folder_ / "a.vrt").string();
+    const std::string file = folder_ / "a.vrt";
     std::ofstream(file) << "<VRTDataset rasterXSize=\"" << size
                         << "\" rasterYSize=\"10\"><SRS>EPSG:4326</SRS>"
                         << "<GeoTransform>10, 0.1, 0, 50, 0, -0.1</GeoTransform>"
@@ -345,7 +334,7 @@ TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {
   };
   write("a.tif", geographicDem(10, 50, 0.1, 10, 10, flat));
   EXPECT_EQ(vrt("<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>"), "");
-  EXPECT_EQ(vrt("<SourceFilename>" + (folder_ / "a.tif").string() + "</SourceFilename>"), "");
+  EXPECT_EQ(vrt("<SourceFilename>" + folder_ / "a.tif" + "</SourceFilename>"), "");
   for (const char* source : {"<SourceFilename relativeToVRT=\"1\">../a.tif</SourceFilename>",
                              "<SourceFilename>/etc/hostname</SourceFilename>",
                              "<SourceFilename>/vsicurl/http://127.0.0.1:1/x.tif</SourceFilename>",
@@ -376,7 +365,7 @@ TEST_F(TerrainFileTest, WithoutAPlaceOnTheEarthAFileIsRefused) {
 
 TEST_F(TerrainFileTest, ComplexNumbersAreNoHeights) {
   GDALAllRegister();
-  const std::string path = (folder_ / "a.tif").string();
+  const std::string path = folder_ / "a.tif";
   GDALClose(
       GetGDALDriverManager()->GetDriverByName("GTiff")->Create(path.c_str(), 4, 4, 1, GDT_CFloat32, nullptr));
   EXPECT_THAT(problemOf(path), HasSubstr("complex numbers"));
@@ -394,12 +383,10 @@ TEST_F(TerrainFileTest, ARegionOfTooManyPostsIsRefusedBeforeItIsRead) {
       << R"(<VRTDataset rasterXSize="1296000" rasterYSize="648000"><SRS>EPSG:4326</SRS>
     <GeoTransform>-180, 0.000277777777777778, 0, 90, 0, -0.000277777777777778</GeoTransform>
     <VRTRasterBand dataType="Int16" band="1"/></VRTDataset>)";
-  try {
-    load({(folder_ / "world.vrt").string()}, {-80, 80, -180, 180});
-    FAIL() << "was read";
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("world.vrt"), HasSubstr("posts"), HasSubstr("smaller region")));
-  }
+  EXPECT_THAT(test::errorOf([&] {
+                load({folder_ / "world.vrt"}, {-80, 80, -180, 180});
+              }),
+              AllOf(HasSubstr("world.vrt"), HasSubstr("posts"), HasSubstr("smaller region")));
 }
 
 }  // namespace

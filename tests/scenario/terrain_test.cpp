@@ -3,7 +3,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -13,8 +12,9 @@
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
 #include "scenario/terrain/view.h"
-#include "tests/reference_dir.h"
 #include "tests/scenario/dem_file.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {
 namespace {
@@ -37,20 +37,12 @@ double flat(double, double) {
 
 class TerrainTest : public testing::Test {
  protected:
-  TerrainTest() {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("emscape_terrain_" + std::to_string(::getpid()) + info->name());
-    std::filesystem::create_directories(folder_);
-  }
-  ~TerrainTest() override { std::filesystem::remove_all(folder_); }
-
   std::string write(const std::string& name, const DemFile& file) const {
     file.write(folder_ / name);
-    return (folder_ / name).string();
+    return folder_ / name;
   }
 
-  std::filesystem::path folder_;
+  test::TemporaryFolder folder_;
 };
 
 TerrainPtr load(const std::vector<std::string>& files, const GeoBox& box,
@@ -60,21 +52,32 @@ TerrainPtr load(const std::vector<std::string>& files, const GeoBox& box,
 
 // --- the real files
 
+/// Tiles of tests/data, and N44W072 in the encodings in which such tiles are distributed.
 class ReferenceDem : public testing::Test {
  protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(folder_)) GTEST_SKIP() << "no " << folder_;
+  const std::string tif_ = test::sourceFile("tests/data/dem/N44W072.tif");
+  std::string hgt() const { return encoded("SRTMHGT", "N44W072.hgt"); }
+  std::string dted() const { return encoded("DTED", "N44W072.dt1"); }
+  std::string dtedWithVoids() const {
+    const std::string file = folder_ / "n00_e006_3arc_v2.dt1";
+    test::unpackGz(test::sourceFile("tests/data/dem/n00_e006_3arc_v2.dt1.gz"), file);
+    return file;
   }
-  std::string file(const char* name) const { return (folder_ / name).string(); }
 
-  std::filesystem::path folder_ = test::referenceDir() / "dem";
+ private:
+  std::string encoded(const char* driver, const char* name) const {
+    test::convertDem(tif_, driver, folder_ / name);
+    return folder_ / name;
+  }
+
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(ReferenceDem, ThreeEncodingsOfATileHaveIdenticalHeights) {
   const GeoBox box{44, 45, -72, -71};
-  const TerrainPtr hgt = load({file("N44W072.hgt")}, box);
-  const TerrainPtr dted = load({file("N44W072.dt1")}, box);
-  const TerrainPtr tif = load({file("N44W072.tif")}, box);
+  const TerrainPtr hgt = load({this->hgt()}, box);
+  const TerrainPtr dted = load({this->dted()}, box);
+  const TerrainPtr tif = load({tif_}, box);
   const auto expectSame = [&](double latitude_deg, double longitude_deg) {
     const double height_m = hgt->heightMsl_m(latitude_deg, longitude_deg);
     ASSERT_FALSE(std::isnan(height_m)) << latitude_deg << " " << longitude_deg;
@@ -99,8 +102,9 @@ TEST_F(ReferenceDem, ThreeEncodingsOfATileHaveIdenticalHeights) {
 }
 
 TEST_F(ReferenceDem, PostsAreTheFilesOwnBytes) {
-  std::ifstream bytes(file("N44W072.hgt"), std::ios::binary);
-  const TerrainPtr terrain = load({file("N44W072.hgt")}, {44, 45, -72, -71});
+  const std::string file = hgt();
+  std::ifstream bytes(file, std::ios::binary);
+  const TerrainPtr terrain = load({file}, {44, 45, -72, -71});
   for (int row : {0, 1, 599, 1199, 1200}) {
     for (int column : {0, 1, 600, 1200}) {
       bytes.seekg((row * 1201 + column) * 2);
@@ -112,7 +116,8 @@ TEST_F(ReferenceDem, PostsAreTheFilesOwnBytes) {
 }
 
 TEST_F(ReferenceDem, VoidsAreNaNAndCounted) {
-  const TerrainPtr terrain = load({file("n00_e006_3arc_v2.dt1")}, {0, 1, 6, 7});
+  const std::string file = dtedWithVoids();
+  const TerrainPtr terrain = load({file}, {0, 1, 6, 7});
   EXPECT_EQ(terrain->voidPosts(), 4072);
   EXPECT_EQ(terrain->uncoveredFraction(), 0);
   int voids = 0;
@@ -122,13 +127,13 @@ TEST_F(ReferenceDem, VoidsAreNaNAndCounted) {
     }
   }
   EXPECT_EQ(voids, 4072);
-  EXPECT_EQ(Terrain::describe(file("n00_e006_3arc_v2.dt1")).void_posts, 4072);
+  EXPECT_EQ(Terrain::describe(file).void_posts, 4072);
 }
 
 TEST_F(ReferenceDem, ABoxHoldsItsOwnPostsOnlyAndTheSameHeights) {
-  const TerrainPtr whole = load({file("N44W072.hgt")}, {44, 45, -72, -71});
+  const TerrainPtr whole = load({tif_}, {44, 45, -72, -71});
   const GeoBox box{44.2003, 44.3001, -71.6002, -71.4007};
-  const TerrainPtr part = load({file("N44W072.hgt")}, box);
+  const TerrainPtr part = load({tif_}, box);
   ASSERT_EQ(part->view().count, 1);
   EXPECT_LT(part->view().rasters[0].columns, 0.2 * 1200 + 8);
   EXPECT_LT(part->view().rasters[0].rows, 0.1 * 1200 + 8);

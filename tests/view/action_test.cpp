@@ -9,6 +9,7 @@
 
 #include "apps/view/input_queue.h"
 #include "emscape/base/error.h"
+#include "tests/support/files.h"
 
 namespace emscape::view {
 namespace {
@@ -60,10 +61,8 @@ TEST(Action, ChordsAreReadAndWritten) {
 }
 
 TEST(Action, TheManualHoldsTheTables) {
-  std::ifstream in(EMSCAPE_SOURCE_DIR "/docs/viewer.md");
-  std::ostringstream manual;
-  manual << in.rdbuf();
-  EXPECT_NE(manual.str().find(manualTables()), std::string::npos)
+  const std::string manual = test::readFile(test::sourceFile("docs/viewer.md"));
+  EXPECT_NE(manual.find(manualTables()), std::string::npos)
       << "docs/viewer.md: put the output of `emscape-view --manual-tables` there";
 }
 

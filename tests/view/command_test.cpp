@@ -3,18 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "emscape/base/error.h"
+#include "tests/support/errors.h"
 
 namespace emscape::view {
 namespace {
 
 std::string faultOf(const std::string& text) {
-  try {
-    parseCommand(text);
-  } catch (const Error& error) {
-    return error.message();
-  }
-  return "";
+  return test::errorOf([&] { parseCommand(text); });
 }
 
 TEST(Command, IsReadAndWritten) {

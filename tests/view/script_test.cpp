@@ -3,27 +3,18 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-
-#include "emscape/base/error.h"
+#include "tests/support/errors.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::view {
 namespace {
 
 std::string faultOf(const std::string& text) {
-  const std::string file = (std::filesystem::temp_directory_path() / "emscape_script_test.jsonl").string();
-  std::ofstream(file) << text;
-  std::string fault;
-  try {
-    EXPECT_FALSE(Script(file).finished());
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::bad_input);
-    fault = error.what();
-    fault.erase(0, file.size());
-  }
-  std::filesystem::remove(file);
-  return fault;
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("script.jsonl", text);
+  const std::string fault =
+      test::errorOf([&] { EXPECT_FALSE(Script(file).finished()); }, ErrorCode::bad_input);
+  return fault.empty() ? "" : fault.substr(file.size());
 }
 
 TEST(Script, CommentsAndEmptyLinesAreSkipped) {

@@ -6,7 +6,7 @@
 #include "apps/view/session_opener.h"
 #include "emscape/base/error.h"
 #include "emscape/render/image.h"
-#include "tests/view/session_samples.h"
+#include "tests/view/session_sample.h"
 
 namespace emscape::view::test {
 namespace {
@@ -15,36 +15,19 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-void write(const std::string& file, const std::string& text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
-
-std::string faultOf(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no Error was thrown";
-  return "";
-}
-
 /// A copy of scenarios/quick.yaml that a test may change.
 std::string ownScenario(const StateFolder& folder, const std::string& from = "", const std::string& to = "") {
-  std::string text = readText(shippedScenario("quick.yaml"));
+  std::string text = readFile(shippedScenario("quick.yaml"));
   if (!from.empty()) text.replace(text.find(from), from.size(), to);
-  write(folder / "own.yaml", text);
-  return folder / "own.yaml";
+  return folder.write("own.yaml", text);
 }
 
-bool waitUntilOpened(Shown& shown, SessionOpener& opener) {
-  for (int i = 0; i < 12000; ++i) {
+bool waitUntilOpened(SessionSample& shown, SessionOpener& opener) {
+  return shown.waitUntil([&] {
     opener.update(shown.session);
     shown->update();
-    if (!opener.active() && shown->settled()) return true;
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  return false;
+    return !opener.active() && shown->settled();
+  });
 }
 
 // --- recent files ---
@@ -82,7 +65,7 @@ TEST(FileBrowser, ShowsFoldersThenWhatCanBeOpened) {
   fs::create_directory(folder / "Zebra");
   fs::create_directory(folder / "apple");
   for (const char* name : {"b.yaml", "A.vdb", "c.view.json", "notes.txt", "dem.tif", ".hidden.yaml"}) {
-    write(folder / name, "");
+    folder.write(name, "");
   }
   FileBrowser browser;
   browser.open(FileBrowser::Purpose::input, folder / "");
@@ -97,7 +80,7 @@ TEST(FileBrowser, EntersFoldersAndComesBackToWhereItWas) {
   const StateFolder folder;
   fs::create_directory(folder / "a");
   fs::create_directory(folder / "b");
-  write(folder / "b/x.yaml", "");
+  folder.write("b/x.yaml", "");
   FileBrowser browser;
   browser.open(FileBrowser::Purpose::input, folder / "");
   ASSERT_TRUE(waitUntilRead(browser));
@@ -126,11 +109,11 @@ TEST(FileBrowser, SaysWhyAFolderCannotBeRead) {
 TEST(Opening, TellsWhatAFileIsByItsContent) {
   const StateFolder folder;
   const ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
-  write(folder / "a.view.json", R"({"schema_version": 1, "time_s": 2})");
+  folder.write("a.view.json", R"({"schema_version": 1, "time_s": 2})");
   Opening opening = prepareOpening({folder / "a.view.json", "", std::nullopt, false}, present);
   EXPECT_EQ(opening.options.input, present.input);
   EXPECT_EQ(opening.options.view.time_s, 2);
-  write(folder / "b.json", R"({"schema_version": 1, "domain": "relative", "opacity": [], "colors": []})");
+  folder.write("b.json", R"({"schema_version": 1, "domain": "relative", "opacity": [], "colors": []})");
   opening = prepareOpening({folder / "b.json", "", std::nullopt, false}, present);
   EXPECT_EQ(opening.colors, folder / "b.json");
   opening = prepareOpening({ownScenario(folder), "", std::nullopt, false}, present);
@@ -141,12 +124,12 @@ TEST(Opening, RefusesWhatCannotBeShown) {
   const StateFolder folder;
   const ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
   const auto fault = [&](const std::string& file) {
-    return faultOf([&] { prepareOpening({file, "", std::nullopt, false}, present); });
+    return errorOf([&] { prepareOpening({file, "", std::nullopt, false}, present); });
   };
   EXPECT_THAT(fault(folder / "none.yaml"), HasSubstr("none.yaml: no such file or folder"));
-  write(folder / "dem.tif", "");
+  folder.write("dem.tif", "");
   EXPECT_THAT(fault(folder / "dem.tif"), HasSubstr("dem.tif: neither a scenario nor a volume"));
-  write(folder / "notes.txt", "");
+  folder.write("notes.txt", "");
   EXPECT_THAT(fault(folder / "notes.txt"), HasSubstr("ending '.txt' is not known"));
   EXPECT_THAT(fault(ownScenario(folder, "power_w: 10000", "power_w: -1")), HasSubstr("power_w"));
 }
@@ -166,12 +149,12 @@ TEST(Opening, LeavesOutEditsThatDoNotApplyAnyMore) {
 class Opener : public testing::Test {
  protected:
   StateFolder folder_;
-  Shown shown_{optionsFor(shippedScenario("quick.yaml"))};
+  SessionSample shown_{optionsFor(shippedScenario("quick.yaml"))};
   SessionOpener opener_{shown_.files, [this](const ViewOptions& options) { return shown_.make(options); }};
 };
 
 TEST_F(Opener, PutsAnotherInputInThePlaceOfTheOneOnScreen) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"theme","theme":"light"})");
   shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", ownScenario(folder_)));
   EXPECT_FALSE(shown_->settled());
@@ -182,13 +165,13 @@ TEST_F(Opener, PutsAnotherInputInThePlaceOfTheOneOnScreen) {
 }
 
 TEST_F(Opener, KeepsWhatIsOnScreenWhenTheOtherCannotBeOpened) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   const Session* before = shown_.session.get();
   shown_.perform(R"({"do":"open","file":"/no/such/file.yaml"})");
   ASSERT_TRUE(waitUntilOpened(shown_, opener_));
   EXPECT_EQ(shown_.session.get(), before);
   EXPECT_THAT(shown_->notice().text, HasSubstr("/no/such/file.yaml: no such file"));
-  write(folder_ / "broken.vdb", "not a volume");
+  folder_.write("broken.vdb", "not a volume");
   shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", folder_ / "broken.vdb"));
   ASSERT_TRUE(waitUntilOpened(shown_, opener_));
   EXPECT_EQ(shown_.session.get(), before);
@@ -214,9 +197,10 @@ TEST_F(Opener, ReloadsAChangedFileWithTheEditsThatApply) {
 }
 
 TEST_F(Opener, ShowsViewFiles) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
-  write(folder_ / "a.view.json",
-        R"({"schema_version": 1, "time_s": 3, "mode": "mip", "edits": ["emitters.radar.power_w=5"]})");
+  ASSERT_TRUE(shown_.settle());
+  folder_.write(
+      "a.view.json",
+      R"({"schema_version": 1, "time_s": 3, "mode": "mip", "edits": ["emitters.radar.power_w=5"]})");
   shown_.perform(fmt::format(R"({{"do":"load_state","file":"{}"}})", folder_ / "a.view.json"));
   ASSERT_TRUE(waitUntilOpened(shown_, opener_));
   EXPECT_EQ(shown_->settings().mode, render::CompositingMode::mip);
@@ -227,21 +211,30 @@ TEST_F(Opener, ShowsViewFiles) {
 
 // --- edits that are not saved ---
 
-bool waitForAutosave(Session& session, bool wanted) {
-  return waitFor(session, [&] {
-    return fs::exists(playback::autosaveFileOf(session.options().input)) == wanted && !session.working();
+bool waitForAutosave(SessionSample& shown, bool wanted) {
+  return shown.waitUntil([&] {
+    return fs::exists(playback::autosaveFileOf(shown->options().input)) == wanted && !shown->working();
   });
 }
 
 TEST_F(Opener, EditsAreKeptAMomentLaterAndRestored) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
-  ASSERT_TRUE(waitForAutosave(*shown_, true));
+  ASSERT_TRUE(waitForAutosave(shown_, true));
+  // A window beside it is not asked.
+  {
+    SessionSample beside(optionsFor(shippedScenario("quick.yaml")));
+    beside->shown("");
+    ASSERT_TRUE(beside.settle());
+    EXPECT_FALSE(beside->keptView());
+  }
   // The program ends before its time; another one opens the input.
-  Shown again(optionsFor(shippedScenario("quick.yaml")));
+  shown_.session.reset();
+  shown_.files->autosaves.reset();
+  SessionSample again(optionsFor(shippedScenario("quick.yaml")));
   SessionOpener opener(again.files, [&again](const ViewOptions& options) { return again.make(options); });
   again->shown("");
-  ASSERT_TRUE(waitUntilSettled(*again));
+  ASSERT_TRUE(again.settle());
   ASSERT_TRUE(again->keptView());
   EXPECT_TRUE(again->panels.restore);
   again.perform(R"({"do":"restore"})");
@@ -249,22 +242,22 @@ TEST_F(Opener, EditsAreKeptAMomentLaterAndRestored) {
   ASSERT_EQ(again->viewState().edits.size(), 1U);
   EXPECT_EQ(again->viewState().edits[0].value, "500");
   EXPECT_TRUE(again->hasUnsavedEdits());
-  ASSERT_TRUE(waitForAutosave(*again, true));
+  ASSERT_TRUE(waitForAutosave(again, true));
   again->leave(false);
-  EXPECT_TRUE(waitForAutosave(*again, false));
+  EXPECT_TRUE(waitForAutosave(again, false));
 }
 
 TEST_F(Opener, AnAutosaveGoesWhenEditsAreUndoneOrDiscarded) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
-  ASSERT_TRUE(waitForAutosave(*shown_, true));
+  ASSERT_TRUE(waitForAutosave(shown_, true));
   shown_.perform(R"({"do":"undo"})");
-  EXPECT_TRUE(waitForAutosave(*shown_, false));
+  EXPECT_TRUE(waitForAutosave(shown_, false));
   EXPECT_EQ(shown_.perform(R"({"do":"discard"})"), "no edits were kept for this input");
 }
 
 TEST_F(Opener, QuitAsksForUnsavedEdits) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   shown_.perform(R"({"do":"quit"})");
   EXPECT_FALSE(shown_.window.has_quit);
@@ -272,78 +265,78 @@ TEST_F(Opener, QuitAsksForUnsavedEdits) {
   EXPECT_THAT(shown_.perform(R"({"do":"quit","edits":"perhaps"})"),
               HasSubstr("expected save, discard or ask"));
   shown_.perform(fmt::format(R"({{"do":"save","file":"{}"}})", folder_ / "saved.yaml"));
-  ASSERT_TRUE(waitUntilSettled(*shown_));
-  EXPECT_THAT(readText(folder_ / "saved.yaml"), HasSubstr("power_w: 500"));
+  ASSERT_TRUE(shown_.settle());
+  EXPECT_THAT(readFile(folder_ / "saved.yaml"), HasSubstr("power_w: 500"));
   shown_.perform(R"({"do":"quit"})");
   EXPECT_TRUE(shown_.window.has_quit);
 }
 
 TEST_F(Opener, QuitWithoutEditsAsksNothing) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"quit"})");
   EXPECT_TRUE(shown_.window.has_quit);
 }
 
 // --- recording ---
 
-bool waitUntilRecorded(Session& session) {
-  return waitFor(session, [&session] { return !session.files().recorder.running(); });
+bool waitUntilRecorded(SessionSample& shown) {
+  return shown.waitUntil([&] { return !shown.files->recorder.running(); });
 }
 
 TEST_F(Opener, RecordsThePicturesOfTheWindow) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   shown_.perform(R"({"do":"seek","time_s":3})");
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   EXPECT_EQ(shown_.perform(fmt::format(R"({{"do":"record","file":"{}","begin_s":1,"end_s":3,"step_s":1}})",
                                        folder_ / "frames")),
             "");
   EXPECT_THAT(shown_.perform(R"({"do":"record","file":"x.mp4"})"), HasSubstr("is being recorded"));
-  ASSERT_TRUE(waitUntilRecorded(*shown_));
+  ASSERT_TRUE(waitUntilRecorded(shown_));
   EXPECT_THAT(shown_->notice().text, HasSubstr("recorded 3 pictures"));
   shown_.perform(fmt::format(R"({{"do":"picture","file":"{}"}})", folder_ / "picture.png"));
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   const render::ImageDifference difference = render::compare(
       render::readPng(folder_ / "picture.png"), render::readPng(folder_ / "frames/quick_0003.png"));
   for (const int max : difference.max) EXPECT_LE(max, 1);
 }
 
 TEST_F(Opener, ACancelledVideoLeavesNothing) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   shown_.perform(fmt::format(R"({{"do":"record","file":"{}","step_s":0.01}})", folder_ / "film.mp4"));
-  ASSERT_TRUE(waitFor(*shown_, [this] {
+  ASSERT_TRUE(shown_.waitUntil([this] {
     return shown_.files->recorder.progress().pictures > 0 || !shown_.files->recorder.running();
   }));
   if (!shown_.files->recorder.running()) GTEST_SKIP() << "no ffmpeg: " << shown_->notice().text;
   shown_.perform(R"({"do":"record_cancel"})");
-  ASSERT_TRUE(waitUntilRecorded(*shown_));
+  ASSERT_TRUE(waitUntilRecorded(shown_));
   EXPECT_THAT(shown_->notice().text, HasSubstr("film.mp4 is not written"));
-  for (const auto& entry : fs::directory_iterator(folder_ / "")) {
+  for (const auto& entry : fs::directory_iterator(folder_.path())) {
     EXPECT_THAT(entry.path().filename().string(), testing::Not(testing::StartsWith("film")));
   }
 }
 
 TEST_F(Opener, RecordingFaultsAreTold) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   EXPECT_THAT(shown_.perform(R"({"do":"record","file":"x.mp4","begin_s":3,"end_s":1})"),
               HasSubstr("begin_s <= end_s"));
   EXPECT_THAT(shown_.perform(R"({"do":"record","file":"x.mp4","frames_per_s":0})"), HasSubstr("0.1..240"));
-  write(folder_ / "file", "");
+  folder_.write("file", "");
   shown_.perform(fmt::format(R"({{"do":"record","file":"{}"}})", folder_ / "file/frames"));
-  ASSERT_TRUE(waitUntilRecorded(*shown_));
+  ASSERT_TRUE(waitUntilRecorded(shown_));
   EXPECT_TRUE(shown_->notice().is_error);
   EXPECT_THAT(shown_->notice().text, HasSubstr("cannot make the folder"));
   shown_.perform(fmt::format(R"({{"do":"record","file":"{}"}})", folder_ / "one.png"));
-  ASSERT_TRUE(waitUntilRecorded(*shown_));
+  ASSERT_TRUE(waitUntilRecorded(shown_));
   EXPECT_THAT(shown_->notice().text, HasSubstr("one .png for 5 pictures"));
 }
 
 TEST_F(Opener, AMissingFfmpegIsOneMessage) {
-  ASSERT_TRUE(waitUntilSettled(*shown_));
+  ASSERT_TRUE(shown_.settle());
   const std::string path = getenv("PATH");
   setenv("PATH", "/no/such/folder", 1);
   shown_.perform(fmt::format(R"({{"do":"record","file":"{}"}})", folder_ / "film.mp4"));
-  const bool recorded = waitUntilRecorded(*shown_);
+  const bool recorded = waitUntilRecorded(shown_);
   setenv("PATH", path.c_str(), 1);
   ASSERT_TRUE(recorded);
   EXPECT_THAT(shown_->notice().text, HasSubstr("needs the program ffmpeg, which is not on PATH"));

@@ -1,7 +1,7 @@
 /// Cutting planes and comparison, as keys, panels and scripts ask for them.
-#include "tests/view/session_fixture.h"
+#include "tests/view/session_sample.h"
 
-namespace emscape::view {
+namespace emscape::view::test {
 namespace {
 
 using Planes = SessionTest;
@@ -9,23 +9,23 @@ using Planes = SessionTest;
 TEST_F(Planes, AreAddedMovedFlippedSwitchedAndRemoved) {
   perform(R"({"do":"plane","kind":"horizontal"})");
   perform(R"({"do":"plane","spec":"vertical:bearing_deg=30,keep=right"})");
-  ASSERT_EQ(session.settings().planes.size(), 2U);
-  EXPECT_EQ(session.settings().planes[0].altitude_m, 2500) << "the middle of the box";
+  ASSERT_EQ(session->settings().planes.size(), 2U);
+  EXPECT_EQ(session->settings().planes[0].altitude_m, 2500) << "the middle of the box";
   perform(R"({"do":"plane","index":1,"altitude_m":1200,"flip":true})");
-  EXPECT_EQ(toString(session.settings().planes[0]), "horizontal:altitude_m=1200,keep=above");
+  EXPECT_EQ(toString(session->settings().planes[0]), "horizontal:altitude_m=1200,keep=above");
   perform(R"({"do":"plane","offset_m":-500})");
-  EXPECT_EQ(toString(session.settings().planes[1]), "vertical:bearing_deg=30,offset_m=-500,keep=right");
-  EXPECT_EQ(session.report()["planes"], 2);
+  EXPECT_EQ(toString(session->settings().planes[1]), "vertical:bearing_deg=30,offset_m=-500,keep=right");
+  EXPECT_EQ(session->report()["planes"], 2);
   perform(R"({"do":"plane"})");
-  EXPECT_EQ(session.report()["planes"], 0) << "all off";
+  EXPECT_EQ(session->report()["planes"], 0) << "all off";
   perform(R"({"do":"plane","kind":"vertical"})");
-  EXPECT_EQ(session.report()["planes"], 1) << "the first of its kind is on again";
+  EXPECT_EQ(session->report()["planes"], 1) << "the first of its kind is on again";
   perform(R"({"do":"plane","index":1,"remove":true})");
-  ASSERT_EQ(session.settings().planes.size(), 1U);
+  ASSERT_EQ(session->settings().planes.size(), 1U);
   settle();
   EXPECT_EQ(error(), "");
-  EXPECT_EQ(session.picture()->settings.planes, session.settings().planes);
-  EXPECT_EQ(session.viewState().settings.planes, session.settings().planes);
+  EXPECT_EQ(session->picture()->settings.planes, session->settings().planes);
+  EXPECT_EQ(session->viewState().settings.planes, session->settings().planes);
 }
 
 TEST_F(Planes, FaultsAreTold) {
@@ -40,14 +40,14 @@ TEST_F(Planes, FaultsAreTold) {
   EXPECT_EQ(error(), "plane: index 4: expected 1..3");
   perform(R"({"do":"plane","index":1,"bearing_deg":1000})");
   EXPECT_EQ(error(), "plane: bearing_deg 1000: expected -360..360");
-  EXPECT_EQ(session.settings().planes[0].bearing_deg, 0);
+  EXPECT_EQ(session->settings().planes[0].bearing_deg, 0);
   perform(R"({"do":"plane","index":1,"altitude_m":1000})");
   EXPECT_EQ(error(), "plane: a vertical plane has no altitude_m");
 }
 
 TEST_F(Planes, ANewVerticalOneFacesTheViewer) {
   perform(R"({"do":"camera","spec":"orbit:azimuth_deg=180"})");
-  const render::CutPlane plane = session.newPlane(render::CutPlane::Kind::vertical);
+  const render::CutPlane plane = session->newPlane(render::CutPlane::Kind::vertical);
   EXPECT_EQ(plane.bearing_deg, 90) << "along the picture of a camera in the south";
   EXPECT_EQ(plane.keep, render::CutPlane::Side::left) << "the north";
 }
@@ -55,20 +55,20 @@ TEST_F(Planes, ANewVerticalOneFacesTheViewer) {
 using Comparison = SessionTest;
 
 TEST_F(Comparison, ShowsTheDifferenceWithColoursOfItsOwnAndTheFieldAgain) {
-  const double before = session.picture()->transfer.lowest();
+  const double before = session->picture()->transfer.lowest();
   perform(R"({"do":"set","path":"emitters.radar.power_w","value":"100000"})");
   perform(R"({"do":"compare"})");
   settle();
-  EXPECT_EQ(session.report()["quantity"], "power_density_difference_db");
-  EXPECT_EQ(session.picture()->transfer.lowest(), -session.picture()->transfer.highest());
-  ASSERT_NE(session.transfer(), nullptr);
-  EXPECT_EQ(session.transfer()->function().unit, "dB");
-  EXPECT_EQ(session.viewState().compare, playback::kOriginal);
+  EXPECT_EQ(session->report()["quantity"], "power_density_difference_db");
+  EXPECT_EQ(session->picture()->transfer.lowest(), -session->picture()->transfer.highest());
+  ASSERT_NE(session->transfer(), nullptr);
+  EXPECT_EQ(session->transfer()->function().unit, "dB");
+  EXPECT_EQ(session->viewState().compare, playback::kOriginal);
   perform(R"({"do":"compare","on":false})");
   settle();
-  EXPECT_EQ(session.report()["quantity"], "power_density_dbwm2");
-  EXPECT_LE(session.picture()->transfer.lowest(), before + 20);
-  EXPECT_EQ(session.viewState().compare, "");
+  EXPECT_EQ(session->report()["quantity"], "power_density_dbwm2");
+  EXPECT_LE(session->picture()->transfer.lowest(), before + 20);
+  EXPECT_EQ(session->viewState().compare, "");
   EXPECT_EQ(error(), "");
 }
 
@@ -81,4 +81,4 @@ TEST_F(Comparison, WhatHasNoDifferenceIsTold) {
 }
 
 }  // namespace
-}  // namespace emscape::view
+}  // namespace emscape::view::test

@@ -12,12 +12,12 @@ TEST(SessionProbe, HoldsAPositionAndSaysWhatIsThereAndWhy) {
   SessionSample sample("quick.yaml");
   sample.perform(kProbe);
   EXPECT_EQ(sample.error(), "");
-  const Json report = sample.session->report();
+  const Json report = sample->report();
   EXPECT_TRUE(report["probe_locked"].get<bool>());
   EXPECT_NEAR(report["probe_latitude_deg"].get<double>(), 52.02, 1e-9);
   EXPECT_NEAR(report["probe_height_msl_m"].get<double>(), 1500, 1e-3);
   EXPECT_THAT(report["probe_text"].get<std::string>(), HasSubstr("dBW/m2"));
-  const ProbeResult& result = *sample.session->prober().result();
+  const ProbeResult& result = *sample->prober().result();
   ASSERT_EQ(result.contributions.size(), 2U);
   EXPECT_GE(result.contributions[0].value, result.contributions[1].value);
   EXPECT_THAT(result.contributions[0].text, HasSubstr("dBW/m2"));
@@ -27,9 +27,9 @@ TEST(SessionProbe, HoldsAPositionAndSaysWhatIsThereAndWhy) {
 TEST(SessionProbe, FollowsTimeAndEdits) {
   SessionSample sample("quick.yaml", {{"output.floor", "-300"}});
   sample.perform(kProbe);
-  const auto value = [&] { return sample.session->report()["probe_value"].get<double>(); };
+  const auto value = [&] { return sample->report()["probe_value"].get<double>(); };
   const auto budgetOfTransmitter = [&] {
-    return sample.session->prober().result()->reading->emitters[1].budget->find("power_density_dbwm2")->value;
+    return sample->prober().result()->reading->emitters[1].budget->find("power_density_dbwm2")->value;
   };
   const double before = value(), transmitter_before = budgetOfTransmitter();
   sample.perform(
@@ -39,43 +39,42 @@ TEST(SessionProbe, FollowsTimeAndEdits) {
   EXPECT_NEAR(budgetOfTransmitter(), transmitter_before + 10, 1e-6);
   sample.perform(R"({"do":"seek","time_s":2})");
   sample.settle();
-  EXPECT_EQ(sample.session->report()["probe_time_s"], 2);
+  EXPECT_EQ(sample->report()["probe_time_s"], 2);
   // A movement of the camera is no reason to read again.
-  const ProbeResult* result = sample.session->prober().result();
+  const ProbeResult* result = sample->prober().result();
   const auto scenario = result->scenario;
   sample.perform(R"({"do":"orbit","azimuth_deg":20})");
   sample.settle();
-  EXPECT_NEAR(sample.session->report()["probe_latitude_deg"].get<double>(), 52.02, 1e-9);
+  EXPECT_NEAR(sample->report()["probe_latitude_deg"].get<double>(), 52.02, 1e-9);
 }
 
 TEST(SessionProbe, FollowsTheCursorUntilItIsHeld) {
   SessionSample sample("jacksboro.yaml", {{"region.dims", "[40, 40, 20]"}});
   sample.perform(R"({"do":"panel","name":"probe"})");
-  Prober& prober = sample.session->prober();
+  Prober& prober = sample->prober();
   prober.hover(render::Projected{110, 110});
   sample.settle();
-  const double latitude_deg = sample.session->report()["probe_latitude_deg"].get<double>();
+  const double latitude_deg = sample->report()["probe_latitude_deg"].get<double>();
   // Above the ground, where a receiver would stand, in a voxel that holds a field.
-  EXPECT_GT(sample.session->report()["probe_height_agl_m"].get<double>(), 9);
-  EXPECT_LT(sample.session->report()["probe_height_agl_m"].get<double>(), 200);
-  EXPECT_THAT(sample.session->report()["probe_text"].get<std::string>(),
-              testing::Not(testing::HasSubstr("masked")));
+  EXPECT_GT(sample->report()["probe_height_agl_m"].get<double>(), 9);
+  EXPECT_LT(sample->report()["probe_height_agl_m"].get<double>(), 200);
+  EXPECT_THAT(sample->report()["probe_text"].get<std::string>(), testing::Not(testing::HasSubstr("masked")));
   prober.hover(render::Projected{120, 100});
   sample.settle();
-  EXPECT_NE(sample.session->report()["probe_latitude_deg"].get<double>(), latitude_deg);
+  EXPECT_NE(sample->report()["probe_latitude_deg"].get<double>(), latitude_deg);
   prober.hover(render::Projected{110, 110});
   sample.settle();
   sample.perform(R"({"do":"lock_probe"})");
   prober.hover(render::Projected{20, 20});
   sample.settle();
   EXPECT_TRUE(prober.isLocked());
-  EXPECT_NEAR(sample.session->report()["probe_latitude_deg"].get<double>(), latitude_deg, 1e-9);
+  EXPECT_NEAR(sample->report()["probe_latitude_deg"].get<double>(), latitude_deg, 1e-9);
   sample.perform(R"({"do":"lock_probe"})");
   sample.settle();
   EXPECT_FALSE(prober.isLocked());
   EXPECT_FALSE(prober.result()->reading);  // the corner lies beside the volume
   sample.perform(R"({"do":"probe","x":110,"y":110})");
-  EXPECT_NEAR(sample.session->report()["probe_latitude_deg"].get<double>(), latitude_deg, 1e-9);
+  EXPECT_NEAR(sample->report()["probe_latitude_deg"].get<double>(), latitude_deg, 1e-9);
   EXPECT_TRUE(prober.locked_m());
 }
 

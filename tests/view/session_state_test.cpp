@@ -6,7 +6,7 @@
 #include "emscape/playback/edit_history.h"
 #include "emscape/playback/picture_series.h"
 #include "emscape/render/image.h"
-#include "tests/view/session_samples.h"
+#include "tests/view/session_sample.h"
 
 namespace emscape::view::test {
 namespace {
@@ -100,10 +100,10 @@ class RandomView {
 };
 
 void expectThePictureOfRender(const std::string& input, RandomView& random) {
-  Shown shown(random.options(input));
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  SessionSample shown(random.options(input));
+  ASSERT_TRUE(shown.settle());
   for (int i = 0; i < 3; ++i) EXPECT_EQ(shown.perform(random.command()), "");
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  ASSERT_TRUE(shown.settle());
   const playback::LivePicture& picture = *shown->picture();
   const Rendered rendered = render(input, shown->viewState());
   EXPECT_EQ(picture.size, rendered.volume.size);
@@ -112,7 +112,7 @@ void expectThePictureOfRender(const std::string& input, RandomView& random) {
   const StateFolder folder;
   const std::string file = folder / "picture.png";
   shown.perform(fmt::format(R"({{"do":"picture","file":"{}"}})", file));
-  ASSERT_TRUE(waitUntilSettled(*shown)) << shown->notice().text;
+  ASSERT_TRUE(shown.settle()) << shown->notice().text;
   const render::ImageDifference difference = render::compare(render::readPng(file), rendered.picture);
   EXPECT_EQ(difference.erroneous, 0);
 }
@@ -137,59 +137,65 @@ TEST(SessionState, IsThePictureOfRenderForRandomViewsOfRealGround) {
 
 TEST(SessionState, IsSavedAndShownAgain) {
   const StateFolder folder;
-  Shown shown(optionsFor(shippedScenario("quick.yaml")));
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  SessionSample shown(optionsFor(shippedScenario("quick.yaml")));
+  ASSERT_TRUE(shown.settle());
   shown.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   shown.perform(R"({"do":"seek","time_s":2})");
   shown.perform(R"({"do":"bookmark","number":3})");
   shown.perform(R"({"do":"rate","value":5})");
   shown.perform(R"({"do":"loop"})");
+  shown.perform(R"({"do":"play_from","time_s":1})");
+  shown.perform(R"({"do":"timeline","from_s":0.5,"to_s":3})");
   shown.perform(R"({"do":"opacity","factor":2})");
   shown.perform(R"({"do":"panel","name":"colors","open":true})");
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  ASSERT_TRUE(shown.settle());
   const std::string file = folder / "a.view.json";
   shown.perform(fmt::format(R"({{"do":"save_state","file":"{}"}})", file));
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  ASSERT_TRUE(shown.settle());
 
   ViewOptions options = optionsFor(shippedScenario("quick.yaml"));
   options.view = playback::readViewState(file);
   options.state = file;
-  Shown again(options);
-  ASSERT_TRUE(waitUntilSettled(*again));
-  EXPECT_EQ(playback::viewStateText(again->viewState()), readText(file));
+  SessionSample again(options);
+  ASSERT_TRUE(again.settle());
+  EXPECT_EQ(playback::viewStateText(again->viewState()), readFile(file));
   EXPECT_TRUE(again->picture()->image.rgba == shown->picture()->image.rgba);
   EXPECT_TRUE(again->panels.colors);
   EXPECT_TRUE(again->timeline().loop());
+  EXPECT_EQ(again->timeline().playRange().begin_s, 1);
+  EXPECT_EQ(again->timeline().playRange().end_s, shown->timeline().end_s());
+  EXPECT_EQ(again->timeline().visible().begin_s, 0.5);
+  EXPECT_EQ(again->timeline().visible().end_s, 3);
 }
 
 TEST(SessionState, AViewThatCannotBeWrittenIsTold) {
   const StateFolder folder;
-  Shown shown(optionsFor(shippedScenario("quick.yaml")));
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  SessionSample shown(optionsFor(shippedScenario("quick.yaml")));
+  ASSERT_TRUE(shown.settle());
   shown.perform(R"({"do":"save_state","file":"/no/such/folder/a.view.json"})");
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  ASSERT_TRUE(shown.settle());
   EXPECT_TRUE(shown->notice().is_error);
   EXPECT_THAT(shown->notice().text, HasSubstr("/no/such/folder/a.view.json"));
 }
 
 TEST(SessionState, TheCopiedCommandNamesTheSavedViewUntilItChanges) {
   const StateFolder folder;
-  Shown shown(optionsFor(shippedScenario("quick.yaml")));
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  SessionSample shown(optionsFor(shippedScenario("quick.yaml")));
+  ASSERT_TRUE(shown.settle());
   const auto copied = [&shown] {
     shown.perform(R"({"do":"copy_command"})");
-    EXPECT_TRUE(waitUntilSettled(*shown));
+    EXPECT_TRUE(shown.settle());
     return shown.window.clipboard;
   };
   EXPECT_THAT(copied(), testing::AllOf(HasSubstr("--camera orbit:"), testing::Not(HasSubstr("--transfer"))));
   const std::string file = folder / "a.view.json";
   shown.perform(fmt::format(R"({{"do":"save_state","file":"{}"}})", file));
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  ASSERT_TRUE(shown.settle());
   EXPECT_EQ(copied(), "emscape render " + playback::shellWord(shippedScenario("quick.yaml")) + " --state " +
                           file + " -o picture.png");
   shown.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   shown.perform(R"({"do":"opacity","factor":2})");
-  ASSERT_TRUE(waitUntilSettled(*shown));
+  ASSERT_TRUE(shown.settle());
   EXPECT_THAT(copied(), testing::AllOf(HasSubstr("--set emitters.radar.power_w=500"),
                                        HasSubstr("--transfer "), testing::Not(HasSubstr("--state"))));
 }

@@ -2,39 +2,39 @@
 #include <random>
 #include <thread>
 
-#include "tests/view/session_fixture.h"
+#include "tests/view/session_sample.h"
 
-namespace emscape::view {
+namespace emscape::view::test {
 namespace {
 
 class SessionTime : public SessionTest {};
 
 TEST_F(SessionTime, StepsRatesAndTheirFaults) {
   perform(R"({"do":"step","steps":2})");
-  EXPECT_EQ(session.timeline().step_s(), 2);
+  EXPECT_EQ(session->timeline().step_s(), 2);
   perform(R"({"do":"step","steps":-1e300})");
-  EXPECT_EQ(session.timeline().step_s(), 0);
+  EXPECT_EQ(session->timeline().step_s(), 0);
   perform(R"({"do":"last"})");
-  EXPECT_EQ(session.timeline().step_s(), 4);
+  EXPECT_EQ(session->timeline().step_s(), 4);
   perform(R"({"do":"rate","value":-0.37})");
-  EXPECT_EQ(session.timeline().rate(), -0.37);
-  EXPECT_EQ(session.notice().text, "0.37 times real time, backwards");
+  EXPECT_EQ(session->timeline().rate(), -0.37);
+  EXPECT_EQ(session->notice().text, "0.37 times real time, backwards");
   perform(R"({"do":"reverse"})");
-  EXPECT_EQ(session.timeline().rate(), 0.37);
+  EXPECT_EQ(session->timeline().rate(), 0.37);
   for (const int expected : {1, 2, 3}) {
     perform(R"({"do":"rate","change":-1})");
-    EXPECT_EQ(session.timeline().rate(), expected == 1 ? 0.25 : expected == 2 ? 0.1 : -0.1);
+    EXPECT_EQ(session->timeline().rate(), expected == 1 ? 0.25 : expected == 2 ? 0.1 : -0.1);
   }
   perform(R"({"do":"rate","value":0})");
   EXPECT_THAT(error(), testing::HasSubstr("rate 0: expected a number -10000..10000 other than 0"));
-  EXPECT_EQ(session.timeline().rate(), -0.1);
+  EXPECT_EQ(session->timeline().rate(), -0.1);
 }
 
 TEST_F(SessionTime, TimesAreTypedInSecondsOrInUtc) {
   perform(R"({"do":"seek","time":"06:00:03"})");
-  EXPECT_EQ(session.timeline().step_s(), 3);
+  EXPECT_EQ(session->timeline().step_s(), 3);
   perform(R"({"do":"seek","time":"1.2"})");
-  EXPECT_EQ(session.timeline().step_s(), 1);
+  EXPECT_EQ(session->timeline().step_s(), 1);
   perform(R"({"do":"seek","time":"later"})");
   EXPECT_THAT(error(), testing::HasSubstr("time 'later': expected seconds or hh:mm[:ss] in UTC"));
   perform(R"({"do":"seek"})");
@@ -45,29 +45,29 @@ TEST_F(SessionTime, ThePlayingRangeAndWhatIsVisibleAreSetByVerbs) {
   perform(R"({"do":"play_from","time_s":1.2})");
   perform(R"({"do":"seek","time_s":3})");
   perform(R"({"do":"play_to"})");
-  EXPECT_EQ(session.report()["play_from_s"], 1);
-  EXPECT_EQ(session.report()["play_to_s"], 3);
+  EXPECT_EQ(session->report()["play_from_s"], 1);
+  EXPECT_EQ(session->report()["play_to_s"], 3);
   perform(R"({"do":"play_all"})");
-  EXPECT_EQ(session.report()["play_to_s"], 4);
+  EXPECT_EQ(session->report()["play_to_s"], 4);
   perform(R"({"do":"timeline","zoom":0.5,"about_s":2})");
-  EXPECT_EQ(session.report()["visible_from_s"], 1);
-  EXPECT_EQ(session.report()["visible_to_s"], 3);
+  EXPECT_EQ(session->report()["visible_from_s"], 1);
+  EXPECT_EQ(session->report()["visible_to_s"], 3);
   perform(R"({"do":"timeline","pan_s":0.5})");
-  EXPECT_EQ(session.report()["visible_to_s"], 3.5);
+  EXPECT_EQ(session->report()["visible_to_s"], 3.5);
   perform(R"({"do":"timeline","zoom":0})");
   EXPECT_THAT(error(), testing::HasSubstr("timeline: zoom: expected a number above 0"));
   perform(R"({"do":"timeline"})");
-  EXPECT_EQ(session.report()["visible_from_s"], 0);
+  EXPECT_EQ(session->report()["visible_from_s"], 0);
 }
 
 TEST_F(SessionTime, AnEditOfTheClockOrTheActivityChangesTheTimeLine) {
-  ASSERT_EQ(session.timeline().bars().size(), 2U);
+  ASSERT_EQ(session->timeline().bars().size(), 2U);
   perform(R"({"do":"set","path":"emitters.radar.active_s","value":"[[1, 2]]"})");
-  EXPECT_EQ(session.timeline().bars()[0].intervals.front().begin_s, 1);
+  EXPECT_EQ(session->timeline().bars()[0].intervals.front().begin_s, 1);
   perform(R"({"do":"set","path":"duration_s","value":"6"})");
   settle();
-  EXPECT_EQ(session.timeline().end_s(), 6);
-  EXPECT_EQ(session.timeline().bars()[1].intervals.front().end_s, 6);
+  EXPECT_EQ(session->timeline().end_s(), 6);
+  EXPECT_EQ(session->timeline().bars()[1].intervals.front().end_s, 6);
 }
 
 TEST_F(SessionTime, AfterSeeksDuringPlayingTheLastOneIsShown) {
@@ -83,17 +83,17 @@ TEST_F(SessionTime, AfterSeeksDuringPlayingTheLastOneIsShown) {
         perform(R"({"do":"reverse"})");
         break;
       default:
-        session.perform({"seek", {{"time_s", static_cast<double>(random() % 50) / 10}}});
+        session->perform({"seek", {{"time_s", static_cast<double>(random() % 50) / 10}}});
     }
-    session.update();
+    session->update();
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   perform(R"({"do":"pause"})");
   perform(R"({"do":"seek","time_s":3})");
   settle();
-  EXPECT_EQ(session.status().shown_s, 3);
+  EXPECT_EQ(session->status().shown_s, 3);
   EXPECT_EQ(error(), "");
 }
 
 }  // namespace
-}  // namespace emscape::view
+}  // namespace emscape::view::test

@@ -346,6 +346,45 @@ TEST_F(Window, BrowsesAndOpensAnotherInput) {
   EXPECT_EQ(result.status, 0) << result.err;
 }
 
+TEST_F(Window, WithoutAnInputItAsksForOne) {
+  const auto runEmpty = [this](const std::string& script) {
+    writeFile(folder_ / "script.jsonl", script);
+    return run({"view", "--size", "640x480", "--backend", "cpu", "--script", folder_ / "script.jsonl",
+                "--log", logFile()},
+               "cd " + folder_.path().string() + ";" + environment());
+  };
+  std::filesystem::create_directory(folder_ / "inputs");
+  writeFile(folder_ / "inputs/a.yaml", readFile(quick()));
+  ProgramResult result = runEmpty(R"({"do":"wait_s","seconds":0.5}
+{"do":"expect","key":"input","op":"==","value":""}
+{"do":"expect","key":"computing","op":"==","value":false}
+{"do":"reload"}
+{"do":"expect","key":"error","op":"==","value":"nothing is open: open a scenario or volumes first"}
+{"do":"key","key":"Enter"}
+{"do":"wait_s","seconds":0.5}
+{"do":"key","key":"Enter"}
+{"do":"wait_state","state":"exact"}
+{"do":"expect","key":"error","op":"==","value":""}
+{"do":"quit"}
+)");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(log("end").front()["input"], testing::EndsWith("/inputs/a.yaml"));
+  // The next time it is the first of the recent ones.
+  result = runEmpty(R"({"do":"wait_s","seconds":0.5}
+{"do":"key","key":"Ctrl+Shift+O"}
+{"do":"wait_state","state":"exact"}
+{"do":"quit"}
+)");
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(log("end").front()["input"], testing::EndsWith("/inputs/a.yaml"));
+}
+
+TEST_F(Window, OptionsOfAnInputNeedOne) {
+  const ProgramResult result = run({"view", "--set", "emitters.radar.power_w=5"}, environment());
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("--set needs INPUT"));
+}
+
 TEST_F(Window, RealEventsOfTheServerArrive) {
   if (!hasProgram("xdotool")) GTEST_SKIP() << "xdotool is not installed";
   RunningProgram program(viewOf(quick(), R"({"do":"wait_state","state":"exact"}

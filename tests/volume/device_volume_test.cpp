@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "emscape/base/error.h"
-#include "tests/gpu.h"
+#include "tests/support/errors.h"
+#include "tests/support/gpu.h"
 
 namespace emscape::volume {
 namespace {
@@ -72,15 +72,14 @@ TEST(DeviceVolume, SaysWhatDoesNotFit) {
   EXPECT_GE(needed, std::size_t{16} << 30);
   // Volumes are taken until nothing is left.
   std::vector<std::unique_ptr<DeviceVolume>> volumes;
-  try {
-    while (volumes.size() < 64) volumes.push_back(std::make_unique<DeviceVolume>(grid));
-    FAIL() << "a terabyte of memory";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::device);
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("4096 x 16384 x 64 voxels in 32 bit needs 16"));
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("MiB are free"));
-    EXPECT_THAT(error.what(), ::testing::HasSubstr("in 16 bit it would need 8"));
-  }
+  const std::string error = test::errorOf(
+      [&] {
+        while (volumes.size() < 64) volumes.push_back(std::make_unique<DeviceVolume>(grid));
+      },
+      ErrorCode::device);
+  EXPECT_THAT(error, ::testing::HasSubstr("4096 x 16384 x 64 voxels in 32 bit needs 16"));
+  EXPECT_THAT(error, ::testing::HasSubstr("MiB are free"));
+  EXPECT_THAT(error, ::testing::HasSubstr("in 16 bit it would need 8"));
   grid.dims = {40000, 1, 1};
   EXPECT_THROW(DeviceVolume{grid}, Error);
 }
@@ -111,12 +110,7 @@ TEST(DeviceVolume, IsRefusedWhereThereIsNoGpu) {
   if (findDevice().usable) GTEST_SKIP() << "there is a GPU";
   Grid grid;
   grid.dims = {4, 4, 4};
-  try {
-    DeviceVolume volume(grid);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::device);
-  }
+  EXPECT_NE(test::errorOf([&] { DeviceVolume volume(grid); }, ErrorCode::device), "");
 }
 
 }  // namespace

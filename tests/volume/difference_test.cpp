@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "emscape/base/error.h"
+#include "tests/support/errors.h"
 
 namespace emscape::volume {
 namespace {
@@ -22,12 +22,7 @@ DenseVolume volumeOf(const std::vector<float>& values, std::vector<std::uint16_t
 }
 
 std::string errorOf(const DenseVolume& a, const DenseVolume& b) {
-  try {
-    difference(a, b);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::errorOf([&] { difference(a, b); });
 }
 
 TEST(Difference, IsThatOfTheValuesAndToTheFloorWhereOneHasNoField) {

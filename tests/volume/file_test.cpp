@@ -1,6 +1,6 @@
 #include "emscape/volume/file.h"
 
-#include "tests/file_size_limit.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/volume/sample_volumes.h"
 #include "volume/vti.h"
 
@@ -50,7 +50,7 @@ TEST(File, NothingLiesUnderTheFinalNameWhenTheDiskIsFull) {
   for (const FileFormat& format : fileFormats()) {
     if (!format.writable) continue;
     EXPECT_THAT(errorOf([&] { writeVolumes(folder / ("a." + format.name), {&volume}); }),
-                AllOf(HasSubstr((folder / "a.").string()), HasSubstr("cannot write: File too large")));
+                AllOf(HasSubstr(folder / "a."), HasSubstr("cannot write: File too large")));
   }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }

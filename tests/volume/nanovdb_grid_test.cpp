@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "emscape/volume/device_volume.h"
-#include "tests/gpu.h"
+#include "tests/support/gpu.h"
 #include "tests/volume/sample_volumes.h"
 #include "volume/sparse_grid.h"
 

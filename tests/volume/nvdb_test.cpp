@@ -34,7 +34,7 @@ TEST(Nvdb, LooksAsStatedToNanoVdb) {
   TemporaryFolder folder;
   const DenseVolume volume = fieldVolume();
   writeNvdb(folder / "a.nvdb", {&volume});
-  const nano::Handle handle = ::nanovdb::io::readGrid((folder / "a.nvdb").string(), "power_density_dbwm2");
+  const nano::Handle handle = ::nanovdb::io::readGrid(folder / "a.nvdb", "power_density_dbwm2");
   const auto* grid = handle.grid<float>();
   ASSERT_NE(grid, nullptr);
   EXPECT_TRUE(grid->isFogVolume());

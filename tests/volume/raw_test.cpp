@@ -1,7 +1,6 @@
 #include "volume/raw.h"
 
 #include "emscape/volume/statistics.h"
-#include "tests/reference_dir.h"
 #include "tests/volume/sample_volumes.h"
 
 namespace emscape::volume {
@@ -104,10 +103,12 @@ TEST(Dat, ReadsSizesAndVoxels) {
   survivesDamage(folder / "a.dat", [&] { readDat(folder / "a.dat"); });
 }
 
-TEST(Raw, ReadsTheEngineScan) {
-  const auto file = emscape::test::referenceFile("volumes/engine_256x256x110_uint8.raw");
-  if (!file) GTEST_SKIP() << "volumes/engine_256x256x110_uint8.raw is not there";
-  const DenseVolume volume = readRaw(*file);
+TEST(Raw, ReadsAScanOfTheSizeOfTheEngine) {
+  const TemporaryFolder folder;
+  std::vector<std::uint8_t> bytes(256 * 256 * 110);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::uint8_t>(i * 7);
+  writeBytes(folder / "engine_256x256x110_uint8.raw", bytes);
+  const DenseVolume volume = readRaw(folder / "engine_256x256x110_uint8.raw");
   const Statistics statistics = statisticsOf(volume);
   EXPECT_EQ(statistics.valid, 256 * 256 * 110);
   EXPECT_EQ(statistics.min, 0);

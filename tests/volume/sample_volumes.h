@@ -14,28 +14,14 @@
 #include <vector>
 
 #include "base/whole_file.h"
-#include "emscape/base/error.h"
 #include "emscape/volume/dense_volume.h"
+#include "tests/support/errors.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::volume::test {
 
-/// A folder of the running test's own, gone when it ends.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "emscape-test-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
-
-  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using emscape::test::errorOf;
+using emscape::test::TemporaryFolder;
 
 /// Uneven dims, spacing without short decimals, a mask with empty and full columns, voxels at the floor above
 /// the ground, a block of one value (a tile in .vdb), and a NaN.
@@ -125,17 +111,6 @@ inline void expectSame(const DenseVolume& read, const DenseVolume& written) {
   EXPECT_EQ(read.first_valid_k, written.first_valid_k);
   ASSERT_EQ(read.values.size(), written.values.size());
   EXPECT_EQ(std::memcmp(read.values.data(), written.values.data(), written.values.size() * sizeof(float)), 0);
-}
-
-/// The message of the Error that `body` must throw.
-inline std::string errorOf(const std::function<void()>& body) {
-  try {
-    body();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no Error was thrown";
-  return "";
 }
 
 inline void writeBytes(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {

@@ -4,6 +4,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include "emscape/volume/file.h"
 #include "tests/volume/sample_volumes.h"
 
 namespace emscape::volume {
@@ -60,7 +61,7 @@ TEST(Vdb, LooksAsStatedToOpenVdb) {
   const DenseVolume volume = fieldVolume();
   writeVdb(folder / "a.vdb", {&volume});
   openvdb::initialize();
-  openvdb::io::File file((folder / "a.vdb").string());
+  openvdb::io::File file(folder / "a.vdb");
   file.open();
   const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("power_density_dbwm2"));
   EXPECT_EQ(grid->getGridClass(), openvdb::GRID_FOG_VOLUME);
@@ -250,6 +251,21 @@ TEST(Vdb, RefusesCategoricalValuesThatAreNoIndices) {
   volume.values[5] = 0.5F;
   EXPECT_THAT(errorOf([&] { writeVdb(folder / "a.vdb", {&volume}); }), HasSubstr("0.500000 is no index"));
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(StoredRange, OpenVdbReadsAPatchedFile) {
+  const TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume();
+  writeVolumes(folder / "v.vdb", {&volume});
+  setStoredRange(folder / "v.vdb", {{volume.info.quantity, -77.5F, 66.25F}});
+  openvdb::initialize();
+  openvdb::io::File file(folder / "v.vdb");
+  file.open();
+  const openvdb::GridBase::Ptr grid = file.readGrid(volume.info.quantity);
+  EXPECT_EQ(grid->metaValue<float>("emscape:range_min"), -77.5F);
+  EXPECT_EQ(grid->metaValue<float>("emscape:range_max"), 66.25F);
+  EXPECT_EQ(grid->metaValue<float>("emscape:floor"), -120.F);
+  EXPECT_GT(grid->activeVoxelCount(), 1000U);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "emscape/base/progress.h"
 #include "emscape/playback/compute_target.h"
 #include "emscape/playback/field_series.h"
-#include "emscape/render/overlay.h"
+#include "emscape/render/annotate/overlay.h"
 #include "emscape/volume/volume.h"
 
 namespace emscape::playback {

@@ -12,12 +12,12 @@
 #include "emscape/base/error.h"
 #include "emscape/playback/compute_target.h"
 #include "emscape/playback/painter.h"
+#include "emscape/render/annotate/overlay.h"
 #include "emscape/render/camera.h"
 #include "emscape/render/device_picture.h"
 #include "emscape/render/frame_controller.h"
 #include "emscape/render/height_field.h"
 #include "emscape/render/image.h"
-#include "emscape/render/overlay.h"
 #include "emscape/render/pattern.h"
 #include "emscape/render/render_settings.h"
 #include "emscape/render/transfer_function.h"
@@ -124,7 +124,8 @@ struct LivePicture {
 /// part of each picture: whoever stores it with camera and settings gets the same picture again.
 class LiveView {
  public:
-  /// @param input                    scenario or volume file, .pvd, folder of volumes
+  /// @param input                    scenario or volume file, .pvd, folder of volumes; empty: there is
+  /// nothing to show, and no picture comes
   /// @param scenario_beside_volumes  whose ground and emitters are drawn with volumes; may be empty
   /// @param style  sides of 0: nothing is drawn before resize()
   /// @param wake   called on the threads of this object after each picture and each change of the status; may

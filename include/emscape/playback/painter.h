@@ -7,10 +7,10 @@
 
 #include "emscape/base/progress.h"
 #include "emscape/playback/frame_source.h"
+#include "emscape/render/annotate/overlay.h"
 #include "emscape/render/camera.h"
 #include "emscape/render/height_field.h"
 #include "emscape/render/image.h"
-#include "emscape/render/overlay.h"
 #include "emscape/render/renderer.h"
 
 namespace emscape::playback {

@@ -1,4 +1,4 @@
-/// What is under a point of a picture: where it is, what the volume holds there, and why.
+/// What the volume of a picture holds at a position, and why.
 #pragma once
 
 #include <memory>
@@ -8,56 +8,11 @@
 
 #include "emscape/base/geo_frame.h"
 #include "emscape/emfield/path_budget.h"
-#include "emscape/render/camera.h"
-#include "emscape/render/cut_plane.h"
-#include "emscape/render/height_field.h"
-#include "emscape/render/image.h"
 #include "emscape/scenario/scenario.h"
+#include "emscape/scenario/terrain.h"
 #include "emscape/volume/dense_volume.h"
 
 namespace emscape::playback {
-
-/// A position that a picture shows.
-struct PickedPoint {
-  enum class On {
-    ground,     ///< the ray meets the ground
-    section,    ///< before that it meets a plane that cuts the volume, where there is a value
-    strongest,  ///< neither; the largest value on its way through what the planes leave of the volume
-    box         ///< there is no value either: where the ray enters the box
-  };
-  Vec3d position_m;  ///< frame metres
-  On on = On::ground;
-};
-
-/// The position under a pixel.
-/// @param camera, box  those of the picture; the vertical exaggeration of the box counts
-/// @param x, y     pixel, may be fractions; (0, 0) is the centre of the first one
-/// @param volume   that the picture shows; of categories no value is the strongest
-/// @param ground   as it is drawn; null without one
-/// @param planes   that cut the volume, and the ground where they are vertical
-/// @return none where the ray passes the box by
-std::optional<PickedPoint> pick(const render::Camera& camera, const render::SceneBox& box,
-                                render::ImageSize size, double x, double y, const volume::DenseVolume& volume,
-                                const render::HeightField* ground,
-                                const std::vector<render::CutPlane>& planes = {});
-
-/// The position of the ground under a pixel; parameters as for pick().
-/// @return none where the ray passes the ground by
-std::optional<Vec3d> pickGround(const render::Camera& camera, const render::SceneBox& box,
-                                render::ImageSize size, double x, double y, const render::HeightField& ground,
-                                const std::vector<render::CutPlane>& planes = {});
-/// The position at a height (frame z, m) under a pixel, within the sides of the box.
-/// @return none where there is none before the camera
-std::optional<Vec3d> pickLevel(const render::Camera& camera, const render::SceneBox& box,
-                               render::ImageSize size, double x, double y, double z_m);
-
-/// A position above a point of the ground, where a receiver would stand: as drawn, the ground differs from
-/// the terrain by some metres.
-/// @param ground_m      frame metres; of PickedPoint::On::ground
-/// @param height_agl_m  above the terrain; more where the voxel at that height is masked
-/// @return `ground_m` where the terrain is not known
-Vec3d aboveGround(const Vec3d& ground_m, double height_agl_m, const volume::DenseVolume& volume,
-                  const scenario::Terrain* terrain);
 
 /// What a volume holds at a position.
 struct VolumeSample {

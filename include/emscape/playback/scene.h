@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "emscape/playback/inputs.h"
+#include "emscape/render/annotate/legend.h"
+#include "emscape/render/annotate/overlay.h"
 #include "emscape/render/height_field.h"
-#include "emscape/render/legend.h"
-#include "emscape/render/overlay.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/volume/grid.h"
 

@@ -74,6 +74,8 @@ class Timeline {
   void zoom(double factor, double about_s);
   void pan(double by_s);
   void showAll() { visible_.reset(); }
+  /// What was set; none: all of the steps' span.
+  const std::optional<scenario::TimeInterval>& visiblePart() const { return visible_; }
 
   // The hand
   double time_s() const { return time_s_; }
@@ -105,6 +107,8 @@ class Timeline {
   void setPlayBegin(double time_s);
   void setPlayEnd(double time_s);
   void playAll() { play_range_.reset(); }
+  /// What was set; none: all of the steps' span.
+  const std::optional<scenario::TimeInterval>& playPart() const { return play_range_; }
   double rate() const { return rate_; }
   /// Any rate but 0, which is not taken; negative: backwards.
   void setRate(double rate);

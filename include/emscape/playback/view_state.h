@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "emscape/playback/painter.h"
+#include "emscape/render/annotate/overlay.h"
 #include "emscape/render/camera.h"
-#include "emscape/render/overlay.h"
 #include "emscape/render/render_settings.h"
 #include "emscape/render/transfer_function.h"
 #include "emscape/scenario/edit.h"
+#include "emscape/scenario/emitter.h"
 #include "emscape/volume/value_range.h"
 
 namespace emscape::playback {
@@ -30,7 +31,9 @@ struct ViewState {
   double time_s = 0;  ///< since the scenario's epoch
   double rate = 1;    ///< scenario seconds in a second; negative: backwards
   bool loop = false;
-  std::string quantity;  ///< quantity or channel; empty: the first
+  std::optional<scenario::TimeInterval> play_range;    ///< that playing stays in; none: all steps
+  std::optional<scenario::TimeInterval> visible_time;  ///< that the time line shows; none: all steps
+  std::string quantity;                                ///< quantity or channel; empty: the first
   /// None: fitted to the volume, or to `range` where that is given. Categories have their own colours.
   std::optional<render::TransferFunction> transfer;
   std::optional<volume::ValueRange> range;  ///< of the colours; none: that of the series

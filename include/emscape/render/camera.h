@@ -33,7 +33,7 @@ struct SceneBox {
 /// @param vertical_exaggeration  > 0; 0: niceVerticalExaggeration()
 /// @throws Error (bad_input) if it is negative or not finite
 SceneBox sceneBoxOf(const volume::Grid& grid, double vertical_exaggeration);
-/// 1 for volumes that lie nowhere on the earth; else the round number (1, 1.5, 2, 3, 4, 5, ...) that makes
+/// 1 for volumes without a position on the earth; else the round number (1, 1.5, 2, 3, 4, 5, ...) that makes
 /// the box at least about a third as high as it is wide, at most 20.
 double niceVerticalExaggeration(const volume::Grid& grid);
 
@@ -70,7 +70,7 @@ struct FrameMargins {
   double left = 0.04, right = 0.04, top = 0.04, bottom = 0.04;
 };
 
-/// A camera, among drawn positions. The image plane lies one unit before the eye; its vertical half opening
+/// A camera, among drawn positions. The image plane is one unit before the eye; its vertical half opening
 /// is half_height (the half height of the picture in metres where the projection is orthographic).
 struct Camera {
   Vec3d eye_m;
@@ -92,7 +92,7 @@ Camera makeCamera(const CameraSpec& spec, const SceneBox& box, ImageSize size,
                   const FrameMargins& margins = {});
 
 /// A point of the picture: pixel coordinates (fractions; (0, 0) is the centre of the first pixel) and depth
-/// along the view direction (m); not visible where the point lies behind the eye.
+/// along the view direction (m); not visible where the point is behind the eye.
 struct Projected {
   double x = 0, y = 0, depth_m = 0;
   bool in_front = false;

@@ -7,7 +7,7 @@
 
 namespace emscape::render {
 
-/// What lies on the removed side of a plane is not drawn. The section on the plane is drawn as an opaque
+/// The volume on the removed side of a plane is not drawn. The section on the plane is drawn as an opaque
 /// surface in the colours of the transfer function; it is transparent where the volume is masked or holds no
 /// field (its floor). Several planes leave what all of them keep. A vertical plane cuts the ground as well, a
 /// horizontal one leaves it whole.
@@ -24,7 +24,7 @@ struct CutPlane {
   double bearing_deg = 0;  ///< vertical: of the line, clockwise from frame y (north); -360..360
   /// vertical: a point of the line in frame metres, -1e9..1e9; none: the centre of the box
   std::optional<double> x_m, y_m;
-  double offset_m = 0;  ///< vertical: the line lies so far to the right of that point; -1e9..1e9
+  double offset_m = 0;  ///< vertical: distance of the line to the right of that point; -1e9..1e9
 
   bool operator==(const CutPlane& other) const;
   bool operator!=(const CutPlane& other) const { return !(*this == other); }

@@ -1,7 +1,9 @@
 /// Finished pictures in the memory of a GPU, and their way to OpenGL without the host's memory.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "emscape/render/image.h"
 
@@ -14,6 +16,14 @@ class DevicePicture {
   virtual ImageSize size() const = 0;
   /// A copy in the host's memory. @throws Error (device)
   virtual Image8 host() const = 0;
+};
+
+/// The labels of a picture in two layers, behind what is cast and in front of it: for composing a picture on
+/// a GPU.
+struct OverlayLayers {
+  ImageSize size;
+  /// Pixels 0xAARRGGBB, premultiplied, row by row from the top. `behind` is opaque.
+  std::vector<std::uint32_t> behind, front;
 };
 
 /// Whether the OpenGL context of the calling thread draws with the GPU that CUDA computes on, so that

@@ -42,8 +42,8 @@ struct ControllerAction {
   double until_ms = 0;  ///< may be infinity
 };
 
-/// The state machine of the paper's Fig. 4 (Feng et al. 2016), as pure logic: the caller tells what happened
-/// and when (milliseconds of any clock that does not go back), asks what to do, and does it.
+/// The state machine of the paper's Fig. 4 (Feng et al. 2016), as pure logic: the caller reports what
+/// happened and when (milliseconds of any clock that does not go back), asks what to do, and does it.
 ///
 ///     BUSY     draws as long as events come; no event for epsilon -> RESTORE
 ///     RESTORE  casts what is missing -> IDLE; any event -> stop it, BUSY from the start

@@ -6,7 +6,7 @@
 namespace emscape::render {
 
 /// Heights at the posts of a regular grid, bilinear between them, in the volume's frame (m): x east, y north,
-/// heights in the frame's z. Post (i, j) lies at (first_x_m + i * spacing_x_m, first_y_m + j * spacing_y_m).
+/// heights in the frame's z. Post (i, j) is at (first_x_m + i * spacing_x_m, first_y_m + j * spacing_y_m).
 /// A NaN is a hole: where the ground is not known the picture shows a hatched pit, never a plain. Drawn
 /// inside the volume's box; edge posts hold for one spacing beyond.
 struct HeightField {

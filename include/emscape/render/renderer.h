@@ -10,7 +10,6 @@
 #include "emscape/render/frame.h"
 #include "emscape/render/height_field.h"
 #include "emscape/render/image.h"
-#include "emscape/render/overlay.h"
 #include "emscape/render/render_settings.h"
 #include "emscape/render/transfer_function.h"
 #include "emscape/volume/volume.h"
@@ -40,8 +39,8 @@ class Renderer {
   /// cpu or cuda.
   Backend backend() const;
 
-  /// Values on the renderer's side (host memory for the CPU, GPU memory for the GPU) are read where they lie,
-  /// not copied; reads and writes of a GPU wait for each other. Values on the other side are copied. Cheap
+  /// Values on the renderer's side (host memory for the CPU, GPU memory for the GPU) are read in place, not
+  /// copied; reads and writes of a GPU wait for each other. Values on the other side are copied. Cheap
   /// where the grid stays the same.
   /// @throws Error (other) for an empty handle, (device) if a copy does not fit
   void setVolume(const volume::Volume& volume);
@@ -70,7 +69,7 @@ class Renderer {
   /// @throws Error (device)
   FrameReport draw(const FramePlan& plan, ImageSize size, const StopFlag* stop = nullptr);
   /// Casts exactly the pixels that the last draw() left out: the picture is then bit-identical to a full one
-  /// of the same scene, which must not have changed in between. A stopped restoration begins anew.
+  /// of the same scene, which must not have changed in between. A stopped restoration starts again.
   FrameReport restore(const StopFlag* stop = nullptr);
   /// The picture of the last draw() or restore() above, as it was cast, or quantised. The latter is the cheap
   /// one on a GPU: it is quantised there. Not to be used after an incomplete frame.

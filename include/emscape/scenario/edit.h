@@ -24,6 +24,9 @@ struct Edit {
 /// @throws Error (usage) if there is no such '=' or no path before it
 Edit parseEdit(const std::string& text);
 
+/// A name as a part of a path: in double quotes where it needs them.
+std::string pathStep(const std::string& name);
+
 /// "PATH=VALUE".
 std::string toString(const Edit& edit);
 

@@ -46,7 +46,4 @@ ParameterGroup parametersOf(const Scenario& scenario, const std::string& path);
 std::vector<Edit> editsForChoice(const Scenario& scenario, const std::string& path,
                                  const std::string& choice);
 
-/// A name as a part of a path: in double quotes where it needs them.
-std::string pathStep(const std::string& name);
-
 }  // namespace emscape::scenario

@@ -32,6 +32,10 @@ std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std:
 /// @throws Error (bad_input) if the scenario was not read from a file
 ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits);
 
+/// The files that a scenario was read from: its own, tracks, antennas, elevation; absolute or relative to the
+/// working folder.
+std::vector<std::string> filesOf(const Scenario& scenario);
+
 /// Writes the text of a scenario with its edits: comments, order and everything that was not edited stay.
 /// Files that it names relative to its folder are named relative to the new one.
 /// @throws Error (bad_input) if the scenario was not read from a file, or a name cannot be changed in the

@@ -1,0 +1,40 @@
+/// The legend of a picture: colour bar or categories, with ticks at round values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/render/transfer_function.h"
+
+namespace emscape::render {
+
+/// Round values (1, 2, 2.5 or 5 times a power of ten apart) within [lowest, highest], about `count` of them.
+std::vector<double> roundTicks(double lowest, double highest, int count);
+/// The value as written at a tick, with as many decimals as the step needs.
+std::string tickText(double value, double step);
+
+/// One category of a categorical volume.
+struct Category {
+  int index = 0;
+  std::string name;
+};
+
+/// What a legend explains.
+struct Legend {
+  std::string quantity;  ///< as written: "Power density"
+  std::string unit;      ///< "dBW/m²"; may be empty
+  TransferFunction function;
+  std::optional<double> iso_value;   ///< marked on the colour bar
+  bool whole_numbers = false;        ///< counts: no ticks between
+  std::vector<Category> categories;  ///< categorical volumes: those to be listed
+};
+
+/// A legend for a volume: the quantity's name in words, its unit set with superscripts.
+Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function);
+/// "power_density_dbwm2" -> "Power density".
+std::string quantityTitle(const std::string& quantity, const std::string& unit);
+/// "dBW/m2" -> "dBW/m²", "dBuV/m" -> "dBµV/m".
+std::string unitText(const std::string& unit);
+
+}  // namespace emscape::render

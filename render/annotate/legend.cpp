@@ -1,0 +1,271 @@
+#include "emscape/render/annotate/legend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+
+#include "emscape/base/error.h"
+#include "render/annotate/overlay_parts.h"
+
+namespace emscape::render {
+namespace {
+
+// Lengths at 1200 x 900.
+constexpr double kEdge = 26;
+constexpr double kBarWidth = 20;
+constexpr double kOpacityWidth = 34;
+constexpr double kPixelsPerTick = 60;
+constexpr double kSwatch = 15;
+constexpr double kRowHeight = 25;
+constexpr double kBarTop = 0.2;  // parts of the picture's height
+constexpr double kBarBottom = 0.8;
+
+std::string lowerAlphanumeric(const std::string& text) {
+  std::string kept;
+  for (char c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) != 0)
+      kept += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return kept;
+}
+
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+struct BarTicks {
+  std::vector<std::string> texts;
+  std::vector<double> values;
+};
+
+BarTicks ticksOf(const Legend& legend, int count) {
+  BarTicks ticks;
+  ticks.values = roundTicks(legend.function.lowest(), legend.function.highest(), count);
+  if (legend.whole_numbers) {
+    const auto broken = [](double value) { return value != std::round(value); };
+    ticks.values.erase(std::remove_if(ticks.values.begin(), ticks.values.end(), broken), ticks.values.end());
+  }
+  const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : 1;
+  for (double value : ticks.values) ticks.texts.push_back(tickText(value, step));
+  return ticks;
+}
+
+/// Text is measured without the picture that it will stand on.
+double widestText(const std::vector<std::string>& texts, double size_px) {
+  const Canvas measure({1, 1});
+  double widest = 0;
+  for (const std::string& text : texts) widest = std::max(widest, measure.textBox(text, size_px).width);
+  return widest;
+}
+
+/// A long name on lines of at most about `most` characters.
+std::vector<std::string> linesOf(const std::string& text, std::size_t most) {
+  std::vector<std::string> lines;
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    std::size_t end = text.size();
+    if (end - begin > most) {
+      const std::size_t space = text.rfind(' ', begin + most);
+      if (space != std::string::npos && space > begin)
+        end = space;
+      else if (text.find(' ', begin) != std::string::npos)
+        end = text.find(' ', begin);
+    }
+    lines.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
+
+std::vector<std::string> headingOf(const Legend& legend) {
+  std::vector<std::string> lines = linesOf(legend.quantity, 15);
+  if (!legend.unit.empty()) lines.push_back(legend.unit);
+  return lines;
+}
+
+constexpr double kLine = 1.3;  // line height in text sizes
+
+/// Upper end of what stands below the heading.
+double topOf(const Canvas& canvas, const Style& style, const Legend& legend) {
+  const double heading = kLine * style.text_px * static_cast<double>(headingOf(legend).size());
+  return std::max(kBarTop * canvas.size().height, headerHeight(style) + heading + 10 * style.unit);
+}
+
+/// Draws the heading so that it ends above `bottom`.
+void drawHeading(Canvas& canvas, const Style& style, const Legend& legend, double left, double bottom) {
+  const std::vector<std::string> lines = headingOf(legend);
+  const double line_px = kLine * style.text_px;
+  double y = bottom - line_px * (static_cast<double>(lines.size()) - 0.5);
+  for (std::size_t i = 0; i < lines.size(); ++i, y += line_px) {
+    const bool unit = !legend.unit.empty() && i + 1 == lines.size();
+    canvas.textWithRim(lines[i], {left, y}, style.text_px, unit ? style.mutedInk() : style.textInk(),
+                       style.rimInk(), Align::left, unit ? Weight::normal : Weight::bold);
+  }
+}
+
+double contentWidth(const Style& style, const Legend& legend) {
+  double content = 0;
+  if (legend.function.categorical) {
+    std::vector<std::string> names;
+    for (const Category& category : legend.categories) names.push_back(category.name);
+    content = (kSwatch + 8) * style.unit + widestText(names, style.small_px);
+  } else {
+    content =
+        (kOpacityWidth + kBarWidth + 14) * style.unit + widestText(ticksOf(legend, 8).texts, style.small_px);
+  }
+  return std::max(content, widestText(headingOf(legend), style.text_px) * 1.08);
+}
+
+/// A line across the bar with an arrowhead at its left end.
+void drawIsoMark(Canvas& canvas, const Style& style, double left, double y, double width) {
+  const double head = 6 * style.unit;
+  canvas.line({left, y}, {left + width, y}, style.rimInk(0.9), 4 * style.unit);
+  canvas.line({left, y}, {left + width, y}, style.textInk(), 2 * style.unit);
+  canvas.polygon({{left - 1.6 * head, y - head}, {left - 1.6 * head, y + head}, {left, y}}, style.textInk());
+}
+
+void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double left) {
+  const TransferFunction& function = legend.function;
+  const double top = topOf(canvas, style, legend);
+  const double bottom = kBarBottom * canvas.size().height;
+  const double bar_left = left + kOpacityWidth * style.unit;
+  const double bar_width = kBarWidth * style.unit;
+  const double range = function.highest() - function.lowest();
+  double largest = 0;
+  for (const TransferFunction::OpacityPoint& point : function.opacities)
+    largest = std::max(largest, point.opacity);
+  const auto yOf = [&](double value) {
+    return bottom - (value - function.lowest()) / range * (bottom - top);
+  };
+  const int rows = static_cast<int>(bottom - top);
+  std::vector<Point2> curve;
+  for (int row = 0; row < rows; ++row) {
+    const double y = top + row;
+    const double value = function.highest() - (row + 0.5) / rows * range;
+    const Ink ink{function.color(value), 1};
+    canvas.rectangle({bar_left, y, bar_width, 1.5}, ink);
+    // The square root shows the faint part, which is most of a volume.
+    const double opacity = largest > 0 ? std::sqrt(function.opacity(value) / largest) : 0;
+    const double width = opacity * (kOpacityWidth - 5) * style.unit;
+    canvas.rectangle({bar_left - 3 * style.unit - width, y, width, 1.5}, {ink.color, 0.55});
+    curve.push_back({bar_left - 3 * style.unit - width, y});
+  }
+  canvas.outline(curve, style.mutedInk(), 1.1 * style.unit, false);
+  canvas.outline(
+      {{bar_left, top}, {bar_left + bar_width, top}, {bar_left + bar_width, bottom}, {bar_left, bottom}},
+      style.mutedInk(0.8), style.unit, true);
+  const BarTicks ticks =
+      ticksOf(legend, std::max(2, static_cast<int>((bottom - top) / (kPixelsPerTick * style.unit))));
+  for (std::size_t i = 0; i < ticks.values.size(); ++i) {
+    const double y = yOf(ticks.values[i]);
+    const double right = bar_left + bar_width;
+    canvas.line({right, y}, {right + 5 * style.unit, y}, style.textInk(0.9), 1.2 * style.unit);
+    canvas.textWithRim(ticks.texts[i], {right + 9 * style.unit, y}, style.small_px, style.textInk(),
+                       style.rimInk());
+  }
+  if (legend.iso_value) {
+    // A value beyond the bar is marked at its end.
+    const double y = std::clamp(yOf(*legend.iso_value), top, bottom);
+    drawIsoMark(canvas, style, bar_left, y, bar_width);
+  }
+  drawHeading(canvas, style, legend, left, top - 10 * style.unit);
+  canvas.textWithRim("opacity", {left, bottom + 12 * style.unit}, 0.85 * style.small_px, style.mutedInk(0.9),
+                     style.rimInk());
+}
+
+void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
+  double y = topOf(canvas, style, legend);
+  drawHeading(canvas, style, legend, left, y);
+  for (const Category& category : legend.categories) {
+    y += kRowHeight * style.unit;
+    const double swatch = kSwatch * style.unit;
+    canvas.rectangle({left, y - swatch / 2, swatch, swatch}, {categoryColor(category.index), 1},
+                     3 * style.unit);
+    canvas.textWithRim(category.name, {left + swatch + 8 * style.unit, y}, style.small_px, style.textInk(),
+                       style.rimInk());
+  }
+}
+
+}  // namespace
+
+std::vector<double> roundTicks(double lowest, double highest, int count) {
+  std::vector<double> ticks;
+  const double range = highest - lowest;
+  if (!(range > 0) || !std::isfinite(range) || count < 1) return ticks;
+  const double raw = range / count;
+  const double power = std::pow(10.0, std::floor(std::log10(raw)));
+  double step = 10 * power;
+  for (double nice : {1.0, 2.0, 2.5, 5.0}) {
+    if (nice * power >= raw * 0.999) {
+      step = nice * power;
+      break;
+    }
+  }
+  const double slack = 1e-9 * range;
+  const double first = std::ceil((lowest - slack) / step);
+  const double last = std::floor((highest + slack) / step);
+  for (double i = first; i <= last; ++i) ticks.push_back(i * step + 0.0);  // + 0: no "-0"
+  return ticks;
+}
+
+std::string tickText(double value, double step) {
+  int decimals = 0;
+  for (double scaled = step; decimals < 6 && std::abs(scaled - std::round(scaled)) > 1e-6 * std::abs(scaled);
+       scaled *= 10) {
+    ++decimals;
+  }
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (!text.empty() && text[0] == '-') text.replace(0, 1, "−");
+  return text;
+}
+
+std::string unitText(const std::string& unit) {
+  std::string text = unit;
+  replaceAll(text, "m2", "m²");
+  replaceAll(text, "m3", "m³");
+  replaceAll(text, "dBu", "dBµ");
+  return text;
+}
+
+std::string quantityTitle(const std::string& quantity, const std::string& unit) {
+  const std::size_t colon = quantity.find(':');
+  std::string name = quantity.substr(0, colon);
+  const std::size_t last = name.rfind('_');
+  if (last != std::string::npos && !unit.empty() &&
+      lowerAlphanumeric(name.substr(last)) == lowerAlphanumeric(unit)) {
+    name.resize(last);
+  }
+  std::replace(name.begin(), name.end(), '_', ' ');
+  if (name.compare(0, 3, "snr") == 0) name.replace(0, 3, "SNR");
+  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return colon == std::string::npos ? name : name + " of " + quantity.substr(colon + 1);
+}
+
+Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function) {
+  Legend legend;
+  legend.quantity = quantityTitle(info.quantity, info.unit);
+  legend.unit = unitText(info.unit);
+  legend.function = function;
+  legend.whole_numbers = info.quantity.find("count") != std::string::npos;
+  return legend;
+}
+
+double legendWidth(const Style& style, const Legend& legend) {
+  return 1.6 * kEdge * style.unit + contentWidth(style, legend);
+}
+
+void drawLegend(Canvas& canvas, const Style& style, const Legend& legend) {
+  const double left = canvas.size().width - kEdge * style.unit - contentWidth(style, legend);
+  if (legend.function.categorical) {
+    drawCategories(canvas, style, legend, left);
+  } else {
+    drawBar(canvas, style, legend, left);
+  }
+}
+
+}  // namespace emscape::render

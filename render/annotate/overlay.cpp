@@ -1,0 +1,205 @@
+#include "emscape/render/annotate/overlay.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#include "emscape/base/parallel.h"
+#include "render/annotate/overlay_parts.h"
+#include "render/bytes_over.h"
+#include "render/names.h"
+#include "render/rgba.h"
+
+namespace emscape::render {
+namespace {
+
+constexpr Named<Theme> kThemes[] = {{Theme::dark, "dark"}, {Theme::light, "light"}};
+
+// Lengths at 1200 x 900.
+constexpr double kMargin = 26;
+constexpr double kTitle = 23;
+constexpr double kCompassRadius = 40;
+constexpr double kMinUnit = 0.62;
+
+/// Puts a cast picture over what is drawn; the only quantisation of what was cast.
+void drawCast(Canvas& canvas, const Image& cast) {
+  canvas.changeRows([&](int y, std::uint32_t* row) {
+    const Rgba* pixels = &cast.pixels[static_cast<std::size_t>(y) * cast.size.width];
+    for (int x = 0; x < cast.size.width; ++x) {
+      const auto part = [drawn = row[x]](int shift) { return static_cast<float>(drawn >> shift & 0xFFU); };
+      const Rgba behind = Rgba{part(16), part(8), part(0), part(24)} * (1.0F / 255.0F);
+      const Rgba pixel = over(pixels[x], behind);
+      row[x] = std::uint32_t{quantized(pixel.a)} << 24 | std::uint32_t{quantized(pixel.r)} << 16 |
+               std::uint32_t{quantized(pixel.g)} << 8 | std::uint32_t{quantized(pixel.b)};
+    }
+  });
+}
+
+/// The same of a picture that is quantised.
+void drawCast(Canvas& canvas, const Image8& cast) {
+  canvas.changeRows([&](int y, std::uint32_t* row) {
+    const std::uint8_t* pixels = &cast.rgba[static_cast<std::size_t>(y) * cast.size.width * 4];
+    for (int x = 0; x < cast.size.width; ++x) {
+      std::uint32_t rgba = 0;
+      std::memcpy(&rgba, pixels + 4 * x, 4);
+      row[x] = bytesOver(redAndBlueSwapped(rgba), row[x]);
+    }
+  });
+}
+
+void drawTexts(Canvas& canvas, const Style& style, const Annotations& annotations) {
+  const double left = kMargin * style.unit;
+  const double right = canvas.size().width - left;
+  const double top = (kMargin + 0.3 * kTitle) * style.unit;
+  const double second = top + 1.25 * kTitle * style.unit;
+  const double title_px = kTitle * style.unit;
+  const Ink rim = style.rimInk();
+  canvas.textWithRim(annotations.title, {left, top}, title_px, style.textInk(), rim, Align::left,
+                     Weight::bold);
+  canvas.textWithRim(annotations.subtitle, {left, second}, style.text_px, style.mutedInk(), rim);
+  canvas.textWithRim(annotations.time, {right, top}, title_px, style.textInk(), rim, Align::right,
+                     Weight::bold);
+  canvas.textWithRim(annotations.time_utc, {right, second}, style.text_px, style.mutedInk(), rim,
+                     Align::right);
+}
+
+void drawFooter(Canvas& canvas, const Style& style, const SceneBox& box, const Annotations& annotations,
+                std::vector<Rect>& taken) {
+  const double bottom = canvas.size().height - 0.7 * kMargin * style.unit;
+  double left = kMargin * style.unit;
+  std::string text;
+  if (box.vertical_exaggeration != 1) text = fmt::format("heights × {:g}", box.vertical_exaggeration);
+  if (!annotations.note.empty()) text += (text.empty() ? "" : "   ·   ") + annotations.note;
+  canvas.textWithRim(text, {left, bottom}, style.small_px, style.mutedInk(), style.rimInk());
+  const Rect extent = canvas.textBox(text, style.small_px);
+  taken.push_back({left, bottom - extent.height / 2, extent.width, extent.height});
+}
+
+void drawBehind(Canvas& canvas, const Style& style, const Projector& projector,
+                const Annotations& annotations) {
+  canvas.gradient(style.background_top, style.background_bottom);
+  if (annotations.axes) drawFarEdges(canvas, style, projector);
+}
+
+void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
+                 const Annotations& annotations, const HiddenTest& hidden) {
+  std::vector<Rect> taken;
+  if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
+  if (annotations.georeferenced) {
+    const double reach = (kMargin + kCompassRadius + 10) * style.unit;
+    const Point2 center{reach, canvas.size().height - reach - 14 * style.unit};
+    drawCompass(canvas, style, projector.camera, center, kCompassRadius * style.unit);
+    taken.push_back({center.x - reach / 2, center.y - reach / 2, reach, reach});
+  }
+  drawFooter(canvas, style, projector.box, annotations, taken);
+  if (annotations.legend) {
+    drawLegend(canvas, style, *annotations.legend);
+    const double width = legendWidth(style, *annotations.legend);
+    taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
+  }
+  drawTracks(canvas, style, projector, annotations.tracks, hidden);
+  drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
+  drawTexts(canvas, style, annotations);
+}
+
+template <class AnyImage>
+Image8 composed(const AnyImage& cast, const Camera& camera, const SceneBox& box,
+                const Annotations& annotations, const HiddenTest& hidden) {
+  const Style style(cast.size, annotations.theme);
+  const Projector projector{camera, box, cast.size};
+  Canvas canvas(cast.size);
+  drawBehind(canvas, style, projector, annotations);
+  drawCast(canvas, cast);
+  drawInFront(canvas, style, projector, annotations, hidden);
+  return canvas.pixels();
+}
+
+/// Where Cairo draws: the two layers are independent of each other.
+template <class Draw>
+void drawLayer(std::vector<std::uint32_t>& pixels, ImageSize size, const Draw& draw) {
+  pixels.assign(static_cast<std::size_t>(size.count()), 0);
+  Canvas canvas(size, pixels.data());
+  draw(canvas);
+}
+
+}  // namespace
+
+Theme parseTheme(const std::string& name) {
+  return parseName(kThemes, "theme", name);
+}
+
+Style::Style(ImageSize size, Theme theme) {
+  unit = std::max(kMinUnit, std::min(size.width / 1200.0, size.height / 900.0));
+  text_px *= unit;
+  small_px *= unit;
+  if (theme == Theme::dark) {
+    background_top = parseColor("#10141b");
+    background_bottom = parseColor("#1d242f");
+    text = parseColor("#f2f4f7");
+    muted = parseColor("#a9b3c0");
+    rim = parseColor("#0b0e13");
+  } else {
+    background_top = parseColor("#fbfcfd");
+    background_bottom = parseColor("#e3e8ee");
+    text = parseColor("#14181f");
+    muted = parseColor("#4d5866");
+    rim = parseColor("#fbfcfd");
+  }
+}
+
+bool Projector::project(const Vec3d& frame_m, Point2& point) const {
+  const Projected projected = render::project(camera, size, box.toDrawn(frame_m));
+  point = {projected.x + 0.5, projected.y + 0.5};
+  return projected.in_front;
+}
+
+double headerHeight(const Style& style) {
+  return (kMargin + 2.4 * kTitle) * style.unit;
+}
+
+FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
+  const Style style(size, annotations.theme);
+  const double axis_px = annotations.axes ? 52 * style.unit : 0;
+  const double side_px = 20 * style.unit + axis_px;
+  const bool has_texts = !annotations.title.empty() || !annotations.time.empty();
+  FrameMargins margins;
+  margins.left = side_px / size.width;
+  margins.right =
+      (annotations.legend ? legendWidth(style, *annotations.legend) + 0.3 * axis_px : side_px) / size.width;
+  margins.top = (has_texts ? headerHeight(style) : side_px) / size.height;
+  margins.bottom = (1.1 * kMargin * style.unit + axis_px) / size.height;
+  return margins;
+}
+
+void drawLayers(OverlayLayers& layers, ImageSize size, const Camera& camera, const SceneBox& box,
+                const Annotations& annotations, const HiddenTest& hidden) {
+  const Style style(size, annotations.theme);
+  const Projector projector{camera, box, size};
+  layers.size = size;
+  parallelFor(2, 1, [&](int begin, int end) {
+    for (int layer = begin; layer < end; ++layer) {
+      if (layer == 0) {
+        drawLayer(layers.behind, size,
+                  [&](Canvas& canvas) { drawBehind(canvas, style, projector, annotations); });
+      } else {
+        drawLayer(layers.front, size,
+                  [&](Canvas& canvas) { drawInFront(canvas, style, projector, annotations, hidden); });
+      }
+    }
+  });
+}
+
+Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
+               const HiddenTest& hidden) {
+  return composed(cast, camera, box, annotations, hidden);
+}
+
+Image8 compose(const Image8& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
+               const HiddenTest& hidden) {
+  return composed(cast, camera, box, annotations, hidden);
+}
+
+}  // namespace emscape::render

@@ -1,0 +1,217 @@
+/// The volume's box: edges, ticks and axis titles; the compass.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "emscape/base/units.h"
+#include "render/annotate/overlay_parts.h"
+
+namespace emscape::render {
+namespace {
+
+constexpr double kTick = 6;  // lengths at 1200 x 900
+constexpr double kTickToLabel = 6;
+constexpr double kTitleBeyondLabels = 13;
+constexpr double kPixelsPerTick = 85;
+
+/// An edge of the box along one axis; the other two coordinates are at their lower (0) or upper (1) ends.
+struct Edge {
+  int axis = 0;
+  std::array<int, 3> end{};  // of the own axis: unused
+};
+
+double component(const Vec3d& v, int axis) {
+  return axis == 0 ? v.x : (axis == 1 ? v.y : v.z);
+}
+void setComponent(Vec3d& v, int axis, double value) {
+  (axis == 0 ? v.x : (axis == 1 ? v.y : v.z)) = value;
+}
+
+std::vector<Edge> allEdges() {
+  std::vector<Edge> edges;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int a = 0; a < 2; ++a) {
+      for (int b = 0; b < 2; ++b) {
+        Edge edge;
+        edge.axis = axis;
+        edge.end[static_cast<std::size_t>((axis + 1) % 3)] = a;
+        edge.end[static_cast<std::size_t>((axis + 2) % 3)] = b;
+        edges.push_back(edge);
+      }
+    }
+  }
+  return edges;
+}
+
+/// The point of an edge where its own coordinate is `value`.
+Vec3d pointOf(const Edge& edge, const SceneBox& box, double value) {
+  Vec3d point;
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool upper = edge.end[static_cast<std::size_t>(axis)] != 0;
+    setComponent(point, axis, axis == edge.axis ? value : component(upper ? box.upper_m : box.lower_m, axis));
+  }
+  return point;
+}
+
+bool facesCamera(const Camera& camera, const SceneBox& box, int axis, int end) {
+  const double sign = end != 0 ? 1.0 : -1.0;
+  if (camera.projection == Projection::orthographic) return -component(camera.forward, axis) * sign > 0;
+  return (component(camera.eye_m, axis) - component(end != 0 ? box.drawnUpper_m() : box.lower_m, axis)) *
+             sign >
+         0;
+}
+
+/// How many of an edge's two faces the camera sees: 0 behind the volume, 1 its silhouette, 2 before it.
+int seenFaces(const Projector& p, const Edge& edge) {
+  int seen = 0;
+  for (int other : {(edge.axis + 1) % 3, (edge.axis + 2) % 3}) {
+    seen += facesCamera(p.camera, p.box, other, edge.end[static_cast<std::size_t>(other)]) ? 1 : 0;
+  }
+  return seen;
+}
+
+bool ends(const Projector& p, const Edge& edge, Point2& a, Point2& b) {
+  return p.project(pointOf(edge, p.box, component(p.box.lower_m, edge.axis)), a) &&
+         p.project(pointOf(edge, p.box, component(p.box.upper_m, edge.axis)), b);
+}
+
+/// The edge that bears an axis' ticks: on the silhouette; along the ground the lowest in the picture, upright
+/// the leftmost.
+bool labelledEdge(const Projector& p, int axis, Edge& chosen) {
+  double best = -1e300;
+  for (const Edge& edge : allEdges()) {
+    if (edge.axis != axis || seenFaces(p, edge) != 1) continue;
+    Point2 a;
+    Point2 b;
+    if (!ends(p, edge, a, b)) continue;
+    const double score = axis == 2 ? -(a.x + b.x) : a.y + b.y;
+    if (score > best) {
+      best = score;
+      chosen = edge;
+    }
+  }
+  return best > -1e300;
+}
+
+struct AxisWords {
+  const char* title;
+  double scale;  // what one unit on the label is in frame metres
+};
+AxisWords wordsOf(int axis, bool georeferenced) {
+  if (!georeferenced) return {axis == 0 ? "x" : (axis == 1 ? "y" : "z"), 1};
+  if (axis == 2) return {"altitude, km", 1000};
+  return {axis == 0 ? "east, km" : "north, km", 1000};
+}
+
+/// The unit vector in the picture that leads away from the box at an edge.
+Point2 outwardOf(const Point2& a, const Point2& b, const Point2& center) {
+  const Point2 along = b - a;
+  const double size = std::max(length(along), 1e-9);
+  Point2 outward{along.y / size, -along.x / size};
+  const Point2 middle = (a + b) * 0.5;
+  if ((middle.x - center.x) * outward.x + (middle.y - center.y) * outward.y < 0) outward = outward * -1.0;
+  return outward;
+}
+
+/// What a text at a point covers.
+Rect rectOf(const Point2& at, const Rect& extent, Align align) {
+  const double shift = align == Align::left ? 0.0 : (align == Align::center ? 0.5 : 1.0);
+  return {at.x - shift * extent.width, at.y - extent.height / 2, extent.width, extent.height};
+}
+
+void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis, bool georeferenced,
+              std::vector<Rect>& taken) {
+  Edge edge;
+  Point2 a;
+  Point2 b;
+  Point2 center;
+  if (!labelledEdge(p, axis, edge) || !ends(p, edge, a, b)) return;
+  if (!p.project((p.box.lower_m + p.box.upper_m) * 0.5, center)) return;
+  const double edge_px = length(b - a);
+  if (edge_px < 40 * style.unit) return;  // seen end on
+  const Point2 outward = outwardOf(a, b, center);
+  const AxisWords words = wordsOf(axis, georeferenced);
+  const double lowest = component(p.box.lower_m, axis) / words.scale;
+  const double highest = component(p.box.upper_m, axis) / words.scale;
+  const int count = std::max(2, static_cast<int>(edge_px / (kPixelsPerTick * style.unit)));
+  const std::vector<double> ticks = roundTicks(lowest, highest, count);
+  const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : 1;
+  const Align align = outward.x > 0.35 ? Align::left : (outward.x < -0.35 ? Align::right : Align::center);
+  double widest = 0;
+  for (double value : ticks) {
+    Point2 at;
+    p.project(pointOf(edge, p.box, value * words.scale), at);
+    const std::string text = tickText(value, step);
+    const Rect extent = canvas.textBox(text, style.small_px);
+    widest = std::max(widest, std::abs(outward.x) * extent.width + std::abs(outward.y) * extent.height);
+    canvas.line(at, at + outward * (kTick * style.unit), style.textInk(0.8), 1.2 * style.unit);
+    const Point2 label =
+        at + outward * ((kTick + kTickToLabel) * style.unit + std::abs(outward.y) * extent.height * 0.4);
+    const Rect covered = rectOf(label, extent, align);
+    const auto hits = [&](const Rect& other) { return overlap(covered, other); };
+    if (std::any_of(taken.begin(), taken.end(), hits)) continue;  // two axes meet here
+    taken.push_back(covered);
+    canvas.textWithRim(text, label, style.small_px, style.textInk(0.92), style.rimInk(), align);
+  }
+  double angle = std::atan2(b.y - a.y, b.x - a.x);
+  if (angle > kPi / 2 + 0.01) angle -= kPi;
+  if (angle < -kPi / 2 + 0.01) angle += kPi;
+  if (axis == 2) angle = -kPi / 2;
+  const Point2 middle =
+      (a + b) * 0.5 + outward * ((kTick + kTickToLabel + kTitleBeyondLabels) * style.unit + widest);
+  canvas.textWithRim(words.title, middle, style.small_px, style.mutedInk(), style.rimInk(), Align::center,
+                     Weight::normal, angle);
+}
+
+}  // namespace
+
+void drawFarEdges(Canvas& canvas, const Style& style, const Projector& projector) {
+  for (const Edge& edge : allEdges()) {
+    Point2 a;
+    Point2 b;
+    if (seenFaces(projector, edge) != 0 || !ends(projector, edge, a, b)) continue;
+    canvas.line(a, b, style.mutedInk(0.45), style.unit);
+  }
+}
+
+void drawNearEdges(Canvas& canvas, const Style& style, const Projector& projector,
+                   const Annotations& annotations, std::vector<Rect>& taken) {
+  for (const Edge& edge : allEdges()) {
+    Point2 a;
+    Point2 b;
+    const int seen = seenFaces(projector, edge);
+    if (seen == 0 || !ends(projector, edge, a, b)) continue;
+    canvas.line(a, b, style.mutedInk(seen == 1 ? 0.75 : 0.35), style.unit);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    drawAxis(canvas, style, projector, axis, annotations.georeferenced, taken);
+}
+
+void drawCompass(Canvas& canvas, const Style& style, const Camera& camera, const Point2& center,
+                 double radius) {
+  // A point of the ground plane, east and north in radii, as an orthographic camera with the same axes sees
+  // it.
+  const auto at = [&](double east, double north) {
+    return center + Point2{east * camera.right.x + north * camera.right.y,
+                           -(east * camera.up.x + north * camera.up.y)} *
+                        radius;
+  };
+  std::vector<Point2> ring;
+  for (int i = 0; i < 72; ++i)
+    ring.push_back(at(0.72 * std::sin(i * kPi / 36), 0.72 * std::cos(i * kPi / 36)));
+  canvas.polygon(ring, style.rimInk(0.45));
+  canvas.outline(ring, style.mutedInk(0.9), 1.2 * style.unit, true);
+  const Rgb red = parseColor("#e5534b");
+  canvas.polygon({at(0, 0.66), at(0.15, 0), at(-0.15, 0)}, {red, 1});
+  canvas.polygon({at(0, -0.66), at(0.15, 0), at(-0.15, 0)}, style.mutedInk(0.9));
+  constexpr double kLetters = 1.02;
+  canvas.textWithRim("N", at(0, kLetters), style.small_px, style.textInk(), style.rimInk(), Align::center,
+                     Weight::bold);
+  canvas.textWithRim("E", at(kLetters, 0), style.small_px, style.mutedInk(), style.rimInk(), Align::center);
+  canvas.textWithRim("S", at(0, -kLetters), style.small_px, style.mutedInk(), style.rimInk(), Align::center);
+  canvas.textWithRim("W", at(-kLetters, 0), style.small_px, style.mutedInk(), style.rimInk(), Align::center);
+}
+
+}  // namespace emscape::render

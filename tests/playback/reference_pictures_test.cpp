@@ -1,0 +1,102 @@
+/// Pictures against those of tests/data/pictures. Written anew, to be looked at before they are committed:
+///     EMSCAPE_WRITE_PICTURES=1 ctest --preset release -R ReferencePicture
+#include <cstdlib>
+#include <ostream>
+
+#include "emscape/playback/painter.h"
+#include "emscape/playback/view_state.h"
+#include "emscape/render/image.h"
+#include "tests/playback/playback_samples.h"
+
+namespace emscape::playback::test {
+namespace {
+
+struct Shot {
+  const char* name;
+  const char* view;  ///< keys of a view file besides size and the scenario's edits
+  int width = 160, height = 120;
+  bool labelled = false;  ///< with background, legend and labels; else the bare cast
+};
+
+void PrintTo(const Shot& shot, std::ostream* out) {
+  *out << shot.name;
+}
+
+const Shot kShots[] = {
+    {"camera", R"("camera": "orbit:azimuth_deg=215,elevation_deg=12,distance=0.9,projection=orthographic")"},
+    {"ground", R"("camera": "orbit:azimuth_deg=120,elevation_deg=35,distance=0.8", "mode": "mip")"},
+    {"shading", R"("shading": true, "planes": ["vertical:bearing_deg=60,keep=left"])"},
+    {"isosurface", R"("mode": "iso", "iso_value": -40)"},
+    {"legend", R"("theme": "light", "show_terrain": false)", 320, 240, true},
+};
+
+render::Image8 draw(const Shot& shot) {
+  const std::string text = std::string(R"({"schema_version": 1, "time_s": 40, )") +
+                           R"("range": {"min": -90, "max": -20}, "edits": ["region.dims=[40, 40, 20]"], )" +
+                           "\"size\": [" + std::to_string(shot.width) + ", " + std::to_string(shot.height) +
+                           "], " + shot.view + "}";
+  const ViewState view = parseViewState(text, "view.json");
+  FrameSelection selection;
+  selection.input = emscape::test::shippedScenario("jacksboro.yaml");
+  selection.times = "40";
+  selection.range = view.range;
+  selection.edits = view.edits;
+  const auto source = openFrameSource(selection, {});
+  PictureStyle style = pictureStyleOf(view);
+  style.colors_span_range = true;
+  Painter painter(style, *source, {});
+  painter.setFrame(source->frame(0));
+  painter.draw({});
+  return shot.labelled ? painter.picture("note") : render::quantize(painter.image());
+}
+
+/// The largest difference of a pixel's channels (levels of 255). @param at  its first byte
+int levelsApart(const render::Image8& a, const render::Image8& b, std::size_t at) {
+  int largest = 0;
+  for (std::size_t i = at; i < at + 4; ++i)
+    largest = std::max(largest, std::abs(int{a.rgba[i]} - int{b.rgba[i]}));
+  return largest;
+}
+
+/// The differences, three times as large, in grey.
+render::Image8 differenceOf(const render::Image8& a, const render::Image8& b) {
+  render::Image8 difference = a;
+  for (std::size_t pixel = 0; pixel < a.rgba.size(); pixel += 4) {
+    const auto grey = static_cast<std::uint8_t>(std::min(3 * levelsApart(a, b, pixel), 255));
+    for (std::size_t i = pixel; i < pixel + 3; ++i) difference.rgba[i] = grey;
+    difference.rgba[pixel + 3] = 255;
+  }
+  return difference;
+}
+
+class ReferencePicture : public testing::TestWithParam<Shot> {};
+
+TEST_P(ReferencePicture, IsDrawnAgain) {
+  const std::string reference =
+      emscape::test::sourceFile(std::string("tests/data/pictures/") + GetParam().name + ".png");
+  const render::Image8 picture = draw(GetParam());
+  if (std::getenv("EMSCAPE_WRITE_PICTURES")) return render::writePng(reference, picture);
+
+  const render::Image8 expected = render::readPng(reference);
+  const render::ImageDifference difference = render::compare(picture, expected);
+  long long far_apart = 0;
+  for (std::size_t pixel = 0; pixel < picture.rgba.size(); pixel += 4)
+    far_apart += levelsApart(picture, expected, pixel) > 16 ? 1 : 0;
+  // Room for other fonts and for the last bits of other compilers.
+  const double allowed = GetParam().labelled ? 0.02 : 0.002;
+  EXPECT_LE(difference.mean_all, 0.5);
+  EXPECT_LE(static_cast<double>(far_apart), allowed * static_cast<double>(picture.size.count()));
+  if (HasFailure()) {
+    TemporaryFolder folder;
+    folder.keep();
+    render::writePng(folder / "picture.png", picture);
+    render::writePng(folder / "difference.png", differenceOf(picture, expected));
+    ADD_FAILURE() << "see " << folder.path() << ": picture.png, difference.png; reference: " << reference;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shots, ReferencePicture, testing::ValuesIn(kShots),
+                         [](const auto& shot) { return std::string(shot.param.name); });
+
+}  // namespace
+}  // namespace emscape::playback::test

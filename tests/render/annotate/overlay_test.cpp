@@ -1,0 +1,201 @@
+#include "emscape/render/annotate/overlay.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "emscape/base/error.h"
+#include "emscape/render/renderer.h"
+#include "tests/render/layered_picture.h"
+#include "tests/render/scenes.h"
+
+namespace emscape::render {
+namespace {
+
+const SceneBox kBox{{-15000, -15000, 0}, {15000, 15000, 6000}, 2.0};
+
+Annotations everything(const TransferFunction& function) {
+  Annotations annotations;
+  annotations.title = "Title";
+  annotations.subtitle = "subtitle";
+  annotations.time = "t = 1 s";
+  annotations.time_utc = "2026-06-01T06:00:01Z";
+  annotations.note = "note";
+  volume::VolumeInfo info;
+  info.quantity = "power_density_dbwm2";
+  info.unit = "dBW/m2";
+  annotations.legend = legendOf(info, function);
+  for (MarkerKind kind : {MarkerKind::radar, MarkerKind::transmitter, MarkerKind::jammer,
+                          MarkerKind::receiver, MarkerKind::platform}) {
+    Marker marker;
+    marker.position_m = {1000.0 * static_cast<double>(annotations.markers.size()), -500, 900};
+    marker.label = "marker";
+    marker.kind = kind;
+    marker.beam = Vec3d{1, 0, 0};
+    marker.ground_m = 100;
+    annotations.markers.push_back(marker);
+  }
+  annotations.tracks.push_back(
+      {MarkerKind::jammer, {{-9000, 4000, 2500}, {0, 7000, 2500}, {40000, 7000, 2500}}, 0.5});
+  return annotations;
+}
+
+long long differingPixels(const Image8& a, const Image8& b) {
+  return compare(a, b).erroneous;
+}
+
+TEST(Overlay, PicturesAreOpaqueInEverySizeThemeAndView) {
+  const Annotations all = everything(testing::fog(0.5));
+  for (ImageSize size : {ImageSize{1, 1}, ImageSize{7, 300}, ImageSize{160, 90}, ImageSize{640, 360}}) {
+    for (Theme theme : {Theme::dark, Theme::light}) {
+      for (const char* view :
+           {"orbit", "orbit:elevation_deg=90", "orbit:elevation_deg=-90,projection=orthographic",
+            "lookat:eye_x_m=0,eye_y_m=0,eye_z_m=2000,target_x_m=1,target_y_m=9,target_z_m=1900"}) {
+        Annotations annotations = all;
+        annotations.theme = theme;
+        const Camera camera = makeCamera(parseCamera(view), kBox, size, overlayMargins(size, annotations));
+        const Image8 picture =
+            compose(Image(size), camera, kBox, annotations, [](const Vec3d&) { return true; });
+        ASSERT_EQ(picture.size, size);
+        for (std::size_t i = 3; i < picture.rgba.size(); i += 4) ASSERT_EQ(picture.rgba[i], 255);
+      }
+    }
+  }
+}
+
+TEST(Overlay, EveryAnnotationIsSeen) {
+  const ImageSize size{640, 360};
+  const Annotations all = everything(testing::fog(0.5));
+  const Camera camera = makeCamera({}, kBox, size, overlayMargins(size, all));
+  const auto picture = [&](const Annotations& annotations) {
+    return compose(Image(size), camera, kBox, annotations);
+  };
+  const Image8 complete = picture(all);
+  const auto without = [&](void (*remove)(Annotations&)) {
+    Annotations annotations = all;
+    remove(annotations);
+    return differingPixels(complete, picture(annotations));
+  };
+  EXPECT_GT(without([](Annotations& a) { a.title.clear(); }), 50);
+  EXPECT_GT(without([](Annotations& a) { a.subtitle.clear(); }), 50);
+  EXPECT_GT(without([](Annotations& a) { a.time.clear(); }), 50);
+  EXPECT_GT(without([](Annotations& a) { a.time_utc.clear(); }), 50);
+  EXPECT_GT(without([](Annotations& a) { a.note.clear(); }), 20);
+  EXPECT_GT(without([](Annotations& a) { a.legend.reset(); }), 500);
+  EXPECT_GT(without([](Annotations& a) { a.axes = false; }), 500);
+  EXPECT_GT(without([](Annotations& a) { a.georeferenced = false; }), 50);
+  EXPECT_GT(without([](Annotations& a) { a.markers.pop_back(); }), 50);
+  EXPECT_GT(without([](Annotations& a) { a.markers[0].active = false; }), 20);
+  EXPECT_GT(without([](Annotations& a) { a.tracks.clear(); }), 100);
+  EXPECT_GT(without([](Annotations& a) { a.tracks[0].travelled = 1.5; }), 50);
+  EXPECT_GT(without([](Annotations& a) { a.theme = Theme::light; }), 100000);
+}
+
+/// All opacities and levels.
+Image gradients(ImageSize size) {
+  Image cast(size);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const float alpha = static_cast<float>(x) / static_cast<float>(size.width - 1);
+      const float level = static_cast<float>(y) / static_cast<float>(size.height - 1);
+      cast.at(x, y) = {alpha * level, alpha * (1 - level), alpha, alpha};
+    }
+  }
+  return cast;
+}
+
+int largestDifference(const Image8& a, const Image8& b) {
+  int largest = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    largest = std::max(largest, std::abs(a.rgba[i] - b.rgba[i]));
+  return largest;
+}
+
+TEST(Overlay, LayersMakeThePictureThatIsComposedAtOnce) {
+  const ImageSize size{320, 240};
+  const Image8 cast = quantize(gradients(size));
+  Annotations annotations = everything(testing::fog(0.5));
+  OverlayLayers layers;
+  for (Theme theme : {Theme::dark, Theme::light}) {
+    annotations.theme = theme;
+    const Camera camera = makeCamera({}, kBox, size, overlayMargins(size, annotations));
+    const HiddenTest hidden = [](const Vec3d& position_m) { return position_m.x > 2000; };
+    drawLayers(layers, size, camera, kBox, annotations, hidden);
+    ASSERT_EQ(layers.behind.size(), static_cast<std::size_t>(size.count()));
+    ASSERT_EQ(layers.front.size(), static_cast<std::size_t>(size.count()));
+    EXPECT_LE(largestDifference(testing::putTogether(cast, layers),
+                                compose(cast, camera, kBox, annotations, hidden)),
+              2);
+  }
+}
+
+TEST(Overlay, AQuantizedPictureIsAtMostOneLevelApart) {
+  const ImageSize size{320, 240};
+  const Image cast = gradients(size);
+  const Annotations annotations = everything(testing::fog(0.5));
+  const Camera camera = makeCamera({}, kBox, size, overlayMargins(size, annotations));
+  const Image8 exact = compose(cast, camera, kBox, annotations);
+  const Image8 quantized = compose(quantize(cast), camera, kBox, annotations);
+  EXPECT_LE(largestDifference(exact, quantized), 1);
+}
+
+TEST(Overlay, HiddenMarkersLookDifferent) {
+  const ImageSize size{640, 360};
+  const Annotations all = everything(testing::fog(0.5));
+  const Camera camera = makeCamera({}, kBox, size);
+  const Image8 seen = compose(Image(size), camera, kBox, all);
+  const Image8 hidden = compose(Image(size), camera, kBox, all, [](const Vec3d&) { return true; });
+  EXPECT_GT(differingPixels(seen, hidden), 200);
+}
+
+TEST(Overlay, MarginsGrowWithTheLegend) {
+  const ImageSize size{1200, 900};
+  Annotations annotations = everything(testing::fog(0.5));
+  const double with = overlayMargins(size, annotations).right;
+  annotations.legend.reset();
+  EXPECT_GT(with, overlayMargins(size, annotations).right + 0.03);
+}
+
+TEST(Overlay, DegenerateTransferFunctionsDoNotBreakTheLegend) {
+  const ImageSize size{320, 240};
+  TransferFunction function = testing::fog(0);
+  const Camera camera = makeCamera({}, kBox, size);
+  EXPECT_NO_THROW(compose(Image(size), camera, kBox, everything(function)));
+  function.categorical = true;
+  Annotations annotations = everything(function);
+  annotations.legend->categories = {{0, "first"}, {1, "a category with a very long name indeed"}};
+  EXPECT_NO_THROW(compose(Image(size), camera, kBox, annotations));
+}
+
+TEST(Overlay, ThemesHaveNames) {
+  EXPECT_EQ(parseTheme("light"), Theme::light);
+  EXPECT_THROW(parseTheme("blue"), Error);
+}
+
+TEST(Overlay, MarksTheIsoValueOnTheColourBar) {
+  const ImageSize size{600, 400};
+  Annotations annotations =
+      everything(testing::makeFunction({{0, {0, 0, 0}}, {10, {1, 1, 1}}}, {{0, 0}, {10, 0.1}}));
+  const Camera camera = makeCamera({}, kBox, size, overlayMargins(size, annotations));
+  const Image8 plain = compose(Image(size), camera, kBox, annotations);
+  double last_row = size.height;
+  for (double value : {-5.0, 2.0, 8.0, 50.0}) {  // beyond the bar: at its ends
+    annotations.legend->iso_value = value;
+    const Image8 marked = compose(Image(size), camera, kBox, annotations);
+    double rows = 0, count = 0;
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        if (std::equal(marked.at(x, y), marked.at(x, y) + 4, plain.at(x, y))) continue;
+        rows += y;
+        ++count;
+      }
+    }
+    ASSERT_GT(count, 20);
+    EXPECT_LT(rows / count, last_row);
+    last_row = rows / count;
+  }
+}
+
+}  // namespace
+}  // namespace emscape::render

@@ -1,0 +1,27 @@
+#include "tests/support/files.h"
+
+#include <fstream>
+#include <sstream>
+
+namespace emscape::test {
+
+std::string sourceFile(const std::string& path) {
+  return EMSCAPE_SOURCE_DIR "/" + path;
+}
+
+std::string shippedScenario(const std::string& name) {
+  return sourceFile("scenarios/" + name);
+}
+
+std::string readFile(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void writeFile(const std::filesystem::path& file, const std::string& text) {
+  std::ofstream(file, std::ios::binary) << text;
+}
+
+}  // namespace emscape::test
