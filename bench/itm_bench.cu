@@ -34,20 +34,20 @@ T* onDevice(const std::vector<T>& values) {
 }
 
 template <class Real>
-__global__ void evaluate(const float* heights_msl_m, const emfield::ItmLink<Real>* links, Real* loss_db) {
+__global__ void evaluate(const float* heights_msl_m, const propagation::ItmLink<Real>* links, Real* loss_db) {
   const int i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= kCases) return;
-  const emfield::ItmProfile<float> profile{heights_msl_m + static_cast<std::size_t>(i) * (kIntervals + 1),
+  const propagation::ItmProfile<float> profile{heights_msl_m + static_cast<std::size_t>(i) * (kIntervals + 1),
                                            kIntervals, kStep_m};
-  loss_db[i] = emfield::itmPointToPoint(profile, links[i], emfield::ItmQuantiles<Real>()).loss_db;
+  loss_db[i] = propagation::itmPointToPoint(profile, links[i], propagation::ItmQuantiles<Real>()).loss_db;
 }
 
 template <class Real>
 void measure(const char* name, const bench::ItmCases& cases) {
-  std::vector<emfield::ItmLink<Real>> links;
+  std::vector<propagation::ItmLink<Real>> links;
   for (const auto& link : cases.links) links.push_back(bench::linkAs<Real>(link));
   const float* heights = onDevice(cases.heights_msl_m);
-  const emfield::ItmLink<Real>* device_links = onDevice(links);
+  const propagation::ItmLink<Real>* device_links = onDevice(links);
   std::vector<Real> loss_db(kCases);
   Real* device_loss = onDevice(loss_db);
 
@@ -69,9 +69,9 @@ void measure(const char* name, const bench::ItmCases& cases) {
 
   double largest_db = 0;
   for (int i = 0; i < kCases; ++i) {
-    const emfield::ItmProfile<float> profile{cases.profile(static_cast<std::size_t>(i)), kIntervals, kStep_m};
+    const propagation::ItmProfile<float> profile{cases.profile(static_cast<std::size_t>(i)), kIntervals, kStep_m};
     const double expected_db =
-        emfield::itmPointToPoint(profile, cases.links[i], emfield::ItmQuantiles<double>()).loss_db;
+        propagation::itmPointToPoint(profile, cases.links[i], propagation::ItmQuantiles<double>()).loss_db;
     largest_db = std::max(largest_db, std::fabs(static_cast<double>(loss_db[i]) - expected_db));
   }
   std::printf("%s: %.1f million evaluations/s; within %.2g dB of the CPU's double\n", name,

@@ -30,6 +30,8 @@ class Section {
   int integer(const std::string& key) const;
   std::optional<bool> optionalBoolean(const std::string& key) const;
   std::string text(const std::string& key) const;  ///< text, timestamp, file
+  /// Index of a choice in the table's order; 0 if it is faulty.
+  int choiceIndex(const std::string& key) const;
   /// The value of a choice whose order in the table is the enumeration's.
   template <class Enum>
   Enum choice(const std::string& key) const {
@@ -55,7 +57,6 @@ class Section {
  private:
   const KeySpec& row(const std::string& key) const;
   const DocumentNode* find(const std::string& key) const;
-  int choiceIndex(const std::string& key) const;
   SourceLocation placeAt(const TextPosition& position) const {
     return {*file_, position.line, position.column};
   }

@@ -8,6 +8,7 @@ namespace {
 
 using scenario::CombineMode;
 using scenario::EmitterKind;
+using scenario::Quantity;
 
 /// Quantities that are one number for all emitters, whatever the combination.
 bool countsEmitters(Quantity quantity) {
@@ -20,7 +21,7 @@ std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
                                 const std::vector<std::string>& quantities) {
   std::vector<Channel> channels;
   for (const std::string& name : quantities.empty() ? scenario.output.quantities : quantities) {
-    const Quantity quantity = quantityFromName(name);
+    const Quantity quantity = scenario::quantityFromName(name);
     std::vector<int> emitters;
     for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
       const bool enters = !isOfRadars(quantity) || scenario.emitters[e].kind == EmitterKind::radar;

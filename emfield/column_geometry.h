@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "emfield/excess/excess_code.h"
+#include "emfield/excess_code.h"
 #include "emfield/fan_coordinates.h"
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"

@@ -7,10 +7,11 @@
 
 #include "base/stopwatch.h"
 #include "emfield/column_geometry.h"
-#include "emfield/excess/excess_model.h"
-#include "emfield/excess/fill_excess.h"
+#include "emfield/emitter_excess.h"
+#include "emfield/fill_excess.h"
 #include "emfield/shadow.h"
 #include "emscape/base/parallel.h"
+#include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
 namespace {
@@ -32,12 +33,10 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   excess_.clear();
   unknown_columns_ = 0;
   remarks_ = 0;
-  const bool has_shadow = emitter.propagation == scenario::PropagationModel::horizon;
+  const bool has_shadow = propagation::modelInfo(emitter.propagation.model).casts_shadow;
   std::optional<EmitterExcess> excess;
   if (hasExcess(scenario, emitter)) {
-    const bool needs_extent = needsPathExtent(scenario, emitter);
-    excess = makeExcess(scenario, emitter, station, terrain,
-                        needs_extent ? pathExtent(station, columns) : PathExtent{}, resolution);
+    excess = makeExcess(scenario, emitter, station, terrain, columns, resolution);
     excess_.resize(column_count_ * columns.t_m.size());
   }
   times.fan_ms += watch.lap_ms();

@@ -1,12 +1,12 @@
-/// Whether the models that a scenario's emitters choose can compute what they are asked for. All limits come
-/// from the models' own tables (models/model_limits.h).
+/// Whether the models that a scenario's emitters choose can compute what they are asked for. What they say
+/// comes from their rows in the registry; here it gets the emitter's name and the line in the scenario.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "emfield/excess/air_loss.h"
 #include "emscape/scenario/snapshot.h"
+#include "propagation/inputs.h"
 
 namespace emscape::emfield {
 
@@ -18,10 +18,10 @@ std::vector<std::string> checkModels(const scenario::Scenario& scenario);
 std::vector<std::string> checkModel(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
 
 /// What can be said of an emitter where it stands, and of where its paths end.
-/// @param remarks  of the model on the paths (remarkMessages)
+/// @param inputs   of the emitter's paths, extent included
+/// @param remarks  of the model on the paths
 /// @return warnings, each naming the emitter
-std::vector<std::string> pathWarnings(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                                      const scenario::EmitterState& state, const PathExtent& extent,
-                                      const scenario::Terrain* terrain, unsigned remarks);
+std::vector<std::string> pathWarnings(const scenario::Emitter& emitter, const propagation::PathInputs& inputs,
+                                      unsigned remarks);
 
 }  // namespace emscape::emfield

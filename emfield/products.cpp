@@ -1,13 +1,15 @@
 #include "emfield/products.h"
 
-#include "emfield/radar_receiver.h"
+#include "emfield/radar/receiver.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "emscape/volume/dense_volume.h"
 
 namespace emscape::emfield {
 namespace {
 
 using scenario::Emitter;
+using scenario::Quantity;
 
 /// What a channel of a radar quantity does with each radar's echo, before the look is known.
 RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::OutputSpec& output) {
@@ -47,6 +49,19 @@ std::shared_ptr<const DetectionCurve> curveOf(
 }
 
 }  // namespace
+
+const char* scaleOf(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::detection_probability:
+      return volume::kProbabilityScale;
+    case Quantity::jammer_to_signal_db:
+      return volume::kRatioBelowScale;
+    case Quantity::burn_through_margin_db:
+      return volume::kRatioAboveScale;
+    default:
+      return nullptr;
+  }
+}
 
 ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario,
                        const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {

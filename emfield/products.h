@@ -33,6 +33,9 @@ EMSCAPE_HD inline float decibelsOf(const ProductScale& product, float accumulato
 /// Largest burn-through margin (60 dB): also that of a radar that nothing jams.
 constexpr float kLargestMargin = 1e6f;
 
+/// The scale of a quantity's colours as volumes name it (volume::kScaleKey); null: none.
+const char* scaleOf(scenario::Quantity quantity);
+
 /// How a channel is made: its reduction, each emitter's weight in it, and its scale.
 struct ChannelRecipe {
   Reduction reduction = Reduction::sum;

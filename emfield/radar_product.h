@@ -10,8 +10,8 @@
 
 #include "base/fast_math.h"
 #include "emfield/combine.h"
-#include "emfield/detection.h"
-#include "emfield/radar_look.h"
+#include "emfield/radar/detection.h"
+#include "emfield/radar/look.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 

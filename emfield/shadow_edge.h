@@ -4,11 +4,14 @@
 #include <cmath>
 
 #include "emfield/fan_coordinates.h"
-#include "emfield/models/horizon.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/base/host_device.h"
+#include "propagation/horizon/horizon.h"
 
 namespace emscape::emfield {
+
+using propagation::HorizonGeometry;
+using propagation::RangeTerms;
 
 template <class Real>
 EMSCAPE_HD HorizonGeometry<Real> horizonGeometry(const Station& station) {

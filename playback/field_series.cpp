@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
-#include "emscape/emfield/quantities.h"
 #include "emscape/playback/stop.h"
+#include "emscape/scenario/quantities.h"
 #include "emscape/volume/difference.h"
 #include "playback/difference_source.h"
 
@@ -67,7 +67,7 @@ void FieldSeries::compareWith(const LoadedScenario& reference, const std::string
   }
   std::vector<emfield::Channel> channels = own;
   for (emfield::Channel& channel : channels) {
-    const emfield::QuantityInfo& quantity = emfield::info(channel.quantity);
+    const scenario::QuantityInfo& quantity = scenario::info(channel.quantity);
     volume::requireDifference(channel.name, quantity.categorical);
     volume::VolumeInfo info;
     info.quantity = channel.name;

@@ -84,7 +84,7 @@ std::vector<EmitterProbe> probeEmitters(const emfield::PathEnd& point, double ti
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     try {
       emitters[e].budget = emfield::pathBudget(snapshot, static_cast<int>(e), point,
-                                               scenario->emitters[e].propagation, terrain);
+                                               scenario->emitters[e].propagation.model, terrain);
     } catch (const Error& error) {
       refuse(emitters[e], error);
     }

@@ -7,15 +7,11 @@
 
 namespace emscape::scenario {
 
+using propagation::Polarization;
+
 const char* toString(EmitterKind kind) {
   static constexpr const char* kNames[] = {"radar", "transmitter", "jammer"};
   return kNames[static_cast<int>(kind)];
-}
-
-const char* toString(Polarization polarization) {
-  static constexpr const char* kNames[] = {"horizontal", "vertical",       "slant_45",
-                                           "slant_135",  "circular_right", "circular_left"};
-  return kNames[static_cast<int>(polarization)];
 }
 
 const char* toString(DetectionMethod method) {

@@ -7,6 +7,7 @@
 
 #include "document/edit_path.h"
 #include "document/text_edit.h"
+#include "propagation/registry/model_info.h"
 #include "scenario/schema.h"
 #include "scenario/source.h"
 
@@ -60,14 +61,10 @@ bool isIn(const std::vector<std::string>& list, const std::string& word) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-const std::vector<std::string>& modelsWithSettings() {
-  static const std::vector<std::string> models{"diffraction", "two_ray", "itm", "p528"};
-  return models;
-}
-
-/// Whether the settings of a model enter with the model that is chosen.
-bool enters(const std::string& settings, const std::string& propagation) {
-  return settings == propagation || (settings == "diffraction" && propagation == "itm");
+/// Whether the settings of a model enter with the model that is chosen; not if that is no model's name.
+bool enters(const propagation::ModelInfo& settings_of, const std::string& chosen_name) {
+  const propagation::ModelInfo* const chosen = propagation::modelNamed(chosen_name);
+  return chosen != nullptr && propagation::settingsEnter(settings_of, *chosen);
 }
 
 std::string textOf(const document::DefaultValue& value) {
@@ -128,9 +125,10 @@ class GroupBuilder {
     for (const auto& [key, beside] : spec.goes_with) {
       if (row.name == key && childOf(node, beside) == nullptr) return false;
     }
-    if (spec.find("propagation", nullptr) == nullptr || !isIn(modelsWithSettings(), row.name)) return true;
+    const propagation::ModelInfo* const settings_of = propagation::modelNamed(row.name);
+    if (spec.find("propagation", nullptr) == nullptr || settings_of == nullptr) return true;
     const DocumentNode* model = childOf(node, "propagation");
-    return enters(row.name, model != nullptr ? model->text : toString(Emitter{}.propagation));
+    return enters(*settings_of, model != nullptr ? model->text : toString(Emitter{}.propagation.model));
   }
 
   Parameter parameter(const ObjectSpec& spec, const KeySpec& row, const std::string& path,
@@ -204,9 +202,9 @@ std::vector<Edit> editsForChoice(const Scenario& scenario, const std::string& pa
   if (spec == nullptr) return edits;
   const DocumentNodePtr node = document::valueAt(root, parent.steps);
   if (key == "propagation") {
-    for (const std::string& model : modelsWithSettings()) {
-      if (!enters(model, choice) && childOf(node.get(), model) != nullptr)
-        edits.push_back({parent_path + "." + model, "null"});
+    for (const propagation::ModelInfo& model : propagation::models()) {
+      if (!enters(model, choice) && childOf(node.get(), model.name) != nullptr)
+        edits.push_back({parent_path + "." + model.name, "null"});
     }
   }
   if (key != spec->discriminator) return edits;

@@ -10,6 +10,7 @@
 #include "base/whole_file.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
+#include "propagation/registry/model_info.h"
 #include "scenario/antenna_shapes.h"
 
 namespace emscape::scenario {
@@ -107,7 +108,8 @@ RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
   receiver.bandwidth_hz = section.number("bandwidth_hz");
   receiver.losses_db = section.number("losses_db");
   receiver.processing_gain_db = section.number("processing_gain_db");
-  if (section.has("polarization")) receiver.polarization = section.choice<Polarization>("polarization");
+  if (section.has("polarization"))
+    receiver.polarization = section.choice<propagation::Polarization>("polarization");
   receiver.cross_polar_isolation_db = section.number("cross_polar_isolation_db");
   receiver.pulses = section.integer("pulses");
   receiver.pfa = section.number("pfa");
@@ -125,37 +127,24 @@ RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
   return receiver;
 }
 
-ItmSettings parseItm(const Section& section) {
-  ItmSettings itm;
-  itm.form = section.choice<ItmForm>("form");
-  itm.time_percent = section.number("time_percent");
-  itm.location_percent = section.number("location_percent");
-  itm.situation_percent = section.number("situation_percent");
-  itm.service = section.choice<ItmService>("service");
-  itm.irregularity_m = section.number("irregularity_m");
-  itm.transmitter_siting = section.choice<ItmSiting>("transmitter_siting");
-  itm.receiver_siting = section.choice<ItmSiting>("receiver_siting");
-  itm.place = section.place();
-  return itm;
-}
-
 /// The model and the settings of all models; those of a model that does not enter are an error.
-void parsePropagation(const Section& section, Emitter& emitter, ParseContext& context) {
-  emitter.propagation = section.choice<PropagationModel>("propagation");
-  const Section two_ray = section.section("two_ray"), p528 = section.section("p528");
-  emitter.diffraction.method = section.section("diffraction").choice<DiffractionMethod>("method");
-  emitter.two_ray = {two_ray.choice<TwoRaySum>("sum"), two_ray.choice<RoughnessModel>("roughness_model")};
-  emitter.itm = parseItm(section.section("itm"));
-  emitter.p528 = {p528.number("time_percent"), p528.place()};
-  for (const PropagationModel model : {PropagationModel::diffraction, PropagationModel::two_ray,
-                                       PropagationModel::itm, PropagationModel::p528}) {
-    const bool enters = model == emitter.propagation || (model == PropagationModel::diffraction &&
-                                                         emitter.propagation == PropagationModel::itm);
-    if (enters || !section.has(toString(model))) continue;
-    context.problems.addError(section.placeOf(toString(model)),
-                              fmt::format("'{}' sets up a model that is not used: 'propagation' is {}",
-                                          toString(model), toString(emitter.propagation)));
+propagation::ModelSettings parsePropagation(const Section& section, ParseContext& context) {
+  propagation::ModelSettings settings;
+  settings.model = section.choice<propagation::PropagationModel>("propagation");
+  const propagation::ModelInfo& chosen = propagation::modelInfo(settings.model);
+  for (const propagation::ModelInfo& model : propagation::models()) {
+    if (model.settings.empty()) continue;
+    const Section own = section.section(model.name);
+    for (const propagation::Setting& setting : model.settings) {
+      setting.set(settings, setting.choices.empty() ? own.number(setting.key) : own.choiceIndex(setting.key));
+    }
+    if (model.model == chosen.model) settings.place = own.place();
+    if (propagation::settingsEnter(model, chosen) || !section.has(model.name)) continue;
+    context.problems.addError(
+        section.placeOf(model.name),
+        fmt::format("'{}' sets up a model that is not used: 'propagation' is {}", model.name, chosen.name));
   }
+  return settings;
 }
 
 }  // namespace
@@ -273,9 +262,9 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   emitter.bandwidth_hz = section.number("bandwidth_hz");
   emitter.power_w = section.number("power_w");
   emitter.losses_db = section.number("losses_db");
-  emitter.polarization = section.choice<Polarization>("polarization");
+  emitter.polarization = section.choice<propagation::Polarization>("polarization");
   emitter.frequency_place = section.placeOf("frequency_hz");
-  parsePropagation(section, emitter, context);
+  emitter.propagation = parsePropagation(section, context);
   if (section.has("antenna")) emitter.antenna = parseAntenna(section.section("antenna"), context);
   const bool steers = emitter.antenna && emitter.antenna->view().kind == PatternKind::phased_array;
   emitter.scan = parseScan(section.section("scan"), steers, context);

@@ -12,6 +12,7 @@
 #include "document/text_edit.h"
 #include "document/text_file.h"
 #include "emscape/base/log.h"
+#include "emscape/scenario/quantities.h"
 #include "scenario/parse_sections.h"
 
 namespace emscape::scenario {
@@ -88,23 +89,23 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
   return terrain;
 }
 
-Atmosphere parseAtmosphere(const Section& section) {
-  Atmosphere atmosphere;
+propagation::Atmosphere parseAtmosphere(const Section& section) {
+  propagation::Atmosphere atmosphere;
   atmosphere.k_factor = section.number("k_factor");
   atmosphere.pressure_hpa = section.number("pressure_hpa");
   atmosphere.temperature_k = section.number("temperature_k");
   atmosphere.vapour_g_m3 = section.number("vapour_g_m3");
   atmosphere.rain_mm_h = section.number("rain_mm_h");
   atmosphere.rain_height_m = section.optionalNumber("rain_height_m");
-  atmosphere.gases = section.choice<GasLosses>("gases");
+  atmosphere.gases = section.choice<propagation::GasLosses>("gases");
   atmosphere.sea_level_refractivity = section.number("sea_level_refractivity");
-  atmosphere.climate = section.choice<RadioClimate>("climate");
+  atmosphere.climate = section.choice<propagation::RadioClimate>("climate");
   return atmosphere;
 }
 
-Ground parseGround(const Section& section) {
-  Ground ground;
-  ground.kind = section.choice<GroundKind>("kind");
+propagation::Ground parseGround(const Section& section) {
+  propagation::Ground ground;
+  ground.kind = section.choice<propagation::GroundKind>("kind");
   ground.relative_permittivity = section.optionalNumber("relative_permittivity");
   ground.conductivity_s_m = section.optionalNumber("conductivity_s_m");
   ground.roughness_m = section.number("roughness_m");
@@ -118,7 +119,8 @@ ReceiverProfile parseReceiverProfile(const Section& section) {
   receiver.name = section.text("name");
   receiver.gain_dbi = section.number("gain_dbi");
   receiver.losses_db = section.number("losses_db");
-  if (section.has("polarization")) receiver.polarization = section.choice<Polarization>("polarization");
+  if (section.has("polarization"))
+    receiver.polarization = section.choice<propagation::Polarization>("polarization");
   receiver.cross_polar_isolation_db = section.number("cross_polar_isolation_db");
   receiver.center_frequency_hz = section.optionalNumber("center_frequency_hz").value_or(0);
   receiver.bandwidth_hz = section.optionalNumber("bandwidth_hz").value_or(0);
@@ -152,12 +154,16 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
   for (std::size_t i = 0; i < output.quantities.size(); ++i) {
     const std::string& quantity = output.quantities[i];
     const SourceLocation place = section.placeOf("quantities", i);
-    if (quantity == "received_power_dbm") need(!scenario.receivers.empty(), place, quantity, "a receiver");
-    const bool is_of_jamming = quantity == "jammer_to_signal_db" || quantity == "burn_through_margin_db";
-    if (quantity == "snr_db" || quantity == "detection_probability" || is_of_jamming) {
+    const auto row = std::find_if(quantityTable().begin(), quantityTable().end(),
+                                  [&](const QuantityInfo& known) { return quantity == known.name; });
+    if (row == quantityTable().end()) continue;  // already reported
+    if (row->kind == QuantityKind::of_receiver) {
+      need(!scenario.receivers.empty(), place, quantity, "a receiver");
+    }
+    if (isOfRadars(row->quantity)) {
       need(hasKind(EmitterKind::radar), place, quantity, "an emitter of kind radar");
     }
-    if (is_of_jamming) {
+    if (row->needs_jammer) {
       need(hasKind(EmitterKind::jammer), place, quantity, "an emitter of kind jammer");
     }
   }
@@ -185,8 +191,7 @@ void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, Pa
 void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<std::string>& quantities = scenario.output.quantities;
   const bool counts = std::any_of(quantities.begin(), quantities.end(), [](const std::string& quantity) {
-    return quantity == "detection_probability" || quantity == "jammer_to_signal_db" ||
-           quantity == "burn_through_margin_db";
+    return isOfJamming(quantityFromName(quantity));
   });
   const std::vector<Section> sections = root.sections("emitters");
   for (std::size_t i = 0; i < sections.size() && counts; ++i) {
@@ -244,8 +249,7 @@ void mapPlaces(Scenario& scenario, const document::EditedText& text) {
   for (Emitter& emitter : scenario.emitters) {
     map(emitter.place);
     map(emitter.frequency_place);
-    map(emitter.itm.place);
-    map(emitter.p528.place);
+    map(emitter.propagation.place);
   }
   if (!scenario.terrain) return;
   for (SourceLocation& place : scenario.terrain->places) map(place);

@@ -1,6 +1,10 @@
 #include "scenario/schema.h"
 
+#include <map>
+
+#include "emscape/scenario/quantities.h"
 #include "emscape/scenario/scenario.h"
+#include "propagation/registry/model_info.h"
 
 namespace emscape::scenario {
 
@@ -18,6 +22,13 @@ using document::spec::required;
 using document::spec::simple;
 using document::spec::textOf;
 using document::spec::Variants;
+using propagation::Atmosphere;
+using propagation::GasLosses;
+using propagation::Ground;
+using propagation::GroundKind;
+using propagation::ModelInfo;
+using propagation::Polarization;
+using propagation::RadioClimate;
 
 /// The names of an enumeration that counts from 0 to `last`.
 template <class Enum>
@@ -144,59 +155,47 @@ const ObjectSpec& groundSpec() {
   return spec;
 }
 
-const ObjectSpec& diffractionSpec() {
-  static const ObjectSpec spec{
-      "diffraction",
-      "",
-      {byDefault("method", choiceUpTo(DiffractionMethod::deygout), toString(DiffractionSettings{}.method),
-                 "delta_bullington: terrain as one edge and the earth's bulge; single_edge, deygout (three "
-                 "edges): terrain alone")}};
-  return spec;
+/// The section of a propagation model in an emitter.
+const ObjectSpec& settingsSpec(const ModelInfo& model) {
+  static const std::map<propagation::PropagationModel, ObjectSpec> specs = [] {
+    const propagation::ModelSettings defaults;
+    std::map<propagation::PropagationModel, ObjectSpec> all;
+    for (const ModelInfo& row : propagation::models()) {
+      ObjectSpec& spec = all[row.model] = {row.name, "", {}};
+      for (const propagation::Setting& setting : row.settings) {
+        const double value = setting.get(defaults);
+        const bool is_number = setting.choices.empty();
+        spec.keys.push_back(byDefault(
+            setting.key,
+            is_number ? number(setting.unit).from(setting.min).to(setting.max) : choice(setting.choices),
+            is_number ? DefaultValue(value) : DefaultValue(setting.choices[static_cast<std::size_t>(value)]),
+            setting.description));
+      }
+    }
+    return all;
+  }();
+  return specs.at(model.model);
 }
 
-const ObjectSpec& twoRaySpec() {
-  static const ObjectSpec spec{
-      "two_ray",
-      "",
-      {byDefault("sum", choiceUpTo(TwoRaySum::envelope), toString(TwoRaySettings{}.sum),
-                 "coherent: lobes and nulls; envelope: the lobes' tops, where voxels are larger than lobes"),
-       byDefault("roughness_model", choiceUpTo(RoughnessModel::miller_brown),
-                 toString(TwoRaySettings{}.roughness_model), "what roughness leaves of the reflection")}};
-  return spec;
+/// The choice of a model, and a section for each that has settings.
+std::vector<KeySpec> propagationKeys() {
+  std::vector<std::string> names;
+  for (const ModelInfo& model : propagation::models()) names.push_back(model.name);
+  std::vector<KeySpec> keys{byDefault("propagation", choice(names), toString(Emitter{}.propagation.model),
+                                      "model of the path loss")};
+  for (const ModelInfo& model : propagation::models()) {
+    if (model.settings.empty()) continue;
+    keys.push_back(optional(model.name, object(settingsSpec(model)), model.settings_description));
+  }
+  return keys;
 }
 
-KeySpec percentKey(const char* name, double default_value, const char* description) {
-  return byDefault(name, number("percent").from(0.01).to(99.99), default_value, description);
-}
-
-const ObjectSpec& itmSpec() {
-  static const ObjectSpec spec{
-      "itm",
-      "",
-      {
-          byDefault("form", choiceUpTo(ItmForm::area), toString(ItmSettings{}.form),
-                    "point_to_point: over the terrain's profiles; area: over terrain of irregularity_m"),
-          percentKey("time_percent", ItmSettings{}.time_percent, "of the time the loss is not exceeded"),
-          percentKey("location_percent", ItmSettings{}.location_percent, "of places; area form alone"),
-          percentKey("situation_percent", ItmSettings{}.situation_percent, "of such links (confidence)"),
-          byDefault("service", choiceUpTo(ItmService::broadcast), toString(ItmSettings{}.service),
-                    "whose statistics they are"),
-          byDefault("irregularity_m", number("m").from(0).to(1000), ItmSettings{}.irregularity_m,
-                    "of the terrain, area form: 0 sea, 30 plains, 90 hills, 200 mountains"),
-          byDefault("transmitter_siting", choiceUpTo(ItmSiting::very_careful),
-                    toString(ItmSettings{}.transmitter_siting), "area form"),
-          byDefault("receiver_siting", choiceUpTo(ItmSiting::very_careful),
-                    toString(ItmSettings{}.receiver_siting), "area form"),
-      }};
-  return spec;
-}
-
-const ObjectSpec& p528Spec() {
-  static const ObjectSpec spec{
-      "p528",
-      "",
-      {percentKey("time_percent", P528Settings{}.time_percent, "of the time the loss is not exceeded")}};
-  return spec;
+/// The keys of an emitter: those before the choice of a propagation model, that choice, and the rest.
+std::vector<KeySpec> withPropagation(std::vector<KeySpec> keys, const std::vector<KeySpec>& rest) {
+  const std::vector<KeySpec> of_models = propagationKeys();
+  keys.insert(keys.end(), of_models.begin(), of_models.end());
+  keys.insert(keys.end(), rest.begin(), rest.end());
+  return keys;
 }
 
 const ObjectSpec& positionSpec() {
@@ -360,32 +359,28 @@ const ObjectSpec& radarReceiverSpec() {
 
 const ObjectSpec& emitterSpec() {
   static const ObjectSpec spec{
-      "emitter",
-      "kind",
-      {
-          required("name", kName, "on pictures and in volumes"),
-          required("platform", kName, "name of the platform that carries it"),
-          required("kind", choiceUpTo(EmitterKind::jammer), "what it is"),
-          required("frequency_hz", kFrequency, "carrier"),
-          byDefault("bandwidth_hz", number("Hz").from(0).to(1e11), Emitter{}.bandwidth_hz,
-                    "of the signal; 0: narrower than any receiver"),
-          required("power_w", number("W").above(0).to(1e12), "peak, at the transmitter's output"),
-          byDefault("losses_db", kLoss, Emitter{}.losses_db, "transmit path, one way"),
-          byDefault("polarization", choiceUpTo(Polarization::circular_left), toString(Emitter{}.polarization),
-                    "of the transmitted wave"),
-          required("antenna", object(antennaSpec()), "pattern and gain"),
-          optional("scan", object(scanSpec()),
-                   "how the beam moves; by default it is fixed along the heading"),
-          byDefault("propagation", choiceUpTo(PropagationModel::p528), toString(Emitter{}.propagation),
-                    "model of the path loss"),
-          optional("diffraction", object(diffractionSpec()), "how; also above itm's heights"),
-          optional("two_ray", object(twoRaySpec()), "how"),
-          optional("itm", object(itmSpec()), "how"),
-          optional("p528", object(p528Spec()), "how"),
-          required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
-          optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMostItems),
-                   "[begin, end) of the times at which it radiates; always by default"),
-      }};
+      "emitter", "kind",
+      withPropagation(
+          {
+              required("name", kName, "on pictures and in volumes"),
+              required("platform", kName, "name of the platform that carries it"),
+              required("kind", choiceUpTo(EmitterKind::jammer), "what it is"),
+              required("frequency_hz", kFrequency, "carrier"),
+              byDefault("bandwidth_hz", number("Hz").from(0).to(1e11), Emitter{}.bandwidth_hz,
+                        "of the signal; 0: narrower than any receiver"),
+              required("power_w", number("W").above(0).to(1e12), "peak, at the transmitter's output"),
+              byDefault("losses_db", kLoss, Emitter{}.losses_db, "transmit path, one way"),
+              byDefault("polarization", choiceUpTo(Polarization::circular_left),
+                        toString(Emitter{}.polarization), "of the transmitted wave"),
+              required("antenna", object(antennaSpec()), "pattern and gain"),
+              optional("scan", object(scanSpec()),
+                       "how the beam moves; by default it is fixed along the heading"),
+          },
+          {
+              required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
+              optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMostItems),
+                       "[begin, end) of the times at which it radiates; always by default"),
+          })};
   return spec;
 }
 
@@ -417,17 +412,18 @@ const ObjectSpec& bandSpec() {
   return spec;
 }
 
+std::vector<std::string> quantityChoices() {
+  std::vector<std::string> names;
+  for (const QuantityInfo& row : quantityTable()) names.emplace_back(row.name);
+  return names;
+}
+
 const ObjectSpec& outputSpec() {
   static const ObjectSpec spec{
       "output",
       "",
       {
-          byDefault("quantities",
-                    listOf(choice({"power_density_dbwm2", "field_strength_dbuvm", "received_power_dbm",
-                                   "snr_db", "emitter_count", "dominant_emitter", "detection_probability",
-                                   "jammer_to_signal_db", "burn_through_margin_db"}),
-                           1, kMostItems)
-                        .distinct(),
+          byDefault("quantities", listOf(choice(quantityChoices()), 1, kMostItems).distinct(),
                     OutputSpec{}.quantities, "what the volumes hold"),
           byDefault("combine", choiceUpTo(CombineMode::per_band), toString(OutputSpec{}.combine),
                     "how emitters are put together"),

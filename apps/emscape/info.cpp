@@ -51,7 +51,7 @@ Json describeScenario(const std::string& file) {
                         {"power_w", emitter.power_w},
                         {"antenna", emitter.antenna->description},
                         {"gain_dbi", emitter.antenna->gain_dbi},
-                        {"propagation", scenario::toString(emitter.propagation)}});
+                        {"propagation", toString(emitter.propagation.model)}});
   }
   Json platforms = Json::array();
   for (const scenario::Platform& platform : scenario->platforms) {

@@ -5,14 +5,14 @@
 #include <random>
 #include <vector>
 
-#include "emfield/models/itm.h"
+#include "propagation/itm/itm.h"
 
 namespace emscape::bench {
 
 struct ItmCases {
   int intervals = 0;
   std::vector<float> heights_msl_m;  ///< `intervals` + 1 a case
-  std::vector<emfield::ItmLink<double>> links;
+  std::vector<propagation::ItmLink<double>> links;
 
   const float* profile(std::size_t i) const {
     return heights_msl_m.data() + i * (static_cast<std::size_t>(intervals) + 1);
@@ -36,19 +36,19 @@ inline ItmCases makeItmCases(int count, int intervals) {
     }
     cases.heights_msl_m.insert(cases.heights_msl_m.end(), heights.begin(), heights.end());
     // numbers that a float holds exactly, so that both kinds compute the same link
-    emfield::ItmLink<double> link;
+    propagation::ItmLink<double> link;
     link.height_agl_m[0] = static_cast<float>(5 + 100 * uniform(random));
     link.height_agl_m[1] = static_cast<float>(2 + 50 * uniform(random));
     link.frequency_hz = static_cast<float>(50e6 * std::pow(100.0, uniform(random)));
-    link.climate = static_cast<emfield::ItmClimate>(1 + i % 7);
+    link.climate = static_cast<propagation::ItmClimate>(1 + i % 7);
     cases.links.push_back(link);
   }
   return cases;
 }
 
 template <class Real>
-emfield::ItmLink<Real> linkAs(const emfield::ItmLink<double>& link) {
-  emfield::ItmLink<Real> same;
+propagation::ItmLink<Real> linkAs(const propagation::ItmLink<double>& link) {
+  propagation::ItmLink<Real> same;
   for (int end = 0; end < 2; ++end) same.height_agl_m[end] = static_cast<Real>(link.height_agl_m[end]);
   same.frequency_hz = static_cast<Real>(link.frequency_hz);
   same.climate = link.climate;

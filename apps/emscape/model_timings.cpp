@@ -8,18 +8,18 @@
 
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/itm_cases.h"
-#include "emfield/models/diffraction_sweep.h"
-#include "emfield/models/gases.h"
-#include "emfield/models/itm.h"
-#include "emfield/models/p528.h"
-#include "emfield/models/rain.h"
-#include "emfield/models/two_ray.h"
 #include "emscape/base/units.h"
+#include "propagation/air/gases.h"
+#include "propagation/air/rain.h"
+#include "propagation/diffraction/sweep.h"
+#include "propagation/itm/itm.h"
+#include "propagation/p528/p528.h"
+#include "propagation/two_ray/two_ray.h"
 
 namespace emscape::app {
 namespace {
 
-using namespace emfield;
+using namespace propagation;
 
 constexpr double kEffectiveEarth_m = 6371000 * 4.0 / 3;
 constexpr double kPlaneLength_m = 60e3;

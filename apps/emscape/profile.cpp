@@ -16,16 +16,13 @@
 #include "emscape/emfield/path_budget.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
+#include "propagation/registry/model_info.h"
 
 namespace emscape::app {
 namespace {
 
-using scenario::PropagationModel;
+using propagation::PropagationModel;
 using scenario::Scenario;
-
-constexpr PropagationModel kModels[] = {PropagationModel::free_space,  PropagationModel::horizon,
-                                        PropagationModel::diffraction, PropagationModel::two_ray,
-                                        PropagationModel::itm,         PropagationModel::p528};
 
 struct ProfileOptions {
   std::string scenario;
@@ -74,11 +71,6 @@ int emitterNamed(const Scenario& scenario, const std::string& name) {
               fmt::format("--emitter: no emitter '{}' in {}; it has {}", name, scenario.file, known));
 }
 
-PropagationModel modelNamed(const std::string& name) {
-  return *std::find_if(std::begin(kModels), std::end(kModels),
-                       [&](PropagationModel model) { return name == scenario::toString(model); });
-}
-
 /// The scenario with a platform at the point, the last one: ground is read below it and its height is checked
 /// as any platform's.
 std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenario::SitePosition& point) {
@@ -102,10 +94,10 @@ ProfileReport makeReport(const ProfileOptions& options) {
     return emfield::pathBudget(snapshot, emitter, point, model, terrain.get());
   };
   ProfileReport report{
-      options.scenario, snapshot.time_utc, budgetBy(scenario->emitters[emitter].propagation), {}};
+      options.scenario, snapshot.time_utc, budgetBy(scenario->emitters[emitter].propagation.model), {}};
   for (const std::string& name : options.models) {
     Comparison comparison;
-    comparison.model = modelNamed(name);
+    comparison.model = propagation::modelNamed(name)->model;
     try {
       comparison.budget = budgetBy(comparison.model);
     } catch (const Error& error) {
@@ -149,7 +141,7 @@ Exit status: 0, whether there is coverage or not; 2 for an emitter or a point th
 or a path over missing terrain.)");
   auto options = std::make_shared<ProfileOptions>();
   std::vector<std::string> names;
-  for (const PropagationModel model : kModels) names.emplace_back(scenario::toString(model));
+  for (const propagation::ModelInfo& row : propagation::models()) names.push_back(row.name);
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
   command->add_option("--emitter", options->emitter, "Name of the emitter")->required();

@@ -262,11 +262,11 @@ class ProfilePlot {
 
   void drawTitle() {
     const emfield::PathEnd& end = profile_.end;
-    canvas_.text(fmt::format("{} to {:.5f}, {:.5f} deg   ({}, {}, t = {:g} s)", budget_.emitter,
-                             end.position.latitude_deg, end.position.longitude_deg,
-                             quantityText(budget_.frequency_hz, "Hz", 4), scenario::toString(budget_.model),
-                             budget_.time_s),
-                 {frame_.x, 26 * unit_}, 20 * unit_, kText, Align::left, Weight::bold);
+    canvas_.text(
+        fmt::format("{} to {:.5f}, {:.5f} deg   ({}, {}, t = {:g} s)", budget_.emitter,
+                    end.position.latitude_deg, end.position.longitude_deg,
+                    quantityText(budget_.frequency_hz, "Hz", 4), toString(budget_.model), budget_.time_s),
+        {frame_.x, 26 * unit_}, 20 * unit_, kText, Align::left, Weight::bold);
     double y = 54 * unit_;
     for (const std::string& line : wrapped(budget_.verdict, frame_.width, 16 * unit_)) {
       canvas_.text(line, {frame_.x, y}, 16 * unit_, kText);

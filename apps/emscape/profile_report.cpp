@@ -61,7 +61,7 @@ Json toJson(const PathObstacle& obstacle) {
 }
 
 Json toJson(const Comparison& comparison) {
-  Json json{{"model", scenario::toString(comparison.model)}};
+  Json json{{"model", toString(comparison.model)}};
   if (!comparison.refusal.empty()) {
     json["refused"] = comparison.refusal;
     return json;
@@ -96,7 +96,7 @@ void printObstacles(const PathBudget& budget) {
 }
 
 void printBudget(const PathBudget& budget) {
-  print("\nBudget by '{}': {}\n", scenario::toString(budget.model), budget.excess.why);
+  print("\nBudget by '{}': {}\n", toString(budget.model), budget.excess.why);
   for (const BudgetTerm& term : budget.terms) {
     const bool is_sum = term.kind == BudgetTerm::Kind::sum;
     print("{} {:<48} {:>9} {:<8} {}\n", is_sum ? " =" : "  ", term.label, valueText(term.value), term.unit,
@@ -108,7 +108,7 @@ void printCompared(const std::vector<Comparison>& compared, const PathBudget& ow
   if (compared.empty()) return;
   print("\nCompared\n  {:<12} {:>10} {:>22}\n", "model", "excess dB", "power density dBW/m2");
   const auto row = [](const PathBudget& budget, const char* remark) {
-    print("  {:<12} {:>10} {:>22} {}\n", scenario::toString(budget.model), valueText(budget.excess.loss_db),
+    print("  {:<12} {:>10} {:>22} {}\n", toString(budget.model), valueText(budget.excess.loss_db),
           valueText(budget.find("power_density_dbwm2")->value), remark);
   };
   row(own, "the scenario's");
@@ -116,7 +116,7 @@ void printCompared(const std::vector<Comparison>& compared, const PathBudget& ow
     if (comparison.refusal.empty()) {
       row(comparison.budget, "");
     } else {
-      print("  {:<12} {}\n", scenario::toString(comparison.model), comparison.refusal);
+      print("  {:<12} {}\n", toString(comparison.model), comparison.refusal);
     }
   }
 }
@@ -130,7 +130,8 @@ Json toJson(const ProfileReport& report) {
   Json terms = Json::object();
   for (const BudgetTerm& term : budget.terms) terms[term.key] = number(term.value);
   Json excess_parts = Json::object();
-  for (const emfield::ExcessPart& part : budget.excess.parts) excess_parts[part.key] = number(part.loss_db);
+  for (const propagation::ExcessPart& part : budget.excess.parts)
+    excess_parts[part.key] = number(part.loss_db);
   Json compared = Json::array();
   for (const Comparison& comparison : report.compared) compared.push_back(toJson(comparison));
   return {{"scenario", report.scenario},
@@ -143,7 +144,7 @@ Json toJson(const ProfileReport& report) {
           {"to", toJson(budget.profile.end, budget.geometry.end_ground_msl_m)},
           {"geometry", geometryJson(budget)},
           {"obstacles", obstacles},
-          {"model", scenario::toString(budget.model)},
+          {"model", toString(budget.model)},
           {"model_why", budget.excess.why},
           {"excess_db", number(budget.excess.loss_db)},
           {"excess_parts_db", excess_parts},

@@ -11,7 +11,7 @@ namespace emscape::app {
 
 /// The path by another model, or why that model has no answer.
 struct Comparison {
-  scenario::PropagationModel model = scenario::PropagationModel::free_space;
+  propagation::PropagationModel model = propagation::PropagationModel::free_space;
   std::string refusal;  ///< empty: the budget holds
   emfield::PathBudget budget;
 };

@@ -12,9 +12,9 @@
 #include "apps/emscape/value_range.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
-#include "emscape/emfield/quantities.h"
 #include "emscape/playback/frame_source.h"
 #include "emscape/playback/series_writer.h"
+#include "emscape/scenario/quantities.h"
 
 namespace emscape::app {
 namespace {
@@ -138,7 +138,7 @@ Examples:
       ->check(CLI::IsMember(playback::writableFormats()));
   addListOption(
       *command, "--quantity", options->quantities,
-      "Quantities, with commas between them (" + emfield::quantityNames() + "); default: the scenario's");
+      "Quantities, with commas between them (" + scenario::quantityNames() + "); default: the scenario's");
   command->add_option("--times", options->times,
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
   command->add_option("--range", options->range,

@@ -105,7 +105,7 @@ void drawPath(PanelContext& context, const emfield::PathBudget& budget) {
   ImGui::TextWrapped("%s", budget.verdict.c_str());
   drawPathPlot(budget, {ImGui::GetContentRegionAvail().x, 150 * s}, theme, s);
   drawTerms(budget, theme, s);
-  ImGui::TextDisabled("%s:", scenario::toString(budget.model));
+  ImGui::TextDisabled("%s:", toString(budget.model));
   ImGui::SameLine();
   ImGui::TextWrapped("%s", budget.excess.why.c_str());
   drawObstacles(budget, theme, s);

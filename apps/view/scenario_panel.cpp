@@ -9,7 +9,7 @@
 #include "apps/view/parameter_rows.h"
 #include "apps/view/theme.h"
 #include "emscape/base/error.h"
-#include "emscape/emfield/quantities.h"
+#include "emscape/scenario/quantities.h"
 
 namespace emscape::view {
 namespace {
@@ -106,7 +106,7 @@ std::vector<std::string> quantitiesOf(const scenario::Scenario& scenario) {
     for (const scenario::Band& band : scenario.bands) parts.push_back(":" + band.name);
   }
   std::vector<std::string> names = scenario.output.quantities;
-  for (const emfield::QuantityInfo& info : emfield::quantityTable()) {
+  for (const scenario::QuantityInfo& info : scenario::quantityTable()) {
     if (std::find(names.begin(), names.end(), info.name) == names.end()) names.emplace_back(info.name);
   }
   std::vector<std::string> all;

@@ -1,11 +1,13 @@
 /// Attenuation by gases and rain.
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
-#include "emfield/models/gases.h"
-#include "emfield/models/rain.h"
 #include "emscape/base/units.h"
+#include "propagation/air/gases.h"
+#include "propagation/air/rain.h"
 
 namespace emscape::emfield {
+
+using namespace propagation;
 
 DatasetCheck checkSpecificGasAttenuation(const std::filesystem::path& folder) {
   const ReferenceTable cases(folder / "cases.csv",

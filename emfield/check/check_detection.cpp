@@ -3,8 +3,8 @@
 
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
-#include "emfield/detection.h"
-#include "emfield/radar_equation.h"
+#include "emfield/radar/detection.h"
+#include "emfield/radar/equation.h"
 #include "emscape/base/error.h"
 
 namespace emscape::emfield {

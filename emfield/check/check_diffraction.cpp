@@ -4,9 +4,11 @@
 
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
-#include "emfield/models/diffraction.h"
+#include "propagation/diffraction/diffraction.h"
 
 namespace emscape::emfield {
+
+using namespace propagation;
 namespace {
 
 struct Terrain {

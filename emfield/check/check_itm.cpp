@@ -3,9 +3,11 @@
 
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
-#include "emfield/models/itm.h"
+#include "propagation/itm/itm.h"
 
 namespace emscape::emfield {
+
+using namespace propagation;
 namespace {
 
 ItmLink<double> linkOf(const ReferenceTable& cases, int i) {

@@ -6,9 +6,11 @@
 
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
-#include "emfield/models/p528.h"
+#include "propagation/p528/p528.h"
 
 namespace emscape::emfield {
+
+using namespace propagation;
 
 DatasetCheck checkP528(const std::filesystem::path& folder) {
   const ReferenceTable cases(folder / "cases.csv", {"f_mhz", "time_pct", "h1_m", "h2_m", "d_km", "loss_db"});

@@ -3,9 +3,11 @@
 
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
-#include "emfield/models/two_ray.h"
+#include "propagation/two_ray/two_ray.h"
 
 namespace emscape::emfield {
+
+using namespace propagation;
 
 DatasetCheck checkTwoRay(const std::filesystem::path& file) {
   const ReferenceTable cases(file,

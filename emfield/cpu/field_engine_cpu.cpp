@@ -4,8 +4,8 @@
 
 #include "base/memory.h"
 #include "base/stopwatch.h"
-#include "emfield/field_engine.h"
-#include "emfield/kept_power.h"
+#include "emfield/solver/field_engine.h"
+#include "emfield/solver/kept_power.h"
 
 namespace emscape::emfield {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "emfield/column_geometry.h"
 #include "emscape/base/parallel.h"
+#include "propagation/registry/model_info.h"
 
 namespace emscape::emfield::cuda {
 namespace {
@@ -82,12 +83,10 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   work.station =
       makeStation(request.state.position, request.state.height_msl_m, scenario.atmosphere.k_factor);
   const scenario::Emitter& emitter = scenario.emitters[request.emitter];
-  work.has_shadow = emitter.propagation == scenario::PropagationModel::horizon;
+  work.has_shadow = propagation::modelInfo(emitter.propagation.model).casts_shadow;
   if (hasExcess(scenario, emitter)) {
-    const bool needs_extent = needsPathExtent(scenario, emitter);
     work.model =
-        makeExcess(scenario, emitter, work.station, setup_.terrain.get(),
-                   needs_extent ? pathExtent(work.station, setup_.columns) : PathExtent{}, setup_.resolution);
+        makeExcess(scenario, emitter, work.station, setup_.terrain.get(), setup_.columns, setup_.resolution);
   }
   if (work.needsFan()) {
     std::vector<FanCoordinates> coordinates;
@@ -206,7 +205,7 @@ std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<Geometry
 }
 
 bool DeviceGeometry::isDiffraction(const Work& work) {
-  return work.model && std::holds_alternative<DiffractionExcess>(work.model->model);
+  return work.model && std::holds_alternative<propagation::DiffractionExcess>(work.model->model);
 }
 
 /// As many intervals at a time as the memory for samples takes.
@@ -269,7 +268,7 @@ void DeviceGeometry::runBatch(Batch& batch, cudaStream_t stream, StageClock& clo
     has_slopes = has_slopes || piece.holds_slopes;
     if (isDiffraction(work)) {
       diffraction.push_back(
-          {std::get<DiffractionExcess>(work.model->model), work.model->air, piece, work.excess});
+          {std::get<propagation::DiffractionExcess>(work.model->model), work.model->air, piece, work.excess});
     }
   }
   clock.begin(stream);

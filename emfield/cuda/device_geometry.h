@@ -9,7 +9,7 @@
 #include "emfield/cuda/excess_kernels.h"
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/cuda/stage_clock.h"
-#include "emfield/field_engine.h"
+#include "emfield/solver/field_engine.h"
 
 namespace emscape::emfield::cuda {
 

@@ -8,6 +8,9 @@ namespace emscape::emfield::cuda {
 namespace {
 
 using emscape::cuda::checkLaunch;
+using propagation::DiffractionColumn;
+using propagation::kBisectionStep;
+using propagation::kMissingTerrain;
 
 constexpr int kThreads = 128;
 /// Receivers of a column that share a walk over its profile.

@@ -4,10 +4,14 @@
 #include <cuda_runtime_api.h>
 
 #include "emfield/cuda/geometry_kernels.h"
-#include "emfield/excess/fill_excess.h"
-#include "emfield/models/diffraction_column.h"
+#include "emfield/fill_excess.h"
+#include "propagation/diffraction/column.h"
 
 namespace emscape::emfield::cuda {
+
+using propagation::DiffractionExcess;
+using propagation::kDiffractionBlock;
+using propagation::TerrainSums;
 
 /// An emitter with an excess loss. Pointers are to device memory.
 struct ExcessOutputs {

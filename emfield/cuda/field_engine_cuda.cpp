@@ -5,8 +5,8 @@
 
 #include "emfield/cuda/combine_kernels.h"
 #include "emfield/cuda/device_geometry.h"
-#include "emfield/field_engine.h"
-#include "emfield/kept_power.h"
+#include "emfield/solver/field_engine.h"
+#include "emfield/solver/kept_power.h"
 #include "emscape/base/device.h"
 #include "emscape/base/error.h"
 

@@ -2,7 +2,7 @@
 #include "emfield/column_geometry.h"
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/fan_chord.h"
-#include "emfield/field_engine.h"
+#include "emfield/solver/field_engine.h"
 
 namespace emscape::emfield::cuda {
 namespace {
@@ -102,7 +102,7 @@ __global__ void grazeKernel(const FanPiece* pieces) {
 #pragma unroll
     for (int n = 0; n < kAhead; ++n) {
       if (begin + n >= used) break;
-      highest = steeper(highest, here[n]);
+      highest = propagation::steeper(highest, here[n]);
       slopes[(begin + n) * piece.range_stride] = highest;
     }
   }

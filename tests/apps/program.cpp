@@ -23,8 +23,7 @@ std::string quoted(const std::string& text) {
 RunningProgram::RunningProgram(const Arguments& arguments, const std::string& shell_prefix) {
   std::string command = shell_prefix + " exec " + quoted(besideThisProgram("emscape"));
   for (const std::string& argument : arguments) command += " " + quoted(argument);
-  command +=
-      " </dev/null >" + quoted((output_ / "out").string()) + " 2>" + quoted((output_ / "err").string());
+  command += " </dev/null >" + quoted(output_ / "out") + " 2>" + quoted(output_ / "err");
   process_ = fork();
   if (process_ < 0) throw std::runtime_error("fork failed");
   if (process_ == 0) {

@@ -10,14 +10,11 @@
 #include <iterator>
 
 #include "emfield/check/reference_table.h"
-#include "emfield/models/diffraction.h"
-#include "emfield/models/gases.h"
-#include "emfield/models/itm.h"
-#include "emfield/models/model_limits.h"
-#include "emfield/models/p528.h"
-#include "emfield/models/rain.h"
-#include "emfield/models/two_ray.h"
 #include "emscape/emfield/reference_check.h"
+#include "propagation/air/gases.h"
+#include "propagation/air/rain.h"
+#include "propagation/limits.h"
+#include "propagation/registry/model_info.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"
@@ -25,6 +22,8 @@
 
 namespace emscape::emfield {
 namespace {
+
+using namespace propagation;
 
 namespace fs = std::filesystem;
 using testing::EndsWith;
@@ -183,10 +182,10 @@ TEST(ModelLimits, GiveTheMessageAndTheTable) {
 /// docs/models.md, word for word.
 TEST(ModelLimits, StandInTheDocumentation) {
   const std::string text = test::readFile(test::sourceFile("docs/models.md"));
-  EXPECT_THAT(text, HasSubstr(limitsTable(kItmLimits)));
-  EXPECT_THAT(text, HasSubstr(limitsTable(kP528Limits)));
-  EXPECT_THAT(text, HasSubstr(limitsTable(kDiffractionLimits)));
-  EXPECT_THAT(text, HasSubstr(limitsTable(kTwoRayLimits)));
+  for (const ModelInfo& model : models()) {
+    if (model.limits.empty()) continue;
+    EXPECT_THAT(text, HasSubstr(limitsTable(model.limits.data(), static_cast<int>(model.limits.size()))));
+  }
   EXPECT_THAT(text, HasSubstr(limitsTable(kGasesLimits)));
   EXPECT_THAT(text, HasSubstr(limitsTable(kRainLimits)));
 }

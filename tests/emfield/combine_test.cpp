@@ -62,7 +62,7 @@ TEST(Combine, RowsGiveWhatThePlainFunctionGives) {
       emitter.antenna = entry.antenna;
       emitter.scan.azimuth_deg = azimuth_deg;
       emitter.scan.elevation_deg = 2;
-      emitter.propagation = scenario::PropagationModel::horizon;
+      emitter.propagation.model = propagation::PropagationModel::horizon;
       addEmitter(*scenario, {40.02, 5.03, 300}, emitter);
       scenario->platforms[0].attitude = {10, 3, -2};
       const scenario::EmitterState state = scenario::snapshotAt(scenario, nullptr, 0).emitters[0];

@@ -19,7 +19,7 @@ namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
-using scenario::PropagationModel;
+using propagation::PropagationModel;
 using ::testing::HasSubstr;
 
 constexpr double kLatitude_deg = 44.5, kLongitude_deg = -71.5;
@@ -58,7 +58,7 @@ std::shared_ptr<scenario::Scenario> randomScenario(std::mt19937& random, FrameKi
     emitter.antenna = antennaOf(e);
     emitter.scan.azimuth_deg = 180 * part(random);
     emitter.scan.elevation_deg = 5 * part(random);
-    emitter.propagation = models[static_cast<std::size_t>(e) % models.size()];
+    emitter.propagation.model = models[static_cast<std::size_t>(e) % models.size()];
     const GeodeticPosition place{kLatitude_deg + 0.15 * part(random), kLongitude_deg + 0.2 * part(random),
                                  height_m + 300 * part(random)};
     addEmitter(*scenario, place, emitter);
@@ -194,7 +194,7 @@ TEST_F(CudaField, IsTheCpusOverTheSmoothEarth) {
 TEST_F(CudaField, IsTheCpusOverTerrain) {
   std::mt19937 random(2);
   for (const PropagationModel model : {PropagationModel::horizon, PropagationModel::diffraction}) {
-    SCOPED_TRACE(scenario::toString(model));
+    SCOPED_TRACE(toString(model));
     for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
       const auto scenario = randomScenario(random, frame, {model}, 1900);
       Pair pair(scenario, std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0));
@@ -219,14 +219,14 @@ TEST_F(CudaField, EveryModelIsTheCpus) {
   for (const PropagationModel model :
        {PropagationModel::free_space, PropagationModel::diffraction, PropagationModel::two_ray,
         PropagationModel::itm, PropagationModel::p528}) {
-    SCOPED_TRACE(scenario::toString(model));
+    SCOPED_TRACE(toString(model));
     const auto scenario = randomScenario(random, FrameKind::altitude, {model}, 1900, 3);
     for (scenario::Emitter& emitter : scenario->emitters) {
       emitter.antenna = scenario::makeIsotropic();
       emitter.frequency_hz = std::max(emitter.frequency_hz, 2e8);
     }
-    scenario->emitters[1].diffraction.method = scenario::DiffractionMethod::deygout;
-    scenario->atmosphere.gases = scenario::GasLosses::always;
+    scenario->emitters[1].propagation.diffraction.method = propagation::DiffractionMethod::deygout;
+    scenario->atmosphere.gases = propagation::GasLosses::always;
     scenario->atmosphere.rain_mm_h = 5;
     Pair pair(scenario, terrain);
     expectSameField(pair, random, 2);
@@ -289,7 +289,7 @@ TEST_F(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
   FieldOptions options;
   options.allow_missing_terrain = true;
   for (const PropagationModel model : {PropagationModel::horizon, PropagationModel::diffraction}) {
-    SCOPED_TRACE(scenario::toString(model));
+    SCOPED_TRACE(toString(model));
     auto scenario = randomScenario(random, FrameKind::altitude, {model}, 1900, 3);
     scenario->region.size_m = {60e3, 60e3, 5000};
     Pair pair(scenario, terrain, options);

@@ -101,7 +101,7 @@ TEST_F(DetectionProduct, OfSeveralRadarsIsThatOfIndependentDetections) {
 
 TEST_F(DetectionProduct, IsNoneWhereThereIsNoEcho) {
   scenario::Emitter radar = trackingRadar();
-  radar.propagation = scenario::PropagationModel::horizon;
+  radar.propagation.model = propagation::PropagationModel::horizon;
   auto scenario = emptyScenario(FrameKind::altitude, 44, -71, {300e3, 20e3, 2000}, {60, 4, 4});
   addEmitter(*scenario, {44, -71, 30}, radar);
   scenario->output.radar_look = scenario::RadarLook::target;

@@ -1,20 +1,22 @@
 // Detection statistics against closed forms; the radar equation, jamming and noise.
-#include "emfield/detection.h"
+#include "emfield/radar/detection.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "emfield/models/gases.h"
-#include "emfield/models/rain.h"
-#include "emfield/radar_equation.h"
+#include "emfield/radar/equation.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/emitter.h"
+#include "propagation/air/gases.h"
+#include "propagation/air/rain.h"
 #include "tests/support/errors.h"
 
 namespace emscape::emfield {
 namespace {
+
+using namespace propagation;
 
 using testing::HasSubstr;
 
@@ -281,7 +283,7 @@ double passedBetween(const PolarizationEllipse& a, const PolarizationEllipse& b)
 }
 
 TEST(Polarization, MismatchOfTheNamedOnesIsThatOfTheirEllipses) {
-  using scenario::Polarization;
+  using propagation::Polarization;
   const struct {
     Polarization name;
     PolarizationEllipse ellipse;

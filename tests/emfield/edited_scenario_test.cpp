@@ -16,10 +16,10 @@ namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
+using propagation::PropagationModel;
 using scenario::CombineMode;
 using scenario::Emitter;
 using scenario::EmitterKind;
-using scenario::PropagationModel;
 using scenario::Scenario;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -63,7 +63,7 @@ struct Edit {
 };
 
 const std::vector<Edit>& emitterEdits() {
-  using scenario::Polarization;
+  using propagation::Polarization;
   static const std::vector<Edit> edits{
       {"power_w", [](Scenario&, Emitter& e, Random& r) { e.power_w = between(r, 1, 1e5); }},
       {"losses_db", [](Scenario&, Emitter& e, Random& r) { e.losses_db = between(r, 0, 5); }},
@@ -91,50 +91,55 @@ const std::vector<Edit>& emitterEdits() {
        [](Scenario&, Emitter& e, Random& r) { e.scan.elevation_deg = between(r, -5, 20); }},
       {"propagation",
        [](Scenario&, Emitter& e, Random& r) {
-         e.propagation = oneOf(r, std::vector{PropagationModel::free_space, PropagationModel::horizon,
-                                              PropagationModel::diffraction, PropagationModel::two_ray,
-                                              PropagationModel::itm, PropagationModel::p528});
+         e.propagation.model = oneOf(r, std::vector{PropagationModel::free_space, PropagationModel::horizon,
+                                                    PropagationModel::diffraction, PropagationModel::two_ray,
+                                                    PropagationModel::itm, PropagationModel::p528});
        }},
       {"diffraction.method",
        [](Scenario&, Emitter& e, Random& r) {
-         e.diffraction.method = oneOf(
-             r, std::vector{scenario::DiffractionMethod::delta_bullington,
-                            scenario::DiffractionMethod::single_edge, scenario::DiffractionMethod::deygout});
+         e.propagation.diffraction.method =
+             oneOf(r, std::vector{propagation::DiffractionMethod::delta_bullington,
+                                  propagation::DiffractionMethod::single_edge,
+                                  propagation::DiffractionMethod::deygout});
        }},
       {"two_ray.sum",
        [](Scenario&, Emitter& e, Random& r) {
-         e.two_ray.sum = oneOf(r, std::vector{scenario::TwoRaySum::coherent, scenario::TwoRaySum::envelope});
+         e.propagation.two_ray.sum =
+             oneOf(r, std::vector{propagation::TwoRaySum::coherent, propagation::TwoRaySum::envelope});
        }},
       {"two_ray.roughness_model",
        [](Scenario&, Emitter& e, Random& r) {
-         e.two_ray.roughness_model =
-             oneOf(r, std::vector{scenario::RoughnessModel::ament, scenario::RoughnessModel::miller_brown});
+         e.propagation.two_ray.roughness_model = oneOf(
+             r, std::vector{propagation::RoughnessModel::ament, propagation::RoughnessModel::miller_brown});
        }},
       {"itm.form",
        [](Scenario&, Emitter& e, Random& r) {
-         e.itm.form = oneOf(r, std::vector{scenario::ItmForm::point_to_point, scenario::ItmForm::area});
+         e.propagation.itm.form =
+             oneOf(r, std::vector{propagation::ItmForm::point_to_point, propagation::ItmForm::area});
        }},
-      {"itm.time_percent", [](Scenario&, Emitter& e, Random& r) { e.itm.time_percent = between(r, 5, 95); }},
+      {"itm.time_percent",
+       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.time_percent = between(r, 5, 95); }},
       {"itm.location_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.itm.location_percent = between(r, 5, 95); }},
+       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.location_percent = between(r, 5, 95); }},
       {"itm.situation_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.itm.situation_percent = between(r, 5, 95); }},
+       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.situation_percent = between(r, 5, 95); }},
       {"itm.service",
        [](Scenario&, Emitter& e, Random& r) {
-         e.itm.service = oneOf(r, std::vector{scenario::ItmService::single_message,
-                                              scenario::ItmService::mobile, scenario::ItmService::broadcast});
+         e.propagation.itm.service =
+             oneOf(r, std::vector{propagation::ItmService::single_message, propagation::ItmService::mobile,
+                                  propagation::ItmService::broadcast});
        }},
       {"itm.irregularity_m",
-       [](Scenario&, Emitter& e, Random& r) { e.itm.irregularity_m = between(r, 10, 300); }},
+       [](Scenario&, Emitter& e, Random& r) { e.propagation.itm.irregularity_m = between(r, 10, 300); }},
       {"itm.siting",
        [](Scenario&, Emitter& e, Random& r) {
-         e.itm.transmitter_siting =
-             oneOf(r, std::vector{scenario::ItmSiting::random, scenario::ItmSiting::careful});
-         e.itm.receiver_siting =
-             oneOf(r, std::vector{scenario::ItmSiting::random, scenario::ItmSiting::very_careful});
+         e.propagation.itm.transmitter_siting =
+             oneOf(r, std::vector{propagation::ItmSiting::random, propagation::ItmSiting::careful});
+         e.propagation.itm.receiver_siting =
+             oneOf(r, std::vector{propagation::ItmSiting::random, propagation::ItmSiting::very_careful});
        }},
       {"p528.time_percent",
-       [](Scenario&, Emitter& e, Random& r) { e.p528.time_percent = between(r, 0, 99); }},
+       [](Scenario&, Emitter& e, Random& r) { e.propagation.p528.time_percent = between(r, 0, 99); }},
       {"receiver.noise_figure_db",
        [](Scenario&, Emitter& e, Random& r) { e.receiver.noise_figure_db = between(r, 1, 9); }},
       {"receiver.antenna_temperature_k",
@@ -216,19 +221,21 @@ const std::vector<Edit>& scenarioEdits() {
        [](Scenario& s, Emitter&, Random& r) { s.atmosphere.rain_height_m = between(r, 500, 4000); }},
       {"atmosphere.gases",
        [](Scenario& s, Emitter&, Random& r) {
-         s.atmosphere.gases = oneOf(r, std::vector{scenario::GasLosses::automatic,
-                                                   scenario::GasLosses::always, scenario::GasLosses::never});
+         s.atmosphere.gases =
+             oneOf(r, std::vector{propagation::GasLosses::automatic, propagation::GasLosses::always,
+                                  propagation::GasLosses::never});
        }},
       {"atmosphere.sea_level_refractivity",
        [](Scenario& s, Emitter&, Random& r) { s.atmosphere.sea_level_refractivity = between(r, 260, 380); }},
       {"atmosphere.climate",
        [](Scenario& s, Emitter&, Random& r) {
          s.atmosphere.climate =
-             oneOf(r, std::vector{scenario::RadioClimate::desert, scenario::RadioClimate::equatorial});
+             oneOf(r, std::vector{propagation::RadioClimate::desert, propagation::RadioClimate::equatorial});
        }},
       {"ground.kind",
        [](Scenario& s, Emitter&, Random& r) {
-         s.ground.kind = oneOf(r, std::vector{scenario::GroundKind::sea, scenario::GroundKind::dry_ground});
+         s.ground.kind =
+             oneOf(r, std::vector{propagation::GroundKind::sea, propagation::GroundKind::dry_ground});
        }},
       {"ground.relative_permittivity",
        [](Scenario& s, Emitter&, Random& r) { s.ground.relative_permittivity = between(r, 4, 60); }},
@@ -248,7 +255,7 @@ const std::vector<Edit>& scenarioEdits() {
       {"receivers",
        [](Scenario& s, Emitter&, Random& r) {
          s.receivers.front().gain_dbi = between(r, 0, 9);
-         s.receivers.front().polarization = scenario::Polarization::vertical;
+         s.receivers.front().polarization = propagation::Polarization::vertical;
          s.receivers.front().bandwidth_hz = between(r, 1e5, 1e8);
        }},
       {"bands", [](Scenario& s, Emitter&, Random& r) { s.bands.front().end_hz = between(r, 1e9, 5e9); }},
@@ -308,7 +315,7 @@ std::shared_ptr<Scenario> battlefield(Random& random, FrameKind frame, std::vect
   const char* const names[] = {"radar", "jammer", "second radar", "radio", "beacon"};
   for (std::size_t e = 0; e < std::size(names); ++e) {
     Emitter emitter = plainEmitter(names[e], 0);
-    emitter.propagation = models[e % models.size()];
+    emitter.propagation.model = models[e % models.size()];
     emitter.antenna = someAntenna(random);
     if (e == 0 || e == 2) emitter.kind = EmitterKind::radar;
     if (e == 1) emitter.kind = EmitterKind::jammer;
@@ -526,7 +533,7 @@ TEST_F(EditedOnce, PowerCostsTheCombineStageOfThatEmitterAlone) {
 
 TEST_F(EditedOnce, AModelCostsTheGeometryOfThatEmitterAlone) {
   const FieldChanged changed =
-      after([](Scenario& s) { s.emitters[3].propagation = PropagationModel::two_ray; });
+      after([](Scenario& s) { s.emitters[3].propagation.model = PropagationModel::two_ray; });
   EXPECT_THAT(changed.moved, ElementsAre(3));
   EXPECT_THAT(changed.turned, IsEmpty());
 }
@@ -579,8 +586,8 @@ TEST_F(EditedOnce, WarningsThatWereEditedAwayAreGone) {
 TEST_F(EditedOnce, AnEditThatIsRefusedLeavesTheEarlierField) {
   const auto before = solver_->volumes().front().dense();
   auto refused = std::make_shared<Scenario>(*scenario_);
-  refused->emitters[3].propagation = PropagationModel::p528;
-  refused->emitters[3].p528.time_percent = 200;
+  refused->emitters[3].propagation.model = PropagationModel::p528;
+  refused->emitters[3].propagation.p528.time_percent = 200;
   EXPECT_THROW(solver_->update(scenario::snapshotAt(refused, nullptr, 0)), Error);
   EXPECT_EQ(solver_->volumes().front().dense(), before);
   after([](Scenario& s) { s.emitters[3].power_w *= 2; });
@@ -608,7 +615,7 @@ TEST(EditedScenario, AnUpdateThatFailsOverAHoleCanBeFollowedByOthers) {
   FieldSolver solver(scenario, terrain, {});
   solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
   auto edited = std::make_shared<Scenario>(*scenario);
-  edited->emitters[3].propagation = PropagationModel::diffraction;
+  edited->emitters[3].propagation.model = PropagationModel::diffraction;
   edited->platforms[3].track.front().position.latitude_deg = kLatitude_deg + 0.24;
   edited->platforms[3].track.front().position.longitude_deg = kLongitude_deg + 0.24;
   const Error error = test::thrownBy([&] { solver.update(scenario::snapshotAt(edited, terrain.get(), 0)); });

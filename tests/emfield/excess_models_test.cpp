@@ -9,11 +9,13 @@
 #include <random>
 
 #include "emfield/model_check.h"
-#include "emfield/models/diffraction_edges.h"
-#include "emfield/models/gases.h"
-#include "emfield/models/p528.h"
-#include "emfield/models/rain.h"
+#include "emscape/base/error.h"
 #include "emscape/scenario/scenario_file.h"
+#include "propagation/air/gases.h"
+#include "propagation/air/rain.h"
+#include "propagation/diffraction/edges.h"
+#include "propagation/p528/p528.h"
+#include "propagation/registry/model_info.h"
 #include "tests/emfield/excess_paths.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
@@ -22,8 +24,23 @@ namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
-using scenario::PropagationModel;
+using namespace propagation;
 using ::testing::HasSubstr;
+
+/// The paths of a lone emitter at 52 degrees north.
+PathInputs pathsOf(const scenario::Scenario& scenario, double station_msl_m, const PathExtent& extent) {
+  PathInputs inputs;
+  inputs.emitter = emitterInputs(scenario, scenario.emitters[0]);
+  inputs.site = {52, station_msl_m, 6371e3, 6371e3 * scenario.atmosphere.k_factor};
+  inputs.extent = extent;
+  return inputs;
+}
+
+AirLoss airOf(const scenario::Scenario& scenario, double station_msl_m, const PathExtent& extent,
+              std::vector<float>& table) {
+  const PathInputs inputs = pathsOf(scenario, station_msl_m, extent);
+  return airLoss(inputs, hasGases(inputs.emitter), table);
+}
 
 /// An emitter's excess, and one column of it at a time.
 class Columns {
@@ -31,7 +48,8 @@ class Columns {
   Columns(const scenario::Scenario& scenario, double tx_msl_m, const PathExtent& extent,
           const scenario::Terrain* terrain = nullptr, double step_m = 45)
       : station_(makeStation({44.43, -71.47, 0}, tx_msl_m, scenario.atmosphere.k_factor)),
-        excess_(makeExcess(scenario, scenario.emitters[0], station_, terrain, extent, {step_m, step_m})) {}
+        excess_(makeExcess(
+            pathInputs(scenario, scenario.emitters[0], station_, terrain, extent, {step_m, step_m}))) {}
 
   std::vector<float> fill(const ProfileData& profile, const std::vector<float>& heights_msl_m) const {
     return filled(profile, heights_msl_m, [](const auto& model, const auto&... of) { return model(of...); });
@@ -108,8 +126,9 @@ Spread bisectionErrors(const scenario::Scenario& scenario, const scenario::Terra
 TEST(ExcessModels, HeightsBetweenEvaluationsOfEdgesAreWithinATenthOfADecibel) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   const auto scenario = whiteMountains(1e9, 15);
-  for (const auto method : {scenario::DiffractionMethod::single_edge, scenario::DiffractionMethod::deygout}) {
-    scenario->emitters[0].diffraction.method = method;
+  for (const auto method :
+       {propagation::DiffractionMethod::single_edge, propagation::DiffractionMethod::deygout}) {
+    scenario->emitters[0].propagation.diffraction.method = method;
     Spread spread = bisectionErrors(*scenario, *terrain, 60);
     EXPECT_LT(spread.quantile(0.99), 0.1) << toString(method);
     EXPECT_LT(spread.largest(), 0.5) << toString(method);
@@ -119,7 +138,7 @@ TEST(ExcessModels, HeightsBetweenEvaluationsOfEdgesAreWithinATenthOfADecibel) {
 TEST(ExcessModels, HeightsBetweenEvaluationsOfItmAreWithinATenthOfADecibelButForItsJumps) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   const auto scenario = whiteMountains(1e9, 15);
-  scenario->emitters[0].propagation = PropagationModel::itm;
+  scenario->emitters[0].propagation.model = PropagationModel::itm;
   Spread spread = bisectionErrors(*scenario, *terrain, 60);
   EXPECT_LT(spread.quantile(0.99), 0.1);
   EXPECT_LT(spread.largest(), 1);
@@ -130,8 +149,8 @@ TEST(ExcessModels, AColumnInPartsIsTheColumn) {
   const auto scenario = whiteMountains(4e8, 15);
   scenario::Emitter& emitter = scenario->emitters[0];
   for (const auto propagation : {PropagationModel::diffraction, PropagationModel::itm}) {
-    emitter.propagation = propagation;
-    emitter.diffraction.method = scenario::DiffractionMethod::deygout;
+    emitter.propagation.model = propagation;
+    emitter.propagation.diffraction.method = propagation::DiffractionMethod::deygout;
     for (int p = 0; p < 20; ++p) {
       const ProfileData profile = madeUpProfile(random, 200, 30e3, 600);
       const Columns whole(*scenario, static_cast<double>(profile.height_msl_m.front()) + 15, {60e3, 0, 6000});
@@ -152,8 +171,9 @@ TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
   parameters.frequency_hz = 1e9;
   parameters.effective_earth_radius_m = kEffectiveEarth_m;
   const auto model = diffractionModel<double>(parameters);
-  for (const auto method : {scenario::DiffractionMethod::single_edge, scenario::DiffractionMethod::deygout}) {
-    scenario->emitters[0].diffraction.method = method;
+  for (const auto method :
+       {propagation::DiffractionMethod::single_edge, propagation::DiffractionMethod::deygout}) {
+    scenario->emitters[0].propagation.diffraction.method = method;
     const auto volume = solve(scenario, terrain);
     const scenario::EmitterState state = scenario::snapshotAt(scenario, terrain.get(), 0).emitters[0];
     const double step_m = fanResolution(volume->grid, terrain.get()).range_m;
@@ -166,7 +186,7 @@ TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
       const GeodeticPosition to = geo.toGeodetic(center);
       if (center.z < terrain->heightMsl_m(to.latitude_deg, to.longitude_deg) + 1) continue;
       const ProfileData profile = profileTo(*terrain, state.position, to, step_m);
-      const double expected = method == scenario::DiffractionMethod::deygout
+      const double expected = method == propagation::DiffractionMethod::deygout
                                   ? deygoutLossDb(model, profile.view(), state.height_msl_m, center.z)
                                   : singleEdgeLossDb(model, profile.view(), state.height_msl_m, center.z);
       spread.add(excessIn(*volume, i, j, k, state.position) - expected);
@@ -185,7 +205,7 @@ TEST(ExcessModels, ItmStandsNearTheGroundAndGoesOverToDiffractionAboveWithoutJum
   const float ground_m = profile.height_msl_m.back();
   const PathExtent extent{60e3, 0, 6000};
   const Columns diffraction(*scenario, tx_msl_m, extent);
-  scenario->emitters[0].propagation = PropagationModel::itm;
+  scenario->emitters[0].propagation.model = PropagationModel::itm;
   const double step_m = profile.range_m.back() / 249 * 1.0001;
   const Columns itm(*scenario, tx_msl_m, extent, nullptr, step_m);
 
@@ -217,11 +237,11 @@ TEST(ExcessModels, ItmStandsNearTheGroundAndGoesOverToDiffractionAboveWithoutJum
 TEST(ExcessModels, ItmQuantilesAndAreaFormReachTheField) {
   const auto scenario = smoothEarth(PropagationModel::itm, 300e6, 20);
   const auto median = solve(scenario)->values;
-  scenario->emitters[0].itm.time_percent = 99;
+  scenario->emitters[0].propagation.itm.time_percent = 99;
   const auto rare = solve(scenario)->values;
-  scenario->emitters[0].itm.time_percent = 50;
-  scenario->emitters[0].itm.form = scenario::ItmForm::area;
-  scenario->emitters[0].itm.irregularity_m = 200;
+  scenario->emitters[0].propagation.itm.time_percent = 50;
+  scenario->emitters[0].propagation.itm.form = propagation::ItmForm::area;
+  scenario->emitters[0].propagation.itm.irregularity_m = 200;
   const auto hilly = solve(scenario)->values;
   const std::size_t corner = 0;
   EXPECT_GT(median[corner], rare[corner] + 1);
@@ -229,12 +249,12 @@ TEST(ExcessModels, ItmQuantilesAndAreaFormReachTheField) {
 }
 
 TEST(ExcessModels, TwoRayInTheFieldIsTheModelAtEveryVoxel) {
-  for (const auto polarization : {scenario::Polarization::horizontal, scenario::Polarization::vertical,
-                                  scenario::Polarization::slant_45}) {
+  for (const auto polarization : {propagation::Polarization::horizontal, propagation::Polarization::vertical,
+                                  propagation::Polarization::slant_45}) {
     for (const double frequency_hz : {100e6, 3e9}) {
       const auto scenario = smoothEarth(PropagationModel::two_ray, frequency_hz, 30, 200e3);
       scenario->emitters[0].polarization = polarization;
-      scenario->ground.kind = scenario::GroundKind::sea;
+      scenario->ground.kind = propagation::GroundKind::sea;
       scenario->ground.roughness_m = 0.2;
       const auto volume = solve(scenario);
       const GeodeticPosition from = scenario::snapshotAt(scenario, nullptr, 0).emitters[0].position;
@@ -253,8 +273,8 @@ TEST(ExcessModels, TwoRayInTheFieldIsTheModelAtEveryVoxel) {
           const double range_m = std::hypot(center.x, center.y);
           const double h = excessOf(LinearPolarization::horizontal, range_m, center.z);
           const double v = excessOf(LinearPolarization::vertical, range_m, center.z);
-          const double expected = polarization == scenario::Polarization::horizontal ? h
-                                  : polarization == scenario::Polarization::vertical
+          const double expected = polarization == propagation::Polarization::horizontal ? h
+                                  : polarization == propagation::Polarization::vertical
                                       ? v
                                       : -ratioToDb((dbToRatio(-h) + dbToRatio(-v)) / 2);
           // In nulls a hair's breadth of path counts for much.
@@ -272,8 +292,8 @@ TEST(ExcessModels, TwoRayLobesStandInTheFieldWhereFlatGroundPutsThem) {
   scenario->region.size_m = {20e3, 400, 375};
   scenario->region.dims = {2, 2, 3};
   scenario->region.origin.longitude_deg = 5 + radToDeg(15e3 / (6378137.0 * std::cos(degToRad(52.0))));
-  scenario->emitters[0].polarization = scenario::Polarization::horizontal;
-  scenario->ground.kind = scenario::GroundKind::sea;
+  scenario->emitters[0].polarization = propagation::Polarization::horizontal;
+  scenario->ground.kind = propagation::GroundKind::sea;
   const auto volume = solve(scenario);
   const GeodeticPosition from = scenario::snapshotAt(scenario, nullptr, 0).emitters[0].position;
   // layers at 62.5, 187.5 and 312.5 m: half way up the lobe, half way down, half way up the next
@@ -287,14 +307,14 @@ TEST(ExcessModels, TwoRayLobesStandInTheFieldWhereFlatGroundPutsThem) {
   const auto shifted = solve(scenario);
   EXPECT_LT(excessIn(*shifted, 0, 0, 0, from), -5.5) << "lobe";
   EXPECT_GT(excessIn(*shifted, 0, 0, 1, from), 10) << "null";
-  scenario->emitters[0].two_ray.sum = scenario::TwoRaySum::envelope;
+  scenario->emitters[0].propagation.two_ray.sum = propagation::TwoRaySum::envelope;
   EXPECT_LT(excessIn(*solve(scenario), 0, 0, 1, from), -5.5) << "the lobes' tops";
 }
 
 TEST(ExcessModels, GasesTakeTheirDecibelsPerKilometreAlongALevelPath) {
   for (const double frequency_hz : {10e9, 22.235e9, 60e9}) {
     auto scenario = smoothEarth(PropagationModel::free_space, frequency_hz, 5, 4000);
-    scenario->atmosphere.gases = scenario::GasLosses::always;
+    scenario->atmosphere.gases = propagation::GasLosses::always;
     scenario->region.size_m.z = 20;
     scenario->region.dims.z = 2;
     const auto volume = solve(scenario);
@@ -305,14 +325,14 @@ TEST(ExcessModels, GasesTakeTheirDecibelsPerKilometreAlongALevelPath) {
       const double length_km = std::hypot(center.x, center.y) / 1000;
       EXPECT_NEAR(excessIn(*volume, i, 3, 0, from), per_km * length_km, 0.006 + 1e-3 * per_km * length_km);
     }
-    scenario->atmosphere.gases = scenario::GasLosses::automatic;
+    scenario->atmosphere.gases = propagation::GasLosses::automatic;
     EXPECT_NEAR(excessIn(*solve(scenario), 0, 3, 0, from), 0, 1e-3) << "free space alone stays that";
   }
 }
 
 TEST(ExcessModels, GasesBetweenTheTablesNodesAreThoseOfTheRay) {
   auto scenario = smoothEarth(PropagationModel::free_space, 60e9, 0);
-  scenario->atmosphere.gases = scenario::GasLosses::always;
+  scenario->atmosphere.gases = propagation::GasLosses::always;
   std::mt19937 random(3);
   std::uniform_real_distribution<double> part(0, 1);
   Spread spread;
@@ -320,8 +340,7 @@ TEST(ExcessModels, GasesBetweenTheTablesNodesAreThoseOfTheRay) {
     for (const double frequency_hz : {22.235e9, 60e9}) {
       scenario->emitters[0].frequency_hz = frequency_hz;
       std::vector<float> table;
-      const AirLoss air =
-          airLoss(*scenario, scenario->emitters[0], 52, tx_m, 6371e3, {300e3, 0, 20e3}, table);
+      const AirLoss air = airOf(*scenario, tx_m, {300e3, 0, 20e3}, table);
       for (int n = 0; n < 100; ++n) {
         const double range_m = 300e3 * part(random), height_m = 20e3 * part(random);
         double mean_db_per_m = 0;
@@ -350,11 +369,9 @@ TEST(ExcessModels, GasesBetweenTheTablesNodesAreThoseOfTheRay) {
 TEST(ExcessModels, RainFallsBelowItsTopAlone) {
   auto scenario = smoothEarth(PropagationModel::free_space, 10e9, 0);
   scenario->atmosphere.rain_mm_h = 30;
-  scenario->emitters[0].polarization = scenario::Polarization::horizontal;
+  scenario->emitters[0].polarization = propagation::Polarization::horizontal;
   std::vector<float> none;
-  const auto airAt = [&](double station_m) {
-    return airLoss(*scenario, scenario->emitters[0], 52, station_m, 6371e3, {200e3, 0, 12e3}, none);
-  };
+  const auto airAt = [&](double station_m) { return airOf(*scenario, station_m, {200e3, 0, 12e3}, none); };
   const double top_m = rainHeight_m(52);
   EXPECT_NEAR(top_m, 2825, 1e-9);
   EXPECT_EQ(rainHeight_m(10), 5000);
@@ -394,9 +411,9 @@ TEST(ExcessModels, P528BetweenTheTablesNodesIsTheCurve) {
       for (const double tx_m : {15.0, 3000.0}) {
         SCOPED_TRACE(::testing::Message() << frequency_hz << " Hz, " << percent << " %, " << tx_m << " m");
         scenario->emitters[0].frequency_hz = frequency_hz;
-        scenario->emitters[0].p528.time_percent = percent;
+        scenario->emitters[0].propagation.p528.time_percent = percent;
         std::vector<float> tables;
-        const P528Excess table = p528Excess(scenario->emitters[0], tx_m, 0, {400e3, 100, 12000}, tables);
+        const P528Excess table = p528Excess(pathsOf(*scenario, tx_m, {400e3, 100, 12000}), tables);
         const auto atmosphere = std::make_shared<const P528Atmosphere>(frequency_hz);
         Spread spread;
         for (int n = 0; n < 100; ++n) {
@@ -447,10 +464,11 @@ TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {
   EXPECT_EQ(messageOf(),
             "my.yaml:12:7: emitter 'site': 'p528': frequency 50 MHz is outside 100..30000 MHz: refused");
   scenario->emitters[0].frequency_hz = 1e9;
-  scenario->emitters[0].p528 = {0.5, {"my.yaml", 20, 3}};
+  scenario->emitters[0].propagation.p528.time_percent = 0.5;
+  scenario->emitters[0].propagation.place = {"my.yaml", 20, 3};
   EXPECT_EQ(messageOf(),
             "my.yaml:20:3: emitter 'site': 'p528': percentage of time 0.5 % is outside 1..99 %: refused");
-  scenario->emitters[0].propagation = PropagationModel::itm;
+  scenario->emitters[0].propagation.model = PropagationModel::itm;
   scenario->emitters[0].frequency_hz = 35e9;
   EXPECT_EQ(messageOf(),
             "my.yaml:12:7: emitter 'site': 'itm': frequency 35000 MHz is outside 20..20000 MHz: refused");
@@ -459,7 +477,7 @@ TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {
   scenario->ground.place = {"my.yaml", 5, 9};
   EXPECT_THAT(messageOf(), HasSubstr("my.yaml:5:9: emitter 'site': 'itm': "));
 
-  scenario->emitters[0].propagation = PropagationModel::diffraction;
+  scenario->emitters[0].propagation.model = PropagationModel::diffraction;
   scenario->emitters[0].frequency_hz = 10e6;
   EXPECT_THAT(
       checkModels(*scenario),

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "emfield/excess/excess_model.h"
+#include "emfield/emitter_excess.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/random_profile.h"
@@ -21,26 +21,27 @@ inline std::shared_ptr<scenario::Scenario> whiteMountains(double frequency_hz, d
   auto scenario = emptyScenario(frame, 44.4, -71.5, {40e3, 40e3, 4000}, {50, 50, 40});
   scenario::Emitter emitter = plainEmitter("site", 0);
   emitter.frequency_hz = frequency_hz;
-  emitter.propagation = scenario::PropagationModel::diffraction;
+  emitter.propagation.model = propagation::PropagationModel::diffraction;
   addEmitter(*scenario, {44.43, -71.47, 0}, emitter);
   scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
   scenario->platforms[0].track[0].position.height_agl_m = height_agl_m;
   scenario->terrain = scenario::TerrainSpec{};
-  scenario->atmosphere.gases = scenario::GasLosses::never;
+  scenario->atmosphere.gases = propagation::GasLosses::never;
   return scenario;
 }
 
 /// The same over a smooth earth, 40 km x 40 km x 4 km, the emitter at 52 N 5 E.
-inline std::shared_ptr<scenario::Scenario> smoothEarth(scenario::PropagationModel model, double frequency_hz,
-                                                       double height_m, double size_m = 40e3) {
+inline std::shared_ptr<scenario::Scenario> smoothEarth(propagation::PropagationModel model,
+                                                       double frequency_hz, double height_m,
+                                                       double size_m = 40e3) {
   auto scenario = emptyScenario(FrameKind::altitude, 52, 5, {size_m, size_m, 4000}, {20, 21, 32});
   scenario::Emitter emitter = plainEmitter("site", 0);
   emitter.frequency_hz = frequency_hz;
-  emitter.propagation = model;
+  emitter.propagation.model = model;
   addEmitter(*scenario, {52, 5, 0}, emitter);
   scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
   scenario->platforms[0].track[0].position.height_msl_m = height_m;
-  scenario->atmosphere.gases = scenario::GasLosses::never;
+  scenario->atmosphere.gases = propagation::GasLosses::never;
   return scenario;
 }
 

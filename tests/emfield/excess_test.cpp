@@ -7,9 +7,9 @@
 #include <random>
 
 #include "emfield/emitter_geometry.h"
-#include "emfield/excess/excess_code.h"
-#include "emfield/models/diffraction.h"
+#include "emfield/excess_code.h"
 #include "emscape/base/error.h"
+#include "propagation/diffraction/diffraction.h"
 #include "scenario/terrain/view.h"
 #include "tests/emfield/excess_paths.h"
 
@@ -17,7 +17,7 @@ namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
-using scenario::PropagationModel;
+using namespace propagation;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -105,13 +105,13 @@ TEST(Excess, TakesMemoryOnlyWhereAModelHasOne) {
     return EmitterGeometry::bytesOf(*scenario, scenario->emitters[0], columns, 32);
   };
   for (const auto model : {PropagationModel::free_space, PropagationModel::horizon}) {
-    scenario->emitters[0].propagation = model;
+    scenario->emitters[0].propagation.model = model;
     EXPECT_EQ(bytesOf(), columns * 40);
     scenario->atmosphere.rain_mm_h = 5;
     EXPECT_EQ(bytesOf(), columns * (40 + 2 * 32));
     scenario->atmosphere.rain_mm_h = 0;
   }
-  scenario->emitters[0].propagation = PropagationModel::diffraction;
+  scenario->emitters[0].propagation.model = PropagationModel::diffraction;
   EXPECT_EQ(bytesOf(), columns * (40 + 2 * 32));
   addEmitter(*scenario, {52, 5, 100}, plainEmitter("free", 0));
   FieldSolver solver(scenario, nullptr, {});

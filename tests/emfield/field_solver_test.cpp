@@ -30,7 +30,7 @@ scenario::Emitter rotatingRadar(const std::string& name) {
   radar.antenna = scenario::makeGaussian(30, 5, 10, -40);
   radar.scan.kind = scenario::ScanKind::rotate;
   radar.scan.rate_rpm = 10;
-  radar.propagation = scenario::PropagationModel::horizon;
+  radar.propagation.model = propagation::PropagationModel::horizon;
   return radar;
 }
 
@@ -43,7 +43,7 @@ std::shared_ptr<scenario::Scenario> battlefield() {
 
   scenario::Emitter jammer = plainEmitter("jammer", 0);
   jammer.kind = scenario::EmitterKind::jammer;
-  jammer.propagation = scenario::PropagationModel::horizon;
+  jammer.propagation.model = propagation::PropagationModel::horizon;
   addEmitter(*scenario, {kLatitude_deg, kLongitude_deg - 0.1, 500}, jammer);
   scenario::TrackPoint end = scenario->platforms.back().track.front();
   end.t_s = 10;
@@ -195,9 +195,9 @@ TEST(FieldSolver, ReceivedPowerKnowsPolarisationAndBandwidth) {
   const float matched = valueAt(*solve(scenario), 3, 3, 1);
   scenario->receivers[0].bandwidth_hz = 1e6;
   EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, -10 * std::log10(4.0), 1e-4);
-  scenario->receivers[0] = {"receiver", 3, 1, scenario::Polarization::slant_45};
+  scenario->receivers[0] = {"receiver", 3, 1, propagation::Polarization::slant_45};
   EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, 2 - 10 * std::log10(2.0), 1e-4);
-  scenario->receivers[0] = {"receiver", 0, 0, scenario::Polarization::horizontal};
+  scenario->receivers[0] = {"receiver", 0, 0, propagation::Polarization::horizontal};
   EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, -scenario::kCrossPolarIsolation_db, 1e-4);
   scenario->receivers[0].polarization.reset();
   scenario->receivers[0].center_frequency_hz = 2e9;
@@ -238,7 +238,7 @@ TEST(FieldSolver, CountsAndMarksTheNearField) {
 
 TEST(FieldSolver, ComputesQuantitiesThatTheScenarioSchemaKnows) {
   const std::string schema = scenario::scenarioJsonSchema();
-  for (const QuantityInfo& entry : quantityTable()) {
+  for (const scenario::QuantityInfo& entry : scenario::quantityTable()) {
     EXPECT_THAT(schema, HasSubstr("\"" + std::string(entry.name) + "\""));
   }
 }
@@ -266,7 +266,7 @@ TEST(FieldSolver, RefusesWhatItCannotCompute) {
   EXPECT_THAT(messageOf(options), HasSubstr("unknown quantity 'power'; one of power_density_dbwm2, "));
   options.quantities = {"received_power_dbm"};
   EXPECT_THAT(messageOf(options), HasSubstr("needs an entry under 'receivers'"));
-  scenario->emitters[1].propagation = scenario::PropagationModel::itm;
+  scenario->emitters[1].propagation.model = propagation::PropagationModel::itm;
   scenario->emitters[1].frequency_hz = 40e9;
   EXPECT_THAT(messageOf({}), HasSubstr("emitter 'jammer': 'itm': frequency 40000 MHz is outside"));
 }

@@ -5,12 +5,14 @@
 #include <cmath>
 #include <random>
 
-#include "emfield/models/diffraction_edges.h"
-#include "emfield/models/horizon.h"
+#include "propagation/diffraction/edges.h"
+#include "propagation/horizon/horizon.h"
 #include "tests/emfield/random_profile.h"
 
 namespace emscape::emfield {
 namespace {
+
+using namespace propagation;
 
 using namespace emscape::emfield::testing;
 

@@ -83,9 +83,9 @@ TEST(JammerToSignal, KnowsBandsAndPolarisations) {
   jammer.frequency_hz = kFrequency_hz + 10e6;
   EXPECT_EQ(ratio(), -300) << "beside the band: no jamming, the floor";
   jammer = jammerOf(100);
-  jammer.polarization = scenario::Polarization::horizontal;
+  jammer.polarization = propagation::Polarization::horizontal;
   EXPECT_NEAR(ratio() - wide, ratioToDb(2.0), 1e-3);
-  jammer.polarization = scenario::Polarization::vertical;
+  jammer.polarization = propagation::Polarization::vertical;
   EXPECT_NEAR(ratio() - wide, ratioToDb(2.0) - scenario::kCrossPolarIsolation_db, 1e-3);
 }
 
@@ -102,7 +102,7 @@ TEST(JammerToSignal, DoesNotCountProcessingWhichBurnThroughDoes) {
 
 TEST(JammerToSignal, TakesTheHorizonForTheJammerToo) {
   scenario::Emitter radar = trackingRadar(), jammer = jammerOf(1e5);
-  jammer.propagation = scenario::PropagationModel::horizon;
+  jammer.propagation.model = propagation::PropagationModel::horizon;
   auto scenario = emptyScenario(FrameKind::altitude, 44, -71, {20e3, 20e3, 2000}, {20, 20, 4});
   addEmitter(*scenario, {44, -71, 30}, radar);
   addEmitter(*scenario, {45.5, -71, 100}, jammer);  // 167 km: the radio horizon is at 41 + 23 km
@@ -122,7 +122,7 @@ TEST(JammerToSignal, CountsAPathAcrossMissingTerrainAsFreeWhereThatIsAllowed) {
   FieldOptions options;
   options.allow_missing_terrain = true;
   const float free = valueAt(*solve(scenario, terrain, options), 2, 3, 3);
-  scenario->emitters[1].propagation = scenario::PropagationModel::horizon;
+  scenario->emitters[1].propagation.model = propagation::PropagationModel::horizon;
   FieldSolver solver(scenario, terrain, options);
   solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
   EXPECT_NEAR(valueAt(*solver.volumes()[0].host(), 2, 3, 3), free, 0.02);

@@ -6,18 +6,20 @@
 #include <functional>
 #include <vector>
 
-#include "emfield/models/diffraction_edges.h"
-#include "emfield/models/gases.h"
-#include "emfield/models/itm.h"
-#include "emfield/models/p528.h"
-#include "emfield/models/two_ray.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_profile.h"
+#include "propagation/air/gases.h"
+#include "propagation/diffraction/edges.h"
+#include "propagation/itm/itm.h"
+#include "propagation/p528/p528.h"
+#include "propagation/two_ray/two_ray.h"
 #include "tests/emfield/random_profile.h"
 
 namespace emscape::emfield {
 namespace {
+
+using namespace propagation;
 
 using namespace emscape::emfield::testing;
 

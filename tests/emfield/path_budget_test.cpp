@@ -20,7 +20,7 @@ namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
-using scenario::PropagationModel;
+using propagation::PropagationModel;
 using ::testing::HasSubstr;
 
 constexpr GeodeticPosition kSite{44.43, -71.47, 700};
@@ -31,7 +31,7 @@ constexpr PropagationModel kModels[] = {PropagationModel::free_space,  Propagati
 std::shared_ptr<scenario::Scenario> whiteMountains(PropagationModel model) {
   auto scenario = emptyScenario(FrameKind::altitude, 44.4, -71.5, {40e3, 40e3, 4000}, {50, 50, 40});
   scenario::Emitter emitter = plainEmitter("site", 0);
-  emitter.propagation = model;
+  emitter.propagation.model = model;
   emitter.antenna = scenario::makeGaussian(20, 30, 20, -25);
   addEmitter(*scenario, kSite, emitter);
   scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
@@ -77,7 +77,7 @@ Compared compareWithField(const std::shared_ptr<scenario::Scenario>& scenario,
       continue;
     ++compared.voxels;
     const PathBudget budget =
-        pathBudget(snapshot, 0, end, scenario->emitters[0].propagation, terrain.get(), resolution);
+        pathBudget(snapshot, 0, end, scenario->emitters[0].propagation.model, terrain.get(), resolution);
     const double value = budget.find("power_density_dbwm2")->value;
     const double voxel = static_cast<double>(valueAt(*volume, i, j, k));
     if (std::isinf(value) || voxel <= scenario->output.floor) {
@@ -99,11 +99,11 @@ TEST(PathBudget, IsWhatTheFieldHoldsInFreeSpace) {
 
 TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverASmoothEarth) {
   for (const PropagationModel model : kModels) {
-    SCOPED_TRACE(scenario::toString(model));
+    SCOPED_TRACE(toString(model));
     const auto scenario = whiteMountains(model);
     scenario->terrain.reset();
     scenario->atmosphere.rain_mm_h = 10;
-    scenario->atmosphere.gases = scenario::GasLosses::always;
+    scenario->atmosphere.gases = propagation::GasLosses::always;
     Compared compared = compareWithField(scenario, nullptr, 200);
     EXPECT_EQ(compared.other_shadow, 0);
     // The field takes p528 from a table, and itm at some heights only.
@@ -116,7 +116,7 @@ TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverASmoothEarth) {
 TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverRealTerrain) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   for (const PropagationModel model : kModels) {
-    SCOPED_TRACE(scenario::toString(model));
+    SCOPED_TRACE(toString(model));
     Compared compared = compareWithField(whiteMountains(model), terrain, 200);
     // The field's terrain stands on azimuths a post apart: what is left is the terrain between them.
     const bool is_table = model == PropagationModel::p528 || model == PropagationModel::itm;
@@ -204,7 +204,7 @@ TEST(PathBudget, VerdictNamesWhatDecides) {
   scenario->emitters[0].active_s = {{0, 5}};
   const auto verdict = [&](const GeodeticPosition& at, double height_msl_m, double t_s) {
     return pathBudget(scenario::snapshotAt(scenario, nullptr, t_s), 0, {at, height_msl_m},
-                      scenario->emitters[0].propagation, nullptr, {100, 50})
+                      scenario->emitters[0].propagation.model, nullptr, {100, 50})
         .verdict;
   };
   EXPECT_THAT(verdict({44.5, -71.4, 3000}, 3000, 0), ::testing::StartsWith("Clear: "));
@@ -212,7 +212,7 @@ TEST(PathBudget, VerdictNamesWhatDecides) {
               ::testing::AllOf(::testing::StartsWith("Blocked: the earth's bulge at "),
                                HasSubstr("above the ray"), HasSubstr("the path costs ")));
   EXPECT_EQ(verdict({44.5, -71.4, 3000}, 3000, 7), "Silent: 'site' does not radiate at t = 7 s.");
-  scenario->emitters[0].propagation = PropagationModel::horizon;
+  scenario->emitters[0].propagation.model = PropagationModel::horizon;
   EXPECT_THAT(verdict({45.4, -71.4, 10}, 10, 0), HasSubstr("the model knows no field behind it"));
   scenario->emitters[0].antenna = scenario::makeGaussian(30, 3, 3, -40);
   EXPECT_THAT(verdict({44.3, -71.47, 3000}, 3000, 0), HasSubstr("but the antenna points "));

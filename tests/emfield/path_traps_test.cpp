@@ -14,7 +14,7 @@ namespace emscape::emfield {
 namespace {
 
 using namespace emscape::emfield::testing;
-using scenario::PropagationModel;
+using propagation::PropagationModel;
 
 /// An emitter 20 m above a smooth earth at mean sea level.
 std::shared_ptr<scenario::Scenario> mastAt(double latitude_deg, double longitude_deg) {

@@ -1,43 +1,15 @@
-#include "emscape/emfield/quantities.h"
-
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <set>
 
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/scenario_file.h"
-#include "scenario/schema.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 
 namespace emscape::emfield {
 namespace {
-
-using ::testing::HasSubstr;
-
-TEST(Quantities, AreThoseThatAScenarioMayAskFor) {
-  std::set<std::string> computed, asked;
-  for (const QuantityInfo& entry : quantityTable()) computed.insert(entry.name);
-  const scenario::ObjectSpec& output = *scenario::scenarioSpec().find("output", nullptr)->value.object;
-  for (const std::string& name : output.find("quantities", nullptr)->value.item->choices) asked.insert(name);
-  EXPECT_EQ(computed, asked);
-}
-
-TEST(Quantities, StandInTheOrderOfTheEnumeration) {
-  for (std::size_t i = 0; i < quantityTable().size(); ++i) {
-    EXPECT_EQ(static_cast<std::size_t>(quantityTable()[i].quantity), i);
-    EXPECT_EQ(quantityFromName(quantityTable()[i].name), quantityTable()[i].quantity);
-  }
-}
-
-TEST(Quantities, RefusesOthersWithTheNamesOfAll) {
-  const std::string error = test::errorOf([] { quantityFromName("snr"); });
-  EXPECT_THAT(error, HasSubstr("unknown quantity 'snr'; one of power_density_dbwm2, "));
-  EXPECT_THAT(error, HasSubstr("burn_through_margin_db"));
-}
 
 TEST(Quantities, OfTheJammingScenarioShowWhatTheRidgeHides) {
   auto scenario =

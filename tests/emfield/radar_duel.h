@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "emfield/radar_receiver.h"
+#include "emfield/radar/receiver.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/test_scenario.h"
 
@@ -23,7 +23,7 @@ inline scenario::Emitter radarOf(scenario::AntennaPtr antenna) {
   radar.frequency_hz = kFrequency_hz;
   radar.power_w = 2e4;
   radar.losses_db = 2;
-  radar.polarization = scenario::Polarization::horizontal;
+  radar.polarization = propagation::Polarization::horizontal;
   radar.antenna = std::move(antenna);
   radar.receiver.noise_figure_db = 4;
   radar.receiver.losses_db = 1;
@@ -43,7 +43,7 @@ inline scenario::Emitter jammerOf(double power_w) {
   jammer.bandwidth_hz = 20e6;
   jammer.power_w = power_w;
   jammer.losses_db = 0.5;
-  jammer.polarization = scenario::Polarization::slant_45;
+  jammer.polarization = propagation::Polarization::slant_45;
   return jammer;
 }
 

@@ -122,7 +122,7 @@ TEST(RadarRows, GiveWhatTheVoxelFunctionGives) {
   const volume::Grid grid = gridOf(scenario->region);
   const GridColumns columns = makeGridColumns(grid, nullptr);
   scenario::Emitter radar = radarOf(antennas[0]);
-  radar.propagation = scenario::PropagationModel::horizon;
+  radar.propagation.model = propagation::PropagationModel::horizon;
   addEmitter(*scenario, {40.02, 5.03, 300}, radar);
   const scenario::EmitterState state = scenario::snapshotAt(scenario, nullptr, 0).emitters[0];
   EmitterGeometry geometry;

@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "emfield/models/diffraction.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/scenario/terrain.h"
+#include "propagation/diffraction/diffraction.h"
 #include "tests/support/files.h"
 
 namespace emscape::emfield::testing {
+
+using propagation::TerrainProfile;
 
 /// Owns what a TerrainProfile points to.
 struct ProfileData {

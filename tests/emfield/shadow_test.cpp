@@ -119,7 +119,7 @@ scenario::TerrainPtr whiteMountains(const scenario::Scenario& scenario) {
 std::shared_ptr<scenario::Scenario> radarOn(const std::shared_ptr<scenario::Scenario>& scenario,
                                             const GeodeticPosition& site) {
   scenario::Emitter emitter = plainEmitter("radar", 0);
-  emitter.propagation = scenario::PropagationModel::horizon;
+  emitter.propagation.model = propagation::PropagationModel::horizon;
   addEmitter(*scenario, site, emitter);
   return scenario;
 }

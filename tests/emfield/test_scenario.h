@@ -32,7 +32,7 @@ inline scenario::Emitter plainEmitter(const std::string& name, int platform) {
   emitter.frequency_hz = 1e9;
   emitter.power_w = 1000;
   emitter.antenna = scenario::makeIsotropic();
-  emitter.propagation = scenario::PropagationModel::free_space;
+  emitter.propagation.model = propagation::PropagationModel::free_space;
   return emitter;
 }
 

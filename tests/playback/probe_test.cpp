@@ -269,7 +269,7 @@ TEST(Probe, KnowsHeightsOverRealGroundAndSaysWhatIsBelowIt) {
     const emfield::PathBudget budget =
         emfield::pathBudget(snapshot, static_cast<int>(e),
                             {snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m},
-                            with_point->emitters[e].propagation, solved.input.terrain.get());
+                            with_point->emitters[e].propagation.model, solved.input.terrain.get());
     ASSERT_TRUE(reading.emitters[e].budget) << reading.emitters[e].refusal;
     EXPECT_EQ(reading.emitters[e].budget->verdict, budget.verdict);
     EXPECT_NEAR(reading.emitters[e].budget->find("power_density_dbwm2")->value,

@@ -93,9 +93,4 @@ void convertDem(const std::string& from, const std::string& driver, const std::s
   if (!copy) throw std::runtime_error("cannot write " + to);
 }
 
-void unpackGz(const std::string& from, const std::string& to) {
-  if (CPLCopyFile(to.c_str(), ("/vsigzip/" + from).c_str()) != 0)
-    throw std::runtime_error("cannot unpack " + from);
-}
-
 }  // namespace emscape::test

@@ -38,7 +38,5 @@ std::array<double, 2> projected(const std::string& crs, double latitude_deg, dou
 
 /// Writes a raster in another format. @param driver  GDAL's name of the format
 void convertDem(const std::string& from, const std::string& driver, const std::string& to);
-/// Unpacks a .gz file.
-void unpackGz(const std::string& from, const std::string& to);
 
 }  // namespace emscape::test

@@ -9,6 +9,8 @@
 namespace emscape::scenario {
 namespace {
 
+using namespace propagation;
+
 constexpr double kIdeal = std::numeric_limits<double>::infinity();
 
 constexpr Polarization kAll[] = {Polarization::horizontal,     Polarization::vertical,

@@ -11,6 +11,8 @@
 namespace emscape::scenario {
 namespace {
 
+using namespace propagation;
+
 using test::replaced;
 
 class ScenarioYaml : public ::testing::Test {
@@ -57,7 +59,7 @@ TEST_F(ScenarioYaml, ReadsEverySection) {
   EXPECT_EQ(radar.frequency_hz, 3e9);
   EXPECT_EQ(radar.power_w, 2e5);
   EXPECT_EQ(radar.polarization, Polarization::horizontal);
-  EXPECT_EQ(radar.propagation, PropagationModel::diffraction);
+  EXPECT_EQ(radar.propagation.model, PropagationModel::diffraction);
   EXPECT_EQ(radar.antenna->gain_dbi, 34);
   EXPECT_EQ(radar.scan.kind, ScanKind::rotate);
   EXPECT_EQ(radar.scan.rate_rpm, 12);
@@ -83,8 +85,8 @@ TEST_F(ScenarioYaml, ReadsWhatModelsAreTold) {
   const std::string model = "    propagation: free_space\n";
   ASSERT_NE(valid_.find(model), std::string::npos);
   auto scenario = load(valid_);
-  EXPECT_EQ(scenario->emitters[1].propagation, PropagationModel::diffraction) << "by default";
-  EXPECT_EQ(scenario->emitters[1].diffraction.method, DiffractionMethod::delta_bullington);
+  EXPECT_EQ(scenario->emitters[1].propagation.model, PropagationModel::diffraction) << "by default";
+  EXPECT_EQ(scenario->emitters[1].propagation.diffraction.method, DiffractionMethod::delta_bullington);
   EXPECT_EQ(scenario->atmosphere.gases, GasLosses::automatic);
   EXPECT_EQ(scenario->ground.kind, GroundKind::average_ground);
   EXPECT_FALSE(scenario->ground.surface_msl_m);
@@ -105,19 +107,19 @@ TEST_F(ScenarioYaml, ReadsWhatModelsAreTold) {
   EXPECT_EQ(scenario->ground.roughness_m, 0.3);
   EXPECT_EQ(scenario->ground.surface_msl_m, 2);
   const Emitter& jammer = scenario->emitters[3];
-  EXPECT_EQ(jammer.propagation, PropagationModel::itm);
-  EXPECT_EQ(jammer.itm.form, ItmForm::area);
-  EXPECT_EQ(jammer.itm.time_percent, 95);
-  EXPECT_EQ(jammer.itm.service, ItmService::broadcast);
-  EXPECT_EQ(jammer.itm.irregularity_m, 30);
-  EXPECT_EQ(jammer.diffraction.method, DiffractionMethod::deygout);
-  EXPECT_GT(jammer.itm.place.line, jammer.place.line);
+  EXPECT_EQ(jammer.propagation.model, PropagationModel::itm);
+  EXPECT_EQ(jammer.propagation.itm.form, ItmForm::area);
+  EXPECT_EQ(jammer.propagation.itm.time_percent, 95);
+  EXPECT_EQ(jammer.propagation.itm.service, ItmService::broadcast);
+  EXPECT_EQ(jammer.propagation.itm.irregularity_m, 30);
+  EXPECT_EQ(jammer.propagation.diffraction.method, DiffractionMethod::deygout);
+  EXPECT_GT(jammer.propagation.place.line, jammer.place.line);
 
   scenario = load(replaced(valid_, model,
                            "    propagation: two_ray\n"
                            "    two_ray: {sum: envelope, roughness_model: ament}\n"));
-  EXPECT_EQ(scenario->emitters[3].two_ray.sum, TwoRaySum::envelope);
-  EXPECT_EQ(scenario->emitters[3].two_ray.roughness_model, RoughnessModel::ament);
+  EXPECT_EQ(scenario->emitters[3].propagation.two_ray.sum, TwoRaySum::envelope);
+  EXPECT_EQ(scenario->emitters[3].propagation.two_ray.roughness_model, RoughnessModel::ament);
 }
 
 TEST_F(ScenarioYaml, GivesNoProblemForAValidScenario) {
@@ -151,7 +153,7 @@ TEST_F(ScenarioYaml, DefaultsOfTheTableAreThoseOfTheTypes) {
   EXPECT_EQ(scenario->region.origin.kind, FrameOrigin{}.kind);
   const Emitter& emitter = scenario->emitters[0];
   EXPECT_EQ(emitter.polarization, Emitter{}.polarization);
-  EXPECT_EQ(emitter.propagation, Emitter{}.propagation);
+  EXPECT_EQ(emitter.propagation.model, Emitter{}.propagation.model);
   EXPECT_EQ(emitter.scan.kind, ScanKind::fixed);
   EXPECT_EQ(emitter.scan.bars, 1);
   EXPECT_TRUE(emitter.active_s.empty());

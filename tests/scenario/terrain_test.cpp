@@ -14,6 +14,7 @@
 #include "scenario/terrain/view.h"
 #include "tests/scenario/dem_file.h"
 #include "tests/support/files.h"
+#include "tests/support/reference_data.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {
@@ -58,11 +59,6 @@ class ReferenceDem : public testing::Test {
   const std::string tif_ = test::sourceFile("tests/data/dem/N44W072.tif");
   std::string hgt() const { return encoded("SRTMHGT", "N44W072.hgt"); }
   std::string dted() const { return encoded("DTED", "N44W072.dt1"); }
-  std::string dtedWithVoids() const {
-    const std::string file = folder_ / "n00_e006_3arc_v2.dt1";
-    test::unpackGz(test::sourceFile("tests/data/dem/n00_e006_3arc_v2.dt1.gz"), file);
-    return file;
-  }
 
  private:
   std::string encoded(const char* driver, const char* name) const {
@@ -116,7 +112,9 @@ TEST_F(ReferenceDem, PostsAreTheFilesOwnBytes) {
 }
 
 TEST_F(ReferenceDem, VoidsAreNaNAndCounted) {
-  const std::string file = dtedWithVoids();
+  const auto found = test::referenceFile("dem/n00_e006_3arc_v2.dt1");
+  if (!found) GTEST_SKIP() << test::notInRepository("dem/n00_e006_3arc_v2.dt1");
+  const std::string& file = *found;
   const TerrainPtr terrain = load({file}, {0, 1, 6, 7});
   EXPECT_EQ(terrain->voidPosts(), 4072);
   EXPECT_EQ(terrain->uncoveredFraction(), 0);

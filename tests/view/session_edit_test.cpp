@@ -48,7 +48,8 @@ TEST(SessionEdits, ANewKeyOfASectionThatIsNotGivenIsAdded) {
   EXPECT_EQ(sample->scenario()->atmosphere.k_factor, 1.6);
   sample.perform(R"({"do":"set","path":"emitters.transmitter.diffraction.method","value":"deygout"})");
   EXPECT_EQ(sample.error(), "");
-  EXPECT_EQ(sample->scenario()->emitters[1].diffraction.method, scenario::DiffractionMethod::deygout);
+  EXPECT_EQ(sample->scenario()->emitters[1].propagation.diffraction.method,
+            propagation::DiffractionMethod::deygout);
 }
 
 TEST(SessionEdits, MovePutsAPlatformElsewhereInOneStep) {

@@ -8,7 +8,7 @@
 
 #include "emscape/base/backend.h"
 #include "emscape/base/progress.h"
-#include "emscape/emfield/quantities.h"
+#include "emscape/scenario/quantities.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/volume/device_volume.h"
 #include "emscape/volume/volume.h"
@@ -17,7 +17,7 @@ namespace emscape::emfield {
 
 /// What one volume of the output holds.
 struct Channel {
-  Quantity quantity = Quantity::power_density_dbwm2;
+  scenario::Quantity quantity = scenario::Quantity::power_density_dbwm2;
   std::string name;  ///< quantity, with ":" and the emitter's or band's name where it is not the sum of all
   std::vector<int> emitters;      ///< indices that enter it
   std::vector<int> jammers = {};  ///< indices of those that jam them, where jamming counts

@@ -53,7 +53,7 @@ struct PathBudget {
   PathGeometry geometry;
   PathPointing pointing;
   std::vector<PathObstacle> obstacles;
-  scenario::PropagationModel model = scenario::PropagationModel::free_space;
+  propagation::PropagationModel model = propagation::PropagationModel::free_space;
   PathExcess excess;
   std::vector<BudgetTerm> terms;
   std::vector<std::string> warnings;
@@ -68,10 +68,10 @@ struct PathBudget {
 /// @param terrain  null: a smooth earth at mean sea level
 /// @throws Error (bad_input) as readPathProfile and pathExcess do
 PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
-                      scenario::PropagationModel model, const scenario::Terrain* terrain);
+                      propagation::PropagationModel model, const scenario::Terrain* terrain);
 /// The same with profiles of another resolution than that of the scenario's own grid.
 PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
-                      scenario::PropagationModel model, const scenario::Terrain* terrain,
+                      propagation::PropagationModel model, const scenario::Terrain* terrain,
                       const FanResolution& resolution);
 
 }  // namespace emscape::emfield

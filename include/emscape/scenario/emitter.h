@@ -7,17 +7,15 @@
 #include <vector>
 
 #include "emscape/base/error.h"
+#include "emscape/propagation/settings.h"
 #include "emscape/scenario/antenna.h"
-#include "emscape/scenario/propagation.h"
 #include "emscape/scenario/scan.h"
 
 namespace emscape::scenario {
 
 enum class EmitterKind { radar, transmitter, jammer };
-enum class Polarization { horizontal, vertical, slant_45, slant_135, circular_right, circular_left };
 
 const char* toString(EmitterKind kind);
-const char* toString(Polarization polarization);
 
 /// How far (dB) an antenna keeps the orthogonal polarisation down unless a receiver says otherwise: what
 /// antennas of one nominal polarisation reach off their axis.
@@ -28,7 +26,7 @@ constexpr double kCrossPolarIsolation_db = 25;
 /// Part of the power (0..1) that passes between two polarisations: |<e_t, e_r>|^2, at least what a real
 /// antenna lets through of the orthogonal one.
 /// @param isolation_db  >= 0; infinity: ideal antennas
-double polarizationFactor(Polarization transmit, Polarization receive,
+double polarizationFactor(propagation::Polarization transmit, propagation::Polarization receive,
                           double isolation_db = kCrossPolarIsolation_db);
 
 /// How the probability of detection is found from the signal-to-noise ratio.
@@ -46,7 +44,7 @@ struct RadarReceiver {
   double bandwidth_hz = 1e6;
   double losses_db = 0;           ///< between antenna and receiver, one way: echo and jamming alike
   double processing_gain_db = 0;  ///< of echoes over noise and jamming, less the losses of processing
-  std::optional<Polarization> polarization;  ///< none: that of the transmitted wave
+  std::optional<propagation::Polarization> polarization;  ///< none: that of the transmitted wave
   double cross_polar_isolation_db = kCrossPolarIsolation_db;
   int pulses = 1;
   double pfa = 1e-6;
@@ -62,9 +60,9 @@ struct ReceiverProfile {
   std::string name;
   double gain_dbi = 0;
   double losses_db = 0;
-  std::optional<Polarization> polarization;  ///< none: matched to every emitter
-  double center_frequency_hz = 0;            ///< 0: tuned to every emitter
-  double bandwidth_hz = 0;                   ///< 0: as wide as the emitter's signal
+  std::optional<propagation::Polarization> polarization;  ///< none: matched to every emitter
+  double center_frequency_hz = 0;                         ///< 0: tuned to every emitter
+  double bandwidth_hz = 0;                                ///< 0: as wide as the emitter's signal
   double cross_polar_isolation_db = kCrossPolarIsolation_db;
 };
 
@@ -82,14 +80,10 @@ struct Emitter {
   double bandwidth_hz = 0;  ///< of the signal; 0: narrower than any receiver
   double power_w = 0;       ///< peak, at the transmitter's output
   double losses_db = 0;     ///< transmit path, one way, >= 0
-  Polarization polarization = Polarization::vertical;
+  propagation::Polarization polarization = propagation::Polarization::vertical;
   AntennaPtr antenna;
   ScanSpec scan;
-  PropagationModel propagation = PropagationModel::diffraction;
-  DiffractionSettings diffraction;
-  TwoRaySettings two_ray;
-  ItmSettings itm;
-  P528Settings p528;
+  propagation::ModelSettings propagation;
   RadarReceiver receiver;              ///< radars only
   std::vector<TimeInterval> active_s;  ///< empty: always
   SourceLocation place;                ///< where the scenario describes it

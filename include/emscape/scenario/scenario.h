@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "emscape/base/geo_frame.h"
+#include "emscape/propagation/settings.h"
 #include "emscape/scenario/clock.h"
 #include "emscape/scenario/edit.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/platform.h"
-#include "emscape/scenario/propagation.h"
 #include "emscape/scenario/terrain.h"
 
 namespace emscape::scenario {
@@ -23,18 +23,6 @@ struct Region {
   FrameOrigin origin;
   Vec3d size_m;
   Dims dims;
-};
-
-struct Atmosphere {
-  double k_factor = 4.0 / 3.0;  ///< effective earth radius over earth radius
-  double pressure_hpa = 1013.25;
-  double temperature_k = 288.15;
-  double vapour_g_m3 = 7.5;
-  double rain_mm_h = 0;
-  std::optional<double> rain_height_m;  ///< above mean sea level, up to where it rains; none: by latitude
-  GasLosses gases = GasLosses::automatic;
-  double sea_level_refractivity = 301;  ///< N-units, for itm, which takes the rays' curvature from it
-  RadioClimate climate = RadioClimate::continental_temperate;
 };
 
 /// A named frequency interval, for combine by band.
@@ -75,8 +63,8 @@ struct Scenario {
   Clock clock;
   Region region;
   std::optional<TerrainSpec> terrain;
-  Atmosphere atmosphere;
-  Ground ground;
+  propagation::Atmosphere atmosphere;
+  propagation::Ground ground;
   std::vector<Platform> platforms;
   std::vector<Emitter> emitters;
   std::vector<ReceiverProfile> receivers;  ///< the first is used for received_power_dbm

@@ -1,0 +1,129 @@
+#include "emfield/emitter_excess.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
+#include "propagation/registry/model_info.h"
+
+namespace emscape::emfield {
+namespace {
+
+using propagation::ModelInfo;
+using propagation::PathExtent;
+using propagation::PathInputs;
+using scenario::Emitter;
+using scenario::Scenario;
+
+/// Whether a model's excess points to tables.
+template <class Model, class = void>
+struct HasTables : std::false_type {};
+template <class Model>
+struct HasTables<Model, std::void_t<decltype(Model::tables)>> : std::true_type {};
+
+/// Height (m above mean sea level) of the smooth surface below an emitter.
+/// @throws Error (bad_input) where it is to be the ground and that is missing
+double smoothSurface_msl_m(const Scenario& scenario, const Emitter& emitter, const ModelInfo& model,
+                           const Station& station, const scenario::Terrain* terrain) {
+  if (scenario.ground.surface_msl_m) return *scenario.ground.surface_msl_m;
+  if (terrain == nullptr) return 0;
+  const double ground_m =
+      terrain->heightMsl_m(radToDeg(station.geodesy.latitude_rad), radToDeg(station.geodesy.longitude_rad));
+  if (std::isnan(ground_m)) {
+    throw Error(ErrorCode::bad_input, emitter.place,
+                fmt::format("emitter '{}': '{}' stands on a smooth surface at the height of the ground below "
+                            "the emitter, and that is missing; the key 'surface_msl_m' of 'ground' sets it",
+                            emitter.name, model.name));
+  }
+  return ground_m;
+}
+
+}  // namespace
+
+EmitterExcess EmitterExcess::withTablesAt(const float* model_tables_copy,
+                                          const float* air_tables_copy) const {
+  EmitterExcess moved = *this;
+  std::visit(
+      [&](auto& m) {
+        if constexpr (HasTables<std::decay_t<decltype(m)>>::value) m.tables = model_tables_copy;
+      },
+      moved.model);
+  if (moved.air.gases != nullptr) moved.air.gases = air_tables_copy;
+  return moved;
+}
+
+bool EmitterExcess::needsTerrain() const {
+  return std::visit([](const auto& m) { return std::decay_t<decltype(m)>::kNeedsTerrain; }, model);
+}
+
+propagation::EmitterInputs emitterInputs(const Scenario& scenario, const Emitter& emitter) {
+  return {emitter.frequency_hz, emitter.polarization, emitter.propagation, scenario.ground,
+          scenario.atmosphere};
+}
+
+PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const Station& station,
+                      const scenario::Terrain* terrain, const PathExtent& extent,
+                      const FanResolution& resolution) {
+  const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+  PathInputs inputs;
+  inputs.emitter = emitterInputs(scenario, emitter);
+  inputs.site = {radToDeg(station.geodesy.latitude_rad), station.height_msl_m, station.earth_radius_m,
+                 station.effective_earth_radius_m};
+  if (model.on_smooth_surface) {
+    inputs.surface_msl_m = smoothSurface_msl_m(scenario, emitter, model, station, terrain);
+  }
+  inputs.extent = extent;
+  inputs.post_spacing_m = resolution.arc_m;
+  return inputs;
+}
+
+PathExtent pathExtent(const Station& station, const GridColumns& columns) {
+  // A grid's corners hold its farthest columns; they or its middle those whose heights reach farthest.
+  PathExtent extent;
+  extent.lowest_msl_m = HUGE_VAL;
+  extent.highest_msl_m = -HUGE_VAL;
+  const auto take = [&](int i, int j) {
+    const GridColumn& column = columns.columns[static_cast<std::size_t>(j) * columns.dims.x + i];
+    for (const float t_m : {columns.t_m.front(), columns.t_m.back()}) {
+      const double height_m = heightMsl_m(column, static_cast<double>(t_m));
+      extent.lowest_msl_m = std::min(extent.lowest_msl_m, height_m);
+      extent.highest_msl_m = std::max(extent.highest_msl_m, height_m);
+      extent.farthest_m = std::max(extent.farthest_m, fanCoordinates(station, column, t_m).range_m);
+    }
+  };
+  for (const int i : {0, columns.dims.x / 2, columns.dims.x - 1}) {
+    for (const int j : {0, columns.dims.y / 2, columns.dims.y - 1}) take(i, j);
+  }
+  return extent;
+}
+
+bool hasExcess(const Scenario& scenario, const Emitter& emitter) {
+  return propagation::hasExcess(emitterInputs(scenario, emitter));
+}
+
+EmitterExcess makeExcess(const PathInputs& inputs) {
+  const ModelInfo& model = propagation::modelInfo(inputs.emitter.settings.model);
+  const auto model_tables = std::make_shared<std::vector<float>>();
+  const auto air_tables = std::make_shared<std::vector<float>>();
+  EmitterExcess excess;
+  if (model.excess != nullptr) excess.model = model.excess(inputs, *model_tables);
+  if (propagation::hasAirLoss(inputs.emitter)) {
+    excess.air = propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), *air_tables);
+  }
+  excess.model_tables = model_tables;
+  excess.air_tables = air_tables;
+  return excess;
+}
+
+EmitterExcess makeExcess(const Scenario& scenario, const Emitter& emitter, const Station& station,
+                         const scenario::Terrain* terrain, const GridColumns& columns,
+                         const FanResolution& resolution) {
+  const bool needs_extent = propagation::needsExtent(emitterInputs(scenario, emitter));
+  return makeExcess(pathInputs(scenario, emitter, station, terrain,
+                               needs_extent ? pathExtent(station, columns) : PathExtent{}, resolution));
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,59 @@
+/// The excess loss of an emitter's paths: a model of the registry, what the air takes, and their tables.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "emfield/grid_columns.h"
+#include "emfield/station.h"
+#include "emfield/terrain_fan.h"
+#include "emscape/scenario/scenario.h"
+#include "propagation/air/air_loss.h"
+#include "propagation/inputs.h"
+#include "propagation/registry/excess_model.h"
+
+namespace emscape::emfield {
+
+/// What the paths from one emitter lose over free space.
+struct EmitterExcess {
+  propagation::ExcessModel model;
+  propagation::AirLoss air;
+
+  /// What model and air point to, in host memory; empty where they need none.
+  std::shared_ptr<const std::vector<float>> model_tables, air_tables;
+  /// The same, pointing to copies of the tables elsewhere.
+  EmitterExcess withTablesAt(const float* model_tables_copy, const float* air_tables_copy) const;
+
+  /// Whether profiles are read.
+  bool needsTerrain() const;
+};
+
+/// What the models are told of an emitter of a scenario.
+propagation::EmitterInputs emitterInputs(const scenario::Scenario& scenario,
+                                         const scenario::Emitter& emitter);
+
+/// What the models are told of the emitter's paths from where it stands.
+/// @param terrain     null: none
+/// @param extent      read only where propagation::needsExtent()
+/// @param resolution  of profiles
+/// @throws Error (bad_input) for a model without terrain where the ground below the emitter is missing
+propagation::PathInputs pathInputs(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                                   const Station& station, const scenario::Terrain* terrain,
+                                   const propagation::PathExtent& extent, const FanResolution& resolution);
+
+/// Where a grid's paths from a station end.
+propagation::PathExtent pathExtent(const Station& station, const GridColumns& columns);
+
+/// Whether an emitter's voxels have an excess: false for free_space and horizon in clear air, which need no
+/// memory for it.
+bool hasExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
+
+/// The excess of an emitter that has one.
+EmitterExcess makeExcess(const propagation::PathInputs& inputs);
+/// The same over the columns of a grid.
+/// @throws as pathInputs()
+EmitterExcess makeExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                         const Station& station, const scenario::Terrain* terrain, const GridColumns& columns,
+                         const FanResolution& resolution);
+
+}  // namespace emscape::emfield

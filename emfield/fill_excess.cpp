@@ -1,0 +1,80 @@
+#include "emfield/fill_excess.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <vector>
+
+#include "emscape/base/parallel.h"
+
+namespace emscape::emfield {
+namespace {
+
+using propagation::kMissingTerrain;
+
+/// Neighbouring columns, so that results are written in runs.
+constexpr int kBlock = 16;
+
+template <class Model>
+unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
+  const ExcessGrid& grid = task.grid;
+  const int columns = static_cast<int>(grid.column_count);
+  std::atomic<unsigned> all_remarks{0};
+  parallelFor((columns + kBlock - 1) / kBlock, 4, [&](int begin, int end) {
+    std::vector<double> memory(ExcessScratch::bytes(task.posts(), grid.layers) / sizeof(double) + 1);
+    const ExcessScratch scratch = ExcessScratch::in(memory.data(), task.posts(), grid.layers);
+    std::vector<ExcessCode> codes(static_cast<std::size_t>(grid.layers) * kBlock);
+    unsigned remarks = 0;
+    for (int block = begin; block < end; ++block) {
+      const int first = block * kBlock, count = std::min(kBlock, columns - first);
+      bool is_filled[kBlock];
+      for (int i = 0; i < count; ++i) {
+        unsigned of_column = 0;
+        is_filled[i] = task.fillColumn(static_cast<std::size_t>(first + i), scratch, of_column);
+        if (!is_filled[i]) continue;
+        if (of_column & kMissingTerrain) out.markUnknown(static_cast<std::size_t>(first + i));
+        remarks |= of_column;
+        for (int k = 0; k < grid.layers; ++k) {
+          codes[static_cast<std::size_t>(k) * kBlock + i] = excessCode(scratch.excess_db[k]);
+        }
+      }
+      for (int k = 0; k < grid.layers; ++k) {
+        ExcessCode* const row = out.codes + static_cast<std::size_t>(k) * grid.column_count + first;
+        for (int i = 0; i < count; ++i) {
+          if (is_filled[i]) row[i] = codes[static_cast<std::size_t>(k) * kBlock + i];
+        }
+      }
+    }
+    all_remarks |= remarks;
+  });
+  return all_remarks;
+}
+
+}  // namespace
+
+ExcessGrid excessGrid(const GridColumns& columns, const FanResolution& resolution) {
+  ExcessGrid grid;
+  grid.columns = columns.columns.data();
+  grid.column_count = columns.columns.size();
+  grid.t_m = columns.t_m.data();
+  grid.layers = static_cast<int>(columns.t_m.size());
+  if (columns.tilted) {
+    // A piece leans no further than the fan's azimuths lie apart.
+    grid.pieces =
+        std::clamp(static_cast<int>(std::ceil(2 * leanOf(columns) / resolution.arc_m)), 1, grid.layers);
+  } else if (!columns.ground_msl_m.empty()) {
+    grid.ground_msl_m = columns.ground_msl_m.data();
+  }
+  return grid;
+}
+
+unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
+                       const FanHeights& fan, const ExcessOutput& out) {
+  return std::visit(
+      [&](const auto& m) {
+        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, fan}, out);
+      },
+      excess.model);
+}
+
+}  // namespace emscape::emfield

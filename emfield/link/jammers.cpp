@@ -1,0 +1,81 @@
+#include "emfield/link/jammers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emfield/combine.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/path_budget.h"
+
+namespace emscape::emfield {
+namespace {
+
+using scenario::Emitter;
+using scenario::EmitterState;
+
+/// Nearer along the ground than this (m) nothing lies between two stations: no path is looked at.
+constexpr double kNoPath_m = 2;
+
+/// The straight line from a station to a point, east-north-up (m).
+Vec3d lineBetween(const Station& from, const GeodeticPosition& to) {
+  const Vec3d line = toEcef(to) - from.ecef_m;
+  return {dot(line, from.geodesy.east), dot(line, from.geodesy.north), dot(line, from.geodesy.station.up)};
+}
+
+double freeSpaceDensity_wm2(const Emitter& emitter, const scenario::BeamPose& beam, const Vec3d& line) {
+  const double distance_m = std::max(length(line), static_cast<double>(kSmallestDistance_m));
+  const Vec3d unit = length(line) > 0 ? line / length(line) : beam.forward;
+  const double amplitude = emitter.antenna->amplitudeTowards(
+      {dot(unit, beam.forward), dot(unit, beam.right), dot(unit, beam.up)}, beam.steer_u, beam.steer_v);
+  return emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db) * amplitude * amplitude /
+         (4 * kPi * distance_m * distance_m);
+}
+
+}  // namespace
+
+std::vector<JammerInSight> jammersInSight(const scenario::Snapshot& snapshot, int radar,
+                                          const std::vector<int>& jammers, const scenario::Terrain* terrain,
+                                          const FanResolution& resolution, std::string* warning) {
+  const scenario::Scenario& scenario = *snapshot.scenario;
+  const EmitterState& at = snapshot.emitters[radar];
+  const double k_factor = scenario.atmosphere.k_factor;
+  const Station station = makeStation(at.position, at.height_msl_m, k_factor);
+  std::vector<JammerInSight> all;
+  for (int j : jammers) {
+    const EmitterState& from = snapshot.emitters[j];
+    if (!from.active) continue;
+    const Station jammer_station = makeStation(from.position, from.height_msl_m, k_factor);
+    Vec3d ray = lineBetween(station, from.position);
+    const double level_m = std::hypot(ray.x, ray.y);
+    JammerInSight jammer{j, {}, 0};
+    const auto alone = [&] {
+      return freeSpaceDensity_wm2(scenario.emitters[j], from.beam, lineBetween(jammer_station, at.position));
+    };
+    if (level_m < kNoPath_m) {
+      jammer.power_density_wm2 = alone();
+    } else {
+      try {
+        const PathBudget budget = pathBudget(snapshot, j, {at.position, at.height_msl_m},
+                                             scenario.emitters[j].propagation.model, terrain, resolution);
+        jammer.power_density_wm2 = dbToRatio(budget.find("power_density_dbwm2")->value);
+        ray.z += refractionLift_m(station, budget.profile.range_m, level_m);
+      } catch (const Error& error) {
+        const std::string message = fmt::format("jammer '{}' to radar '{}': {}", scenario.emitters[j].name,
+                                                scenario.emitters[radar].name, error.message());
+        if (warning == nullptr) {
+          throw Error(ErrorCode::bad_input, {scenario.file}, message, Hint::allow_missing_terrain);
+        }
+        *warning = message + "; counted as a free path";
+        jammer.power_density_wm2 = alone();
+      }
+    }
+    jammer.direction = length(ray) > 0 ? ray / length(ray) : at.beam.forward;
+    all.push_back(jammer);
+  }
+  return all;
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,255 @@
+#include "emscape/emfield/path_budget.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/quantity_text.h"
+#include "emfield/link/path_radar.h"
+#include "emfield/link/path_verdict.h"
+#include "emfield/products.h"
+#include "emfield/radar/detection.h"
+#include "emfield/radar/receiver.h"
+#include "emfield/station.h"
+#include "emfield/terrain_fan.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/field_solver.h"
+
+namespace emscape::emfield {
+namespace {
+
+using scenario::Emitter;
+using scenario::EmitterState;
+using scenario::Quantity;
+using Kind = BudgetTerm::Kind;
+
+/// Ranges at which rays from a height touch a smooth earth at mean sea level.
+double smoothHorizon_m(double height_msl_m, double effective_earth_radius_m) {
+  return std::sqrt(2 * effective_earth_radius_m * std::max(height_msl_m, 0.0));
+}
+
+/// Components of the straight line to the point in the station's east-north-up axes (m).
+Vec3d lineTo(const Station& station, const GeodeticPosition& point) {
+  const Vec3d line = toEcef(point) - station.ecef_m;
+  return {dot(line, station.geodesy.east), dot(line, station.geodesy.north),
+          dot(line, station.geodesy.station.up)};
+}
+
+double elevationOf_rad(const Vec3d& direction) {
+  return std::atan2(direction.z, std::hypot(direction.x, direction.y));
+}
+
+/// @param ray  start of the refracted ray, east-north-up
+PathPointing pointingOf(const Emitter& emitter, const scenario::BeamPose& beam, const Vec3d& ray) {
+  const Vec3d unit = ray * (1 / length(ray));
+  const Vec3d direction{dot(unit, beam.forward), dot(unit, beam.right), dot(unit, beam.up)};
+  PathPointing pointing;
+  pointing.azimuth_rad = std::atan2(direction.y, direction.x);
+  pointing.elevation_rad = std::atan2(direction.z, std::hypot(direction.x, direction.y));
+  const double level2 = 1 - beam.steer_u * beam.steer_u - beam.steer_v * beam.steer_v;
+  const Vec3d axis{std::sqrt(std::max(level2, 0.0)), beam.steer_u, beam.steer_v};
+  pointing.off_axis_rad = std::atan2(length(cross(direction, axis)), dot(direction, axis));
+  pointing.pattern_db =
+      20 * std::log10(emitter.antenna->amplitudeTowards(direction, beam.steer_u, beam.steer_v));
+  return pointing;
+}
+
+/// A quantity's value where one emitter alone makes a power density: what the field's product stage makes of
+/// it, without its floor.
+double quantityOf(Quantity quantity, const scenario::Scenario& scenario, int emitter,
+                  double power_density_dbwm2) {
+  Channel channel;
+  channel.quantity = quantity;
+  channel.emitters = {emitter};
+  const ChannelRecipe recipe = recipeOf(channel, scenario);
+  const double accumulator_db = power_density_dbwm2 + ratioToDb(static_cast<double>(recipe.weights.front()));
+  return static_cast<double>(recipe.product.scale) * accumulator_db +
+         static_cast<double>(recipe.product.offset_db);
+}
+
+/// Of spreading over the slant range (dB/m2).
+double spreading_dbm2(const PathGeometry& geometry) {
+  const double distance_m = std::max(geometry.slant_range_m, static_cast<double>(kSmallestDistance_m));
+  return -ratioToDb(4 * kPi * distance_m * distance_m);
+}
+
+/// Power density at the path's end if the antenna radiated as on its boresight.
+double boresightDensity_dbwm2(const Emitter& emitter, const PathBudget& budget) {
+  return ratioToDb(emitter.power_w) - emitter.losses_db + emitter.antenna->gain_dbi +
+         spreading_dbm2(budget.geometry) - budget.excess.loss_db;
+}
+
+void addRadiatedTerms(const Emitter& emitter, const PathPointing& pointing, std::vector<BudgetTerm>& terms) {
+  const double power_dbw = ratioToDb(emitter.power_w);
+  terms.push_back({"transmitter_power_dbw", "transmitter power", power_dbw, "dBW",
+                   quantityText(emitter.power_w, "W") + " at " + quantityText(emitter.frequency_hz, "Hz")});
+  terms.push_back({"transmit_losses_db", "transmit losses", -emitter.losses_db, "dB", ""});
+  terms.push_back({"antenna_gain_dbi", "antenna gain, at its maximum", emitter.antenna->gain_dbi, "dBi",
+                   emitter.antenna->description});
+  terms.push_back(
+      {"antenna_pattern_db", "antenna pattern toward the ray", pointing.pattern_db, "dB",
+       fmt::format("{:.2f} deg off axis; azimuth {:+.2f}, elevation {:+.2f} deg in the antenna's frame",
+                   radToDeg(pointing.off_axis_rad), radToDeg(pointing.azimuth_rad),
+                   radToDeg(pointing.elevation_rad))});
+  terms.push_back({"eirp_dbw", "EIRP along the ray",
+                   power_dbw - emitter.losses_db + emitter.antenna->gain_dbi + pointing.pattern_db, "dBW", "",
+                   Kind::sum});
+}
+
+void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, double power_density_dbwm2,
+                      std::vector<BudgetTerm>& terms) {
+  const Emitter& emitter = scenario.emitters[emitter_index];
+  const scenario::ReceiverProfile& receiver = scenario.receivers.front();
+  const double wavelength = wavelength_m(emitter.frequency_hz);
+  const double area_db = ratioToDb(wavelength * wavelength / (4 * kPi));
+  const double polarization_db =
+      receiver.polarization
+          ? ratioToDb(scenario::polarizationFactor(emitter.polarization, *receiver.polarization,
+                                                   receiver.cross_polar_isolation_db))
+          : 0;
+  const double of_one_watt_dbm = quantityOf(Quantity::received_power_dbm, scenario, emitter_index, 0);
+  const double antenna_db = receiver.gain_dbi - receiver.losses_db;
+  terms.push_back(
+      {"isotropic_area_dbm2", "area of an isotropic antenna", area_db, "dBm2", "lambda^2 / (4 pi)"});
+  terms.push_back({"receiver_antenna_db", "receiver's antenna gain less losses", antenna_db, "dB",
+                   fmt::format("receiver '{}'", receiver.name)});
+  terms.push_back({"polarization_db", "polarisation mismatch", polarization_db, "dB",
+                   fmt::format("{} to {}", toString(emitter.polarization),
+                               receiver.polarization ? toString(*receiver.polarization) : "matched")});
+  terms.push_back({"in_band_db", "part of the signal within the receiver's band",
+                   of_one_watt_dbm - 30 - area_db - antenna_db - polarization_db, "dB", ""});
+  terms.push_back(
+      {"received_power_dbm", "received power", of_one_watt_dbm + power_density_dbwm2, "dBm", "", Kind::sum});
+}
+
+void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const RadarAtPoint& radar,
+                   std::vector<BudgetTerm>& terms) {
+  const scenario::RadarReceiver& receiver = scenario.emitters[emitter_index].receiver;
+  const char* const look = scenario.output.radar_look == scenario::RadarLook::scan
+                               ? "beam where the scan has it"
+                               : "beam on the target";
+  terms.push_back({"snr_db", "echo's signal-to-noise, one pulse", radar.snr_db, "dB",
+                   fmt::format("there and back, {}; target of {:g} m2, noise figure {:g} dB, {}", look,
+                               receiver.target_rcs_m2, receiver.noise_figure_db,
+                               quantityText(receiver.bandwidth_hz, "Hz")),
+                   Kind::sum});
+  if (std::isfinite(radar.jammer_to_signal_db)) {
+    terms.push_back({"jammer_to_signal_db", "jamming over the echo", radar.jammer_to_signal_db, "dB",
+                     "the beam on the target"});
+  }
+  const std::string settings =
+      fmt::format("{} pulses, Pfa {:g}, Swerling {}", receiver.pulses, receiver.pfa, receiver.swerling);
+  const double half_way = receiver.pfa < 0.5 ? 0.5 : 0.75;
+  terms.push_back({"required_snr_db", fmt::format("of which detection with probability {:g} takes", half_way),
+                   requiredSnrDb(detectorOf(receiver), half_way), "dB", settings});
+  terms.push_back({"detection_probability", "probability of detection", radar.detection_probability, "",
+                   settings, Kind::sum});
+}
+
+std::vector<BudgetTerm> termsOf(const scenario::Snapshot& snapshot, int emitter_index,
+                                const PathBudget& budget, const std::optional<RadarAtPoint>& radar) {
+  const scenario::Scenario& scenario = *snapshot.scenario;
+  const Emitter& emitter = scenario.emitters[emitter_index];
+  std::vector<BudgetTerm> terms;
+  addRadiatedTerms(emitter, budget.pointing, terms);
+  double level_db = terms.back().value;
+
+  const double distance_m = std::max(budget.geometry.slant_range_m, static_cast<double>(kSmallestDistance_m));
+  const double spreading_db = -ratioToDb(4 * kPi * distance_m * distance_m);
+  terms.push_back({"spreading_dbm2", "spreading over the slant range", spreading_db, "dB/m2",
+                   fmt::format("1 / (4 pi R^2), R = {:.3f} km", distance_m / 1000)});
+  level_db += spreading_db;
+  for (const propagation::ExcessPart& part : budget.excess.parts) {
+    terms.push_back({part.key + "_db", part.label, -part.loss_db, "dB", toString(budget.model)});
+    level_db -= part.loss_db;
+  }
+  terms.push_back({"power_density_dbwm2", "power density", level_db, "dBW/m2", "", Kind::sum});
+  terms.push_back({"field_strength_dbuvm", "field strength (RMS)",
+                   quantityOf(Quantity::field_strength_dbuvm, scenario, emitter_index, level_db), "dBuV/m",
+                   "", Kind::sum});
+  if (!scenario.receivers.empty()) addReceiverTerms(scenario, emitter_index, level_db, terms);
+  if (radar) addRadarTerms(scenario, emitter_index, *radar, terms);
+
+  const double wavelength = wavelength_m(emitter.frequency_hz);
+  const double free_space_db =
+      -spreading_dbm2(budget.geometry) - ratioToDb(wavelength * wavelength / (4 * kPi));
+  terms.push_back({"free_space_loss_db", "free-space loss between isotropic antennas", free_space_db, "dB",
+                   "for comparison with other tools"});
+  terms.push_back({"transmission_loss_db", "basic transmission loss", free_space_db + budget.excess.loss_db,
+                   "dB", "free space and the model's excess"});
+  return terms;
+}
+
+}  // namespace
+
+const BudgetTerm* PathBudget::find(const std::string& key) const {
+  const auto found =
+      std::find_if(terms.begin(), terms.end(), [&](const BudgetTerm& term) { return term.key == key; });
+  return found == terms.end() ? nullptr : &*found;
+}
+
+PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, const PathEnd& point,
+                      propagation::PropagationModel model, const scenario::Terrain* terrain,
+                      const FanResolution& resolution) {
+  const scenario::Scenario& scenario = *snapshot.scenario;
+  const Emitter& emitter = scenario.emitters[emitter_index];
+  const EmitterState& state = snapshot.emitters[emitter_index];
+  Emitter by_model = emitter;
+  by_model.propagation.model = model;
+  PathBudget budget;
+  budget.emitter = emitter.name;
+  budget.time_s = snapshot.time_s;
+  budget.active = state.active;
+  budget.frequency_hz = emitter.frequency_hz;
+  budget.k_factor = scenario.atmosphere.k_factor;
+  budget.model = model;
+  budget.profile =
+      readPathProfile({state.position, state.height_msl_m}, point, budget.k_factor, terrain, resolution);
+  const PathProfile& profile = budget.profile;
+  const Station station = makeStation(state.position, state.height_msl_m, profile.k_factor);
+  const double wavelength = wavelength_m(emitter.frequency_hz);
+
+  PathGeometry& geometry = budget.geometry;
+  const Vec3d line = lineTo(station, point.position);
+  Vec3d ray = line;
+  ray.z += refractionLift_m(station, profile.range_m, std::hypot(line.x, line.y));
+  geometry.slant_range_m = length(line);
+  geometry.straight_elevation_rad = elevationOf_rad(line);
+  geometry.launch_elevation_rad = elevationOf_rad(ray);
+  geometry.begin_ground_msl_m = static_cast<double>(profile.ground_msl_m.front());
+  geometry.end_ground_msl_m = static_cast<double>(profile.ground_msl_m.back());
+  geometry.horizon_range_m = smoothHorizon_m(profile.begin.height_msl_m, station.effective_earth_radius_m) +
+                             smoothHorizon_m(profile.end.height_msl_m, station.effective_earth_radius_m);
+  const double aperture_m = emitter.antenna->apertureDimension_m(wavelength);
+  geometry.far_field_m = 2 * aperture_m * aperture_m / wavelength;
+
+  budget.pointing = pointingOf(emitter, state.beam, ray);
+  budget.obstacles = pathObstacles(profile, wavelength);
+  budget.excess = pathExcess(scenario, by_model, profile, terrain, resolution);
+  budget.warnings = budget.excess.warnings;
+  if (geometry.slant_range_m < geometry.far_field_m) {
+    budget.warnings.push_back(
+        fmt::format("the point lies {:.0f} m from the antenna, nearer than its far field (2 D^2 / lambda = "
+                    "{:.0f} m): the "
+                    "far field's formula is taken all the same",
+                    geometry.slant_range_m, geometry.far_field_m));
+  }
+  std::optional<RadarAtPoint> radar;
+  if (emitter.kind == scenario::EmitterKind::radar && state.active) {
+    radar = radarAtPoint(snapshot, emitter_index, ray, boresightDensity_dbwm2(emitter, budget), terrain,
+                         resolution);
+  }
+  budget.terms = termsOf(snapshot, emitter_index, budget, radar);
+  budget.verdict = verdictOf(budget);
+  return budget;
+}
+
+PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
+                      propagation::PropagationModel model, const scenario::Terrain* terrain) {
+  return pathBudget(snapshot, emitter, point, model, terrain,
+                    fanResolution(gridOf(snapshot.scenario->region), terrain));
+}
+
+}  // namespace emscape::emfield

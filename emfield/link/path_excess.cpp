@@ -1,0 +1,52 @@
+#include "emscape/emfield/path_excess.h"
+
+#include <vector>
+
+#include "emfield/emitter_excess.h"
+#include "emfield/model_check.h"
+#include "emfield/station.h"
+#include "propagation/registry/model_info.h"
+
+namespace emscape::emfield {
+namespace {
+
+using propagation::AirLoss;
+using propagation::PathInputs;
+
+void addAir(AirLoss air, const PathProfile& profile, PathExcess& excess) {
+  const auto loss_db = [&] {
+    return static_cast<double>(
+        air.lossDb(static_cast<float>(profile.range_m), static_cast<float>(profile.end.height_msl_m)));
+  };
+  const double all_db = loss_db();
+  air.level_rain = 0;
+  const double gases_db = loss_db();
+  if (air.gases != nullptr) excess.add("gases", "oxygen and water vapour", gases_db);
+  if (all_db > gases_db) excess.add("rain", "rain", all_db - gases_db);
+}
+
+}  // namespace
+
+PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                      const PathProfile& profile, const scenario::Terrain* terrain,
+                      const FanResolution& resolution) {
+  PathExcess excess;
+  excess.warnings = checkModel(scenario, emitter);
+  const Station station = makeStation(profile.begin.position, profile.begin.height_msl_m, profile.k_factor);
+  const PathInputs inputs =
+      pathInputs(scenario, emitter, station, terrain,
+                 {profile.range_m, profile.end.height_msl_m, profile.end.height_msl_m}, resolution);
+  propagation::PathColumn path({profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()},
+                               profile.range_m, profile.end.height_msl_m);
+  static_cast<propagation::Explanation&>(excess) =
+      propagation::modelInfo(emitter.propagation.model).explain(inputs, path);
+  if (propagation::hasAirLoss(inputs.emitter)) {
+    std::vector<float> tables;
+    addAir(propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), tables), profile, excess);
+  }
+  for (std::string& warning : pathWarnings(emitter, inputs, path.remarks()))
+    excess.warnings.push_back(std::move(warning));
+  return excess;
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,146 @@
+#include "emscape/emfield/path_profile.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emfield/station.h"
+#include "emfield/terrain_fan.h"
+#include "emscape/base/error.h"
+#include "propagation/diffraction/knife_edge.h"
+#include "propagation/horizon/horizon.h"
+
+namespace emscape::emfield {
+namespace {
+
+constexpr double kShortestPath_m = 1;
+
+/// Ranges of a fan before the path's end, and the end.
+std::vector<double> pathRanges(double range_m, double even_step_m) {
+  std::vector<double> ranges = fanRanges(range_m, even_step_m);
+  while (ranges.back() >= range_m) ranges.pop_back();
+  ranges.push_back(range_m);
+  return ranges;
+}
+
+void checkTerrain(const PathProfile& profile, const scenario::Terrain& terrain) {
+  const auto hole = std::find_if(profile.ground_msl_m.begin(), profile.ground_msl_m.end(),
+                                 [](float height_m) { return std::isnan(height_m); });
+  if (hole == profile.ground_msl_m.end()) return;
+  const double range_m = profile.ranges_m[static_cast<std::size_t>(hole - profile.ground_msl_m.begin())];
+  const GeodeticPosition place =
+      geodesicDirect(profile.begin.position.latitude_deg, profile.begin.position.longitude_deg,
+                     profile.azimuth_rad, range_m);
+  const scenario::GeoBox box = terrain.coverage();
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format("terrain is missing on the path, {:.2f} km from the emitter at latitude {:.5f}, longitude "
+                  "{:.5f} deg; the files cover latitude {:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg",
+                  range_m / 1000, place.latitude_deg, place.longitude_deg, box.south_deg, box.north_deg,
+                  box.west_deg, box.east_deg));
+}
+
+PathObstacle obstacleAt(const PathProfile& profile, int post, double wavelength_m) {
+  PathObstacle obstacle;
+  obstacle.post = post;
+  obstacle.range_m = profile.ranges_m[post];
+  obstacle.ground_msl_m = static_cast<double>(profile.ground_msl_m[post]);
+  obstacle.clearance_m = profile.clearance_m(post);
+  obstacle.fresnel_radius_m = profile.fresnelRadius_m(post, wavelength_m);
+  obstacle.nu = -std::sqrt(2.0) * obstacle.clearanceInFresnelRadii();
+  obstacle.knife_edge_db = propagation::knifeEdgeDb(obstacle.nu);
+  obstacle.is_earth_bulge = obstacle.clearance_m < 0 && obstacle.clearance_m + profile.bulge_m(post) >= 0;
+  return obstacle;
+}
+
+}  // namespace
+
+double PathProfile::fresnelRadius_m(int i, double wavelength_m) const {
+  const double d1 = ranges_m[i], d2 = range_m - d1;
+  return std::sqrt(wavelength_m * d1 * d2 / range_m);
+}
+
+PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
+                            const scenario::Terrain* terrain, const FanResolution& resolution) {
+  PathProfile profile;
+  const Station station = makeStation(begin.position, begin.height_msl_m, k_factor);
+  profile.k_factor = k_factor;
+  profile.effective_earth_radius_m = station.effective_earth_radius_m;
+  profile.begin = begin;
+  profile.end = end;
+  profile.has_terrain = terrain != nullptr;
+  const FanCoordinates coordinates =
+      fanCoordinates(station, surfacePoint(end.position.latitude_deg, end.position.longitude_deg).ecef_m);
+  profile.azimuth_rad = coordinates.azimuth_rad;
+  profile.range_m = coordinates.range_m;
+  const double longest_m = 0.5 * kPi * station.earth_radius_m;
+  if (!(profile.range_m >= kShortestPath_m && profile.range_m <= longest_m)) {
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("the path is {:.6g} km long over the ground; profiles are drawn from {:g} to {:.0f} km",
+                    profile.range_m / 1000, kShortestPath_m / 1000, longest_m / 1000));
+  }
+  FanShape path;  // a fan of one azimuth
+  path.first_azimuth_rad = profile.azimuth_rad;
+  path.interval_count = 0;
+  path.ranges_m = pathRanges(profile.range_m, resolution.range_m);
+  path.used_ranges = {path.rangeCount()};
+  profile.ground_msl_m = readTerrainFan(station, path, terrain, 0, 0).height_msl_m;
+  profile.ranges_m = std::move(path.ranges_m);
+  if (terrain != nullptr) checkTerrain(profile, *terrain);
+
+  const propagation::HorizonGeometry<double> geometry{begin.height_msl_m, station.effective_earth_radius_m};
+  const double slope = geometry.slopeTo(end.height_msl_m, geometry.termsAt(profile.range_m));
+  for (const double range_m : profile.ranges_m)
+    profile.ray_msl_m.push_back(geometry.heightOn(slope, geometry.termsAt(range_m)));
+  return profile;
+}
+
+std::vector<PathObstacle> pathObstacles(const PathProfile& profile, double wavelength_m) {
+  constexpr double kFreeZone = 0.6;  // Fresnel radii
+  constexpr std::size_t kMost = 8;
+  const auto obstruction = [&](int i) {  // Fresnel radii
+    return -profile.clearance_m(i) / profile.fresnelRadius_m(i, wavelength_m);
+  };
+  const auto isSeparatedBy = [](double crest, double valley) {
+    return crest - valley > std::max(0.5, crest / 3);
+  };
+  std::vector<PathObstacle> crests;
+  int crest = -1;             // highest post since the last valley
+  double valley = -HUGE_VAL;  // lowest value since the last crest that was taken
+  bool rising = true;
+  for (int i = 1; i < profile.count() - 1; ++i) {
+    const double here = obstruction(i);
+    if (rising) {
+      if (crest < 0 || here > obstruction(crest)) crest = i;
+      if (isSeparatedBy(obstruction(crest), here)) {
+        crests.push_back(obstacleAt(profile, crest, wavelength_m));
+        rising = false;
+        valley = here;
+      }
+    } else {
+      valley = std::min(valley, here);
+      if (isSeparatedBy(here, valley)) {
+        rising = true;
+        crest = i;
+      }
+    }
+  }
+  if (rising && crest >= 0) crests.push_back(obstacleAt(profile, crest, wavelength_m));
+  if (crests.empty()) return crests;
+
+  std::sort(crests.begin(), crests.end(),
+            [](const PathObstacle& a, const PathObstacle& b) { return a.nu > b.nu; });
+  crests.front().decides = true;
+  const auto first_free = std::find_if(crests.begin() + 1, crests.end(), [&](const PathObstacle& obstacle) {
+    return obstacle.clearanceInFresnelRadii() >= kFreeZone;
+  });
+  crests.erase(first_free, crests.end());
+  crests.resize(std::min(crests.size(), kMost));
+  std::sort(crests.begin(), crests.end(),
+            [](const PathObstacle& a, const PathObstacle& b) { return a.range_m < b.range_m; });
+  return crests;
+}
+
+}  // namespace emscape::emfield

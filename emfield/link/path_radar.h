@@ -1,0 +1,25 @@
+/// What a radar makes of a target at the end of a path: echo, jamming, detection.
+#pragma once
+
+#include "emfield/terrain_fan.h"
+#include "emscape/base/vec.h"
+#include "emscape/scenario/quantities.h"
+#include "emscape/scenario/snapshot.h"
+
+namespace emscape::emfield {
+
+/// As a voxel there holds it, without the volume's floor.
+struct RadarAtPoint {
+  double snr_db = 0;                 ///< -infinity without an echo
+  double jammer_to_signal_db = 0;    ///< -infinity without jamming
+  double detection_probability = 0;  ///< against noise and jamming
+};
+
+/// @param ray                start of the refracted ray to the point, east-north-up at the radar
+/// @param boresight_dbwm2    power density at the point if the beam pointed there
+/// @throws Error (bad_input) where a jammer's path to the radar crosses missing terrain
+RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray,
+                          double boresight_dbwm2, const scenario::Terrain* terrain,
+                          const FanResolution& resolution);
+
+}  // namespace emscape::emfield

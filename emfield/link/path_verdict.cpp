@@ -1,0 +1,80 @@
+#include "emfield/link/path_verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/units.h"
+
+namespace emscape::emfield {
+namespace {
+
+std::string distanceText(double distance_m) {
+  return distance_m < 1000 ? fmt::format("{:.0f} m", distance_m)
+                           : fmt::format("{:.1f} km", distance_m / 1000);
+}
+
+std::string thingAt(const PathObstacle& obstacle) {
+  return fmt::format("{} at {}", obstacle.is_earth_bulge ? "the earth's bulge" : "the terrain",
+                     distanceText(obstacle.range_m));
+}
+
+/// What the path costs, after "and".
+std::string costText(double loss_db) {
+  if (std::isinf(loss_db)) return "the model knows no field behind it";
+  if (std::abs(loss_db) < 0.05) return "the path is as good as free space";
+  if (loss_db < 0) return fmt::format("the path gains {:.1f} dB over free space", -loss_db);
+  return fmt::format("the path costs {:.1f} dB over free space", loss_db);
+}
+
+std::string pathText(const PathBudget& budget) {
+  const double loss_db = budget.excess.loss_db;
+  const auto decisive = std::find_if(budget.obstacles.begin(), budget.obstacles.end(),
+                                     [](const PathObstacle& obstacle) { return obstacle.decides; });
+  if (decisive == budget.obstacles.end())
+    return fmt::format("Clear: nothing stands between, and {}", costText(loss_db));
+  const double radii = decisive->clearanceInFresnelRadii();
+  const long others = std::count_if(budget.obstacles.begin(), budget.obstacles.end(),
+                                    [](const PathObstacle& obstacle) { return obstacle.clearance_m < 0; }) -
+                      1;
+  const std::string company =
+      others > 0 ? fmt::format(", {} more stand{} above it too", others, others == 1 ? "s" : "") : "";
+  if (radii < 0) {
+    return fmt::format("Blocked: {} stands {:.0f} m above the ray ({:.1f} Fresnel radii){}, and {}",
+                       thingAt(*decisive), -decisive->clearance_m, -radii, company, costText(loss_db));
+  }
+  if (radii < 0.6) {
+    return fmt::format(
+        "Grazing: {} leaves the ray {:.0f} m ({:.1f} Fresnel radii; 0.6 would be free), and {}",
+        thingAt(*decisive), decisive->clearance_m, radii, costText(loss_db));
+  }
+  return fmt::format(
+      "Clear: the nearest ground, {}, lies {:.0f} m below the ray ({:.1f} Fresnel radii), and {}",
+      distanceText(decisive->range_m) + " away", decisive->clearance_m, radii, costText(loss_db));
+}
+
+/// Where the antenna itself takes much of the power.
+std::string pointingText(const PathPointing& pointing) {
+  constexpr double kWorthSaying_db = -6;
+  if (pointing.pattern_db > kWorthSaying_db) return "";
+  return fmt::format(", but the antenna points {:.1f} deg away, which costs {:.1f} dB",
+                     radToDeg(pointing.off_axis_rad), -pointing.pattern_db);
+}
+
+std::string detectionText(const PathBudget& budget) {
+  const BudgetTerm* probability = budget.find("detection_probability");
+  if (probability == nullptr) return "";
+  return fmt::format("; a target there is detected with probability {:.2f} (SNR {:.1f} dB)",
+                     probability->value, budget.find("snr_db")->value);
+}
+
+}  // namespace
+
+std::string verdictOf(const PathBudget& budget) {
+  if (!budget.active)
+    return fmt::format("Silent: '{}' does not radiate at t = {:g} s.", budget.emitter, budget.time_s);
+  return pathText(budget) + pointingText(budget.pointing) + detectionText(budget) + ".";
+}
+
+}  // namespace emscape::emfield

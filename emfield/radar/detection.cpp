@@ -1,0 +1,269 @@
+#include "emfield/radar/detection.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
+
+namespace emscape::emfield {
+namespace {
+
+void check(const Detector& detector) {
+  if (detector.pulses < 1 || detector.pulses > kMostPulses) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("pulses: {} is outside 1..{}", detector.pulses, kMostPulses));
+  }
+  const double pfa = detector.false_alarm_probability;
+  if (!(pfa >= kLeastFalseAlarm && pfa <= 0.5)) {
+    throw Error(ErrorCode::bad_input, fmt::format("probability of false alarm: {:.6g} is outside {:.6g}..0.5",
+                                                  pfa, kLeastFalseAlarm));
+  }
+}
+
+void checkProbability(const Detector& detector, double probability) {
+  if (!(probability > detector.false_alarm_probability && probability < 1)) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("probability of detection: {:.6g} is outside {:.6g}..1, from the probability of "
+                            "false alarm to certainty",
+                            probability, detector.false_alarm_probability));
+  }
+}
+
+/// log(n!), n >= 0: Stirling's series, which unlike std::lgamma writes no global variable.
+double logFactorial(double n) {
+  double shift = 0;
+  for (; n < 16; ++n) shift += std::log(n + 1);
+  const double inverse = 1 / n, square = inverse * inverse;
+  return n * std::log(n) - n + 0.5 * std::log(2 * kPi * n) +
+         inverse * (1.0 / 12 - square * (1.0 / 360 - square * (1.0 / 1260 - square / 1680))) - shift;
+}
+
+/// Probability of n events where `mean` > 0 are expected.
+double poisson(double mean, double n) {
+  return std::exp(n * std::log(mean) - mean - logFactorial(n));
+}
+
+/// Q(n, t), the regularised upper gamma function of a whole n >= 1: the probability of fewer than n events
+/// where t > 0 are expected.
+double upperGamma(int n, double t) {
+  // The terms fall away from the largest, which is at n - 1 or, for small t, at t.
+  const int top = std::min(n - 1, int(t));
+  const double largest = poisson(t, top);
+  double sum = 0;
+  double term = largest;
+  for (int j = top; j >= 0 && term > 1e-18 * sum; --j) {
+    sum += term;
+    term *= j / t;
+  }
+  term = largest;
+  for (int j = top + 1; j < n && term > 1e-18 * sum; ++j) {
+    term *= t / j;
+    sum += term;
+  }
+  return sum;
+}
+
+/// Shape of the negative binomial distribution of K; 0 for the Poisson distribution.
+double shapeOf(const Detector& detector) {
+  switch (detector.swerling) {
+    case Swerling::steady:
+      return 0;
+    case Swerling::slow_exponential:
+      return 1;
+    case Swerling::fast_exponential:
+      return detector.pulses;
+    case Swerling::slow_dominant:
+      return 2;
+    case Swerling::fast_dominant:
+      return 2.0 * detector.pulses;
+  }
+  return 0;
+}
+
+/// P(K = 0), P(K = 1), ...: a number that may begin far below what a double holds is kept as mantissa and
+/// exponent.
+class SignalCounts {
+ public:
+  SignalCounts(double shape, double mean) : shape_(shape), mean_(mean), missing_(mean / (shape + mean)) {
+    exponent_ = shape == 0 ? -mean : shape * std::log1p(-missing_);
+    scale_ = std::exp(exponent_);
+  }
+
+  double probability() const { return mantissa_ * scale_; }
+
+  void next() {
+    ++k_;
+    mantissa_ *= shape_ == 0 ? mean_ / k_ : missing_ * (shape_ + k_ - 1) / k_;
+    if (mantissa_ > kLarge) {
+      mantissa_ /= kLarge;
+      exponent_ += kLogLarge;
+      scale_ = std::exp(exponent_);
+    }
+  }
+
+ private:
+  static constexpr double kLarge = 1e100;
+  static constexpr double kLogLarge = 230.25850929940457;
+  double shape_, mean_, missing_;
+  double k_ = 0;
+  double mantissa_ = 1, exponent_, scale_;
+};
+
+/// Monotone slopes of a cubic through equidistant values.
+/// @see F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984), p. 300
+double monotoneRise(double before, double after) {
+  return before * after <= 0 ? 0 : 2 * before * after / (before + after);
+}
+
+}  // namespace
+
+Swerling swerlingOfCase(int swerling_case) {
+  if (swerling_case < 0 || swerling_case > 4) {
+    throw Error(ErrorCode::bad_input, fmt::format("Swerling case: {} is outside 0..4", swerling_case));
+  }
+  return static_cast<Swerling>(swerling_case);
+}
+
+double detectionThreshold(const Detector& detector) {
+  check(detector);
+  const int n = detector.pulses;
+  const double wanted = std::log(detector.false_alarm_probability);
+  // log Q falls and is concave over T: from below, Newton's steps fall short no more than they overshoot and
+  // end above, from above they come down without passing the root.
+  double threshold = n + std::sqrt(-2.0 * n * wanted) - wanted;
+  for (int i = 0; i < 100; ++i) {
+    const double q = upperGamma(n, threshold);
+    const double step = (std::log(q) - wanted) * q / poisson(threshold, n - 1);
+    threshold = std::max(threshold + step, threshold / 2);
+    if (std::fabs(step) < 1e-14 * threshold) break;
+  }
+  return threshold;
+}
+
+double detectionProbability(const Detector& detector, double threshold, double snr) {
+  if (std::isnan(snr)) return snr;
+  double over = upperGamma(detector.pulses, threshold);  // Q(N + k, T)
+  if (snr <= 0) return over;
+  double event = poisson(threshold, detector.pulses);  // Q(N + k + 1, T) - Q(N + k, T)
+  SignalCounts counts(shapeOf(detector), detector.pulses * snr);
+  double detected = 0, seen = 0;
+  // From where Q is 1 to the last digit, all that has not been seen is detected.
+  for (int n = detector.pulses; n <= threshold || event > 1e-17; ++n) {
+    const double p = counts.probability();
+    detected += p * over;
+    seen += p;
+    if (1 - seen < 1e-17) break;
+    over += event;
+    event *= threshold / (n + 1);
+    counts.next();
+  }
+  return std::min(1.0, detected + std::max(0.0, 1 - seen));
+}
+
+double requiredSnrDb(const Detector& detector, double probability) {
+  const double threshold = detectionThreshold(detector);
+  checkProbability(detector, probability);
+  const auto tooWeak = [&](double snr_db) {
+    return detectionProbability(detector, threshold, dbToRatio(snr_db)) < probability;
+  };
+  double low = -10, high = 10;
+  for (; !tooWeak(low) && low > -300; low -= 20) high = low;
+  for (; tooWeak(high) && high < 300; high += 20) low = high;
+  while (high - low > 1e-10) {
+    const double middle = (low + high) / 2;
+    (tooWeak(middle) ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+double albersheimSnrDb(const Detector& detector, double probability) {
+  check(detector);
+  checkProbability(detector, probability);
+  const double a = std::log(0.62 / detector.false_alarm_probability);
+  const double b = std::log(probability / (1 - probability));
+  const double n = detector.pulses;
+  return -5 * std::log10(n) + (6.2 + 4.54 / std::sqrt(n + 0.44)) * std::log10(a + 0.12 * a * b + 1.7 * b);
+}
+
+double shnidmanSnrDb(const Detector& detector, double probability) {
+  check(detector);
+  checkProbability(detector, probability);
+  const double n = detector.pulses;
+  const double pfa = detector.false_alarm_probability;
+  const double pd = probability;
+  const double alpha = n < 40 ? 0 : 0.25;
+  const double eta = std::sqrt(-0.8 * std::log(4 * pfa * (1 - pfa))) +
+                     std::copysign(std::sqrt(-0.8 * std::log(4 * pd * (1 - pd))), pd - 0.5);
+  const double steady = eta * (eta + 2 * std::sqrt(n / 2 + (alpha - 0.25)));
+  const double shape = shapeOf(detector);
+  double fluctuation_db = 0;
+  if (shape > 0) {
+    fluctuation_db = (((17.7006 * pd - 18.4496) * pd + 14.5339) * pd - 3.525) / shape;
+    if (pd > 0.872) {
+      fluctuation_db +=
+          (std::exp(27.31 * pd - 25.14) + (pd - 0.8) * (0.7 * std::log(1e-5 / pfa) + (2 * n - 20) / 80)) /
+          shape;
+    }
+  }
+  return ratioToDb(steady / n) + fluctuation_db;
+}
+
+double albersheimProbability(const Detector& detector, double snr_db) {
+  check(detector);
+  const double a = std::log(0.62 / detector.false_alarm_probability);
+  const double n = detector.pulses;
+  const double z = (snr_db + 5 * std::log10(n)) / (6.2 + 4.54 / std::sqrt(n + 0.44));
+  const double b = (std::pow(10.0, z) - a) / (1.7 + 0.12 * a);
+  return 1 / (1 + std::exp(-b));
+}
+
+double shnidmanProbability(const Detector& detector, double snr_db) {
+  // In logits, which spread both ends.
+  const auto probabilityOf = [](double logit) { return 1 / (1 + std::exp(-logit)); };
+  const double pfa = detector.false_alarm_probability;
+  double low = std::log(pfa / (1 - pfa)) + 1e-9, high = 30;
+  while (high - low > 1e-9) {
+    const double middle = (low + high) / 2;
+    (shnidmanSnrDb(detector, probabilityOf(middle)) <= snr_db ? low : high) = middle;
+  }
+  return probabilityOf(low);
+}
+
+DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method)
+    : detector_(detector), method_(method) {
+  const double threshold = detectionThreshold(detector);
+  const auto probabilityAt = [&](double snr_db) {
+    switch (method) {
+      case scenario::DetectionMethod::albersheim:
+        return albersheimProbability(detector, snr_db);
+      case scenario::DetectionMethod::shnidman:
+        return shnidmanProbability(detector, snr_db);
+      default:
+        return detectionProbability(detector, threshold, dbToRatio(snr_db));
+    }
+  };
+  // Beyond the ends the curve is flat; what that costs is a fifth of the accuracy stated.
+  constexpr double kTail = 2e-5;
+  const double first = requiredSnrDb(detector, detector.false_alarm_probability + kTail);
+  const double last = requiredSnrDb(detector, 1 - kTail);
+  constexpr double kStep_db = 0.1;
+  const int count = std::max(4, int(std::ceil((last - first) / kStep_db)) + 1);
+  const double step_db = (last - first) / (count - 1);
+  first_snr_db_ = float(first);
+  steps_per_db_ = float(1 / step_db);
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) {
+    const double value = probabilityAt(first + i * step_db);
+    values.push_back(i > 0 ? std::max(value, values.back()) : value);
+  }
+  for (int i = 0; i < count; ++i) {
+    const double before = i > 0 ? values[i] - values[i - 1] : 0;
+    const double after = i + 1 < count ? values[i + 1] - values[i] : 0;
+    knots_.push_back({float(values[i]), float(monotoneRise(before, after))});
+  }
+}
+
+}  // namespace emscape::emfield

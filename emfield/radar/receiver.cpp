@@ -1,0 +1,98 @@
+#include "emfield/radar/receiver.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/units.h"
+#include "emscape/scenario/snapshot.h"
+
+namespace emscape::emfield {
+
+using scenario::Emitter;
+using scenario::RadarReceiver;
+using scenario::ReceiverProfile;
+using scenario::ScanKind;
+
+RadarLink radarLinkOf(const Emitter& radar) {
+  const RadarReceiver& receiver = radar.receiver;
+  RadarLink link;
+  link.power_w = radar.power_w;
+  link.frequency_hz = radar.frequency_hz;
+  link.losses_db = radar.losses_db + receiver.losses_db - receiver.processing_gain_db;
+  link.bandwidth_hz = receiver.bandwidth_hz;
+  // Behind the line's losses, where the echo is counted too.
+  link.noise_temperature_k = systemNoiseTemperature_k(receiver.antenna_temperature_k, kReferenceTemperature_K,
+                                                      receiver.losses_db, receiver.noise_figure_db) /
+                             dbToRatio(receiver.losses_db);
+  return link;
+}
+
+Detector detectorOf(const RadarReceiver& receiver) {
+  return {swerlingOfCase(receiver.swerling), receiver.pulses, receiver.pfa};
+}
+
+double echoRoot_m2_w(const Emitter& radar) {
+  // At 1 m from an isotropic antenna.
+  const double snr = dbToRatio(radarSnrDb(radarLinkOf(radar), radar.receiver.target_rcs_m2, 1));
+  const double density_wm2 = radar.power_w * dbToRatio(-radar.losses_db) / (4 * kPi);
+  return std::sqrt(snr) / density_wm2;
+}
+
+double jammingToNoise_m2_w(const Emitter& radar, const Emitter& jammer) {
+  const RadarReceiver& receiver = radar.receiver;
+  const RadarLink link = radarLinkOf(radar);
+  JammerLink jamming;
+  jamming.eirp_w = 4 * kPi;  // 1 W/m2 at 1 m
+  jamming.frequency_hz = jammer.frequency_hz;
+  jamming.bandwidth_hz = jammer.bandwidth_hz;
+  jamming.radar_gain_dbi = radar.antenna->gain_dbi;
+  jamming.polarization_loss_db = -ratioToDb(
+      scenario::polarizationFactor(jammer.polarization, receiver.polarization.value_or(radar.polarization),
+                                   receiver.cross_polar_isolation_db));
+  jamming.radar_receive_losses_db = receiver.losses_db;
+  return jammingPower_w(link, jamming, 1) / noisePower_w(link.bandwidth_hz, link.noise_temperature_k);
+}
+
+double requiredSignalToJammerDb(const RadarReceiver& receiver) {
+  if (receiver.required_signal_to_jammer_db) return *receiver.required_signal_to_jammer_db;
+  return requiredSnrDb(detectorOf(receiver), receiver.pfa < 0.5 ? 0.5 : 0.75);
+}
+
+double receivingArea_m2(const Emitter& emitter, const ReceiverProfile& receiver) {
+  const double wavelength = wavelength_m(emitter.frequency_hz);
+  const double polarization = receiver.polarization
+                                  ? scenario::polarizationFactor(emitter.polarization, *receiver.polarization,
+                                                                 receiver.cross_polar_isolation_db)
+                                  : 1;
+  const double center_hz =
+      receiver.center_frequency_hz > 0 ? receiver.center_frequency_hz : emitter.frequency_hz;
+  const double width_hz =
+      receiver.bandwidth_hz > 0 ? receiver.bandwidth_hz : std::max(emitter.bandwidth_hz, 1.0);
+  return wavelength * wavelength / (4 * kPi) * dbToRatio(receiver.gain_dbi - receiver.losses_db) *
+         polarization * bandOverlap(emitter.frequency_hz, emitter.bandwidth_hz, center_hz, width_hz);
+}
+
+RadarLook lookOf(const Emitter& radar, scenario::RadarLook look) {
+  const scenario::ScanSpec& scan = radar.scan;
+  RadarLook result;
+  if (look == scenario::RadarLook::scan) return result;
+  result.kind = scenario::isSteered(radar) ? LookKind::steered : LookKind::turned;
+  const bool sweeps = scan.kind == ScanKind::sector || scan.kind == ScanKind::raster;
+  if (sweeps && scan.width_deg < 360) {
+    result.cos_azimuth = static_cast<float>(std::cos(degToRad(scan.width_deg / 2)));
+    result.sin_azimuth = static_cast<float>(std::sin(degToRad(scan.width_deg / 2)));
+  }
+  if (sweeps || scan.kind == ScanKind::rotate) {
+    const double half_deg =
+        scan.kind == ScanKind::raster ? (scan.bars - 1) / 2.0 * scan.elevation_step_deg : 0;
+    const double lowest_rad = degToRad(scan.elevation_deg - half_deg);
+    const double highest_rad = degToRad(scan.elevation_deg + half_deg);
+    result.sin_lowest = static_cast<float>(std::sin(lowest_rad));
+    result.cos_lowest = static_cast<float>(std::cos(lowest_rad));
+    result.sin_highest = static_cast<float>(std::sin(highest_rad));
+    result.cos_highest = static_cast<float>(std::cos(highest_rad));
+  }
+  return result;
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,35 @@
+/// A scenario's radars, jammers and receivers in the terms of the radar equation and of detection.
+#pragma once
+
+#include "emfield/radar/detection.h"
+#include "emfield/radar/equation.h"
+#include "emfield/radar/look.h"
+#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/scenario.h"
+
+namespace emscape::emfield {
+
+/// The radar with an isotropic antenna, all losses and gains of its chain counted once: the transmitter's
+/// (Emitter::losses_db), the receiver's and the processing's.
+RadarLink radarLinkOf(const scenario::Emitter& radar);
+
+Detector detectorOf(const scenario::RadarReceiver& receiver);
+
+/// Root (m2/W) of the factor c of SNR = c S^2, with S the power density that the radar makes at its target:
+/// with P G F^2 / (4 pi R^2 Lt) = S the radar equation is SNR = S^2 lambda^2 sigma Lt / (4 pi P k Ts B Lr).
+double echoRoot_m2_w(const scenario::Emitter& radar);
+
+/// Jamming over noise (m2/W) at the radar's receiver for a power density of 1 W/m2 that comes in on its
+/// boresight; 0 for a jammer outside its band.
+double jammingToNoise_m2_w(const scenario::Emitter& radar, const scenario::Emitter& jammer);
+
+/// Signal-to-jammer ratio (dB) at which the radar burns through, after processing.
+double requiredSignalToJammerDb(const scenario::RadarReceiver& receiver);
+
+/// Received power (W) of a receiver for a power density of 1 W/m2 of an emitter.
+double receivingArea_m2(const scenario::Emitter& emitter, const scenario::ReceiverProfile& receiver);
+
+/// How the radar looks at targets; `held` for RadarLook::scan.
+RadarLook lookOf(const scenario::Emitter& radar, scenario::RadarLook look);
+
+}  // namespace emscape::emfield

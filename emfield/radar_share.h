@@ -1,0 +1,26 @@
+/// A radar's part in a channel from the state of its beam and the jammers that it receives.
+#pragma once
+
+#include <vector>
+
+#include "emfield/radar_product.h"
+#include "emscape/base/vec.h"
+#include "emscape/scenario/snapshot.h"
+
+namespace emscape::emfield {
+
+/// A jammer as a radar receives it.
+struct JammerInSight {
+  int jammer = 0;  ///< index of the emitter
+  /// Unit vector from the radar along the start of the refracted ray to the jammer, east-north-up.
+  Vec3d direction;
+  double power_density_wm2 = 0;  ///< at the radar: with the jammer's antenna, propagation model and losses
+};
+
+/// A radar's part in a channel at one instant.
+/// @param task     as the channel's recipe has it
+/// @param jammers  that count in the channel
+RadarShare radarShare(const scenario::Scenario& scenario, int radar, const scenario::EmitterState& state,
+                      const RadarTask& task, const std::vector<JammerInSight>& jammers);
+
+}  // namespace emscape::emfield

@@ -1,0 +1,170 @@
+#include "emfield/solver/field_inputs.h"
+
+#include <algorithm>
+#include <tuple>
+
+#include "propagation/registry/model_info.h"
+
+namespace emscape::emfield {
+namespace {
+
+using scenario::PatternView;
+
+// Each structured binding names every member, so that a new one cannot be forgotten.
+
+auto membersOf(const GeodeticPosition& position) {
+  const auto& [latitude_deg, longitude_deg, height_ellipsoid_m] = position;
+  return std::tie(latitude_deg, longitude_deg, height_ellipsoid_m);
+}
+auto membersOf(const propagation::Ground& ground) {
+  const auto& [kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, place] = ground;
+  return std::tie(kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m);
+}
+auto membersOf(const propagation::Atmosphere& atmosphere) {
+  const auto& [k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
+               sea_level_refractivity, climate] = atmosphere;
+  return std::tie(k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
+                  sea_level_refractivity, climate);
+}
+
+auto membersOf(const RadarLook& look) {
+  const auto& [kind, cos_azimuth, sin_azimuth, sin_lowest, cos_lowest, sin_highest, cos_highest, steer_u,
+               steer_v] = look;
+  return std::tie(kind, cos_azimuth, sin_azimuth, sin_lowest, cos_lowest, sin_highest, cos_highest, steer_u,
+                  steer_v);
+}
+auto membersOf(const DetectionCurveView& curve) {
+  // Plans keep a curve as long as its detector stays the same: the knots' address stands for them.
+  const auto& [knots, count, first_snr_db, steps_per_db] = curve;
+  return std::tie(knots, count, first_snr_db, steps_per_db);
+}
+
+template <class T>
+bool same(const T& a, const T& b) {
+  return membersOf(a) == membersOf(b);
+}
+
+bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
+  const auto& [direction, boresight_to_noise] = a;
+  return direction == b.direction && boresight_to_noise == b.boresight_to_noise;
+}
+
+bool sameTask(const RadarTask& a, const RadarTask& b) {
+  // The jammers are in RadarShare.
+  const auto& [measure, reduction, look, echo_root, factor, ceiling, curve, jammers, jammer_count] = a;
+  return measure == b.measure && reduction == b.reduction && same(look, b.look) && echo_root == b.echo_root &&
+         factor == b.factor && ceiling == b.ceiling && same(curve, b.curve);
+}
+
+bool sameShare(const RadarShare& a, const RadarShare& b) {
+  const auto& [channel, task, forward, right, up, jammers] = a;
+  return channel == b.channel && sameTask(task, b.task) && forward == b.forward && right == b.right &&
+         up == b.up &&
+         std::equal(jammers.begin(), jammers.end(), b.jammers.begin(), b.jammers.end(), sameJammer);
+}
+
+bool sameBeam(const EmitterBeam& a, const EmitterBeam& b) {
+  const auto& [geometry, pattern, forward, right, up, steer_u, steer_v, eirp_over_4pi_w] = a;
+  return forward == b.forward && right == b.right && up == b.up && steer_u == b.steer_u &&
+         steer_v == b.steer_v && eirp_over_4pi_w == b.eirp_over_4pi_w;
+}
+
+bool sameTable(const float* a, const float* b, long long count) {
+  if (a == nullptr || b == nullptr) return a == b;
+  return std::equal(a, a + count, b);
+}
+
+bool samePattern(const PatternView& a, const PatternView& b) {
+  const auto& [kind, gaussian_azimuth, gaussian_elevation, side_lobe_amplitude, lobe_tangent, azimuth_table,
+               elevation_table, grid_table, azimuth_count, elevation_count, element_exponent] = a;
+  return kind == b.kind && gaussian_azimuth == b.gaussian_azimuth &&
+         gaussian_elevation == b.gaussian_elevation && side_lobe_amplitude == b.side_lobe_amplitude &&
+         lobe_tangent == b.lobe_tangent && azimuth_count == b.azimuth_count &&
+         elevation_count == b.elevation_count && element_exponent == b.element_exponent &&
+         sameTable(azimuth_table, b.azimuth_table, azimuth_count) &&
+         sameTable(elevation_table, b.elevation_table, elevation_count) &&
+         sameTable(grid_table, b.grid_table, static_cast<long long>(azimuth_count) * elevation_count);
+}
+
+bool sameChannelShare(const ChannelShare& a, const ChannelShare& b) {
+  const auto& [channel, weight] = a;
+  return channel == b.channel && weight == b.weight;
+}
+
+template <class Share>
+const Share* shareIn(const std::vector<Share>& shares, int channel) {
+  const auto found = std::find_if(shares.begin(), shares.end(),
+                                  [channel](const Share& share) { return share.channel == channel; });
+  return found == shares.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
+  return a == b || samePattern(a->view(), b->view());
+}
+
+GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const scenario::EmitterState& state) {
+  // Who reads a member: nothing but the listed inputs enters geometry. What is not named below enters the
+  // combine stage (power_w, losses_db, antenna, receiver, bandwidth_hz), the channels (kind), the snapshot
+  // (platform, scan, active_s) or messages (name, places).
+  const auto& [name, platform, kind, frequency_hz, bandwidth_hz, power_w, losses_db, polarization, antenna,
+               scan, propagation, receiver, active_s, place, frequency_place] =
+      plan.scenario->emitters[static_cast<std::size_t>(emitter_index)];
+  GeometryInputs inputs;
+  inputs.position = state.position;
+  inputs.height_msl_m = state.height_msl_m;
+  inputs.far_field_m = plan.far_field_m[static_cast<std::size_t>(emitter_index)];
+  inputs.propagation = {frequency_hz, polarization, propagation, plan.scenario->ground,
+                        plan.scenario->atmosphere};
+  return inputs;
+}
+
+bool haveSameSettings(const GeometryInputs& a, const GeometryInputs& b) {
+  const auto& [position, height_msl_m, far_field_m, propagation] = a;
+  const auto& [frequency_hz, polarization, settings, ground, atmosphere] = propagation;
+  return far_field_m == b.far_field_m && frequency_hz == b.propagation.frequency_hz &&
+         polarization == b.propagation.polarization && areSame(settings, b.propagation.settings) &&
+         same(ground, b.propagation.ground) && same(atmosphere, b.propagation.atmosphere);
+}
+
+bool areSame(const GeometryInputs& a, const GeometryInputs& b) {
+  return same(a.position, b.position) && a.height_msl_m == b.height_msl_m && haveSameSettings(a, b);
+}
+
+bool areSame(const ProductScale& a, const ProductScale& b) {
+  const auto& [decibels, scale, offset_db, floor] = a;
+  return decibels == b.decibels && scale == b.scale && offset_db == b.offset_db && floor == b.floor;
+}
+
+bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, std::vector<bool>& channels) {
+  const auto markAll = [&channels](const CombineInputs& inputs) {
+    for (const ChannelShare& share : inputs.member.emitter.shares) channels[share.channel] = true;
+    for (const RadarShare& share : inputs.member.radars) channels[share.channel] = true;
+    return !inputs.member.emitter.shares.empty() || !inputs.member.radars.empty();
+  };
+  if (before == nullptr || now == nullptr) {
+    const CombineInputs* const either = before != nullptr ? before : now;
+    return either != nullptr && markAll(*either);
+  }
+  const EmitterBeam& old_beam = before->member.emitter.beam;
+  const EmitterBeam& beam = now->member.emitter.beam;
+  if (!samePattern(before->antenna, now->antenna) || old_beam.eirp_over_4pi_w != beam.eirp_over_4pi_w) {
+    return markAll(*now);
+  }
+  bool is_any = false;
+  const auto mark = [&](int channel) { is_any = channels[channel] = true; };
+  const bool has_beam = sameBeam(old_beam, beam);
+  for (const ChannelShare& share : now->member.emitter.shares) {
+    const ChannelShare* const old = shareIn(before->member.emitter.shares, share.channel);
+    if (!has_beam || old == nullptr || !sameChannelShare(*old, share)) mark(share.channel);
+  }
+  // Where a radar looks at targets, its share does not say where its scan has the beam.
+  for (const RadarShare& share : now->member.radars) {
+    const RadarShare* const old = shareIn(before->member.radars, share.channel);
+    if (old == nullptr || !sameShare(*old, share)) mark(share.channel);
+  }
+  return is_any;
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,41 @@
+// What the field takes of the memory of the host or of a GPU.
+
+#include "emfield/solver/field_engine.h"
+
+namespace emscape::emfield {
+
+std::size_t postBytes(const scenario::TerrainView& terrain) {
+  std::size_t posts = 0;
+  for (int r = 0; r < terrain.count; ++r) {
+    posts += static_cast<std::size_t>(terrain.rasters[r].columns) *
+             static_cast<std::size_t>(terrain.rasters[r].rows);
+  }
+  return posts * sizeof(float);
+}
+
+std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes) {
+  const auto voxels = static_cast<std::size_t>(setup.grid.dims.count());
+  std::size_t bytes = slot_bytes;
+  for (const ChannelRecipe& recipe : setup.recipes) {
+    const std::size_t accumulators = recipe.reduction == Reduction::dominant ? 2 : 1;
+    // all emitters' and the resting ones' sums; a volume that is shown and one that is written
+    bytes += (2 * accumulators + 2) * voxels * sizeof(float);
+  }
+  return bytes;
+}
+
+std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
+                            volume::VoxelPrecision precision) {
+  const auto voxels = static_cast<std::size_t>(setup.grid.dims.count());
+  const std::size_t columns = setup.columns.columns.size();
+  std::size_t bytes = slot_bytes + columns * sizeof(GridColumn);
+  for (const ChannelRecipe& recipe : setup.recipes) {
+    const std::size_t accumulators = recipe.reduction == Reduction::dominant ? 2 : 1;
+    // all emitters' and the resting ones' sums; a volume that is shown and one that is written
+    bytes += 2 * voxels * accumulators * sizeof(float) + 2 * volume::deviceBytes(setup.grid.dims, precision);
+  }
+  if (setup.terrain != nullptr) bytes += postBytes(setup.terrain->view());
+  return bytes + 2 * kDeviceScratchBytes;
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,48 @@
+#include "emfield/solver/field_plan.h"
+
+#include <algorithm>
+
+#include "emfield/model_check.h"
+#include "emscape/base/units.h"
+
+namespace emscape::emfield {
+
+using scenario::Emitter;
+
+FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
+                   const std::vector<std::string>& quantities, const FieldPlan* previous) {
+  FieldPlan plan;
+  plan.scenario = std::move(scenario);
+  plan.warnings = checkModels(*plan.scenario);
+  plan.channels = channelsOf(*plan.scenario, quantities);
+  std::vector<std::shared_ptr<const DetectionCurve>> curves;
+  const auto collect = [&curves](const ChannelRecipe& recipe) {
+    curves.insert(curves.end(), recipe.curves.begin(), recipe.curves.end());
+  };
+  if (previous != nullptr) std::for_each(previous->recipes.begin(), previous->recipes.end(), collect);
+  for (const Channel& channel : plan.channels) {
+    plan.recipes.push_back(recipeOf(channel, *plan.scenario, curves));
+    collect(plan.recipes.back());
+  }
+  const std::vector<Emitter>& emitters = plan.scenario->emitters;
+  for (const Emitter& emitter : emitters) {
+    const double wavelength = wavelength_m(emitter.frequency_hz);
+    const double dimension_m = emitter.antenna->apertureDimension_m(wavelength);
+    plan.far_field_m.push_back(2 * dimension_m * dimension_m / wavelength);
+  }
+  return plan;
+}
+
+bool haveSameChannels(const FieldPlan& a, const FieldPlan& b) {
+  const auto sameChannel = [](const Channel& x, const Channel& y) {
+    return x.quantity == y.quantity && x.name == y.name && x.emitters == y.emitters && x.jammers == y.jammers;
+  };
+  const auto sameSums = [](const ChannelRecipe& x, const ChannelRecipe& y) {
+    return x.reduction == y.reduction && x.radars.empty() == y.radars.empty();
+  };
+  return std::equal(a.channels.begin(), a.channels.end(), b.channels.begin(), b.channels.end(),
+                    sameChannel) &&
+         std::equal(a.recipes.begin(), a.recipes.end(), b.recipes.begin(), b.recipes.end(), sameSums);
+}
+
+}  // namespace emscape::emfield

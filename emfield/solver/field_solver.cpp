@@ -1,0 +1,226 @@
+#include "emscape/emfield/field_solver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/memory.h"
+#include "emfield/emitter_excess.h"
+#include "emfield/solver/field_solver_impl.h"
+#include "emscape/base/backend.h"
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
+
+namespace emscape::emfield {
+namespace {
+
+/// Whether two regions have the same grid.
+bool sameRegion(const scenario::Region& a, const scenario::Region& b) {
+  const auto& [origin, size_m, dims] = a;
+  const auto& [kind, latitude_deg, longitude_deg, height_msl_m] = origin;
+  return kind == b.origin.kind && latitude_deg == b.origin.latitude_deg &&
+         longitude_deg == b.origin.longitude_deg && height_msl_m == b.origin.height_msl_m &&
+         size_m == b.size_m && dims == b.dims;
+}
+
+bool sameTerrainFiles(const scenario::Scenario& a, const scenario::Scenario& b) {
+  if (!a.terrain || !b.terrain) return !a.terrain && !b.terrain;
+  return a.terrain->files == b.terrain->files && a.terrain->vertical_datum == b.terrain->vertical_datum;
+}
+
+}  // namespace
+
+volume::Grid gridOf(const scenario::Region& region) {
+  volume::Grid grid;
+  grid.dims = region.dims;
+  grid.spacing_m = {region.size_m.x / region.dims.x, region.size_m.y / region.dims.y,
+                    region.size_m.z / region.dims.z};
+  const double lowest_m = region.origin.kind == FrameKind::altitude ? region.origin.height_msl_m : 0;
+  grid.first_center_m = Vec3d{-region.size_m.x / 2, -region.size_m.y / 2, lowest_m} + grid.spacing_m * 0.5;
+  grid.frame = region.origin;
+  grid.georeferenced = true;
+  return grid;
+}
+
+FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
+                        FieldOptions options_in)
+    : options(std::move(options_in)) {
+  static_cast<FieldPlan&>(setup) = makePlan(std::move(scenario), options.quantities, nullptr);
+  setup.terrain = std::move(terrain);
+  setup.grid = gridOf(setup.scenario->region);
+  setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
+  checkHoles();
+  setup.resolution = fanResolution(setup.grid, setup.terrain.get());
+  emitters.resize(setup.scenario->emitters.size());
+  masks.resize(setup.channels.size());
+  volumes.resize(setup.channels.size());
+  std::size_t slot_bytes = 0;
+  const std::vector<bool> cached = chooseCached(setup, &slot_bytes);
+  for (std::size_t e = 0; e < emitters.size(); ++e) emitters[e].is_cached = cached[e];
+  engine = withBackendFallback(
+      options.backend,
+      [&](const ResolvedBackend& resolved) {
+        backend = resolved.backend;
+        return makeEngine(slot_bytes);
+      },
+      logInfo);
+}
+
+/// Chooses the emitters that are cached.
+/// @param slot_bytes  receives what the slots take; may be null
+std::vector<bool> FieldSolver::Impl::chooseCached(const FieldPlan& plan, std::size_t* slot_bytes) const {
+  std::vector<bool> cached;
+  std::size_t cached_bytes = 0, largest_uncached = 0;
+  for (const scenario::Emitter& emitter : plan.scenario->emitters) {
+    const std::size_t bytes = EmitterGeometry::bytesOf(*plan.scenario, emitter, setup.columns.columns.size(),
+                                                       static_cast<int>(setup.columns.t_m.size()));
+    cached.push_back(options.cache_bytes == 0 || cached_bytes + bytes <= options.cache_bytes);
+    if (cached.back()) {
+      cached_bytes += bytes;
+    } else {
+      largest_uncached = std::max(largest_uncached, bytes);
+    }
+  }
+  if (slot_bytes != nullptr) *slot_bytes = cached_bytes + largest_uncached;
+  return cached;
+}
+
+std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine(std::size_t slot_bytes) const {
+  const int slots = static_cast<int>(emitters.size()) + 1;
+  const bool on_host = backend == Backend::cpu;
+  const std::size_t needed = on_host ? cpuEngineBytes(setup, slot_bytes)
+                                     : cudaEngineBytes(setup, slot_bytes, options.device_precision);
+  const std::size_t free = on_host ? availableMemory_bytes().value_or(needed) : findDevice().free_bytes;
+  if (needed > free) {
+    constexpr double kMebibyte = 1 << 20;
+    const bool half = on_host || options.device_precision == volume::VoxelPrecision::float16;
+    throw Error(
+        on_host ? ErrorCode::other : ErrorCode::device, {setup.scenario->file},
+        fmt::format(
+            "the field of {} x {} x {} voxels, {} emitters and {} channels needs up to {:.0f} MiB of the "
+            "{} memory, of which {:.0f} MiB are free; fewer voxels (region.dims){} and a bound on what "
+            "emitters keep take less",
+            setup.grid.dims.x, setup.grid.dims.y, setup.grid.dims.z, emitters.size(), setup.channels.size(),
+            static_cast<double>(needed) / kMebibyte, on_host ? "host's" : "GPU's",
+            static_cast<double>(free) / kMebibyte, half ? "" : ", volumes of 16 bit"));
+  }
+  if (on_host) return makeCpuEngine(setup, slots);
+  return makeCudaEngine(setup, slots, options.device_precision);
+}
+
+std::string FieldSolver::Impl::placeOf(std::size_t column) const {
+  const GeodeticPosition place = fromEcef(setup.columns.columns[column].base_ecef_m);
+  return fmt::format("latitude {:.5f}, longitude {:.5f} deg", place.latitude_deg, place.longitude_deg);
+}
+
+void FieldSolver::Impl::checkHoles() const {
+  const GridColumns& columns = setup.columns;
+  if (columns.hole_columns == 0 || options.allow_missing_terrain) return;
+  const scenario::GeoBox box = setup.terrain->coverage();
+  throw Error(
+      ErrorCode::bad_input, {setup.scenario->file},
+      fmt::format(
+          "terrain is missing below {} of {} columns of the region, first at {}; the files cover latitude "
+          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts",
+          columns.hole_columns, columns.columns.size(), placeOf(columns.first_hole), box.south_deg,
+          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts()),
+      Hint::allow_missing_terrain);
+}
+
+/// Whether an edited scenario can be computed with what does not belong to the plan: the grid, the slots of
+/// the emitters and who is cached.
+bool FieldSolver::Impl::canKeep(const FieldPlan& plan, const scenario::TerrainPtr& terrain) const {
+  const auto sameName = [](const scenario::Emitter& a, const scenario::Emitter& b) {
+    return a.name == b.name;
+  };
+  const std::vector<scenario::Emitter>& old = setup.scenario->emitters;
+  const std::vector<scenario::Emitter>& edited = plan.scenario->emitters;
+  if (terrain != setup.terrain || !sameRegion(setup.scenario->region, plan.scenario->region) ||
+      !std::equal(old.begin(), old.end(), edited.begin(), edited.end(), sameName)) {
+    return false;
+  }
+  const std::vector<bool> cached = chooseCached(plan, nullptr);
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    if (cached[e] != emitters[e].is_cached) return false;
+  }
+  return true;
+}
+
+FieldSolver::FieldSolver(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
+                         FieldOptions options)
+    : impl_(std::make_unique<Impl>(std::move(scenario), std::move(terrain), std::move(options))) {}
+
+FieldSolver::~FieldSolver() = default;
+
+const volume::Grid& FieldSolver::grid() const {
+  return impl_->setup.grid;
+}
+const std::vector<Channel>& FieldSolver::channels() const {
+  return impl_->setup.channels;
+}
+const std::vector<float>& FieldSolver::groundHeights_m() const {
+  return impl_->setup.columns.ground_msl_m;
+}
+Backend FieldSolver::backend() const {
+  return impl_->backend;
+}
+StageTimes FieldSolver::stageTimes() const {
+  return impl_->engine->times();
+}
+const std::vector<volume::Volume>& FieldSolver::volumes() const {
+  return impl_->volumes;
+}
+
+FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
+  const scenario::Scenario& old = *impl_->setup.scenario;
+  if (!sameTerrainFiles(old, *snapshot.scenario)) {
+    throw Error(
+        ErrorCode::bad_input, {snapshot.scenario->file},
+        "the edited scenario names other elevation files: they must be loaded and given to the update");
+  }
+  return update(snapshot, impl_->setup.terrain);
+}
+
+FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot, scenario::TerrainPtr terrain) {
+  if (snapshot.scenario == impl_->setup.scenario && terrain == impl_->setup.terrain) {
+    return impl_->update(snapshot, std::nullopt);
+  }
+  FieldPlan plan = makePlan(snapshot.scenario, impl_->options.quantities, &impl_->setup);
+  if (impl_->canKeep(plan, terrain)) return impl_->update(snapshot, std::move(plan));
+  auto fresh = std::make_unique<Impl>(snapshot.scenario, std::move(terrain), impl_->options);
+  const FieldChanged changed = fresh->update(snapshot, std::nullopt);
+  impl_ = std::move(fresh);
+  return changed;
+}
+
+MemoryUse FieldSolver::memoryUse() const {
+  const Impl& impl = *impl_;
+  MemoryUse use;
+  use.bytes_per_column_and_emitter = EmitterGeometry::kBytesPerColumn;
+  for (std::size_t e = 0; e < impl.emitters.size(); ++e) {
+    use.uncached_emitters += impl.emitters[e].is_cached ? 0 : 1;
+    if (!hasExcess(*impl.setup.scenario, impl.setup.scenario->emitters[e])) continue;
+    use.bytes_per_voxel_and_emitter +=
+        static_cast<double>(sizeof(ExcessCode)) / static_cast<double>(impl.emitters.size());
+  }
+  impl.engine->addMemory(use);
+  use.total_bytes += impl.setup.columns.columns.size() * sizeof(GridColumn);
+  return use;
+}
+
+std::vector<std::string> FieldSolver::warnings() const {
+  WarningCounts all;
+  for (const std::string& warning : impl_->setup.warnings) ++all[warning];
+  for (const EmitterCache& cache : impl_->emitters) {
+    for (const WarningCounts* counts : {&cache.warnings, &cache.jamming_warnings}) {
+      for (const auto& [warning, count] : *counts) all[warning] += count;
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [warning, count] : all) {
+    lines.push_back(count > 1 ? fmt::format("{} ({} times)", warning, count) : warning);
+  }
+  return lines;
+}
+
+}  // namespace emscape::emfield

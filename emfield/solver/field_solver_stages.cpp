@@ -1,0 +1,225 @@
+// The stages of an update: geometry, combine, volumes.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "emfield/emitter_excess.h"
+#include "emfield/model_check.h"
+#include "emfield/solver/field_solver_impl.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
+
+namespace emscape::emfield {
+
+using scenario::Emitter;
+using scenario::EmitterState;
+
+/// Computes the geometry of some emitters, into their own slots or into that of emitters that are not cached.
+void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool into_scratch) {
+  if (chosen.empty()) return;
+  std::vector<GeometryRequest> requests;
+  for (int e : chosen) {
+    requests.push_back({e, into_scratch ? static_cast<int>(emitters.size()) : e, emitters[e].state});
+  }
+  std::vector<GeometryFindings> findings = engine->computeGeometry(requests);
+  for (std::size_t i = 0; i < chosen.size(); ++i) takeFindings(chosen[i], std::move(findings[i]));
+}
+
+void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
+  const Emitter& emitter = setup.scenario->emitters[e];
+  EmitterCache& cache = emitters[e];
+  cache.geometry = geometryInputs(setup, e, cache.state);
+  cache.findings = std::move(found);
+  const GeometryFindings& findings = cache.findings;
+  if (findings.unknown_columns > 0) {
+    if (!options.allow_missing_terrain) {
+      const auto first = std::find(findings.unknown.begin(), findings.unknown.end(), true);
+      throw Error(
+          ErrorCode::bad_input, {setup.scenario->file},
+          fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
+                      emitter.name, placeOf(static_cast<std::size_t>(first - findings.unknown.begin())),
+                      findings.unknown_columns - 1),
+          Hint::allow_missing_terrain);
+    }
+    ++cache.warnings[fmt::format("emitter '{}': columns seen across missing terrain hold no field",
+                                 emitter.name)];
+  }
+  const Station station =
+      makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere.k_factor);
+  const propagation::PathInputs inputs = pathInputs(*setup.scenario, emitter, station, setup.terrain.get(),
+                                                    pathExtent(station, setup.columns), setup.resolution);
+  for (const std::string& warning : pathWarnings(emitter, inputs, findings.remarks)) {
+    ++cache.warnings[warning];
+  }
+  if (findings.near_voxels > 0) {
+    ++cache.warnings[fmt::format(
+        "emitter '{}': voxels nearer than its far field (2 D^2 / lambda = {:.0f} m) hold the far "
+        "field's formula",
+        emitter.name, setup.far_field_m[e])];
+  }
+}
+
+/// Emitters that do not change are summed once: those before the first that changed, so that every sum is
+/// added up in the order of the scenario and does not depend on earlier updates. The resting sum is made anew
+/// when the emitters combined in vain since it was last made would have paid for it.
+void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
+  const auto first_changed =
+      static_cast<int>(std::find(changed.begin(), changed.end(), true) - changed.begin());
+  int chosen = resting;
+  if (resting > first_changed) {
+    chosen = 0;
+  } else {
+    wasted += first_changed - resting;
+    if (resting < first_changed && wasted >= first_changed) chosen = first_changed;
+  }
+  if (chosen == resting) return;
+
+  wasted = 0;
+  resting = chosen;
+  std::vector<bool> has_resting;
+  for (const Channel& channel : setup.channels) {
+    has_resting.push_back(
+        std::any_of(channel.emitters.begin(), channel.emitters.end(), [&](int e) { return e < resting; }));
+  }
+  engine->setResting(has_resting);
+  if (resting > 0) combine(0, resting, has_resting, true);
+}
+
+/// An emitter's part in the channels.
+CombineInputs FieldSolver::Impl::combineInputs(int e) const {
+  const Emitter& emitter = setup.scenario->emitters[e];
+  const EmitterState& state = emitters[e].state;
+  CombineInputs inputs;
+  inputs.antenna = emitter.antenna;
+  inputs.member.slot = e;
+  inputs.member.radars = radarShares(e);
+  CombineEmitter& part = inputs.member.emitter;
+  part.emitter_index = e;
+  part.beam.forward = vecCast<float>(state.beam.forward);
+  part.beam.right = vecCast<float>(state.beam.right);
+  part.beam.up = vecCast<float>(state.beam.up);
+  part.beam.steer_u = static_cast<float>(state.beam.steer_u);
+  part.beam.steer_v = static_cast<float>(state.beam.steer_v);
+  const double eirp_w = emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db);
+  part.beam.eirp_over_4pi_w = static_cast<float>(eirp_w / (4 * kPi));
+  for (std::size_t c = 0; c < setup.channels.size(); ++c) {
+    const auto& members = setup.channels[c].emitters;
+    const auto place = std::find(members.begin(), members.end(), e);
+    if (place == members.end() || !setup.recipes[c].radars.empty()) continue;
+    part.shares.push_back({static_cast<int>(c), setup.recipes[c].weights[place - members.begin()]});
+  }
+  return inputs;
+}
+
+/// Combines the active emitters begin..end - 1: cached ones in one pass over the grid, as
+/// many as follow each other, each of the others in a pass of its own.
+void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& channel_chosen,
+                                bool into_resting) {
+  CombinePass pass;
+  pass.channels = channel_chosen;
+  pass.into_resting = into_resting;
+  const auto isChosen = [&](const auto& share) { return channel_chosen[share.channel]; };
+  const auto enters = [&](const CombinePass::Member& member) {
+    return std::any_of(member.emitter.shares.begin(), member.emitter.shares.end(), isChosen) ||
+           std::any_of(member.radars.begin(), member.radars.end(), isChosen);
+  };
+  const auto run = [&] {
+    engine->combine(pass);
+    pass.keep = true;
+    pass.members.clear();
+  };
+  for (int e = begin; e < end; ++e) {
+    const EmitterCache& cache = emitters[e];
+    if (!cache.combined || !enters(cache.combined->member)) continue;
+    if (!cache.is_cached) {
+      if (!pass.members.empty()) run();
+      computeGeometry({e}, true);
+    }
+    pass.members.push_back(cache.combined->member);
+    if (!cache.is_cached) {
+      pass.members.back().slot = static_cast<int>(emitters.size());
+      run();
+    }
+  }
+  if (!pass.keep || !pass.members.empty()) run();
+}
+
+/// First valid layers of a channel's columns: those above ground, but for columns that are unknown to one of
+/// its emitters.
+/// @param own  holds the result where it is not that of all channels
+const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& channel,
+                                                            std::vector<std::uint16_t>& own) const {
+  const std::vector<std::uint16_t>& above_ground = setup.columns.first_valid_k;
+  own.clear();
+  for (int e : channel.emitters) {
+    const std::vector<bool>& unknown = emitters[e].findings.unknown;
+    if (!emitters[e].state.active || unknown.empty()) continue;
+    if (own.empty()) own = above_ground;
+    own.resize(unknown.size(), 0);
+    for (std::size_t c = 0; c < unknown.size(); ++c) {
+      if (unknown[c]) own[c] = static_cast<std::uint16_t>(setup.grid.dims.z);
+    }
+  }
+  return own.empty() ? above_ground : own;
+}
+
+/// Makes the volumes of channels that changed. After an edit the others take the name, time and metadata of
+/// the edited scenario.
+void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes) {
+  if (changes.report.channels) {
+    volumes.assign(setup.channels.size(), {});
+    masks.assign(setup.channels.size(), {});
+  }
+  std::vector<VolumeRequest> requests;
+  for (std::size_t c = 0; c < volumes.size(); ++c) {
+    if (!changes.products[c] && !changes.is_edited) continue;
+    VolumeRequest request = volumeRequest(static_cast<int>(c), snapshot);
+    if (changes.products[c]) {
+      volumes[c] = {};  // so that its memory can be used again
+      requests.push_back(std::move(request));
+    } else {
+      request.info.range_min = volumes[c].info().range_min;
+      request.info.range_max = volumes[c].info().range_max;
+      volumes[c].setInfo(std::move(request.info));
+    }
+  }
+  std::vector<volume::Volume> made = engine->makeVolumes(requests);
+  for (std::size_t r = 0; r < requests.size(); ++r) volumes[requests[r].channel] = std::move(made[r]);
+}
+
+VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& snapshot) {
+  const Channel& channel = setup.channels[c];
+  const scenario::QuantityInfo& quantity = scenario::info(channel.quantity);
+  VolumeRequest request;
+  request.channel = c;
+  request.first_valid_k = &maskOf(channel, masks[c]);
+  volume::VolumeInfo& out = request.info;
+  out.quantity = channel.name;
+  out.unit = quantity.unit;
+  out.time_s = snapshot.time_s;
+  out.time_utc = snapshot.time_utc;
+  out.floor = setup.recipes[c].product.floor;
+  out.categorical = quantity.categorical;
+  if (const char* const scale = scaleOf(channel.quantity)) out.extra[volume::kScaleKey] = scale;
+  out.extra["scenario"] = setup.scenario->name;
+  out.extra["scenario_hash"] = setup.scenario->hash;
+  std::string names, near_field;
+  for (int e : channel.emitters) {
+    if (!emitters[e].state.active) continue;
+    const long long near_voxels = emitters[e].findings.near_voxels;
+    if (near_voxels > 0) {
+      near_field += fmt::format("{}{}: {} voxels within {:.0f} m", near_field.empty() ? "" : "; ",
+                                setup.scenario->emitters[e].name, near_voxels, setup.far_field_m[e]);
+    }
+  }
+  if (!near_field.empty()) out.extra["near_field"] = near_field;
+  if (quantity.categorical) {
+    for (const Emitter& emitter : setup.scenario->emitters)
+      names += (names.empty() ? "" : "\n") + emitter.name;
+    out.extra["labels"] = names;
+  }
+  return request;
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,164 @@
+// An update: what the time or an edited scenario changed, and what is computed for it.
+
+#include <algorithm>
+#include <utility>
+
+#include "emfield/solver/field_solver_impl.h"
+
+namespace emscape::emfield {
+namespace {
+
+using scenario::EmitterState;
+
+bool samePose(const scenario::BeamPose& a, const scenario::BeamPose& b) {
+  return a.forward == b.forward && a.right == b.right && a.up == b.up && a.steer_u == b.steer_u &&
+         a.steer_v == b.steer_v;
+}
+
+/// What decides whether an emitter's beam is the same as at the last update.
+bool sameBeam(const EmitterState& a, const EmitterState& b) {
+  if (a.active != b.active) return false;
+  if (!a.active) return true;
+  return samePose(a.beam, b.beam) && samePose(a.mount, b.mount);
+}
+
+double distance_m(const GeodeticPosition& a, const GeodeticPosition& b) {
+  return length(toEcef(a) - toEcef(b));
+}
+
+bool isAny(const std::vector<bool>& flags) {
+  return std::find(flags.begin(), flags.end(), true) != flags.end();
+}
+
+}  // namespace
+
+/// @param edited  plan of an edited scenario, with which the engine can go on; none: only the time changed
+FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::optional<FieldPlan> edited) {
+  engine->resetTimes();
+  Changes changes;
+  changes.is_edited = edited.has_value();
+  changes.all = is_first || is_stale;
+  changes.report.grid = is_first;
+  changes.report.channels = changes.all;
+  FieldPlan before;
+  try {
+    if (edited) {
+      changes.report.channels = changes.all || !haveSameChannels(setup, *edited);
+      before = std::exchange(static_cast<FieldPlan&>(setup), std::move(*edited));
+      changes.before = &before;
+    }
+    if (changes.is_edited || is_stale) setEnginePlan(changes.report.channels);
+    compute(snapshot, changes);
+  } catch (...) {
+    if (changes.before != nullptr) static_cast<FieldPlan&>(setup) = std::move(before);
+    discardAll();
+    throw;
+  }
+  is_first = is_stale = false;
+  return changes.report;
+}
+
+void FieldSolver::Impl::setEnginePlan(bool channels_changed) {
+  if (channels_changed) resting = wasted = 0;
+  engine->planChanged(channels_changed);
+}
+
+/// After a failure: what is computed may be of either scenario.
+void FieldSolver::Impl::discardAll() {
+  is_stale = true;
+  resting = wasted = 0;
+  for (EmitterCache& cache : emitters) {
+    const bool is_cached = cache.is_cached;
+    cache = {};
+    cache.is_cached = is_cached;
+  }
+  volumes.resize(setup.channels.size());
+  masks.resize(setup.channels.size());
+}
+
+void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& changes) {
+  findMoved(snapshot, changes);
+  findJamming(snapshot, changes);
+  findCombined(changes);
+  findProducts(changes);
+  FieldChanged& report = changes.report;
+  report.any = changes.all || report.channels || !report.moved.empty() || !report.turned.empty() ||
+               !report.volumes.empty();
+  if (!report.any && !changes.is_edited) return;
+
+  std::vector<int> recomputed;
+  for (int e : report.moved) {
+    if (emitters[e].is_cached) recomputed.push_back(e);
+  }
+  computeGeometry(recomputed, false);
+  if (isAny(changes.sums)) {
+    chooseResting(changes.emitters);
+    combine(resting, static_cast<int>(emitters.size()), changes.sums, false);
+  }
+  makeVolumes(snapshot, changes);
+}
+
+/// Emitters whose geometry is to be computed, and those whose beam or activity changed.
+void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& changes) {
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    const EmitterState& now = snapshot.emitters[e];
+    EmitterCache& cache = emitters[e];
+    if (changes.is_edited && cache.geometry &&
+        !areSame(*cache.geometry, geometryInputs(setup, static_cast<int>(e), now))) {
+      cache.geometry.reset();
+      cache.findings = {};
+      cache.warnings.clear();
+    }
+    const bool has_moved =
+        now.active &&
+        (!cache.geometry || distance_m(now.position, cache.geometry->position) > options.move_tolerance_m);
+    if (has_moved) {
+      changes.report.moved.push_back(static_cast<int>(e));
+    } else if (changes.all || !sameBeam(now, cache.state)) {
+      changes.report.turned.push_back(static_cast<int>(e));
+    }
+    cache.mount_changed = changes.all || has_moved || now.active != cache.state.active ||
+                          !samePose(now.mount, cache.state.mount);
+    cache.state = now;
+  }
+}
+
+/// Emitters whose part in some channel changed, and those channels.
+void FieldSolver::Impl::findCombined(Changes& changes) {
+  FieldChanged& report = changes.report;
+  const bool is_all = changes.all || report.channels;
+  changes.emitters.assign(emitters.size(), is_all);
+  changes.sums.assign(setup.channels.size(), is_all);
+  std::vector<bool> told(emitters.size());
+  for (const std::vector<int>* list : {&report.moved, &report.turned}) {
+    for (int e : *list) told[e] = true;
+  }
+  std::vector<bool> moved(emitters.size());
+  for (int e : report.moved) moved[e] = true;
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    std::optional<CombineInputs> before = std::exchange(emitters[e].combined, std::nullopt);
+    if (emitters[e].state.active) emitters[e].combined = combineInputs(static_cast<int>(e));
+    const auto orNull = [](const std::optional<CombineInputs>& inputs) {
+      return inputs ? &*inputs : nullptr;
+    };
+    const bool has_changed =
+        markChangedChannels(moved[e] ? nullptr : orNull(before), orNull(emitters[e].combined), changes.sums);
+    if (!has_changed) continue;
+    changes.emitters[e] = true;
+    if (changes.is_edited && !told[e]) report.turned.push_back(static_cast<int>(e));
+  }
+  std::sort(report.turned.begin(), report.turned.end());
+}
+
+/// Channels whose volume is to be made.
+void FieldSolver::Impl::findProducts(Changes& changes) {
+  changes.products = changes.sums;
+  for (std::size_t c = 0; c < setup.channels.size(); ++c) {
+    if (changes.is_edited && !changes.products[c]) {
+      changes.products[c] = !areSame(changes.before->recipes[c].product, setup.recipes[c].product);
+    }
+    if (changes.products[c]) changes.report.volumes.push_back(static_cast<int>(c));
+  }
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,132 @@
+/// What propagation models are told: the choice of a model, the settings of each, and the wave, ground and
+/// air that all of them share. propagation/registry says which values each model takes.
+#pragma once
+
+#include <optional>
+
+#include "emscape/base/error.h"
+
+namespace emscape::propagation {
+
+/// Direction of a wave's electric field, seen along its way.
+enum class Polarization { horizontal, vertical, slant_45, slant_135, circular_right, circular_left };
+const char* toString(Polarization polarization);
+
+enum class PropagationModel { free_space, horizon, diffraction, two_ray, itm, p528 };
+const char* toString(PropagationModel model);
+
+/// How terrain diffracts.
+enum class DiffractionMethod {
+  delta_bullington,  ///< terrain as one edge, and what that lacks of the earth's bulge
+  single_edge,       ///< the largest edge alone
+  deygout            ///< three edges
+};
+const char* toString(DiffractionMethod method);
+
+struct DiffractionSettings {
+  DiffractionMethod method = DiffractionMethod::delta_bullington;
+};
+
+/// What of the interference of two rays is kept.
+enum class TwoRaySum {
+  coherent,  ///< lobes and nulls
+  envelope,  ///< the lobes' tops: |1| + |reflected|
+};
+const char* toString(TwoRaySum sum);
+
+/// How roughness takes from the coherent reflection, with z = 8 pi^2 (sigma sin psi / lambda)^2.
+enum class RoughnessModel {
+  ament,         ///< exp(-z): heights Gaussian (Ament 1953)
+  miller_brown,  ///< exp(-z) I0(z): waves as sines of random phase (Miller, Brown, Vegh 1984); fits the sea
+};
+const char* toString(RoughnessModel model);
+
+struct TwoRaySettings {
+  TwoRaySum sum = TwoRaySum::coherent;
+  RoughnessModel roughness_model = RoughnessModel::miller_brown;
+};
+
+/// What ITM knows of the terrain.
+enum class ItmForm { point_to_point, area };
+const char* toString(ItmForm form);
+/// What ITM's statistics are of: how the loss varies for whoever uses the link.
+enum class ItmService { single_message, individual, mobile, broadcast };
+const char* toString(ItmService service);
+/// How the places of antennas are chosen in ITM's area mode.
+enum class ItmSiting { random = 0, careful = 1, very_careful = 2 };
+const char* toString(ItmSiting siting);
+
+struct ItmSettings {
+  ItmForm form = ItmForm::point_to_point;
+  /// The loss is not exceeded in so many percent of the time, of the places, of such links.
+  double time_percent = 50, location_percent = 50, situation_percent = 50;
+  ItmService service = ItmService::mobile;
+  double irregularity_m = 90;                        ///< of the terrain; area mode
+  ItmSiting transmitter_siting = ItmSiting::random;  ///< area mode
+  ItmSiting receiver_siting = ItmSiting::random;
+};
+
+struct P528Settings {
+  double time_percent = 50;  ///< the loss is not exceeded in so many percent of the time
+};
+
+/// The model of an emitter, and the settings of all models: those of others than the chosen one have no
+/// effect.
+struct ModelSettings {
+  PropagationModel model = PropagationModel::diffraction;
+  DiffractionSettings diffraction;
+  TwoRaySettings two_ray;
+  ItmSettings itm;
+  P528Settings p528;
+  SourceLocation place;  ///< of the chosen model's settings
+};
+
+enum class GroundKind { sea, fresh_water, wet_ground, average_ground, dry_ground, concrete };
+const char* toString(GroundKind kind);
+
+/// The ground as the waves see it.
+struct Ground {
+  GroundKind kind = GroundKind::average_ground;
+  std::optional<double> relative_permittivity;  ///< none: that of the kind
+  std::optional<double> conductivity_s_m;
+  double roughness_m = 0;  ///< standard deviation of the surface's height
+  /// Height of the smooth surface that models without terrain stand on; none: of the ground below each
+  /// emitter.
+  std::optional<double> surface_msl_m;
+  SourceLocation place;
+};
+
+/// Which emitters' paths lose to oxygen and water vapour.
+enum class GasLosses {
+  automatic,  ///< those of models that are no bounds: all but free_space and horizon
+  always,
+  never
+};
+const char* toString(GasLosses gases);
+
+/// Climates of the models that have statistics.
+enum class RadioClimate {
+  equatorial,
+  continental_subtropical,
+  maritime_subtropical,
+  desert,
+  continental_temperate,
+  maritime_temperate_over_land,
+  maritime_temperate_over_sea
+};
+const char* toString(RadioClimate climate);
+
+/// The air that the waves travel through.
+struct Atmosphere {
+  double k_factor = 4.0 / 3.0;  ///< effective earth radius over earth radius
+  double pressure_hpa = 1013.25;
+  double temperature_k = 288.15;
+  double vapour_g_m3 = 7.5;
+  double rain_mm_h = 0;
+  std::optional<double> rain_height_m;  ///< above mean sea level, up to where it rains; none: by latitude
+  GasLosses gases = GasLosses::automatic;
+  double sea_level_refractivity = 301;  ///< N-units, for itm, which takes the rays' curvature from it
+  RadioClimate climate = RadioClimate::continental_temperate;
+};
+
+}  // namespace emscape::propagation

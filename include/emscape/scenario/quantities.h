@@ -1,0 +1,52 @@
+/// The quantities that a scenario can ask for: what emfield computes and volumes hold.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace emscape::scenario {
+
+enum class Quantity {
+  power_density_dbwm2,
+  field_strength_dbuvm,
+  received_power_dbm,
+  snr_db,
+  detection_probability,
+  jammer_to_signal_db,
+  burn_through_margin_db,
+  emitter_count,
+  dominant_emitter,
+};
+
+/// Whose signals enter a quantity.
+enum class QuantityKind {
+  of_emitters,
+  of_receiver,  ///< all emitters, at the scenario's first receiver
+  of_radars,    ///< radars and their targets; the other emitters do not enter
+  of_jamming    ///< the same, and jammers count
+};
+
+struct QuantityInfo {
+  Quantity quantity;
+  const char* name;  ///< as in scenario files and volumes
+  const char* unit;  ///< for colour bars; empty for counts and indices
+  QuantityKind kind;
+  const char* description;    ///< one line
+  bool categorical = false;   ///< indices: nearest sampling, integer grids
+  bool needs_jammer = false;  ///< a scenario without a jammer cannot ask for it
+};
+
+/// Quantities of radars and their targets, with jamming or without.
+bool isOfRadars(Quantity quantity);
+/// Those of them in which jamming counts.
+bool isOfJamming(Quantity quantity);
+
+/// All quantities, in the order of the enum.
+const std::vector<QuantityInfo>& quantityTable();
+const QuantityInfo& info(Quantity quantity);
+/// The names of all, with commas between them.
+std::string quantityNames();
+/// @throws Error (bad_input) that lists the allowed names
+Quantity quantityFromName(const std::string& name);
+
+}  // namespace emscape::scenario

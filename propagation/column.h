@@ -1,0 +1,75 @@
+/// What a model of excess loss is given of a column of the grid: the terrain up to it, and the heights of its
+/// voxels.
+#pragma once
+
+#include <cstddef>
+
+#include "emscape/base/host_device.h"
+#include "propagation/terrain_profile.h"
+
+namespace emscape::propagation {
+
+/// A column, or the piece of a leaning one that stands over one point of the ground.
+struct ExcessColumn {
+  double range_m = 0;      ///< along the ground from the emitter
+  float ground_msl_m = 0;  ///< NaN over missing terrain
+  TerrainProfile profile;  ///< from the emitter to below the column; no posts for models without terrain
+  const float* height_msl_m = nullptr;  ///< of the voxels, rising
+  int count = 0;
+};
+
+/// What a model says of a column besides its losses: bits of its own, and this one, that terrain is missing.
+constexpr unsigned kMissingTerrain = 1u << 31;
+
+/// Some of a column's heights, for a model that fills them by bisection.
+struct ColumnPart {
+  int begin = 0, end = 0;      ///< heights begin..end - 1; begin is a multiple of kBisectionStep
+  float* memory_db = nullptr;  ///< for a height more
+
+  /// Heights of the bisection: up to the first of the next part, of which so many are in question.
+  EMSCAPE_HD int reach(int count) const { return (end < count ? end + 1 : count) - begin; }
+};
+
+/// Memory for one column at a time, cut from one block: a thread has its own.
+struct ExcessScratch {
+  double* range_m = nullptr;
+  float* ground_msl_m = nullptr;
+  float* even_ground_msl_m = nullptr;  ///< for models that want even spacing; a post more
+  float* height_msl_m = nullptr;
+  float* excess_db = nullptr;
+  float* other_db = nullptr;      ///< of a second model
+  float* post_numbers = nullptr;  ///< kPostNumbers arrays of `posts` elements, for the model
+  int* post_indices = nullptr;    ///< kPostIndices of them
+  int posts = 0;
+
+  static constexpr int kPostNumbers = 5, kPostIndices = 2;
+
+  /// @param posts  of the longest profile
+  static EMSCAPE_HD std::size_t bytes(int posts, int layers) {
+    return std::size_t(posts) *
+               (sizeof(double) + (2 + kPostNumbers) * sizeof(float) + kPostIndices * sizeof(int)) +
+           3 * sizeof(float) * std::size_t(layers) + sizeof(float) + sizeof(double);
+  }
+  /// @param memory  bytes(posts, layers), aligned for double
+  static EMSCAPE_HD ExcessScratch in(void* memory, int posts, int layers) {
+    ExcessScratch scratch;
+    scratch.range_m = static_cast<double*>(memory);
+    float* next = reinterpret_cast<float*>(scratch.range_m + posts);
+    const auto take = [&next](int count) {
+      float* const taken = next;
+      next += count;
+      return taken;
+    };
+    scratch.ground_msl_m = take(posts);
+    scratch.even_ground_msl_m = take(posts + 1);
+    scratch.height_msl_m = take(layers);
+    scratch.excess_db = take(layers);
+    scratch.other_db = take(layers);
+    scratch.posts = posts;
+    scratch.post_numbers = take(kPostNumbers * posts);
+    scratch.post_indices = reinterpret_cast<int*>(next);
+    return scratch;
+  }
+};
+
+}  // namespace emscape::propagation

@@ -1,0 +1,269 @@
+/// Model `diffraction`: loss over terrain and the earth's bulge, ITU-R P.526-15 section 4.5 ("delta-
+/// Bullington"), as P.1812 and P.452 take it too; single edge and Deygout's construction as options in
+/// diffraction_edges.h.
+///
+/// Terrain is made into one knife edge, where the steepest rays from the two antennas meet (Bullington). That
+/// understates a smooth earth; what it lacks there, against the spherical earth, is added:
+///   L = L_bulla + max(L_dsph - L_bulls, 0)
+/// with L_bulls Bullington's loss and L_dsph the true one of a smooth earth under antennas as high above it
+/// as these are above the terrain's trend. The loss is continuous in range, height and frequency.
+#pragma once
+
+#include <cmath>
+
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
+#include "propagation/diffraction/knife_edge.h"
+#include "propagation/diffraction/spherical_earth.h"
+#include "propagation/limits.h"
+#include "propagation/terrain_profile.h"
+
+namespace emscape::propagation {
+
+constexpr ModelLimit kDiffractionFrequency{
+    "frequency", "MHz", 1e6, 20, 50000, Beyond::warned, "below, the ground wave is missing"};
+constexpr ModelLimit kDiffractionHeight{
+    "height above mean sea level",
+    "km",
+    1000,
+    -1,
+    10,
+    Beyond::warned,
+    "rays are taken as straight over an earth of k times its radius; higher up they are not"};
+constexpr ModelLimit kDiffractionDistance{"distance",
+                                          "km",
+                                          1000,
+                                          0.1,
+                                          1000,
+                                          Beyond::warned,
+                                          "far beyond the horizon scattering in the troposphere is stronger"};
+constexpr ModelLimit kDiffractionAboveGround{
+    "antenna height above ground",
+    "m",
+    1,
+    1,
+    100000,
+    Beyond::clamped,
+    "as in P.1812: the loss of a smooth earth has no bound at the ground itself"};
+constexpr const ModelLimit* kDiffractionLimits[] = {&kDiffractionFrequency, &kDiffractionHeight,
+                                                    &kDiffractionAboveGround, &kDiffractionDistance};
+
+/// What a path's loss depends on besides terrain and antennas.
+struct DiffractionParameters {
+  double frequency_hz = 0;
+  double effective_earth_radius_m = 0;
+  LinearPolarization polarization = LinearPolarization::horizontal;
+  double sea_fraction = 0;  ///< of the path, 0..1
+  GroundConstants land = kDiffractionLand;
+  GroundConstants sea = kDiffractionSea;
+};
+
+/// The model at one frequency, as plain data.
+template <class Real>
+struct DiffractionModel {
+  SphericalEarth<Real> earth;
+  Real half_curvature;  ///< 1 / (2 a): the earth's bulge is this times d1 d2
+
+  /// Height of an antenna, no lower above its ground than kDiffractionAboveGround.
+  static EMSCAPE_HD Real raised_m(Real antenna_m, Real ground_m) {
+    const Real lowest = ground_m + Real(kDiffractionAboveGround.least);
+    return antenna_m > lowest ? antenna_m : lowest;
+  }
+
+  /// nu of an obstacle that stands `above_m` over the line of sight, P.526 eq. (26) in metres.
+  EMSCAPE_HD Real nuOf(Real above_m, Real d1_m, Real d2_m) const {
+    return above_m * std::sqrt(2 * (d1_m + d2_m) / (earth.wavelength_m * d1_m * d2_m));
+  }
+};
+
+template <class Real>
+DiffractionModel<Real> diffractionModel(const DiffractionParameters& parameters) {
+  DiffractionModel<Real> model;
+  model.earth.earth_radius_m = Real(parameters.effective_earth_radius_m);
+  model.earth.wavelength_m = Real(wavelength_m(parameters.frequency_hz));
+  model.earth.sea_fraction = Real(parameters.sea_fraction);
+  model.earth.land = firstTermGround<Real>(parameters.frequency_hz, parameters.land, parameters.polarization);
+  model.earth.sea = firstTermGround<Real>(parameters.frequency_hz, parameters.sea, parameters.polarization);
+  model.half_curvature = Real(0.5 / parameters.effective_earth_radius_m);
+  return model;
+}
+
+/// Bullington's loss (dB) from its edge's nu, eq. (56) or its like for a clear path, and eq. (57).
+template <class Real>
+EMSCAPE_HD Real bullingtonLossDb(Real nu, Real distance_m) {
+  const Real edge_db = knifeEdgeDb(nu);
+  if (edge_db == 0) return 0;
+  return edge_db + (1 - std::exp(-edge_db / 6)) * (10 + Real(2e-5) * distance_m);
+}
+
+/// nu of the edge where the steepest rays meet. With the rays' slopes t and r over the line of sight the edge
+/// stands at d r / (t + r), and as high as t times that: nu = sqrt(2 d t r / lambda).
+/// @param slope_to_rx  (h_rs - h_ts) / d
+/// @param tx_slope     largest slope from the transmitter to an obstacle, >= slope_to_rx
+/// @param rx_slope     the same from the receiver, >= -slope_to_rx
+/// @see P.526-15 eq. (54), (55)
+template <class Real>
+EMSCAPE_HD Real bullingtonEdgeNu(const DiffractionModel<Real>& model, Real distance_m, Real slope_to_rx,
+                                 Real tx_slope, Real rx_slope) {
+  const Real product = (tx_slope - slope_to_rx) * (rx_slope + slope_to_rx);
+  // Rounding may put the second factor below 0 where both are next to nothing.
+  return std::sqrt(2 * distance_m / model.earth.wavelength_m * (product > 0 ? product : Real(0)));
+}
+
+/// What the terrain does to the smooth surface under it.
+template <class Real>
+struct TerrainTrend {
+  Real start_msl_m, end_msl_m;  ///< of the line fitted to the terrain, eq. (60), (61)
+  Real highest_m;               ///< largest height of an obstacle over the line of sight; may be negative
+  Real tx_angle, rx_angle;      ///< largest slopes of obstacles over the line of sight, from either end
+  Real tx_ground_msl_m, rx_ground_msl_m;
+};
+
+/// Heights of the antennas above the smooth surface (m).
+template <class Real>
+struct EffectiveHeights {
+  Real tx_m, rx_m;
+};
+
+/// @see P.526-15 eq. (62) to (67); P.1812-6 eq. (84) to (90)
+template <class Real>
+EMSCAPE_HD EffectiveHeights<Real> effectiveHeights(const TerrainTrend<Real>& trend, Real tx_msl_m,
+                                                   Real rx_msl_m) {
+  Real start = trend.start_msl_m, end = trend.end_msl_m;
+  if (trend.highest_m > 0) {
+    const Real part = trend.tx_angle / (trend.tx_angle + trend.rx_angle);
+    start -= trend.highest_m * part;
+    end -= trend.highest_m * (1 - part);
+  }
+  start = start < trend.tx_ground_msl_m ? start : trend.tx_ground_msl_m;
+  end = end < trend.rx_ground_msl_m ? end : trend.rx_ground_msl_m;
+  return {tx_msl_m - start, rx_msl_m - end};
+}
+
+/// Sums from which the line fitted to the terrain comes; in double precision.
+struct TerrainSums {
+  double v1 = 0, v2 = 0;
+
+  /// Takes in the interval that ends at post i >= 1. Heights are from the first post's.
+  /// @see P.526-15 eq. (58), (59)
+  EMSCAPE_HD void add(const TerrainProfile& profile, int i) {
+    const double base = profile.height_msl_m[0];
+    add(profile.range_m[i - 1], profile.height_msl_m[i - 1] - base, profile.range_m[i],
+        profile.height_msl_m[i] - base);
+  }
+  /// The same for an interval from one range and height (m) to the next.
+  EMSCAPE_HD void add(double before, double h_before, double d, double h) {
+    v1 += (d - before) * (h + h_before);
+    v2 += (d - before) * (h * (2 * d + before) + h_before * (d + 2 * before));
+  }
+  /// Ends of the line over a path, eq. (60), (61).
+  EMSCAPE_HD double start_m(double distance_m) const {
+    return (2 * v1 * distance_m - v2) / (distance_m * distance_m);
+  }
+  EMSCAPE_HD double end_m(double distance_m) const {
+    return (v2 - v1 * distance_m) / (distance_m * distance_m);
+  }
+};
+
+/// A path's loss and what it is made of.
+template <class Real>
+struct DeltaBullington {
+  Real loss_db = 0;                    ///< L_d, eq. (68)
+  Real terrain_db = 0;                 ///< L_bulla
+  Real smooth_db = 0;                  ///< L_bulls; 0 where L_dsph is 0, as it does not matter then
+  Real spherical_db = 0;               ///< L_dsph
+  EffectiveHeights<Real> effective{};  ///< above the smooth surface
+};
+
+/// Bullington's nu over heights of obstacles: terrain, or a smooth earth where all are 0.
+/// @param heightOf  height (m) of post i, 0 < i < count - 1
+/// @return -infinity without a post between
+/// @see P.526-15 eq. (50) to (55)
+template <class Real, class HeightOf>
+EMSCAPE_HD Real bullingtonNu(const DiffractionModel<Real>& model, const double* range_m, int count, Real tx_m,
+                             Real rx_m, HeightOf heightOf) {
+  const Real d = Real(range_m[count - 1]);
+  const Real slope_to_rx = (rx_m - tx_m) / d;
+  const Real infinity = Real(HUGE_VAL);
+  Real tx_slope = -infinity, rx_slope = -infinity;
+  for (int i = 1; i < count - 1; ++i) {
+    const Real d1 = Real(range_m[i]), d2 = d - d1;
+    const Real h = heightOf(i) + model.half_curvature * d1 * d2;
+    const Real from_tx = (h - tx_m) / d1, from_rx = (h - rx_m) / d2;
+    tx_slope = from_tx > tx_slope ? from_tx : tx_slope;
+    rx_slope = from_rx > rx_slope ? from_rx : rx_slope;
+  }
+  if (tx_slope >= slope_to_rx) return bullingtonEdgeNu(model, d, slope_to_rx, tx_slope, rx_slope);
+  Real nu = -infinity;
+  for (int i = 1; i < count - 1; ++i) {
+    const Real d1 = Real(range_m[i]), d2 = d - d1;
+    const Real above = heightOf(i) + model.half_curvature * d1 * d2 - tx_m - slope_to_rx * d1;
+    const Real here = model.nuOf(above, d1, d2);
+    nu = here > nu ? here : nu;
+  }
+  return nu;
+}
+
+/// Loss of one path, from a profile whose last post lies below the receiver.
+/// @param tx_msl_m, rx_msl_m  of the antennas; see kDiffractionAboveGround
+/// @return 0 with a single post; all NaN over missing terrain (NaN)
+/// @accuracy float within 0.02 dB of double to 500 km, 20 MHz to 40 GHz
+template <class Real>
+EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& model,
+                                                 const TerrainProfile& profile, Real tx_msl_m,
+                                                 Real rx_msl_m) {
+  DeltaBullington<Real> result;
+  const int last = profile.count - 1;
+  const double distance_m = profile.range_m[last];
+  const Real d = Real(distance_m);
+  const Real base = Real(profile.height_msl_m[0]);
+  // Heights from the first post's on: single precision is for differences.
+  TerrainTrend<Real> trend;
+  trend.tx_ground_msl_m = 0;
+  trend.rx_ground_msl_m = Real(profile.height_msl_m[last]) - base;
+  const Real tx = model.raised_m(tx_msl_m - base, 0);
+  const Real rx = model.raised_m(rx_msl_m - base, trend.rx_ground_msl_m);
+  const auto heightOf = [&](int i) { return Real(profile.height_msl_m[i]) - base; };
+
+  if (last == 0) {  // from the antenna to itself
+    result.loss_db = std::isnan(base) ? base : Real(0);
+    return result;
+  }
+
+  TerrainSums sums;
+  const Real infinity = Real(HUGE_VAL);
+  trend.highest_m = trend.tx_angle = trend.rx_angle = -infinity;
+  const Real slope = (rx - tx) / d;
+  for (int i = 1; i <= last; ++i) {
+    sums.add(profile, i);
+    if (i == last) break;
+    const Real d1 = Real(profile.range_m[i]), d2 = d - d1;
+    const Real above = heightOf(i) - tx - slope * d1;
+    trend.highest_m = above > trend.highest_m ? above : trend.highest_m;
+    trend.tx_angle = above / d1 > trend.tx_angle ? above / d1 : trend.tx_angle;
+    trend.rx_angle = above / d2 > trend.rx_angle ? above / d2 : trend.rx_angle;
+  }
+  if (std::isnan(sums.v1)) {
+    const Real nan = Real(NAN);
+    return {nan, nan, nan, nan, {nan, nan}};
+  }
+  trend.start_msl_m = Real(sums.start_m(distance_m));
+  trend.end_msl_m = Real(sums.end_m(distance_m));
+  result.effective = effectiveHeights(trend, tx, rx);
+
+  result.terrain_db =
+      bullingtonLossDb(bullingtonNu(model, profile.range_m, profile.count, tx, rx, heightOf), d);
+  result.spherical_db = sphericalEarthLossDb(model.earth, d, result.effective.tx_m, result.effective.rx_m);
+  result.loss_db = result.terrain_db;
+  if (result.spherical_db > 0) {
+    const auto seaLevel = [](int) { return Real(0); };
+    result.smooth_db = bullingtonLossDb(bullingtonNu(model, profile.range_m, profile.count,
+                                                     result.effective.tx_m, result.effective.rx_m, seaLevel),
+                                        d);
+    const Real lacking_db = result.spherical_db - result.smooth_db;
+    result.loss_db += lacking_db > 0 ? lacking_db : Real(0);
+  }
+  return result;
+}
+
+}  // namespace emscape::propagation

@@ -1,0 +1,19 @@
+/// Excess of the models that have none of their own, free_space and horizon: what the air adds.
+#pragma once
+
+#include "emscape/base/host_device.h"
+#include "propagation/column.h"
+
+namespace emscape::propagation {
+
+struct NoExcess {
+  static constexpr bool kNeedsTerrain = false;
+  static constexpr bool kInParts = false;
+
+  EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch&, float* excess_db) const {
+    for (int k = 0; k < column.count; ++k) excess_db[k] = 0;
+    return 0;
+  }
+};
+
+}  // namespace emscape::propagation

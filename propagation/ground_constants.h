@@ -1,0 +1,43 @@
+/// Electrical constants of grounds and waters, and of the sea by ITU-R P.527.
+#pragma once
+
+#include "emscape/base/host_device.h"
+#include "emscape/propagation/settings.h"
+
+namespace emscape::propagation {
+
+/// How a wave's electric field lies to the ground.
+enum class LinearPolarization { horizontal, vertical };
+/// Mixed polarisations count as vertical, the part that is diffracted more strongly.
+LinearPolarization linearPolarization(Polarization polarization);
+
+/// A ground as a wave sees it: relative permittivity eps' - i eps'' with eps'' = sigma / (2 pi f eps0).
+struct GroundConstants {
+  double relative_permittivity = 22;
+  double conductivity_s_per_m = 0.003;
+
+  /// eps'' at a frequency (Hz).
+  EMSCAPE_HD double lossFactor(double frequency_hz) const {
+    return conductivity_s_per_m * kSiemensPerMetreToLoss_hz / frequency_hz;
+  }
+  /// 1 / (2 pi eps0), which recommendations write as 18 GHz / (S/m).
+  static constexpr double kSiemensPerMetreToLoss_hz = 1.79751e10;
+};
+
+/// The constants that P.526 takes for land and sea in its spherical-earth part.
+constexpr GroundConstants kDiffractionLand{22, 0.003};
+constexpr GroundConstants kDiffractionSea{80, 5};
+
+/// Constants of a kind of ground at a frequency. Waters by P.527 at 15 degrees (sea water of 35 g/kg): the
+/// conductivity holds the loss of the turning dipoles too, and grows with frequency. Grounds by one pair for
+/// all frequencies (wet 25 and 0.02 S/m, average 15 and 0.005, dry 4 and 0.001; the NTIA's figures for ITM;
+/// concrete 5.3 and 0.1, P.2040 at 3 GHz): above some 10 GHz their loss is understated.
+GroundConstants groundConstants(GroundKind kind, double frequency_hz);
+/// Those that a ground states, and its kind's for the rest.
+GroundConstants groundConstants(const Ground& ground, double frequency_hz);
+
+/// Water at a temperature (degrees Celsius, -4..40) and salinity (g/kg, 0..40); frequency up to 1000 GHz.
+/// @see P.527-6 section 5.1: eq. (4) to (8) without, (10) to (25) with salt
+GroundConstants waterConstants(double frequency_hz, double temperature_c, double salinity_g_per_kg);
+
+}  // namespace emscape::propagation

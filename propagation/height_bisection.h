@@ -1,0 +1,58 @@
+/// Losses over a column's heights from as few evaluations of a model as their course allows.
+#pragma once
+
+#include <cmath>
+
+#include "emscape/base/host_device.h"
+
+namespace emscape::propagation {
+
+/// Indices between evaluations that are made in any case; what lies between two of them depends on no other.
+constexpr int kBisectionStep = 16;
+
+/// Evaluates a function at some indices of 0..count - 1 and draws straight lines between them: every
+/// kBisectionStep indices and at the last one, and wherever half way between two evaluations it leaves their
+/// line by more than a tolerance, or where it is so steep that a bend may hide beside the middle.
+/// @param evaluate  double or float of an index; called no more than once for each
+/// @param out       `count` values
+template <class Evaluate>
+EMSCAPE_HD void fillByBisection(Evaluate evaluate, int count, float tolerance_db, float* out) {
+  constexpr int kDeepest = 8;
+  constexpr float kSteep_db = 3;
+  if (count <= 0) return;
+  const auto drawLine = [out](int begin, int end) {
+    for (int i = begin + 1; i < end; ++i) {
+      const float part = static_cast<float>(i - begin) / static_cast<float>(end - begin);
+      out[i] = out[begin] + part * (out[end] - out[begin]);
+    }
+  };
+  const auto isStraight = [&](int begin, int middle, int end) {
+    const float part = static_cast<float>(middle - begin) / static_cast<float>(end - begin);
+    const float line = out[begin] + part * (out[end] - out[begin]);
+    return std::fabs(out[middle] - line) <= tolerance_db && std::fabs(out[end] - out[begin]) <= kSteep_db;
+  };
+  // One place calls the function: threads of a GPU's warp are to call it together.
+  int ends[kDeepest];  // of the pieces still to do, the nearest last
+  int waiting = 0, from = 0, at = 0;
+  bool is_middle = false;
+  for (;;) {
+    out[at] = evaluate(at);
+    if (is_middle && isStraight(from, at, ends[waiting - 1])) {
+      drawLine(from, at);
+      drawLine(at, ends[waiting - 1]);
+      from = ends[--waiting];
+    } else {
+      ends[waiting++] = at;
+    }
+    while (waiting > 0 && ends[waiting - 1] - from < 2) from = ends[--waiting];
+    is_middle = waiting > 0;
+    if (is_middle) {
+      at = (from + ends[waiting - 1]) / 2;
+    } else {
+      if (from == count - 1) return;
+      at = from + kBisectionStep < count - 1 ? from + kBisectionStep : count - 1;
+    }
+  }
+}
+
+}  // namespace emscape::propagation

@@ -1,0 +1,74 @@
+/// Model `horizon`: terrain and earth masking along straight rays over an earth of effective radius k a.
+///
+/// A point is lit if no terrain between it and the emitter reaches above the ray that joins them; behind
+/// terrain there is no field at all (no diffraction: an upper bound of shadow). The refractivity gradient is
+/// taken as linear in height, which makes rays straight over the enlarged earth (ITU-R P.834; k from the
+/// gradient of P.453, 4/3 by default).
+#pragma once
+
+#include <cmath>
+
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
+
+namespace emscape::propagation {
+
+/// Above this height (m) the linear refractivity profile no longer holds.
+constexpr double kLinearRefractivityHeight_m = 10000;
+
+/// What the geometry needs of a ground range: of the angle that it spans at the earth's centre, sine and 1 -
+/// cosine.
+template <class Real>
+struct RangeTerms {
+  Real sine = 0;
+  Real versine = 0;
+};
+
+/// Rays from one station over an earth of effective radius, in the vertical plane of one azimuth.
+template <class Real>
+struct HorizonGeometry {
+  Real station_height_msl_m;
+  Real effective_earth_radius_m;
+
+  /// @param range_m  ground range (m), 0 up to a quarter of the earth's circumference
+  EMSCAPE_HD RangeTerms<Real> termsAt(double range_m) const {
+    const double angle = range_m / double(effective_earth_radius_m);
+    const double half_sine = std::sin(angle / 2);
+    return {Real(std::sin(angle)), Real(2 * half_sine * half_sine)};
+  }
+
+  /// Tangent of the elevation, at the station, of the ray to a point at a height (m) and a ground range > 0.
+  EMSCAPE_HD Real slopeTo(Real height_msl_m, const RangeTerms<Real>& range) const {
+    return (height_msl_m - station_height_msl_m - range.versine * (effective_earth_radius_m + height_msl_m)) /
+           (range.sine * (effective_earth_radius_m + height_msl_m));
+  }
+
+  /// Height (m) at which the ray of a slope passes over a ground range: the inverse of slopeTo.
+  EMSCAPE_HD Real heightOn(Real slope, const RangeTerms<Real>& range) const {
+    const Real rise = range.versine + slope * range.sine;
+    return (station_height_msl_m + effective_earth_radius_m * rise) / (1 - rise);
+  }
+};
+
+/// The larger of two slopes; NaN if one is.
+EMSCAPE_HD inline float steeper(float highest, float here) {
+  return !(here <= highest) && !std::isnan(highest) ? here : highest;
+}
+
+/// Slopes of the grazing rays along one azimuth: slope[i] is the largest slope to the terrain at
+/// samples 1..i, so that a point between samples i and i + 1 is lit if the slope to it is not below slope[i].
+/// slope[0] is -infinity: nothing stands before.
+/// @param profile_msl_m  terrain heights of `count` samples; from a NaN on all slopes are NaN
+/// @param ranges         terms of the samples' ranges, `count` of them
+template <class Real>
+EMSCAPE_HD void grazingSlopes(const HorizonGeometry<Real>& geometry, const float* profile_msl_m,
+                              const RangeTerms<Real>* ranges, int count, float* slope) {
+  float highest = -HUGE_VALF;
+  slope[0] = highest;
+  for (int i = 1; i < count; ++i) {
+    highest = steeper(highest, float(geometry.slopeTo(Real(profile_msl_m[i]), ranges[i])));
+    slope[i] = highest;
+  }
+}
+
+}  // namespace emscape::propagation

@@ -1,0 +1,131 @@
+/// Excess of the model `itm`: where it holds, and `diffraction` elsewhere.
+#pragma once
+
+#include "emscape/base/host_device.h"
+#include "propagation/diffraction/excess.h"
+#include "propagation/height_bisection.h"
+#include "propagation/itm/itm.h"
+
+namespace emscape::propagation {
+
+/// ITM refused a path within its zone: diffraction stands there instead. A bit beside ItmWarning's.
+constexpr unsigned kItmRefused = 1u << 30;
+
+/// ITM is for antennas near the ground: a voxel takes it by a weight, and diffraction by the rest (dB).
+/// The weight is 1 up to kItmFull_m above the ground, from there linear down to 0 at the model's limit, for
+/// either end; and from 0 at kItmNearest_m along the ground, where the model's data begin, linear up to 1 at
+/// twice that.
+constexpr double kItmFull_m = 2000;
+constexpr double kItmNearest_m = kItmDistance.least * kItmDistance.si_per_unit;
+
+EMSCAPE_HD inline float itmHeightWeight(double height_agl_m) {
+  const double part = (kItmHeight.most - height_agl_m) / (kItmHeight.most - kItmFull_m);
+  return part < 0 ? 0.0f : part > 1 ? 1.0f : static_cast<float>(part);
+}
+EMSCAPE_HD inline float itmRangeWeight(double range_m) {
+  const double part = range_m / kItmNearest_m - 1;
+  return part < 0 ? 0.0f : part > 1 ? 1.0f : static_cast<float>(part);
+}
+
+struct ItmExcess {
+  static constexpr bool kNeedsTerrain = true;
+  static constexpr bool kInParts = true;
+  static constexpr float kTolerance_db = 0.1f;
+
+  DiffractionExcess diffraction;
+  ItmLink<float> link;  ///< but for the antennas' heights
+  ItmQuantiles<float> quantiles;
+  bool is_area = false;
+  ItmArea<float> area;  ///< but for the distance
+  double step_m = 0;    ///< of profiles, or somewhat less: whole steps
+
+  /// Loss over free space along the ground, which the field takes as loss over free space along the path.
+  /// @accuracy heights between evaluations: 99 % within 0.1 dB of the model, but for its jumps
+  EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch,
+                                 float* excess_db) const {
+    const unsigned remarks = begin(column, scratch, excess_db);
+    if (remarks != 0) return remarks;
+    return fill(column, scratch, {0, column.count, scratch.other_db}, excess_db);
+  }
+  EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
+                            float* excess_db) const {
+    const unsigned remarks = diffraction(column, scratch, excess_db);
+    if (remarks == 0 && pathWeight(column) > 0) spaceEvenly(column.profile, scratch.even_ground_msl_m);
+    return remarks;
+  }
+  EMSCAPE_HD unsigned fill(const ExcessColumn& column, const ExcessScratch& scratch, const ColumnPart& part,
+                           float* excess_db) const {
+    const float path_weight = pathWeight(column);
+    if (path_weight == 0) return 0;
+    ItmProfile<float> even;
+    even.heights_msl_m = scratch.even_ground_msl_m;
+    even.intervals = evenIntervals(column.profile);
+    even.step_m = column.range_m / even.intervals;
+    int in_zone = part.begin;  // heights below this one, of those that the bisection reaches
+    const int most = part.begin + part.reach(column.count);
+    while (in_zone < most && itmHeightWeight(heightAgl(column, in_zone)) > 0) ++in_zone;
+    unsigned remarks = 0;
+    const auto lossAt = [&](int k) {
+      ItmLink<float> here = link;
+      here.height_agl_m[0] = txAgl(column);
+      here.height_agl_m[1] = static_cast<float>(heightAgl(column, part.begin + k));
+      ItmResult<float> result;
+      if (is_area) {
+        ItmArea<float> over = area;
+        over.distance_m = static_cast<float>(column.range_m);
+        result = itmAreaMode(over, here, quantiles);
+      } else {
+        result = itmPointToPoint(even, here, quantiles);
+      }
+      remarks |= result.refused() ? kItmRefused : result.warnings;
+      return result.loss_db - result.free_space_db;
+    };
+    fillByBisection(lossAt, in_zone - part.begin, kTolerance_db, part.memory_db);
+    for (int k = part.begin; k < part.end && k < in_zone; ++k) {
+      const float other = part.memory_db[k - part.begin];
+      if (!(other == other)) continue;  // refused
+      const float weight = path_weight * itmHeightWeight(heightAgl(column, k));
+      excess_db[k] += weight * (other - excess_db[k]);
+    }
+    return remarks;
+  }
+
+ private:
+  EMSCAPE_HD float txAgl(const ExcessColumn& column) const {
+    return above(diffraction.tx_msl_m, column.profile.height_msl_m[0]);
+  }
+  EMSCAPE_HD float pathWeight(const ExcessColumn& column) const {
+    return itmHeightWeight(static_cast<double>(txAgl(column))) * itmRangeWeight(column.range_m);
+  }
+  /// Height above ground, no lower than the model allows.
+  static EMSCAPE_HD float above(float height_msl_m, float ground_msl_m) {
+    const float above_m = height_msl_m - ground_msl_m, least_m = static_cast<float>(kItmHeight.least);
+    return above_m > least_m ? above_m : least_m;
+  }
+  static EMSCAPE_HD double heightAgl(const ExcessColumn& column, int k) {
+    return static_cast<double>(above(column.height_msl_m[k], column.ground_msl_m));
+  }
+  /// At least 2 and no more than the profile has.
+  EMSCAPE_HD int evenIntervals(const TerrainProfile& profile) const {
+    const int last = profile.count - 1;
+    int intervals = static_cast<int>(profile.range_m[last] / step_m) + 1;
+    intervals = intervals < last ? intervals : last;
+    return intervals > 2 ? intervals : 2;
+  }
+  EMSCAPE_HD void spaceEvenly(const TerrainProfile& profile, float* heights_msl_m) const {
+    const int last = profile.count - 1;
+    const double length_m = profile.range_m[last];
+    const int intervals = evenIntervals(profile);
+    int after = 1;
+    for (int i = 0; i <= intervals; ++i) {
+      const double at_m = length_m * i / intervals;
+      while (after < last && profile.range_m[after] < at_m) ++after;
+      const double before_m = profile.range_m[after - 1];
+      const auto part = static_cast<float>((at_m - before_m) / (profile.range_m[after] - before_m));
+      const float before = profile.height_msl_m[after - 1];
+      heights_msl_m[i] = before + part * (profile.height_msl_m[after] - before);
+    }
+  }
+};
+
+}  // namespace emscape::propagation

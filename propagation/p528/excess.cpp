@@ -1,0 +1,62 @@
+#include "propagation/p528/excess.h"
+
+#include <algorithm>
+
+#include "emscape/base/parallel.h"
+#include "propagation/p528/p528.h"
+
+namespace emscape::propagation {
+namespace {
+
+constexpr int kHeights = 48;
+constexpr int kRanges = 256;
+
+}  // namespace
+
+P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables) {
+  const EmitterInputs& emitter = inputs.emitter;
+  const PathExtent& extent = inputs.extent;
+  const double surface_msl_m = inputs.surface_msl_m;
+  const double tx_m = inputs.site.height_msl_m - surface_msl_m;
+  const auto allowed = [](double height_m) {
+    return std::clamp(height_m, kP528Height.least, kP528Height.most);
+  };
+  P528Excess result;
+  result.height_count = kHeights;
+  result.range_count = kRanges;
+  result.surface_msl_m = surface_msl_m;
+  const double lowest_root = std::sqrt(allowed(extent.lowest_msl_m - surface_msl_m));
+  const double highest_root = std::sqrt(allowed(extent.highest_msl_m - surface_msl_m));
+  const double step_root = std::max(highest_root - lowest_root, 0.01) / (kHeights - 1);
+  result.lowest_root = static_cast<float>(lowest_root);
+  result.heights_per_root = static_cast<float>(1 / step_root);
+
+  const auto atmosphere = std::make_shared<const P528Atmosphere>(emitter.frequency_hz);
+  const bool vertical = emitter.polarization != Polarization::horizontal;
+  std::vector<P528Curve> curves;
+  for (int h = 0; h < kHeights; ++h) {
+    const double root = lowest_root + h * step_root;
+    curves.emplace_back(atmosphere, emitter.frequency_hz, allowed(tx_m), allowed(root * root), vertical);
+  }
+  result.farthest_ratio = static_cast<float>(std::max(1.1, extent.farthest_m / curves.front().horizon_m()));
+
+  tables.resize(static_cast<std::size_t>(kHeights) * (kRanges + 1));
+  float* const horizons = tables.data();
+  float* const excess = horizons + kHeights;
+  parallelFor(kHeights, 1, [&](int begin, int end) {
+    for (int h = begin; h < end; ++h) {
+      horizons[h] = static_cast<float>(curves[h].horizon_m());
+      for (int r = 0; r < kRanges; ++r) {
+        const double ratio = static_cast<double>(
+            P528Excess::ratioAt(static_cast<float>(r) / (kRanges - 1), result.farthest_ratio));
+        const P528Loss loss = curves[h].at(ratio * curves[h].horizon_m(), emitter.settings.p528.time_percent);
+        excess[static_cast<std::size_t>(h) * kRanges + r] =
+            static_cast<float>(loss.loss_db - loss.free_space_db);
+      }
+    }
+  });
+  result.tables = tables.data();
+  return result;
+}
+
+}  // namespace emscape::propagation

@@ -1,0 +1,74 @@
+/// Excess of the model `p528`, from curves computed once for an emitter's height.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "emscape/base/host_device.h"
+#include "propagation/column.h"
+#include "propagation/inputs.h"
+
+namespace emscape::propagation {
+
+/// A table of the loss less free space and of the horizon's distance. Heights go by their square root, in
+/// which the horizon's distance is almost linear; ranges by their ratio to that of the horizon, so that lobes
+/// and horizon lie at the same place of neighbouring curves, and densest near it.
+struct P528Excess {
+  static constexpr bool kNeedsTerrain = false;
+  static constexpr bool kInParts = false;
+
+  /// Distance (m) of the horizon, height_count; then the excess (dB), height_count x range_count, range
+  /// fastest.
+  const float* tables = nullptr;
+  int height_count = 0, range_count = 0;
+  float lowest_root = 0, heights_per_root = 0;
+  float farthest_ratio = 0;  ///< of range to the horizon's
+  double surface_msl_m = 0;
+
+  /// @accuracy see docs/models.md
+  EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch&, float* excess) const {
+    for (int k = 0; k < column.count; ++k) {
+      excess[k] = at(static_cast<float>(column.range_m),
+                     static_cast<float>(static_cast<double>(column.height_msl_m[k]) - surface_msl_m));
+    }
+    return 0;
+  }
+
+  /// Position of a ratio of ranges among the nodes, 0..1: half of them lie before the horizon, and they crowd
+  /// at it from either side.
+  static EMSCAPE_HD float positionOf(float ratio, float farthest_ratio) {
+    if (ratio <= 1) return 0.5f * (1 - std::sqrt(1 - ratio));
+    const float beyond = (ratio - 1) / (farthest_ratio - 1);
+    return 0.5f + 0.5f * std::sqrt(beyond < 1 ? beyond : 1.0f);
+  }
+  static EMSCAPE_HD float ratioAt(float position, float farthest_ratio) {
+    if (position <= 0.5f) return 1 - (1 - 2 * position) * (1 - 2 * position);
+    return 1 + (farthest_ratio - 1) * (2 * position - 1) * (2 * position - 1);
+  }
+
+ private:
+  EMSCAPE_HD float at(float range_m, float height_m) const {
+    const float last = static_cast<float>(height_count - 1);
+    float row = (std::sqrt(height_m > 0 ? height_m : 0.0f) - lowest_root) * heights_per_root;
+    row = row < 0 ? 0.0f : row > last ? last : row;
+    const int lower = static_cast<int>(row) < height_count - 2 ? static_cast<int>(row) : height_count - 2;
+    const float upwards = row - static_cast<float>(lower);
+    const float* const horizon_m = tables;
+    const float horizon = horizon_m[lower] + upwards * (horizon_m[lower + 1] - horizon_m[lower]);
+    const float position =
+        positionOf(range_m / horizon, farthest_ratio) * static_cast<float>(range_count - 1);
+    const int before =
+        static_cast<int>(position) < range_count - 2 ? static_cast<int>(position) : range_count - 2;
+    const float outwards = position - static_cast<float>(before);
+    const float* const low = tables + height_count + lower * range_count + before;
+    const float* const high = low + range_count;
+    const float on_low = low[0] + outwards * (low[1] - low[0]);
+    const float on_high = high[0] + outwards * (high[1] - high[0]);
+    return on_low + upwards * (on_high - on_low);
+  }
+};
+
+/// @param tables  receives what the result points to
+P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables);
+
+}  // namespace emscape::propagation

@@ -1,0 +1,18 @@
+/// Model `p528` in the registry.
+#pragma once
+
+#include "emscape/propagation/explanation.h"
+#include "propagation/checks.h"
+#include "propagation/p528/excess.h"
+#include "propagation/path_column.h"
+#include "propagation/setting.h"
+
+namespace emscape::propagation {
+
+std::vector<Setting> p528Settings();
+InputFaults checkP528(const EmitterInputs& inputs);
+std::vector<std::string> p528PathWarnings(const PathInputs& inputs);
+/// By the curve of the path's two heights itself; the field takes it from a table of such curves.
+Explanation explainP528(const PathInputs& inputs, PathColumn& path);
+
+}  // namespace emscape::propagation

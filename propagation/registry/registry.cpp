@@ -1,0 +1,171 @@
+#include <algorithm>
+#include <iterator>
+
+#include "propagation/diffraction/model.h"
+#include "propagation/horizon/model.h"
+#include "propagation/itm/model.h"
+#include "propagation/p528/model.h"
+#include "propagation/p528/p528.h"
+#include "propagation/registry/model_info.h"
+#include "propagation/two_ray/model.h"
+
+namespace emscape::propagation {
+namespace {
+
+template <std::size_t kCount>
+std::vector<const ModelLimit*> listOf(const ModelLimit* const (&limits)[kCount]) {
+  return {std::begin(limits), std::end(limits)};
+}
+
+ModelInfo rowOf(PropagationModel model, const char* reference) {
+  ModelInfo row;
+  row.model = model;
+  row.name = toString(model);
+  row.reference = reference;
+  return row;
+}
+
+ModelInfo freeSpaceRow() {
+  ModelInfo row = rowOf(PropagationModel::free_space, "ITU-R P.525");
+  row.reference_datasets = {"radar/freespace_conversions_derived.csv"};
+  row.gases = GasRole::on_request;
+  row.explain = [](const PathInputs&, PathColumn&) {
+    Explanation explanation;
+    explanation.why = "spreading alone: neither terrain nor earth count";
+    return explanation;
+  };
+  return row;
+}
+
+ModelInfo horizonRow() {
+  ModelInfo row = rowOf(PropagationModel::horizon, "ITU-R P.834, P.453");
+  row.gases = GasRole::on_request;
+  row.casts_shadow = true;
+  row.pathWarnings = horizonPathWarnings;
+  row.explain = explainHorizon;
+  return row;
+}
+
+ModelInfo diffractionRow() {
+  ModelInfo row = rowOf(PropagationModel::diffraction, "ITU-R P.526-15, section 4.5");
+  row.settings = diffractionSettings();
+  row.settings_description = "how; also above itm's heights";
+  row.limits = listOf(kDiffractionLimits);
+  row.reference_datasets = {"p526_delta_bullington", "radar/knife_edge_J_nu_derived.csv"};
+  row.check = checkDiffraction;
+  row.pathWarnings = diffractionPathWarnings;
+  row.explain = explainDiffraction;
+  row.excess = [](const PathInputs& inputs, std::vector<float>&) -> ExcessModel {
+    const bool is_bullington =
+        inputs.emitter.settings.diffraction.method == DiffractionMethod::delta_bullington;
+    return is_bullington ? ExcessModel(diffractionExcess(inputs)) : ExcessModel(edgeExcess(inputs));
+  };
+  return row;
+}
+
+ModelInfo twoRayRow() {
+  ModelInfo row = rowOf(PropagationModel::two_ray, "Blake 1980; ITU-R P.526-15, P.527-6");
+  row.settings = twoRaySettings();
+  row.settings_description = "how";
+  row.limits = listOf(kTwoRayLimits);
+  row.reference_datasets = {"radar/two_ray_flat_pec_derived.csv"};
+  row.on_smooth_surface = true;
+  row.check = checkTwoRay;
+  row.pathWarnings = twoRayPathWarnings;
+  row.explain = explainTwoRay;
+  row.excess = [](const PathInputs& inputs, std::vector<float>&) -> ExcessModel {
+    return twoRayExcess(inputs);
+  };
+  return row;
+}
+
+ModelInfo itmRow() {
+  ModelInfo row = rowOf(PropagationModel::itm, "NTIA Report 82-100");
+  row.settings = itmSettings();
+  row.settings_description = "how";
+  row.also_uses = {PropagationModel::diffraction};
+  row.limits = listOf(kItmLimits);
+  row.reference_datasets = {"itm_p2p", "itm_p2p_published", "itm_area"};
+  row.check = checkItm;
+  row.pathWarnings = diffractionPathWarnings;
+  row.remarkMessages = itmRemarkMessages;
+  row.explain = explainItm;
+  row.excess = [](const PathInputs& inputs, std::vector<float>&) -> ExcessModel { return itmExcess(inputs); };
+  return row;
+}
+
+ModelInfo p528Row() {
+  ModelInfo row = rowOf(PropagationModel::p528, "ITU-R P.528-5");
+  row.settings = p528Settings();
+  row.settings_description = "how";
+  row.limits = listOf(kP528Limits);
+  row.reference_datasets = {"p528"};
+  row.gases = GasRole::included;
+  row.on_smooth_surface = true;
+  row.needs_extent = true;
+  row.check = checkP528;
+  row.pathWarnings = p528PathWarnings;
+  row.explain = explainP528;
+  row.excess = [](const PathInputs& inputs, std::vector<float>& tables) -> ExcessModel {
+    return p528Excess(inputs, tables);
+  };
+  return row;
+}
+
+}  // namespace
+
+const std::vector<ModelInfo>& models() {
+  static const std::vector<ModelInfo> rows{freeSpaceRow(), horizonRow(), diffractionRow(),
+                                           twoRayRow(),    itmRow(),     p528Row()};
+  return rows;
+}
+
+const ModelInfo& modelInfo(PropagationModel model) {
+  return *std::find_if(models().begin(), models().end(),
+                       [model](const ModelInfo& row) { return row.model == model; });
+}
+
+const ModelInfo* modelNamed(const std::string& name) {
+  const auto found = std::find_if(models().begin(), models().end(),
+                                  [&name](const ModelInfo& row) { return row.name == name; });
+  return found == models().end() ? nullptr : &*found;
+}
+
+bool settingsEnter(const ModelInfo& settings_of, const ModelInfo& chosen) {
+  return settings_of.model == chosen.model ||
+         std::count(chosen.also_uses.begin(), chosen.also_uses.end(), settings_of.model) > 0;
+}
+
+bool hasGases(const EmitterInputs& inputs) {
+  const GasRole role = modelInfo(inputs.settings.model).gases;
+  switch (inputs.atmosphere.gases) {
+    case GasLosses::never:
+      return false;
+    case GasLosses::always:
+      return role != GasRole::included;
+    case GasLosses::automatic:
+      return role == GasRole::added;
+  }
+  return false;
+}
+
+bool hasAirLoss(const EmitterInputs& inputs) {
+  return inputs.atmosphere.rain_mm_h > 0 || hasGases(inputs);
+}
+
+bool hasExcess(const EmitterInputs& inputs) {
+  return modelInfo(inputs.settings.model).excess != nullptr || hasAirLoss(inputs);
+}
+
+bool needsExtent(const EmitterInputs& inputs) {
+  return modelInfo(inputs.settings.model).needs_extent || hasAirLoss(inputs);
+}
+
+bool areSame(const ModelSettings& a, const ModelSettings& b) {
+  return a.model == b.model && std::all_of(models().begin(), models().end(), [&](const ModelInfo& row) {
+           return std::all_of(row.settings.begin(), row.settings.end(),
+                              [&](const Setting& setting) { return setting.get(a) == setting.get(b); });
+         });
+}
+
+}  // namespace emscape::propagation

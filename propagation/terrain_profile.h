@@ -1,0 +1,18 @@
+/// Terrain along a path, as the models read it.
+#pragma once
+
+#include "emscape/base/host_device.h"
+
+namespace emscape::propagation {
+
+/// Terrain along a path: `count` posts, ranges rising strictly from 0 at the transmitter.
+struct TerrainProfile {
+  const double* range_m = nullptr;
+  const float* height_msl_m = nullptr;
+  int count = 0;
+
+  /// Up to a post, the new end of the path.
+  EMSCAPE_HD TerrainProfile upTo(int last) const { return {range_m, height_msl_m, last + 1}; }
+};
+
+}  // namespace emscape::propagation

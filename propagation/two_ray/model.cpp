@@ -1,0 +1,56 @@
+#include "propagation/two_ray/model.h"
+
+#include <fmt/core.h>
+
+namespace emscape::propagation {
+
+std::vector<Setting> twoRaySettings() {
+  return {choiceSetting<&ModelSettings::two_ray, &TwoRaySettings::sum>(
+              "sum", TwoRaySum::envelope,
+              "coherent: lobes and nulls; envelope: the lobes' tops, where voxels are larger than lobes"),
+          choiceSetting<&ModelSettings::two_ray, &TwoRaySettings::roughness_model>(
+              "roughness_model", RoughnessModel::miller_brown, "what roughness leaves of the reflection")};
+}
+
+InputFaults checkTwoRay(const EmitterInputs& inputs) {
+  InputFaults faults;
+  checkInput(kTwoRayFrequency, inputs.frequency_hz, InputOrigin::frequency, faults);
+  checkInput(kTwoRayRoughness, inputs.ground.roughness_m, InputOrigin::ground, faults);
+  return faults;
+}
+
+std::vector<std::string> twoRayPathWarnings(const PathInputs& inputs) {
+  return smoothHeightWarnings(kTwoRayHeight, inputs);
+}
+
+TwoRayExcess twoRayExcess(const PathInputs& inputs) {
+  const EmitterInputs& emitter = inputs.emitter;
+  TwoRayParameters parameters;
+  parameters.frequency_hz = emitter.frequency_hz;
+  parameters.effective_earth_radius_m = inputs.site.effective_earth_radius_m;
+  parameters.ground = groundConstants(emitter.ground, emitter.frequency_hz);
+  parameters.roughness_m = emitter.ground.roughness_m;
+  parameters.roughness_model = emitter.settings.two_ray.roughness_model;
+  parameters.sum = emitter.settings.two_ray.sum;
+  TwoRayExcess excess;
+  excess.both = !isLinear(emitter.polarization);
+  parameters.polarization = emitter.polarization == Polarization::vertical ? LinearPolarization::vertical
+                                                                           : LinearPolarization::horizontal;
+  excess.model = twoRayModel<double>(parameters);
+  parameters.polarization = LinearPolarization::vertical;
+  excess.vertical = twoRayModel<double>(parameters);
+  excess.surface_msl_m = inputs.surface_msl_m;
+  excess.tx_msl_m = inputs.site.height_msl_m;
+  return excess;
+}
+
+Explanation explainTwoRay(const PathInputs& inputs, PathColumn& path) {
+  Explanation explanation;
+  explanation.add("two_ray", "interference with the reflected ray, horizon",
+                  path.excess_db(twoRayExcess(inputs)));
+  explanation.why = fmt::format(
+      "over a smooth surface {:.1f} m above mean sea level; terrain has no part in it", inputs.surface_msl_m);
+  return explanation;
+}
+
+}  // namespace emscape::propagation

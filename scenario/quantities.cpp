@@ -1,0 +1,58 @@
+#include "emscape/scenario/quantities.h"
+
+#include "emscape/base/error.h"
+
+namespace emscape::scenario {
+
+const std::vector<QuantityInfo>& quantityTable() {
+  static const std::vector<QuantityInfo> kTable{
+      {Quantity::power_density_dbwm2, "power_density_dbwm2", "dBW/m2", QuantityKind::of_emitters,
+       "radiated power density"},
+      {Quantity::field_strength_dbuvm, "field_strength_dbuvm", "dBuV/m", QuantityKind::of_emitters,
+       "RMS electric field strength"},
+      {Quantity::received_power_dbm, "received_power_dbm", "dBm", QuantityKind::of_receiver,
+       "power at the scenario's first receiver"},
+      {Quantity::snr_db, "snr_db", "dB", QuantityKind::of_radars,
+       "single-pulse signal-to-noise of the best radar for its target"},
+      {Quantity::detection_probability, "detection_probability", "", QuantityKind::of_jamming,
+       "probability that the radars detect their target, jamming included"},
+      {Quantity::jammer_to_signal_db, "jammer_to_signal_db", "dB", QuantityKind::of_jamming,
+       "jamming over the target's echo at the receiver of the radar that bears it best", false, true},
+      {Quantity::burn_through_margin_db, "burn_through_margin_db", "dB", QuantityKind::of_jamming,
+       "how far the echo exceeds what burning through the jamming takes; 60 dB at most", false, true},
+      {Quantity::emitter_count, "emitter_count", "", QuantityKind::of_emitters,
+       "emitters above the count threshold"},
+      {Quantity::dominant_emitter, "dominant_emitter", "", QuantityKind::of_emitters,
+       "index of the emitter with the largest power density", true},
+  };
+  return kTable;
+}
+
+const QuantityInfo& info(Quantity quantity) {
+  return quantityTable()[static_cast<std::size_t>(quantity)];
+}
+
+bool isOfRadars(Quantity quantity) {
+  return info(quantity).kind == QuantityKind::of_radars || isOfJamming(quantity);
+}
+
+bool isOfJamming(Quantity quantity) {
+  return info(quantity).kind == QuantityKind::of_jamming;
+}
+
+std::string quantityNames() {
+  std::string names;
+  for (const QuantityInfo& entry : quantityTable()) {
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  return names;
+}
+
+Quantity quantityFromName(const std::string& name) {
+  for (const QuantityInfo& entry : quantityTable()) {
+    if (name == entry.name) return entry.quantity;
+  }
+  throw Error(ErrorCode::bad_input, "unknown quantity '" + name + "'; one of " + quantityNames());
+}
+
+}  // namespace emscape::scenario

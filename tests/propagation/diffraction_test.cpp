@@ -1,0 +1,353 @@
+// Diffraction: single edges, delta-Bullington path by path and by planes, over real and made-up terrain.
+#include "propagation/diffraction/diffraction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "propagation/diffraction/edges.h"
+#include "propagation/diffraction/sweep.h"
+#include "tests/emfield/random_profile.h"
+
+namespace emscape::propagation {
+namespace {
+
+using emfield::testing::madeUpProfile;
+using emfield::testing::ProfileData;
+using emfield::testing::randomProfile;
+using emfield::testing::whiteMountainsTile;
+
+constexpr double kEarth_m = 6371000.0 * 4 / 3;
+
+DiffractionParameters parametersAt(double frequency_hz) {
+  DiffractionParameters parameters;
+  parameters.frequency_hz = frequency_hz;
+  parameters.effective_earth_radius_m = kEarth_m;
+  return parameters;
+}
+
+ProfileData flatProfile(double length_m, int posts, float height_msl_m = 0) {
+  ProfileData profile;
+  for (int i = 0; i < posts; ++i) {
+    profile.range_m.push_back(length_m * i / (posts - 1));
+    profile.height_msl_m.push_back(height_msl_m);
+  }
+  return profile;
+}
+
+TEST(KnifeEdge, AtGrazingIsSixDecibels) {
+  EXPECT_NEAR(knifeEdgeExactDb(0), 20 * std::log10(2), 1e-9);
+  EXPECT_NEAR(knifeEdgeDb(0.0), 6.03, 0.01);
+}
+
+TEST(KnifeEdge, ExactLossFarInShadowIsItsAsymptote) {
+  for (const double nu : {20.0, 100.0, 1000.0}) {
+    EXPECT_NEAR(knifeEdgeExactDb(nu), 20 * std::log10(kPi * std::sqrt(2.0) * nu), 1e-3) << nu;
+  }
+}
+
+TEST(KnifeEdge, ExactLossHasNoStepWhereItsFormsMeet) {
+  EXPECT_NEAR(knifeEdgeExactDb(1.5 - 1e-9), knifeEdgeExactDb(1.5), 1e-7);
+  EXPECT_NEAR(knifeEdgeExactDb(2.5 - 1e-9), knifeEdgeExactDb(2.5 + 1e-9), 1e-7);
+  EXPECT_NEAR(knifeEdgeExactDb(-1.5 - 1e-9), knifeEdgeExactDb(-1.5 + 1e-9), 1e-7);
+  EXPECT_NEAR(knifeEdgeExactDb(-200), 0, 0.02);
+}
+
+TEST(KnifeEdge, ApproximationIsWithinItsAccuracy) {
+  for (double nu = -0.5; nu < 50; nu += 0.01) EXPECT_NEAR(knifeEdgeDb(nu), knifeEdgeExactDb(nu), 0.13) << nu;
+  for (double nu = -3.01; nu < 100; nu += 0.037) {
+    EXPECT_NEAR(knifeEdgeDb(float(nu)), knifeEdgeDb(double(float(nu))), 1e-5) << nu;
+  }
+  EXPECT_EQ(knifeEdgeDb(-HUGE_VAL), 0);
+  EXPECT_TRUE(std::isnan(knifeEdgeDb(std::nan(""))));
+}
+
+TEST(Diffraction, OfOneWallIsAKnifeEdgeWithItsCorrection) {
+  ProfileData profile = flatProfile(20000, 401, -500);
+  profile.height_msl_m[200] = 60;
+  profile.height_msl_m.front() = profile.height_msl_m.back() = 0;
+  const auto model = diffractionModel<double>(parametersAt(1e9));
+  const double bulge_m = 1e4 * 1e4 / (2 * kEarth_m);
+  const double nu = (60 - 20 + bulge_m) * std::sqrt(2 * 20000 / (wavelength_m(1e9) * 1e4 * 1e4));
+  const DeltaBullington<double> loss = deltaBullington(model, profile.view(), 20.0, 20.0);
+  const double edge_db = knifeEdgeDb(nu);
+  EXPECT_NEAR(loss.terrain_db, edge_db + (1 - std::exp(-edge_db / 6)) * 10.4, 1e-9);
+  EXPECT_NEAR(singleEdgeLossDb(model, profile.view(), 20.0, 20.0), edge_db, 1e-9);
+  EXPECT_NEAR(recursiveDeygoutLossDb(model, profile.view(), 20.0, 20.0, 3), edge_db, 1e-9);
+  EXPECT_NEAR(deygoutLossDb(model, profile.view(), 20.0, 20.0), edge_db + (1 - std::exp(-edge_db / 6)) * 10.8,
+              1e-9);
+}
+
+TEST(Diffraction, DeygoutTakesTheEdgesOnBothSidesOfTheMainOne) {
+  ProfileData profile = flatProfile(40000, 401, -500);
+  profile.height_msl_m.front() = profile.height_msl_m.back() = 0;
+  profile.height_msl_m[100] = 150;
+  profile.height_msl_m[200] = 320;
+  profile.height_msl_m[300] = 180;
+  const auto model = diffractionModel<double>(parametersAt(3e8));
+  const TerrainProfile view = profile.view();
+  const double main_db = singleEdgeLossDb(model, view, 10.0, 10.0);
+  const double tx_db = knifeEdgeDb(mainEdge(model, view, 0, 10.0, 200, 320.0).nu);
+  const double rx_db = knifeEdgeDb(mainEdge(model, view, 200, 320.0, 400, 10.0).nu);
+  ASSERT_GT(tx_db, 0);
+  EXPECT_NEAR(recursiveDeygoutLossDb(model, view, 10.0, 10.0, 1), main_db, 1e-12);
+  EXPECT_NEAR(recursiveDeygoutLossDb(model, view, 10.0, 10.0, 2), main_db + tx_db + rx_db, 1e-12);
+  EXPECT_NEAR(deygoutLossDb(model, view, 10.0, 10.0),
+              main_db + (1 - std::exp(-main_db / 6)) * (tx_db + rx_db + 11.6), 1e-9);
+}
+
+TEST(Diffraction, OverASmoothEarthIsThatOfTheSphericalEarth) {
+  const auto model = diffractionModel<double>(parametersAt(6e8));
+  for (const double length_m : {20e3, 60e3, 120e3}) {
+    const ProfileData profile = flatProfile(length_m, 2001);
+    const DeltaBullington<double> loss = deltaBullington(model, profile.view(), 30.0, 30.0);
+    EXPECT_NEAR(loss.loss_db, std::max(loss.spherical_db, loss.smooth_db), 1e-6) << length_m;
+    EXPECT_EQ(loss.effective.tx_m, 30);
+    EXPECT_NEAR(loss.terrain_db, loss.spherical_db > 0 ? loss.smooth_db : loss.terrain_db, 1e-9);
+  }
+}
+
+TEST(Diffraction, OverTheSeaDiffersOnlyInTheSphericalPart) {
+  DiffractionParameters land = parametersAt(5e7), sea = land;
+  land.polarization = sea.polarization = LinearPolarization::vertical;
+  sea.sea_fraction = 1;
+  const ProfileData profile = flatProfile(100e3, 501);
+  const auto on_land = deltaBullington(diffractionModel<double>(land), profile.view(), 10.0, 10.0);
+  const auto at_sea = deltaBullington(diffractionModel<double>(sea), profile.view(), 10.0, 10.0);
+  EXPECT_GT(on_land.spherical_db, at_sea.spherical_db + 10);
+  EXPECT_EQ(on_land.terrain_db, at_sea.terrain_db);
+  sea.sea_fraction = 0.5;
+  const auto half = deltaBullington(diffractionModel<double>(sea), profile.view(), 10.0, 10.0);
+  EXPECT_NEAR(half.spherical_db, (on_land.spherical_db + at_sea.spherical_db) / 2, 1e-9);
+}
+
+TEST(Diffraction, UnknownTerrainIsNeverAClearPath) {
+  ProfileData profile = flatProfile(30e3, 101);
+  profile.height_msl_m[40] = std::nanf("");
+  const auto model = diffractionModel<double>(parametersAt(1e9));
+  EXPECT_TRUE(std::isnan(deltaBullington(model, profile.view(), 5000.0, 5000.0).loss_db));
+  DiffractionMemory<double> memory(101);
+  const double heights[] = {100, 5000};
+  std::vector<double> plane(202);
+  diffractionPlane(model, profile.view(), 5000.0, heights, 2, memory.scratch(), plane.data());
+  EXPECT_FALSE(std::isnan(plane[2 * 39]));
+  for (int post : {40, 41, 100}) EXPECT_TRUE(std::isnan(plane[2 * std::size_t(post) + 1])) << post;
+}
+
+/// Differences between the planes of a profile and its paths one by one, at some posts and heights.
+struct Difference {
+  double largest_db = 0, float_db = 0, float_path_db = 0;
+  int paths = 0, lossy = 0;
+
+  void look(const ProfileData& data, const DiffractionParameters& parameters, double above_ground_m,
+            double top_msl_m, std::mt19937& random) {
+    const TerrainProfile profile = data.view();
+    const auto model = diffractionModel<double>(parameters);
+    const auto single = diffractionModel<float>(parameters);
+    constexpr int kHeights = 100;
+    std::vector<double> heights;
+    const double lowest = *std::min_element(data.height_msl_m.begin(), data.height_msl_m.end()) - 10;
+    for (int j = 0; j < kHeights; ++j) heights.push_back(lowest + (top_msl_m - lowest) * j / (kHeights - 1));
+    const std::vector<float> single_heights(heights.begin(), heights.end());
+    const double tx = data.height_msl_m[0] + above_ground_m;
+    std::vector<double> plane(std::size_t(profile.count) * kHeights);
+    std::vector<float> single_plane(plane.size());
+    DiffractionMemory<double> memory(profile.count);
+    DiffractionMemory<float> single_memory(profile.count);
+    diffractionPlane(model, profile, tx, heights.data(), kHeights, memory.scratch(), plane.data());
+    diffractionPlane(single, profile, float(tx), single_heights.data(), kHeights, single_memory.scratch(),
+                     single_plane.data());
+    std::uniform_int_distribution<int> any_post(1, profile.count - 1), any_height(0, kHeights - 1);
+    for (int n = 0; n < 50; ++n) {
+      const int post = any_post(random), j = any_height(random);
+      const auto path = deltaBullington(model, profile.upTo(post), tx, heights[std::size_t(j)]);
+      const auto single_path =
+          deltaBullington(single, profile.upTo(post), float(tx), single_heights[std::size_t(j)]);
+      const std::size_t at = std::size_t(post) * kHeights + std::size_t(j);
+      largest_db = std::max(largest_db, std::abs(plane[at] - path.loss_db));
+      float_db = std::max(float_db, std::abs(double(single_plane[at]) - path.loss_db));
+      float_path_db = std::max(float_path_db, std::abs(double(single_path.loss_db) - path.loss_db));
+      ASSERT_FALSE(std::isnan(plane[at]));
+      ++paths;
+      lossy += path.loss_db > 0;
+    }
+  }
+};
+
+DiffractionParameters anyParameters(std::mt19937& random) {
+  std::uniform_real_distribution<double> part(0, 1);
+  DiffractionParameters parameters = parametersAt(3e7 * std::pow(1000, part(random)));
+  parameters.effective_earth_radius_m = 6371000 * (0.8 + 1.2 * part(random));
+  if (part(random) < 0.5) parameters.polarization = LinearPolarization::vertical;
+  if (part(random) < 0.3) parameters.sea_fraction = part(random);
+  return parameters;
+}
+
+TEST(DiffractionPlane, AgreesWithPathsOverRealTerrain) {
+  const auto terrain = whiteMountainsTile();
+  std::mt19937 random(20);
+  Difference difference;
+  for (int n = 0; n < 200; ++n) {
+    const ProfileData profile = randomProfile(*terrain, random, 60 + n);
+    difference.look(profile, anyParameters(random),
+                    n % 3 == 0   ? 2
+                    : n % 3 == 1 ? 30
+                                 : 1500,
+                    800 + 20 * n, random);
+  }
+  EXPECT_EQ(difference.paths, 10000);
+  EXPECT_GT(difference.lossy, 2000);
+  EXPECT_LT(difference.largest_db, 1e-6);
+  EXPECT_LT(difference.float_db, 0.05);
+  EXPECT_LT(difference.float_path_db, 0.05);
+}
+
+TEST(DiffractionPlane, AgreesWithPathsOverMadeUpTerrain) {
+  std::mt19937 random(21);
+  Difference difference;
+  for (int n = 0; n < 100; ++n) {
+    const double relief_m = n % 4 == 0 ? 0 : std::pow(4, n % 4);
+    const ProfileData profile = madeUpProfile(random, 50 + n, n % 2 == 0 ? 20e3 : 300e3, relief_m);
+    difference.look(profile, anyParameters(random), n % 5, 100 + 80 * n, random);
+  }
+  EXPECT_GT(difference.lossy, 1000);
+  EXPECT_LT(difference.largest_db, 1e-6);
+  EXPECT_LT(difference.float_db, 0.05);
+  EXPECT_LT(difference.float_path_db, 0.05);
+}
+
+TEST(DiffractionPlane, HasNoJumpsOverRealTerrain) {
+  const auto terrain = whiteMountainsTile();
+  std::mt19937 random(22);
+  const auto model = diffractionModel<double>(parametersAt(1e9));
+  for (int n = 0; n < 5; ++n) {
+    const ProfileData profile = randomProfile(*terrain, random, 300);
+    DiffractionMemory<double> memory(300);
+    DiffractionSweep<double> sweep(model, profile.view(), profile.height_msl_m[0] + 10.0, memory.scratch());
+    std::vector<double> heights(4000), losses(4000);
+    while (sweep.post() < 290) {
+      sweep.advance();
+      if (sweep.post() % 29 != 5) continue;
+      const double ground_m = profile.height_msl_m[std::size_t(sweep.post())];
+      for (std::size_t j = 0; j < 4000; ++j) heights[j] = ground_m - 5 + 0.05 * double(j);
+      sweep.column(heights.data(), 4000, losses.data());
+      for (std::size_t j = 1; j < 4000; ++j) {
+        // 5 cm up: steep only close behind an edge
+        ASSERT_NEAR(losses[j], losses[j - 1], 1.0) << "post " << sweep.post() << ", " << heights[j] << " m";
+      }
+    }
+  }
+}
+
+TEST(DiffractionPlane, FrequencyMovesTheLossWithoutJumps) {
+  std::mt19937 random(23);
+  const ProfileData profile = madeUpProfile(random, 200, 60e3, 40);
+  double before = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const auto model = diffractionModel<double>(parametersAt(2e7 * std::pow(1.0035, n)));
+    const double loss = deltaBullington(model, profile.view(), 100.0, 120.0).loss_db;
+    if (n > 0) {
+      EXPECT_NEAR(loss, before, 0.2) << n;
+    }
+    before = loss;
+  }
+}
+
+TEST(Traps, EffectiveEarthIsTheCallersAndNeverAppliedTwice) {
+  // The horizon over a smooth earth of a radius that is given: 6 dB of bulge where the path grazes.
+  for (const double radius_m : {6371000.0, kEarth_m, 8.5e6}) {
+    DiffractionParameters parameters = parametersAt(1e10);
+    parameters.effective_earth_radius_m = radius_m;
+    const auto model = diffractionModel<double>(parameters);
+    const double horizon_m = 2 * std::sqrt(2 * radius_m * 50);
+    const auto clearance = leastClearance(model.earth, horizon_m, 50.0, 50.0);
+    EXPECT_NEAR(clearance.clearance_m, 0, 1e-6);
+  }
+}
+
+TEST(Traps, AtTheAntennaItselfAllStaysFinite) {
+  const ProfileData profile = flatProfile(1000, 1001, 300);
+  const auto model = diffractionModel<float>(parametersAt(1e9));
+  DiffractionMemory<float> memory(1001);
+  DiffractionSweep<float> sweep(model, profile.view(), 310, memory.scratch());
+  const float heights[] = {200, 301, 310, 5000};
+  float losses[4];
+  for (int post = 0; post < 4; ++post) {
+    if (post > 0) sweep.advance();
+    sweep.column(heights, 4, losses);
+    for (int j = 0; j < 4; ++j) {
+      EXPECT_TRUE(std::isfinite(losses[j])) << post << ", " << heights[j];
+      EXPECT_NEAR(losses[j], deltaBullington(model, profile.view().upTo(post), 310.f, heights[j]).loss_db,
+                  1e-3);
+    }
+  }
+}
+
+TEST(Traps, MissingTerrainIsNotSeaLevel) {
+  ProfileData profile = flatProfile(30e3, 101, 300);
+  const auto model = diffractionModel<float>(parametersAt(1e9));
+  profile.height_msl_m[100] = std::nanf("");
+  EXPECT_TRUE(std::isnan(deltaBullington(model, profile.view(), 310.f, 310.f).loss_db));
+  profile.height_msl_m[0] = std::nanf("");
+  EXPECT_TRUE(std::isnan(deltaBullington(model, profile.view().upTo(0), 310.f, 310.f).loss_db));
+}
+
+TEST(Diffraction, AntennasInTheGroundStandAMetreAboveIt) {
+  const ProfileData profile = flatProfile(30e3, 101, 300);
+  const auto model = diffractionModel<double>(parametersAt(1e9));
+  EXPECT_EQ(deltaBullington(model, profile.view(), 310.0, 120.0).loss_db,
+            deltaBullington(model, profile.view(), 310.0, 301.0).loss_db);
+}
+
+TEST(SphericalEarth, ReflectionPointSolvesItsCubic) {
+  const auto model = diffractionModel<double>(parametersAt(1e9));
+  for (const double h1 : {1.0, 20.0, 500.0, 9000.0}) {
+    for (const double h2 : {1.0, 3.0, 20.0, 2000.0}) {
+      const double horizon_m = std::sqrt(2 * kEarth_m) * (std::sqrt(h1) + std::sqrt(h2));
+      for (const double part : {1e-3, 0.1, 0.5, 0.9, 0.999999}) {
+        const double d = part * horizon_m;
+        // P.526-15 eq. (25) as it stands
+        const double c = (h1 - h2) / (h1 + h2), m = d * d / (4 * kEarth_m * (h1 + h2));
+        const double argument = 1.5 * c * std::sqrt(3 * m / std::pow(m + 1, 3));
+        const double b = 2 * std::sqrt((m + 1) / (3 * m)) *
+                         std::cos(kPi / 3 + std::acos(std::clamp(argument, -1.0, 1.0)) / 3);
+        const double d1 = d / 2 * (1 + b), d2 = d - d1;
+        const double clearance =
+            ((h1 - d1 * d1 / (2 * kEarth_m)) * d2 + (h2 - d2 * d2 / (2 * kEarth_m)) * d1) / d;
+        const auto least = leastClearance(model.earth, d, h1, h2);
+        EXPECT_NEAR(least.clearance_m, clearance, 1e-6 * (h1 + h2)) << h1 << ", " << h2 << ", " << part;
+      }
+    }
+  }
+}
+
+TEST(SphericalEarth, IsFreeOfLossFromTheClearHeightUpwards) {
+  for (const double frequency_hz : {3e7, 1e9, 2e10}) {
+    const auto earth = diffractionModel<double>(parametersAt(frequency_hz)).earth;
+    for (const double distance_m : {1e3, 5e3, 40e3, 200e3}) {
+      for (const double other_m : {2.0, 15.0, 800.0}) {
+        bool was_clear = false;
+        for (double height_m = 1; height_m < 12000; height_m += 7) {
+          const bool is_clear =
+              isClearThroughout(earth, distance_m, sightLine(earth, distance_m, other_m, height_m));
+          EXPECT_TRUE(is_clear || !was_clear);
+          was_clear = is_clear;
+          const double horizon_m = std::sqrt(2 * kEarth_m) * (std::sqrt(other_m) + std::sqrt(height_m));
+          if (distance_m >= horizon_m) {
+            EXPECT_FALSE(is_clear);
+            continue;
+          }
+          // by P.526 itself: where the ray would be reflected
+          const auto least = leastClearance(earth, distance_m, other_m, height_m);
+          const bool is_clear_there = least.clearance_m > least.required_m;
+          EXPECT_TRUE(is_clear_there || !is_clear) << frequency_hz << ", " << distance_m << ", " << height_m;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace emscape::propagation
