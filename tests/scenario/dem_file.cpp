@@ -1,6 +1,5 @@
 #include "tests/scenario/dem_file.h"
 
-#include <cpl_conv.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
