@@ -345,13 +345,12 @@ void LiveCaster::publish() {
     if (finished_is_exact_) {
       picture.finished = painter_.picture(note);
       painter_.fetch(picture.image);
-    } else if (view_.on_device.value) {
-      picture.on_device = painter_.annotatedOnDevice(note);
+      return;
     }
-    if (picture.finished.rgba.empty() && !picture.on_device) {
-      painter_.fetch(busy_image_);
-      picture.finished = painter_.annotated(busy_image_, note);
-    }
+    if (view_.on_device.value) picture.on_device = painter_.annotatedOnDevice(note);
+    if (picture.on_device) return;
+    painter_.fetch(busy_image_);
+    picture.finished = painter_.annotated(busy_image_, note);
   });
   picture.size = painter_.size();
   const double labels_ms = watch.lap_ms();

@@ -34,6 +34,14 @@ struct CutView {
   /// Values as near to the floor as this are no field: sections are transparent there.
   float floor = 0, near_floor = 0;
 
+  /// Whether a position is on the removed side of a plane.
+  bool removes(const Vec3d& position) const {
+    for (int n = 0; n < count; ++n) {
+      if (dot(planes[n].normal, position) > planes[n].offset) return true;
+    }
+    return false;
+  }
+
   /// Clips a part of a ray. @param of_ground  to the planes that cut the ground alone
   EMSCAPE_HD void clip(const Vec3d& origin, const Vec3d& direction, bool of_ground,
                        CutInterval& interval) const {

@@ -139,11 +139,13 @@ SceneBox Scene::box() const {
 }
 
 bool Scene::isHidden(const Vec3d& frame_m) {
-  if (!height_field_) return false;
-  prepareGround();
   const SceneBox drawn = box();
   const IndexSpace space(grid(), drawn);
   const Vec3d target = space.position(drawn.toDrawn(frame_m));
+  const CutView cut = cutView();
+  if (cut.removes(target)) return true;
+  if (!height_field_) return false;
+  prepareGround();
   Vec3d eye = space.position(camera_.eye_m);
   if (camera_.projection == Projection::orthographic) {
     const Vec3d forward = normalized(space.vector(camera_.forward));
@@ -152,7 +154,7 @@ bool Scene::isHidden(const Vec3d& frame_m) {
   const double distance = length(target - eye);
   if (!(distance > 0)) return false;
   const Ray ray{eye, (target - eye) / distance};
-  const GroundHit hit = groundHit(ground_->view(), cutView(), ray);
+  const GroundHit hit = groundHit(ground_->view(), cut, ray);
   // A marker that stands on the ground is not hidden by what it stands on.
   constexpr double kStandsOn_voxels = 0.5;
   return hit.found && hit.distance < distance - kStandsOn_voxels;

@@ -34,6 +34,8 @@ void keepError(int, const char* text) {
 }
 
 [[noreturn]] void refuse(const std::string& what) {
+  // GLFW ends the sentence with the display's name, which may be empty.
+  last_error.erase(last_error.find_last_not_of(' ') + 1);
   throw Error(ErrorCode::device, what + (last_error.empty() ? "" : ": " + last_error) +
                                      "; 'emscape render' draws pictures and videos without a window");
 }

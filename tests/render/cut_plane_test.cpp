@@ -185,6 +185,33 @@ TEST(Cut, SectionIsTransparentWhereTheVolumeIsMaskedOrHoldsNoField) {
   EXPECT_EQ(look(floor, kFromAbove, {"horizontal:altitude_m=30"}).a, 0.0F);
 }
 
+TEST(Cut, PositionsOnTheRemovedSideAreHidden) {
+  Renderer renderer;
+  show(renderer, makeVolume({20, 10, 8}, {3, 5, 2}, [](int, int, int) { return 1.0F; }), fog(0.03));
+  const SceneBox box = renderer.sceneBox();
+  const Vec3d center = (box.lower_m + box.upper_m) * 0.5;
+  const Vec3d step{0, 0, 0.1 * (box.upper_m.z - box.lower_m.z)};
+  EXPECT_FALSE(renderer.isHidden(center + step));
+  for (const double exaggeration : {1.0, 3.0}) {
+    RenderSettings settings = renderer.settings();
+    settings.vertical_exaggeration = exaggeration;
+    CutPlane plane;
+    plane.altitude_m = center.z;
+    settings.planes = {plane};
+    renderer.setSettings(settings);
+    EXPECT_TRUE(renderer.isHidden(center + step));
+    EXPECT_FALSE(renderer.isHidden(center - step));
+    settings.planes = {flipped(plane)};
+    renderer.setSettings(settings);
+    EXPECT_FALSE(renderer.isHidden(center + step));
+    EXPECT_TRUE(renderer.isHidden(center - step));
+    plane.on = false;
+    settings.planes = {plane};
+    renderer.setSettings(settings);
+    EXPECT_FALSE(renderer.isHidden(center + step));
+  }
+}
+
 TEST(Cut, VerticalPlanesCutTheGroundAndHorizontalOnesLeaveIt) {
   const auto volume = makeVolume({10, 10, 10}, {10, 10, 10}, [](int, int, int) { return 0.0F; });
   Renderer renderer;

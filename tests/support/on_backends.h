@@ -3,10 +3,18 @@
 
 #include <gtest/gtest.h>
 
+#include <ostream>
 #include <string>
 
 #include "emscape/base/backend.h"
 #include "tests/support/gpu.h"
+
+namespace emscape {
+/// For the names of tests.
+inline void PrintTo(Backend backend, std::ostream* out) {
+  *out << toString(backend);
+}
+}  // namespace emscape
 
 namespace emscape::test {
 

@@ -60,7 +60,8 @@ class Renderer {
   const Camera& camera() const;
   /// The box of the volume as it is drawn. A volume must be set.
   SceneBox sceneBox() const;
-  /// Whether the ground hides a position (frame metres) from the camera.
+  /// Whether a position (frame metres) is on the removed side of a plane, or the ground hides it from the
+  /// camera. A volume must be set.
   bool isHidden(const Vec3d& frame_m) const;
 
   /// Draws a frame of the scene: casts the source pixels of the plan's pattern and interpolates the others.
