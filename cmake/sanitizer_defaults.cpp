@@ -3,11 +3,12 @@
 
 // Debian's libraries are not instrumented: the sanitizer misses how OpenVDB and oneTBB hand data from thread
 // to thread. Our own loops do not use oneTBB here (base/parallel.cpp) and are checked in full. GDAL takes its
-// locks in changing order.
+// locks in changing order. Cairo hands freed objects from thread to thread by atomic operations.
 extern "C" const char* __tsan_default_suppressions() {
   return "called_from_lib:libtbb.so\n"
          "race:libopenvdb.so\n"
          "race:libz.so\n"
+         "race:libcairo.so\n"
          "race:tbb::detail::\n"
          "deadlock:libgdal.so\n";
 }
