@@ -32,8 +32,8 @@ std::size_t endOfQuoted(std::string_view text, std::size_t begin) {
   refuse("a text in quotes has no end");
 }
 
-/// A text without quotes, perhaps over several lines: what it holds but for blanks stands in the file as it
-/// is.
+/// A text without quotes, perhaps over several lines: except for blanks, its characters are those of the
+/// file.
 std::size_t endOfPlain(std::string_view text, std::size_t begin, std::string_view value) {
   std::size_t i = begin, end = begin;
   for (const char c : value) {

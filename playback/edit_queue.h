@@ -37,7 +37,7 @@ class EditQueue {
 
   /// Between the first drag() and the end of the drag.
   bool isDragging() const { return is_dragging_; }
-  /// Whether anything that was asked for is still to be done.
+  /// True if anything that was asked for is still to be done.
   bool isBusy() const { return !waiting_.empty(); }
   /// Makes what can be made now. @return the edits that have been made or refused since the last call
   std::vector<Outcome> update(EditHistory& history);

@@ -23,7 +23,7 @@ class FrameCache {
   const Frame* find(int index) const;
   /// Adds a frame; those with the largest distance go where the bound asks for it.
   void keep(int index, Frame frame, const Distance& distance);
-  /// Whether a frame would be kept: there is room, or one with a larger distance.
+  /// True if a frame would be kept: there is room, or one with a larger distance.
   bool wouldKeep(int index, const Distance& distance) const;
   /// Ascending.
   std::vector<int> indices() const;

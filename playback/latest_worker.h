@@ -39,7 +39,7 @@ class LatestWorker {
     if (result_) taken_ = done_;
     return std::exchange(result_, std::nullopt);
   }
-  /// Whether the result of the last request is still to come, or to be taken.
+  /// True if the result of the last request is still to come, or to be taken.
   bool isBusy() const { return taken_ != asked_; }
 
  private:

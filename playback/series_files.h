@@ -33,7 +33,7 @@ class SeriesFiles {
   /// @throws Error
   std::set<std::string> setRanges(int step, const std::vector<ValueRange>& ranges) const;
 
-  /// Whether there is a list of the files that writeIndex() writes.
+  /// True if there is a list of the files that writeIndex() writes.
   bool hasIndex() const;
   /// Writes it. @param finished  one per step
   void writeIndex(const std::vector<bool>& finished) const;

@@ -32,11 +32,11 @@ const QuantityInfo& info(Quantity quantity) {
   return quantityTable()[static_cast<std::size_t>(quantity)];
 }
 
-bool isOfRadars(Quantity quantity) {
-  return info(quantity).kind == QuantityKind::of_radars || isOfJamming(quantity);
+bool needsRadar(Quantity quantity) {
+  return info(quantity).kind == QuantityKind::of_radars || needsJammer(quantity);
 }
 
-bool isOfJamming(Quantity quantity) {
+bool needsJammer(Quantity quantity) {
   return info(quantity).kind == QuantityKind::of_jamming;
 }
 

@@ -52,7 +52,7 @@ const ValueSpec kFrequency = number("Hz").from(1e6).to(1e12);
 const ValueSpec kBandwidth = number("Hz").above(0).to(1e11);
 const ValueSpec kLoss = number("dB").from(0).to(100);
 const ValueSpec kGain = number("dBi").from(-50).to(80);
-constexpr int kMostItems = 10000;
+constexpr int kMaxItems = 10000;
 
 KeySpec latitudeKey() {
   return required("latitude_deg", kLatitude, "geodetic, WGS84");
@@ -102,7 +102,7 @@ const ObjectSpec& terrainSpec() {
       "terrain",
       "",
       {
-          required("files", listOf(kFile, 1, kMostItems),
+          required("files", listOf(kFile, 1, kMaxItems),
                    "elevation files (HGT, DTED, GeoTIFF, VRT), relative to the scenario's folder"),
           byDefault("vertical_datum", choice({"egm96", "ellipsoid"}), "egm96",
                     "what the files' heights count from"),
@@ -313,7 +313,7 @@ const ObjectSpec& scanSpec() {
           required("rate_deg_s", number("deg/s").above(0).to(1e5), "azimuth speed", sweeps),
           required("elevation_step_deg", number("deg").above(0).to(90), "between bars", {"raster"}),
           required("bars", kInteger.from(1).to(1000), "sweeps stacked, from the lowest upwards", {"raster"}),
-          required("dwells", listOf(object(dwellSpec()), 1, kMostItems), "repeated for ever", {"dwell_list"}),
+          required("dwells", listOf(object(dwellSpec()), 1, kMaxItems), "repeated for ever", {"dwell_list"}),
       }};
   return spec;
 }
@@ -378,7 +378,7 @@ const ObjectSpec& emitterSpec() {
           },
           {
               required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
-              optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMostItems),
+              optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMaxItems),
                        "[begin, end) of the times at which it radiates; always by default"),
           })};
   return spec;
@@ -423,7 +423,7 @@ const ObjectSpec& outputSpec() {
       "output",
       "",
       {
-          byDefault("quantities", listOf(choice(quantityChoices()), 1, kMostItems).distinct(),
+          byDefault("quantities", listOf(choice(quantityChoices()), 1, kMaxItems).distinct(),
                     OutputSpec{}.quantities, "what the volumes hold"),
           byDefault("combine", choiceUpTo(CombineMode::per_band), toString(OutputSpec{}.combine),
                     "how emitters are put together"),
@@ -462,12 +462,12 @@ const ObjectSpec& scenarioSpec() {
                    "the ground; by default a smooth earth at mean sea level"),
           optional("atmosphere", object(atmosphereSpec()), "what the waves travel through"),
           optional("ground", object(groundSpec()), "what the waves meet below"),
-          required("platforms", listOf(object(platformSpec()), 1, kMostItems).distinct(),
+          required("platforms", listOf(object(platformSpec()), 1, kMaxItems).distinct(),
                    "what carries emitters"),
-          required("emitters", listOf(object(emitterSpec()), 1, kMostItems).distinct(), "what radiates"),
-          optional("receivers", listOf(object(receiverSpec()), 1, kMostItems).distinct(),
+          required("emitters", listOf(object(emitterSpec()), 1, kMaxItems).distinct(), "what radiates"),
+          optional("receivers", listOf(object(receiverSpec()), 1, kMaxItems).distinct(),
                    "placed at every voxel for received_power_dbm, which takes the first"),
-          optional("bands", listOf(object(bandSpec()), 1, kMostItems).distinct(), "for combine per_band"),
+          optional("bands", listOf(object(bandSpec()), 1, kMaxItems).distinct(), "for combine per_band"),
           optional("output", object(outputSpec()), "what is computed"),
       }};
   return spec;

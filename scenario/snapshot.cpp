@@ -35,7 +35,7 @@ PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Pl
   if (at.height_agl_m) {
     if (std::isnan(ground_m)) {
       throw Error(
-          ErrorCode::bad_input, platform.place,
+          ErrorCode::bad_input, platform.location,
           fmt::format("{}: its height is given above ground, but {}", whereAndWhen(platform, at, t_s),
                       terrain == nullptr ? "the terrain was not loaded"
                                          : "the terrain is missing there (a void, or outside the files)"));
@@ -46,7 +46,7 @@ PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Pl
   }
   if (ground_m - state.height_msl_m > kGroundTolerance_m) {
     throw Error(
-        ErrorCode::bad_input, platform.place,
+        ErrorCode::bad_input, platform.location,
         fmt::format(
             "{} lies {:.1f} m below {}: it is at {:.1f} m, the ground at {:.1f} m above mean sea level",
             whereAndWhen(platform, at, t_s), ground_m - state.height_msl_m,

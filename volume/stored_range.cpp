@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Changes the JSON beside a volume file.
+/// Changes the JSON sidecar of a volume file.
 /// @param describe  finds the description of a quantity in the document; null if there is none
 template <class Describe>
 void setRangeInSidecar(const fs::path& path, const std::vector<StoredRange>& ranges,

@@ -1,4 +1,4 @@
-/// emscape bench: measures.
+/// emscape bench: benchmarks.
 #include "apps/emscape/bench.h"
 
 namespace emscape::app {

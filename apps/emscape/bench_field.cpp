@@ -30,7 +30,7 @@ struct BenchFieldOptions {
   std::vector<std::string> emitters;  ///< that move and turn; empty: all
 };
 
-/// Indices of the emitters that an option names. @throws Error (usage) for a name that the scenario lacks
+/// Indices of the emitters that an option names. @throws Error (usage) for an unknown name
 std::vector<std::size_t> chosenEmitters(const scenario::Scenario& scenario,
                                         const std::vector<std::string>& names) {
   std::vector<std::size_t> chosen;
@@ -64,13 +64,13 @@ Measured mediansOf(const std::vector<Measured>& runs) {
   };
   return {of([](const Measured& run) { return run.update_ms; }),
           {of([](const Measured& run) { return run.stages.fan_ms; }),
-           of([](const Measured& run) { return run.stages.plane_ms; }),
+           of([](const Measured& run) { return run.stages.excess_ms; }),
            of([](const Measured& run) { return run.stages.combine_ms; }),
            of([](const Measured& run) { return run.stages.product_ms; })}};
 }
 
 /// Moves an emitter north by more than the solver's tolerance, and back at the next call: it stays near its
-/// place.
+/// position.
 void move(scenario::EmitterState& emitter, double tolerance_m, int repeat) {
   constexpr double kMetresPerDegree = 111000;
   const double shift_deg = 2 * tolerance_m / kMetresPerDegree;
@@ -158,7 +158,7 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
                {"repeats", options.repeats},
                {"stages_ms",
                 {{"fan", moved.stages.fan_ms},
-                 {"plane", moved.stages.plane_ms},
+                 {"plane", moved.stages.excess_ms},
                  {"combine", moved.stages.combine_ms},
                  {"product", moved.stages.product_ms}}},
                {"update_ms",
@@ -176,8 +176,8 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
   print("device {} ({} threads), grid {} x {} x {}, {} emitters, medians of {}\n\n", device, threadCount(),
         dims.x, dims.y, dims.z, emitters, options.repeats);
   print("stages, all emitters moved (ms)\n");
-  print("  fan      {:10.2f}\n  plane    {:10.2f}\n  combine  {:10.2f}\n  product  {:10.2f}\n\n",
-        moved.stages.fan_ms, moved.stages.plane_ms, moved.stages.combine_ms, moved.stages.product_ms);
+  print("  fan      {:10.2f}\n  excess   {:10.2f}\n  combine  {:10.2f}\n  product  {:10.2f}\n\n",
+        moved.stages.fan_ms, moved.stages.excess_ms, moved.stages.combine_ms, moved.stages.product_ms);
   print("update (ms)\n");
   print("  all moved     {:10.2f}\n  one moved     {:10.2f}\n  beams turned  {:10.2f}\n\n", moved.update_ms,
         one_moved.update_ms, turned.update_ms);

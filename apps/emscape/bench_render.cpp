@@ -1,4 +1,4 @@
-/// emscape bench render: how long one frame takes.
+/// emscape bench render: time of one frame.
 #include <fmt/core.h>
 
 #include <memory>
@@ -21,7 +21,7 @@ struct BenchRenderOptions {
   int frames = 20;
 };
 
-/// As it looks before black.
+/// Composited on black.
 render::Image8 onBlack(const render::Image& image) {
   render::Image8 picture = render::quantize(image);
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;

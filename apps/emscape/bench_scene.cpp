@@ -34,7 +34,7 @@ render::TransferFunction functionFor(const volume::VolumeInfo& info, const std::
   return render::parseTransferFunction(kPaperTransfer, "scenarios/transfer/paper.json", info);
 }
 
-/// A camera carried clockwise, as seen from above, about the vertical through its target.
+/// A camera rotated clockwise, as seen from above, about the vertical through its target.
 render::CameraSpec turned(render::CameraSpec spec, double angle_deg) {
   if (spec.kind == render::CameraSpec::Kind::orbit) {
     spec.azimuth_deg = std::remainder(spec.azimuth_deg + angle_deg, 360.0);
@@ -63,7 +63,7 @@ Json triple(const Vec3d& v) {
   return {v.x, v.y, v.z};
 }
 
-/// Among drawn positions, as render::Camera has it.
+/// In drawn coordinates, as in render::Camera.
 Json cameraJson(const render::Camera& camera) {
   return {
       {"projection", camera.projection == render::Projection::perspective ? "perspective" : "orthographic"},

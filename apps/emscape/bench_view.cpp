@@ -1,4 +1,4 @@
-/// emscape bench view: how fast the window answers.
+/// emscape bench view: response times of the window.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -29,10 +29,10 @@ struct BenchViewOptions {
   std::string size = "1200x900";
   double idle_s = 10;
   bool share_gpu = false;
-  std::string log;  ///< kept there; empty: not kept
+  std::string log;  ///< file for the log; empty: not kept
 };
 
-/// A folder that is gone with the object.
+/// A temporary folder, removed with the object.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -70,7 +70,7 @@ double quantileOf(std::vector<double> values, double part) {
                          static_cast<std::size_t>(part * static_cast<double>(values.size())))];
 }
 
-/// Null where nothing was measured.
+/// Null if nothing was measured.
 Json medianJson(const std::vector<double>& values) {
   return values.empty() ? Json() : Json(medianOf(values));
 }

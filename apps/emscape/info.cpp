@@ -1,4 +1,4 @@
-/// emscape info: what a file holds.
+/// emscape info: contents of a file.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -133,7 +133,7 @@ Json describeElevation(const std::string& file) {
 }
 
 Json describeAntenna(const std::string& file) {
-  // A CSV grid holds a shape alone: its gain stands in the scenario.
+  // A CSV grid contains only a shape: its gain is in the scenario.
   const bool has_gain = file.size() < 4 || file.substr(file.size() - 4) != ".csv";
   const scenario::AntennaPtr antenna =
       scenario::readAntenna(file, has_gain ? std::numeric_limits<double>::quiet_NaN() : 0.0);

@@ -88,7 +88,7 @@ int parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
-/// What this program is and what it can compute with.
+/// The program's version and devices.
 std::string versionText() {
   std::string text = std::string("emscape ") + kVersion;
   const std::string cuda = cudaOfBuild();
@@ -128,7 +128,7 @@ int emscapeMain(int argc, char** argv) {
   if (const int status = parse(app, argc, argv); status >= 0) return status;
   installLog(global);
   setThreadLimit(global.threads);
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is an error of the write, told like any other
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as an error of the write
   catchInterrupts();
   return run(action);
 }

@@ -1,4 +1,4 @@
-/// emscape profile: why there is, or is not, coverage at a point.
+/// emscape profile: explains the coverage at a point.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -71,8 +71,8 @@ int emitterNamed(const Scenario& scenario, const std::string& name) {
               fmt::format("--emitter: no emitter '{}' in {}; it has {}", name, scenario.file, known));
 }
 
-/// The scenario with a platform at the point, the last one: ground is read below it and its height is checked
-/// as any platform's.
+/// The scenario with a platform at the point, the last one: its ground is read and its height checked as for
+/// any platform.
 std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenario::SitePosition& point) {
   auto result = std::make_shared<Scenario>(scenario);
   scenario::Platform platform;

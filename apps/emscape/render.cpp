@@ -39,7 +39,7 @@ using playback::RealTimeLoop;
 using playback::RealTimeOptions;
 using playback::ViewState;
 
-/// Those that a view has, too, count only where they are given; viewOf() has their defaults.
+/// Options that are also in a view have an effect only if given; viewOf() has their defaults.
 struct RenderOptions {
   const CLI::App* command = nullptr;
   playback::FrameSelection selection;
@@ -77,8 +77,8 @@ struct RenderOptions {
   std::string device_volume = "float";
 };
 
-/// What is drawn: the view of --state, or the default one, with the options that are given. They are read
-/// here, so that wrong ones are told before anything is computed.
+/// The view to draw: that of --state, or the default one, with the given options. They are parsed here, so
+/// that errors are reported before anything is computed.
 ViewState viewOf(const RenderOptions& options) {
   ViewState view = options.state.empty() ? ViewState{} : playback::readViewState(options.state);
   const auto isGiven = [&options](const char* name) { return options.command->count(name) > 0; };
@@ -147,12 +147,12 @@ Sinks openSinks(const RenderOptions& options, const PictureStyle& style, const F
   return sinks;
 }
 
-/// What is drawn, and who draws it; the first frame is set.
+/// The source and the painter; the first frame is set.
 struct Stage {
   ComputeTarget target;
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<Painter> painter;
-  std::optional<playback::ValueRange> range;  ///< of the series, as far as it was looked at
+  std::optional<playback::ValueRange> range;  ///< of the searched steps of the series
 };
 
 Stage openStage(const playback::FrameSelection& selection, const RenderOptions& options,
@@ -169,7 +169,7 @@ Stage openStage(const playback::FrameSelection& selection, const RenderOptions& 
   });
 }
 
-/// Writes what --save-state asks for: the view, with the colours that were fitted to the first frame.
+/// Writes the file of --save-state: the view, with the colours that were fitted to the first frame.
 void saveState(const RenderOptions& options, ViewState view, const Stage& stage) {
   if (options.save_state.empty()) return;
   view.time_s = stage.source->time_s(0);
@@ -188,7 +188,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   const ViewState view = viewOf(options);
   const PictureStyle style = styleOf(view, options);
   const std::string mode = render::toString(view.settings.mode);
-  // Files are not in a hurry: `auto` casts every pixel.
+  // For files `auto` casts every pixel.
   const render::FramePlan plan{
       options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays),
       render::parseInterpolation(options.interpolate)};
@@ -230,7 +230,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
 
 RealTimeOptions realTimeOptionsOf(const RenderOptions& options) {
   RealTimeOptions loop;
-  constexpr double kBudget_ms = 40;  // the paper's bound of real time
+  constexpr double kBudget_ms = 40;  // the paper's limit for real time
   loop.frames_per_s = options.frames_per_s.value_or(1000 / options.budget_ms.value_or(kBudget_ms));
   loop.speed = options.speed;
   loop.duration_s = options.duration_s;
@@ -256,7 +256,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   constexpr int kSeveral = 2;
   const Sinks sinks = openSinks(options, style, *source, kSeveral, loop_options.frames_per_s);
 
-  // Long enough for the moments when packing lags behind.
+  // Long enough for delays of the encoder.
   constexpr long long kWaitingBytes = 256LL << 20;
   BackgroundWriter writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * style.size.count()))));
   int number = 0;

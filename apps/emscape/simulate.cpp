@@ -44,7 +44,7 @@ playback::SeriesOptions seriesOptionsOf(const SimulateOptions& options) {
   return series;
 }
 
-/// @throws Error (usage) if the folder holds a series and no option says what is to become of it
+/// @throws Error (usage) if the folder has a series and neither --resume nor --overwrite is given
 void checkFolderIsFree(const SimulateOptions& options) {
   if (options.resume || options.force) return;
   if (const std::optional<playback::SeriesStatus> found = playback::findSeries(options.folder)) {
@@ -64,7 +64,7 @@ Json rangesToJson(const playback::SeriesResult& result) {
   return ranges;
 }
 
-/// Makes the series one of differences.
+/// Changes the series to differences.
 void compare(playback::FieldSeries& series, const SimulateOptions& options) {
   const bool with_original = options.compare == playback::kOriginal;
   const std::string& file = with_original ? options.scenario : options.compare;

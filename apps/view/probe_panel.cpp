@@ -1,4 +1,4 @@
-/// The probe: what is at a point and why.
+/// The probe: the values at a point and their explanation.
 #include <fmt/format.h>
 
 #include <algorithm>

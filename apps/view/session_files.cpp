@@ -101,7 +101,7 @@ void Session::saveScenario(const std::string& given_file, bool then_quits) {
         edits_->markSaved();
         opened_unsaved_ = false;
       }
-      keep_at_s_ = log_.now_s();  // the autosave is not needed any more
+      keep_at_s_ = log_.now_s();  // the autosave is obsolete
       tell("written: " + file);
       if (then_quits) window_.quit();
     };
@@ -118,7 +118,7 @@ void Session::lookForKeptView() {
   });
 }
 
-/// Keeps the view a moment after the last edit, and drops it when the edits are saved or undone.
+/// Writes the autosave shortly after the last edit, and removes it when the edits are saved or undone.
 void Session::keepEdits(double now_s) {
   if (!edits_ || dragging_ || isDragging()) return;
   if (edits_->scenario()->hash != kept_hash_) {

@@ -1,4 +1,4 @@
-/// Verbs of what is compared and cut open.
+/// Verbs of comparison and cutting planes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::size_t indexOf(const Command& command, const std::vector<CutPlane>& planes)
   throw Error(ErrorCode::bad_input, fmt::format("plane: index {:g}: expected 1..{}", number, planes.size()));
 }
 
-/// Takes the values that a command gives a plane.
+/// Applies the values of a command to a plane.
 void change(CutPlane& plane, const Command& command) {
   const bool horizontal = plane.kind == CutPlane::Kind::horizontal;
   const std::vector<const char*> of_the_other = horizontal

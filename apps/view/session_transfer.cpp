@@ -1,4 +1,4 @@
-/// Verbs of colours and opacities, and where these come from.
+/// Verbs of colours and opacities, and their source.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ double opacityOf(const Command& command) {
               fmt::format("{}: opacity {:g}: expected a number 0..1", command.verb, opacity));
 }
 
-/// Selects the point that a command names; without a name the one that is selected is meant.
+/// Selects the point that a command names; without a name the selection is kept.
 void selectPoint(playback::TransferEditor& editor, const Command& command) {
   if (!command.has("index")) return;
   const auto count = static_cast<double>(editor.function().opacities.size());
@@ -54,10 +54,10 @@ void setPoint(playback::TransferEditor& editor, const Command& command) {
 
 }  // namespace
 
-// --- where colours come from ---
+// --- source of the colours ---
 
 void Session::takeColors() {
-  takes_colors_ = picture_->status.computing;  // a picture of what was asked for before
+  takes_colors_ = picture_->status.computing;  // the picture is of an earlier request
   const playback::OpacityAxis axis = transfer_ ? transfer_->axis : playback::OpacityAxis{};
   undo_order_.forget(History::transfer);
   transfer_.reset();

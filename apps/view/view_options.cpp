@@ -24,7 +24,7 @@ Examples:
 
 Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectation of the script was not met.)";
 
-/// Options as they are typed. Those that a view has, too, count only where they are given.
+/// Parsed options. Those that are also in a view have an effect only if given.
 struct Typed {
   std::string state, size, mode, rays = "auto", camera, range, theme, quantity;
   double time_s = 0, exaggeration = 0, step_voxels = 0, budget_ms = 40;
@@ -81,7 +81,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_flag("--quiet,-q", options.quiet, "Only warnings and errors on standard error");
 }
 
-/// Without INPUT there is nothing that these would apply to: what is opened later is shown as at the start.
+/// Without INPUT these have nothing to apply to.
 void refuseOptionsOfInput(const CLI::App& app) {
   for (const char* name :
        {"--scenario", "--state", "--set", "--compare", "--time", "--quantity", "--mode", "--camera",
@@ -91,7 +91,7 @@ void refuseOptionsOfInput(const CLI::App& app) {
   }
 }
 
-/// What is shown first: the view of --state, or the default one, with the options that are given.
+/// The first view: that of --state, or the default one, with the given options.
 void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
   playback::ViewState& view = options.view;
   if (!typed.state.empty()) {
@@ -103,7 +103,7 @@ void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
   const auto take = [&](const char* name, const auto& change) {
     if (app.count(name) == 0) return;
     change();
-    options.state.clear();  // the view is not the file's any more
+    options.state.clear();  // the view differs from the file
   };
   take("--camera", [&] { view.camera = render::parseCamera(typed.camera); });
   take("--theme", [&] { view.theme = render::parseTheme(typed.theme); });

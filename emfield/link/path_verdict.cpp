@@ -20,7 +20,7 @@ std::string thingAt(const PathObstacle& obstacle) {
                      distanceText(obstacle.range_m));
 }
 
-/// What the path costs, after "and".
+/// The path's loss, as a phrase after "and".
 std::string costText(double loss_db) {
   if (std::isinf(loss_db)) return "the model knows no field behind it";
   if (std::abs(loss_db) < 0.05) return "the path is as good as free space";
@@ -54,7 +54,7 @@ std::string pathText(const PathBudget& budget) {
       distanceText(decisive->range_m) + " away", decisive->clearance_m, radii, costText(loss_db));
 }
 
-/// Where the antenna itself takes much of the power.
+/// For a direction in which the antenna's gain is far below its maximum.
 std::string pointingText(const PathPointing& pointing) {
   constexpr double kWorthSaying_db = -6;
   if (pointing.pattern_db > kWorthSaying_db) return "";

@@ -102,9 +102,8 @@ struct OxygenHeight {
   double frequency_ghz, a, b, c, d;
 };
 
-/// From the table that comes with P.676-13 (part 1), which has a row each 0.5 GHz: all rows about the
-/// oxygen's lines at 60 and 118.75 GHz, elsewhere as many as a straight line between them needs to stay
-/// within 0.2 % of the rows left out.
+/// From the data table of P.676-13 (part 1), which has one row per 0.5 GHz: all rows near the oxygen lines at
+/// 60 and 118.75 GHz, elsewhere enough rows for linear interpolation within 0.2 % of the omitted ones.
 constexpr OxygenHeight kOxygenHeights[] = {
     {1.0, -2.700258e+00, 2.724587e-02, 5.971574e-04, 5.130385e-04},
     {1.5, -2.462805e+00, 2.715168e-02, -1.203684e-05, -7.200561e-05},

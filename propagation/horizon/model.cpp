@@ -18,7 +18,7 @@ std::vector<std::string> horizonPathWarnings(const PathInputs& inputs) {
 }
 
 Explanation explainHorizon(const PathInputs& inputs, PathColumn& path) {
-  // As the field has it: slopes in single precision.
+  // Slopes in single precision, as in the field.
   const HorizonGeometry<float> geometry{static_cast<float>(inputs.site.height_msl_m),
                                         static_cast<float>(inputs.site.effective_earth_radius_m)};
   const TerrainProfile& profile = path.column().profile;

@@ -88,7 +88,7 @@ ModelInfo itmRow() {
   row.reference_datasets = {"itm_p2p", "itm_p2p_published", "itm_area"};
   row.check = checkItm;
   row.pathWarnings = diffractionPathWarnings;
-  row.remarkMessages = itmRemarkMessages;
+  row.warningMessages = itmWarningMessages;
   row.explain = explainItm;
   row.excess = [](const PathInputs& inputs, std::vector<float>&) -> ExcessModel { return itmExcess(inputs); };
   return row;

@@ -28,7 +28,7 @@ bool looksLikeVrt(const fs::path& file) {
   return head.find("<VRTDataset") != std::string::npos;
 }
 
-/// @param element  one that names a source
+/// @param element  an element that names a source
 std::string faultOfSource(const CPLXMLNode& element, const fs::path& vrt, int nesting) {
   const std::string name = CPLGetXMLValue(&element, nullptr, "");
   const bool relative = std::string(CPLGetXMLValue(&element, "relativeToVRT", "0")) == "1";

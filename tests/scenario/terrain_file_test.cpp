@@ -36,12 +36,12 @@ class TerrainFileTest : public testing::Test {
   }
 
   /// The message of loading a file over a box; nothing may be printed meanwhile.
-  std::string problemOf(const std::string& file, const SourceLocation& place = {}) const {
+  std::string problemOf(const std::string& file, const SourceLocation& location = {}) const {
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
     const std::string message = test::errorOf(
         [&] {
-          Terrain::load({{file}, {place}, VerticalDatum::egm96}, {49, 50, 10, 11});
+          Terrain::load({{file}, {location}, VerticalDatum::egm96}, {49, 50, 10, 11});
         },
         ErrorCode::bad_input);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
