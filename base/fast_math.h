@@ -51,7 +51,7 @@ EMSCAPE_HD inline Rounded roundToInt(float value) {
   return {shifted - kRoundingMagic, bitsOf(shifted) - kRoundingMagicBits};
 }
 
-/// 2^(exponent - 1) for exponent in -126..128, where -126 stands for a result of 0.
+/// 2^(exponent - 1) for exponent in -126..128, where -126 gives 0.
 EMSCAPE_HD inline float halfPowerOfTwo(std::uint32_t exponent) {
   return floatOf((exponent + 126u) << 23);
 }

@@ -84,7 +84,7 @@ class TreeBuilder : public YAML::EventHandler {
     const auto found = anchors_.find(anchor);
     if (found == anchors_.end()) throw FatalFault{position, "alias of an unknown anchor"};
     if (open_anchors_.count(found->second.get()) != 0) {
-      throw FatalFault{position, "an alias cannot stand within its own anchor"};
+      throw FatalFault{position, "an alias cannot be within its own anchor"};
     }
     place(found->second, position);
   }
@@ -140,8 +140,7 @@ class TreeBuilder : public YAML::EventHandler {
     auto node = makeNode(kind, mark, anchor);
     if (!tag.empty() && tag != "?" && tag != "!") refuseTag(node->position, tag);
     if (frames_.size() >= kMaxNesting) {
-      throw FatalFault{node->position,
-                       fmt::format("nested deeper than the allowed {} levels", kMaxNesting)};
+      throw FatalFault{node->position, fmt::format("nested deeper than the allowed {} levels", kMaxNesting)};
     }
     open_anchors_.insert(node.get());
     Frame frame;

@@ -47,7 +47,7 @@ void EditedText::apply(const Splice& splice, const std::string& label) {
       }
       continue;
     }
-    // The part of the splice that lies outside the change belongs to the file.
+    // The part of the splice outside the change belongs to the file.
     const std::size_t before = change.new_begin > merged.new_begin ? change.new_begin - merged.new_begin : 0;
     if (!met) merged.begin = change.begin - before;
     merged.new_begin = std::min(merged.new_begin, change.new_begin);

@@ -27,7 +27,7 @@ void ProblemList::addErrorElsewhere(const SourceLocation& named_at, const Source
 
 void ProblemList::add(const SourceLocation& order, Problem problem) {
   if (entries_.size() > kMaxProblems) return;
-  if (entries_.size() == kMaxProblems) problem.message = "further faults are not told";
+  if (entries_.size() == kMaxProblems) problem.message = "further faults are not reported";
   entries_.push_back({std::move(problem), order.line, order.column});
 }
 

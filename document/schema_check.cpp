@@ -124,7 +124,8 @@ class Checker {
     const std::string* variant = variantOf(node, spec);
     std::map<std::string, int> lines;
     std::set<std::string> seen;
-    std::vector<std::string> meant;  // probable meanings of unknown keys; the missing keys among them are not reported again
+    std::vector<std::string>
+        meant;  // probable meanings of unknown keys; the missing keys among them are not reported again
     for (const MapEntry& entry : node.entries) {
       const auto [first, is_new] = lines.emplace(entry.key, entry.position.line);
       if (!is_new) {
@@ -307,7 +308,7 @@ std::optional<double> numberOf(const std::string& text) {
   const auto result = std::from_chars(text.data() + sign, end, value);
   if (result.ptr != end || result.ec == std::errc::invalid_argument) return std::nullopt;
   if (result.ec == std::errc::result_out_of_range) {
-    // Too large or too close to zero: only the exponent's sign tells them apart.
+    // Too large or too close to zero: the exponent's sign distinguishes them.
     const std::size_t exponent = text.find_first_of("eE");
     value = exponent != std::string::npos && text[exponent + 1] == '-'
                 ? 0.0

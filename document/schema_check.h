@@ -17,7 +17,7 @@ namespace emscape::document {
 bool checkObject(const std::string& file, const DocumentNode& node, const ObjectSpec& spec,
                  ProblemList& problems);
 
-/// The number that a scalar's text stands for (YAML 1.2 core schema, decimal); none if it is not one.
+/// The number in a scalar's text (YAML 1.2 core schema, decimal); none if it is not one.
 /// Infinity and NaN are numbers here.
 std::optional<double> numberOf(const std::string& text);
 
@@ -25,7 +25,7 @@ std::optional<double> numberOf(const std::string& text);
 /// with one line each
 void requireNoProblem(const ProblemList& problems);
 
-/// The truth value that a scalar's text stands for (YAML 1.2 core schema); none if it is not one.
+/// The truth value in a scalar's text (YAML 1.2 core schema); none if it is not one.
 std::optional<bool> booleanOf(const std::string& text);
 
 /// The fault of a number, as `'name' is 95, outside the allowed -90 to 90 deg`; empty if it has none.

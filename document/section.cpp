@@ -145,7 +145,8 @@ SourceLocation Section::locationOf(const std::string& key) const {
 
 SourceLocation Section::locationOf(const std::string& key, std::size_t item) const {
   const DocumentNode* list = find(key);
-  return list == nullptr || item >= list->items.size() ? locationOf(key) : locationAt(list->items[item]->position);
+  return list == nullptr || item >= list->items.size() ? locationOf(key)
+                                                       : locationAt(list->items[item]->position);
 }
 
 }  // namespace emscape::document

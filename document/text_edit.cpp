@@ -75,7 +75,7 @@ class Splicer {
     throw Error(ErrorCode::bad_input, "the file cannot be edited here: " + why);
   }
   [[noreturn]] static void refuseAnchor() {
-    refuse("an anchor (&) or an alias (*) stands there; write the value out in the file");
+    refuse("there is an anchor (&) or an alias (*); write the value out in the file");
   }
 
   static const MapEntry& entryOf(const DocumentNode& map, const std::string& key) {
@@ -160,7 +160,7 @@ class Splicer {
     const std::size_t line = lineBegin(text_, begin);
     if (!isOnlyBlanks(string_view(text_).substr(line, begin - line))) {
       // The key is on the line of a dash: the next key moves there.
-      if (is_last) refuse("a key stands on the line of another value");
+      if (is_last) refuse("a key is on the line of another value");
       return {children[index].begin, children[index + 1].begin, ""};
     }
     const Span end = lineEnd(text_, children[index].end);

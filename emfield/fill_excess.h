@@ -56,7 +56,7 @@ struct ExcessTask {
   /// Builds the ExcessColumn of a segment of a column. @return false if the column is outside the fan's
   /// intervals
   EMSCAPE_HD bool readSegment(std::size_t c, int segment, const ExcessScratch& scratch,
-                            ExcessColumn& part) const {
+                              ExcessColumn& part) const {
     const int first = grid.firstLayer(segment);
     const FanCoordinates point = grid.coordinatesOf(station, c, segment);
     part.range_m = point.range_m;

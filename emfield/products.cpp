@@ -64,7 +64,7 @@ const char* scaleOf(Quantity quantity) {
 }
 
 ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario,
-                       const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
+                        const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
   ChannelPlan plan;
   plan.product.floor = static_cast<float>(scenario.output.floor);
   if (scenario.output.combine == scenario::CombineMode::max) plan.reduction = Reduction::maximum;

@@ -50,7 +50,7 @@ struct ChannelPlan {
 /// @param known_curves  reused for radars with the same detector
 /// @throws Error (bad_input) if the scenario lacks what the quantity needs (a receiver, a radar)
 ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario,
-                       const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves = {});
+                        const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves = {});
 
 /// Values of one channel.
 struct ProductTask {

@@ -20,9 +20,9 @@ namespace emscape::emfield {
 /// The measure that a radar adds to a channel.
 enum class RadarMeasure {
   root_of_signal_to_noise,
-  signal_to_jamming,  ///< S / J, times a factor, at most a ceiling, which is its value without jamming; 0 without
-                      ///< echo
-  detection,          ///< probability of detection from S / (N + J); 0 without echo
+  signal_to_jamming,  ///< S / J, times a factor, at most a ceiling, which is its value without jamming; 0
+                      ///< without echo
+  detection,  ///< probability of detection from S / (N + J); 0 without echo
 };
 
 /// Jamming at a radar.
@@ -34,8 +34,7 @@ struct JammerAtRadar {
 /// A radar's part in a channel, as plain data.
 struct RadarTask {
   RadarMeasure measure = RadarMeasure::root_of_signal_to_noise;
-  Reduction reduction =
-      Reduction::maximum;  ///< for detections, sum means independent detections
+  Reduction reduction = Reduction::maximum;  ///< for detections, sum means independent detections
   RadarLook look;
   float echo_root = 0;  ///< (m2/W)
   float factor = 1;     ///< of signal_to_jamming

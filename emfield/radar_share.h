@@ -14,7 +14,8 @@ struct JammerPath {
   int jammer = 0;  ///< index of the emitter
   /// Unit vector from the radar along the start of the refracted ray to the jammer, east-north-up.
   Vec3d direction;
-  double power_density_wm2 = 0;  ///< at the radar, with the jammer's antenna gain, propagation model and losses
+  double power_density_wm2 =
+      0;  ///< at the radar, with the jammer's antenna gain, propagation model and losses
 };
 
 /// A radar's part in a channel at one instant.

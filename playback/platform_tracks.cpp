@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxPoints = 200;        // of a line
 constexpr int kMaxPointsOfAll = 4000;  // of all lines
-constexpr int kMinPoints = 64;      // heights above ground follow it
+constexpr int kMinPoints = 64;         // heights above ground follow it
 
 /// Times of a line's points: those of the track, and others between them so that the line follows the ground.
 std::vector<double> timesOf(const std::vector<scenario::TrackPoint>& track, double duration_s,

@@ -25,7 +25,8 @@ double groundZ_m(const scenario::Terrain& terrain, const GeoFrame& frame, double
     GeodeticPosition position = frame.toGeodetic({x_m, y_m, z_m});
     const double height_msl_m = terrain.heightMsl_m(position.latitude_deg, position.longitude_deg);
     if (std::isnan(height_msl_m) || frame.origin().kind == FrameKind::altitude) return height_msl_m;
-    position.height_ellipsoid_m = height_msl_m + geoidUndulation_m(position.latitude_deg, position.longitude_deg);
+    position.height_ellipsoid_m =
+        height_msl_m + geoidUndulation_m(position.latitude_deg, position.longitude_deg);
     z_m = frame.toLocal(position).z;
   }
   return z_m;

@@ -171,7 +171,7 @@ class Reader {
     const scenario::TimeInterval interval{section.number("begin_s"), section.number("end_s")};
     if (!(interval.begin_s < interval.end_s)) {
       problems_.addError(section.locationOf("end_s"), fmt::format("'end_s' is {}, not above 'begin_s', {}",
-                                                               interval.end_s, interval.begin_s));
+                                                                  interval.end_s, interval.begin_s));
     }
     return interval;
   }
@@ -215,7 +215,7 @@ void refuseNewerVersion(const std::string& file, const DocumentNodePtr& root) {
       fmt::format("this view is of schema_version {}; this program reads {}", version->text, kVersion));
 }
 
-/// What is in the unit of what was shown before.
+/// Removes values in the unit of the previous quantity.
 void dropColors(ViewState& state) {
   state.transfer.reset();
   state.range.reset();

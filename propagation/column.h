@@ -39,15 +39,13 @@ struct ExcessScratch {
   float* excess_db = nullptr;
   float* other_db = nullptr;      ///< of a second model
   float* post_numbers = nullptr;  ///< kPostNumbers arrays of `posts` elements, for the model
-  int* post_indices = nullptr;    ///< kPostIndices of them
   int posts = 0;
 
-  static constexpr int kPostNumbers = 5, kPostIndices = 2;
+  static constexpr int kPostNumbers = 2;
 
   /// @param posts  of the longest profile
   static EMSCAPE_HD std::size_t bytes(int posts, int layers) {
-    return std::size_t(posts) *
-               (sizeof(double) + (2 + kPostNumbers) * sizeof(float) + kPostIndices * sizeof(int)) +
+    return std::size_t(posts) * (sizeof(double) + (2 + kPostNumbers) * sizeof(float)) +
            3 * sizeof(float) * std::size_t(layers) + sizeof(float) + sizeof(double);
   }
   /// @param memory  bytes(posts, layers), aligned for double
@@ -67,7 +65,6 @@ struct ExcessScratch {
     scratch.other_db = take(layers);
     scratch.posts = posts;
     scratch.post_numbers = take(kPostNumbers * posts);
-    scratch.post_indices = reinterpret_cast<int*>(next);
     return scratch;
   }
 };

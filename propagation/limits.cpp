@@ -42,8 +42,8 @@ std::string limitsTable(const ModelLimit* const* limits, int count) {
   std::string table = "| parameter | unit | least | most | outside | remark |\n|---|---|---|---|---|---|\n";
   for (int i = 0; i < count; ++i) {
     const ModelLimit& limit = *limits[i];
-    table += fmt::format("| {} | {} | {:.6g} | {:.6g} | {} | {} |\n", limit.parameter, limit.unit,
-                         limit.min, limit.max, toString(limit.beyond), limit.remark);
+    table += fmt::format("| {} | {} | {:.6g} | {:.6g} | {} | {} |\n", limit.parameter, limit.unit, limit.min,
+                         limit.max, toString(limit.beyond), limit.remark);
   }
   return table;
 }

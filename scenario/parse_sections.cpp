@@ -254,8 +254,9 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   } else if (!carrier.empty()) {
     std::vector<std::string> names;
     for (const Platform& platform : platforms) names.push_back(platform.name);
-    context.problems.addError(section.locationOf("platform"), fmt::format("there is no platform '{}'{}", carrier,
-                                                                       document::didYouMean(carrier, names)));
+    context.problems.addError(
+        section.locationOf("platform"),
+        fmt::format("there is no platform '{}'{}", carrier, document::didYouMean(carrier, names)));
   }
   emitter.kind = section.choice<EmitterKind>("kind");
   emitter.frequency_hz = section.number("frequency_hz");

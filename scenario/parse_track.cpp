@@ -51,7 +51,7 @@ class TrackReader {
       problems_.addErrorElsewhere(named_at_, {file_, line, column}, message);
     } else if (faults_ == kMaxFaults) {
       problems_.addErrorElsewhere(named_at_, {file_, line, column},
-                                  message + " (further faults of this file are not told)");
+                                  message + " (further faults of this file are not reported)");
     }
   }
 
@@ -66,7 +66,7 @@ class TrackReader {
         fault(line, cell.column, document::unknownKeyMessage(name, spec, nullptr, &meant));
         seen.insert(seen.end(), meant.begin(), meant.end());
       } else if (has(seen, name)) {
-        fault(line, cell.column, fmt::format("column '{}' stands here twice", name));
+        fault(line, cell.column, fmt::format("column '{}' occurs twice", name));
       }
       seen.push_back(name);
       columns_.push_back(key);

@@ -15,7 +15,8 @@ double positiveDegrees(double angle_deg) {
   return rest < 0 ? rest + 360.0 : rest;
 }
 
-std::optional<double> lerpIfBoth(const std::optional<double>& a, const std::optional<double>& b, double part) {
+std::optional<double> lerpIfBoth(const std::optional<double>& a, const std::optional<double>& b,
+                                 double part) {
   if (!a || !b) return std::nullopt;
   return lerp(*a, *b, part);
 }

@@ -77,8 +77,8 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
     std::error_code failure;
     const std::uintmax_t size = std::filesystem::file_size(file, failure);
     if (failure || !std::ifstream(file)) {
-      context.problems.addError(
-          location, fmt::format("elevation file {}: {}", file, failure ? failure.message() : "cannot be read"));
+      context.problems.addError(location, fmt::format("elevation file {}: {}", file,
+                                                      failure ? failure.message() : "cannot be read"));
       continue;
     }
     digest += fmt::format("{}:{}", names[i], size);
@@ -181,9 +181,9 @@ void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, Pa
       return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
     });
     if (in_band) continue;
-    context.problems.addWarning(sections[i].locationOf("frequency_hz"),
-                                fmt::format("emitter '{}' ({} Hz) lies in none of the bands",
-                                            scenario.emitters[i].name, frequency_hz));
+    context.problems.addWarning(
+        sections[i].locationOf("frequency_hz"),
+        fmt::format("emitter '{}' ({} Hz) is in none of the bands", scenario.emitters[i].name, frequency_hz));
   }
 }
 
@@ -206,7 +206,7 @@ void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseConte
     if (jams) continue;
     context.problems.addWarning(
         sections[i].locationOf("frequency_hz"),
-        fmt::format("jammer '{}' ({} Hz, {} Hz wide) lies outside the band of every radar: it jams none",
+        fmt::format("jammer '{}' ({} Hz, {} Hz wide) is outside the band of every radar: it jams none",
                     jammer.name, jammer.frequency_hz, jammer.bandwidth_hz));
   }
 }
@@ -363,7 +363,8 @@ std::string scenarioJsonSchema() {
 std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits) {
   const ParseResult result = parseScenario(file, edits);
   for (const Problem& problem : result.problems) {
-    if (problem.severity == Severity::warning) logWarning(toString(problem.location) + ": " + problem.message);
+    if (problem.severity == Severity::warning)
+      logWarning(toString(problem.location) + ": " + problem.message);
   }
   requireScenario(result);
   return result.scenario;

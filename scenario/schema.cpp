@@ -130,7 +130,7 @@ const ObjectSpec& atmosphereSpec() {
                     "loss to oxygen and water vapour; auto: with every model but free_space and horizon; "
                     "p528 holds its own"),
           byDefault("sea_level_refractivity", number().from(200).to(450), Atmosphere{}.sea_level_refractivity,
-                    "N-units; for itm, whose rays bend by it and not by k_factor"),
+                    "N-units; for itm, whose rays are bent by it, not by k_factor"),
           byDefault("climate", choiceUpTo(RadioClimate::maritime_temperate_over_sea),
                     toString(Atmosphere{}.climate), "for itm's statistics"),
       }};

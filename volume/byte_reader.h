@@ -11,7 +11,7 @@
 namespace emscape::volume {
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
-              "the files of this module are read and written as they lie in memory");
+              "the files of this module are read and written in memory order");
 
 class ByteReader {
  public:

@@ -62,7 +62,7 @@ std::vector<std::int32_t> toIndices(const DenseVolume& volume, const SourceLocat
     if (!(std::abs(value) <= kGreatest) || value != std::floor(value)) {
       throw Error(ErrorCode::bad_input, location,
                   "volume " + volume.info.quantity + ": " + std::to_string(value) +
-                      " is no index; categorical values are whole numbers -16777216..16777216");
+                      " is not an index; categorical values are whole numbers -16777216..16777216");
     }
     return static_cast<std::int32_t>(value);
   };

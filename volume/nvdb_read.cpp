@@ -66,7 +66,7 @@ class NanoGrid {
  private:
   static constexpr int kLeafEdge = 8, kLowerEdge = 128, kUpperEdge = 4096;
 
-  [[noreturn]] void damaged() const { file_.fail("a node of the tree lies outside the grid"); }
+  [[noreturn]] void damaged() const { file_.fail("a node of the tree is outside the grid"); }
 
   template <class Node>
   const Node* at(const void* base, std::int64_t offset) const {

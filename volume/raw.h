@@ -1,4 +1,4 @@
-/// Volumes as bare voxels: .raw with a JSON header beside it or the layout in the file name, and .dat.
+/// Volumes as bare voxels: .raw with a JSON sidecar as header or the layout in the file name, and .dat.
 #pragma once
 
 #include <filesystem>

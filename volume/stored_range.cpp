@@ -72,7 +72,7 @@ void setVdbRange(const fs::path& path, const std::vector<StoredRange>& ranges) {
   const std::vector<std::uint8_t> bytes = readWhole(path);
   ByteReader reader(path.string(), bytes.data(), bytes.size());
   const VdbHeader header = readVdbHeader(reader);
-  if (!header.has_offsets) reader.fail("the file does not say where its grids lie");
+  if (!header.has_offsets) reader.fail("the file has no offsets of its grids");
   std::vector<FilePatch> patches;
   for (int grid = 0; grid < header.grid_count; ++grid) {
     const VdbDescriptor descriptor = readVdbDescriptor(reader, header);

@@ -9,7 +9,8 @@
 ///   emscape:floor, :range_min, :range_max  float       emscape:categorical  bool
 ///   emscape:dims  vec3i (the tree covers only active voxels); :voxel_count  int64, their product
 ///   emscape:frame  string; :origin_latitude_deg, :origin_longitude_deg, :origin_height_msl_m  double (where
-///   georeferenced) emscape:first_valid_k  bytes: the mask, 16 bits per column, little endian (if there is one) emscape:KEY  string, for each entry of VolumeInfo::extra (scenario_hash, version, ...)
+///   georeferenced) emscape:first_valid_k  bytes: the mask, 16 bits per column, little endian (if there is
+///   one) emscape:KEY  string, for each entry of VolumeInfo::extra (scenario_hash, version, ...)
 #pragma once
 
 #include <filesystem>

@@ -224,7 +224,7 @@ bool makeDense(const openvdb::GridBase& base, const GridEntry& entry, const VdbF
   if (isOurs(volume) && !active.empty() && !boxOf(volume.grid.dims).isInside(active)) {
     logWarning(
         who +
-        ": its active voxels lie outside the dims in its metadata, which another program must have kept; "
+        ": its active voxels are outside the dims in its metadata, which another program must have copied; "
         "it is read as that program's");
     volume = DenseVolume();
     volume.info.quantity = entry.descriptor.name;

@@ -63,7 +63,7 @@ void checkVolumes(const std::filesystem::path& path, const std::vector<const Den
     if (volume->grid != volumes.front()->grid) {
       throw Error(ErrorCode::bad_input, {path.string()},
                   "the volumes " + volumes.front()->info.quantity + " and " + volume->info.quantity +
-                      " lie on different grids; a .vti file has one");
+                      " are on different grids; a .vti file has one");
     }
   }
 }

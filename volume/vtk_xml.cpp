@@ -28,7 +28,8 @@ int digitOf(std::uint8_t character) {
 /// Decodes up to the first character that is not a digit. VTK encodes a header and the data after it
 /// separately, so that padding may occur in the middle; it ends a group of four.
 /// @param max_bytes  stops when that many bytes are there
-std::vector<std::uint8_t> fromBase64(const std::uint8_t* begin, const std::uint8_t* end, std::uint64_t max_bytes) {
+std::vector<std::uint8_t> fromBase64(const std::uint8_t* begin, const std::uint8_t* end,
+                                     std::uint64_t max_bytes) {
   std::vector<std::uint8_t> bytes;
   const auto* at = std::find_if(begin, end, [](std::uint8_t character) { return digitOf(character) >= 0; });
   for (; end - at >= 4 && bytes.size() < max_bytes; at += 4) {

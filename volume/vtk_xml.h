@@ -26,7 +26,7 @@ class VtkXmlFile {
 
   /// An array of the image's field data in text form; empty if there is none.
   std::string fieldText(const std::string& name) const;
-  /// Where a text of the head begins in the file. @throws Error (bad_input) unless it is there
+  /// Position of a text of the head in the file. @throws Error (bad_input) unless it is there
   std::uint64_t headOffsetOf(const std::string& text) const;
 
   [[noreturn]] void fail(const std::string& what) const;

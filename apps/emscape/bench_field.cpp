@@ -206,7 +206,7 @@ Example:
   auto options = std::make_shared<BenchFieldOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
-  command->add_option("--repeats", options->repeats, "Updates of each kind, of which the median is told")
+  command->add_option("--repeats", options->repeats, "Updates of each kind; the median is reported")
       ->check(CLI::Range(1, 1000));
   addListOption(*command, "--emitters", options->emitters,
                 "Names of the emitters that move and turn, with commas between them; default: all");

@@ -1,4 +1,4 @@
-/// emscape bench models: evaluations a second of each propagation model.
+/// emscape bench models: evaluations per second of each propagation model.
 #include <fmt/core.h>
 
 #include <memory>
@@ -19,46 +19,46 @@ Json toJson(const ModelTiming& timing) {
   return json;
 }
 
-Json toJson(const PlaneTiming& timing) {
-  return {{"ranges", kPlaneRanges},
-          {"heights", kPlaneHeights},
+Json toJson(const ColumnTiming& timing) {
+  return {{"columns", kColumnCount},
+          {"heights", kColumnHeights},
           {"posts", timing.posts},
           {"top_msl_m", timing.top_msl_m},
           {"path_by_path_ms", timing.paths_ms},
-          {"plane_ms", timing.plane_ms},
+          {"columns_ms", timing.columns_ms},
           {"ratio", timing.ratio()},
-          {"max_difference_db", timing.largest_difference_db}};
+          {"max_difference_db", timing.max_difference_db}};
 }
 
 int benchModels(int repeats, const GlobalOptions& global) {
   const std::vector<ModelTiming> models = timeModels(repeats);
-  const std::vector<PlaneTiming> planes = timePlanes(repeats);
+  const std::vector<ColumnTiming> columns = timeColumns(repeats);
   if (global.json) {
-    Json of_models = Json::array(), of_planes = Json::array();
+    Json of_models = Json::array(), of_columns = Json::array();
     for (const ModelTiming& timing : models) of_models.push_back(toJson(timing));
-    for (const PlaneTiming& timing : planes) of_planes.push_back(toJson(timing));
+    for (const ColumnTiming& timing : columns) of_columns.push_back(toJson(timing));
     printJson({{"device", "cpu"},
                {"threads", 1},
                {"repeats", repeats},
                {"models", of_models},
-               {"diffraction_planes", of_planes}});
+               {"diffraction_columns", of_columns}});
     return 0;
   }
-  print("one core, CPU time, the fastest of {} runs\n\n{:<12} {:<58} {:>12} {:>10}\n", repeats, "model",
-        "one evaluation", "a second", "us");
+  print("one core, CPU time, fastest of {} runs\n\n{:<12} {:<58} {:>12} {:>10}\n", repeats, "model",
+        "one evaluation", "per second", "us");
   for (const ModelTiming& timing : models) {
     print("{:<12} {:<58} {:>12.0f} {:>10.3f}{}\n", timing.model, timing.what, timing.evaluations_per_s,
           1e6 / timing.evaluations_per_s,
           timing.ratio > 0 ? fmt::format("  {:.2f} x {}", timing.ratio, timing.ratio_to) : "");
   }
   print(
-      "\ndelta-Bullington, planes of {} ranges x {} heights, double\n{:>6} {:>10} {:>16} {:>10} {:>8} "
+      "\ndelta-Bullington, {} columns x {} heights, float\n{:>6} {:>10} {:>16} {:>10} {:>8} "
       "{:>15}\n",
-      kPlaneRanges, kPlaneHeights, "posts", "heights m", "path by path ms", "plane ms", "ratio",
+      kColumnCount, kColumnHeights, "posts", "heights m", "path by path ms", "columns ms", "ratio",
       "difference dB");
-  for (const PlaneTiming& timing : planes) {
+  for (const ColumnTiming& timing : columns) {
     print("{:>6} {:>10.0f} {:>16.2f} {:>10.3f} {:>8.1f} {:>15.1e}\n", timing.posts, timing.top_msl_m,
-          timing.paths_ms, timing.plane_ms, timing.ratio(), timing.largest_difference_db);
+          timing.paths_ms, timing.columns_ms, timing.ratio(), timing.max_difference_db);
   }
   return 0;
 }
@@ -69,13 +69,13 @@ void addBenchModels(CLI::App& bench, const GlobalOptions& global, Action& action
   CLI::App* command = bench.add_subcommand("models", "Time the propagation models on one core");
   command->fallthrough();
   command->footer(R"(
-Evaluations a second of each model, and planes of delta-Bullington in one walk against path by path, over made-up hills
-that are the same in every run. Times are the CPU time of one thread.
+Evaluations per second of each model, and columns of delta-Bullington at once against path by path, over synthetic hills that
+are the same in every run. Times are the CPU time of one thread.
 
 Example:
-  emscape bench models --json     {"device", "models": [{"model", "what", "evaluations_per_s"}], "diffraction_planes": [...]})");
+  emscape bench models --json     {"device", "models": [{"model", "what", "evaluations_per_s"}], "diffraction_columns": [...]})");
   auto repeats = std::make_shared<int>(5);
-  command->add_option("--repeats", *repeats, "Runs of each, of which the fastest is told")
+  command->add_option("--repeats", *repeats, "Runs of each; the fastest is reported")
       ->check(CLI::Range(1, 1000));
   command->callback(
       [repeats, &global, &action] { action = [repeats, &global] { return benchModels(*repeats, global); }; });

@@ -270,7 +270,7 @@ Example:
   auto options = std::make_shared<BenchReconstructionOptions>();
   addBenchSceneOptions(*command, options->scene);
   addListOption(*command, "--rays", options->rays,
-                "Patterns beside the full one, with commas between them; default: all");
+                "Patterns besides the full one, separated by commas; default: all");
   addToleranceOption(*command, options->tolerance_levels);
   command->add_option("--frames", options->frames, "Views, after one to warm up")
       ->check(CLI::Range(1, 100000));

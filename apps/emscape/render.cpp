@@ -310,7 +310,7 @@ void addRealTimeOptions(CLI::App& command, RenderOptions& options) {
   add("--epsilon", options.epsilon_ms,
       "Milliseconds without a change before the picture is made exact; default: measured")
       ->check(CLI::Range(0.0, 1e6));
-  add("--orbit-rate", options.orbit_rate_deg_s, "Degrees a second that the camera goes round")
+  add("--orbit-rate", options.orbit_rate_deg_s, "Rotation of the camera (degrees per second)")
       ->check(CLI::Range(-360.0, 360.0));
   command
       .add_flag("--verify", options.verify,
@@ -347,7 +347,7 @@ Examples:
       "--state", options->state,
       "View file: camera, colours, time, edits and the rest; options that are given count more");
   command->add_option("--save-state", options->save_state,
-                      "Write what is drawn as a view file; --output may then be left out");
+                      "Write the view as a view file; --output may then be omitted");
   command->add_option("-o,--output", options->outputs,
                       "NAME.png, NAME.mp4 or a folder for frames; may be given several times");
   command->add_option("--size", options->size, "Picture size in pixels, WxH; default: 1280x720");
@@ -386,7 +386,7 @@ Examples:
       ->check(CLI::IsMember({"dark", "light"}));
   command
       ->add_option("--fps", options->frames_per_s,
-                   "Frames a second of a video (default 10); with --realtime: at most so many are shown")
+                   "Frames per second of a video (default 10); with --realtime: the maximum")
       ->check(CLI::Range(0.1, 240.0));
   command->add_flag("--exact", options->exact, "No early end of rays");
   command->add_option("--terrain", options->show_terrain, "Draw the ground: on or off");

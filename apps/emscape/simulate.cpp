@@ -48,10 +48,9 @@ playback::SeriesOptions seriesOptionsOf(const SimulateOptions& options) {
 void checkFolderIsFree(const SimulateOptions& options) {
   if (options.resume || options.force) return;
   if (const std::optional<playback::SeriesStatus> found = playback::findSeries(options.folder)) {
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("{} holds a series ({} of {} steps); --resume goes on with it, --force begins anew",
-                    options.folder, found->finished_steps, found->steps));
+    throw Error(ErrorCode::usage,
+                fmt::format("{} holds a series ({} of {} steps); --resume continues it, --force replaces it",
+                            options.folder, found->finished_steps, found->steps));
   }
 }
 
@@ -144,10 +143,9 @@ Examples:
   command->add_option("--range", options->range,
                       "MIN:MAX of the series if it is known: files state it from the beginning");
   command->add_flag("--resume", options->resume, "Go on with the series that the folder holds");
-  command->add_flag("--force", options->force, "Begin anew in a folder that holds a series")
-      ->excludes("--resume");
+  command->add_flag("--force", options->force, "Replace the series in the folder")->excludes("--resume");
   command->add_flag("--allow-missing-terrain", options->allow_missing_terrain,
-                    "Compute although elevation data is missing; what lies over holes is masked");
+                    "Compute although elevation data is missing; voxels over holes are masked");
   command->add_option("--cache-mib", options->cache_mib, "Bound on the per-emitter caches in MiB; 0: none")
       ->check(CLI::Range(0.0, 1e6));
   command->callback(

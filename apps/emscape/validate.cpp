@@ -42,7 +42,7 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
   }
   if (missing == 0) return;
   const SourceLocation location = scenario.terrain->locations.empty() ? SourceLocation{scenario.file, 0, 0}
-                                                                : scenario.terrain->locations.front();
+                                                                      : scenario.terrain->locations.front();
   problems.push_back(
       {location, Severity::error,
        fmt::format("the elevation files leave {} of the region's {} columns without a height, the first at "

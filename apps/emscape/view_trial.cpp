@@ -251,7 +251,7 @@ ViewTimes trialTimes(const std::string& log) {
   for (std::string line; std::getline(text, line);) {
     lines.push_back(Json::parse(line, nullptr, false));
     if (lines.back().is_discarded() || !lines.back().contains("event"))
-      throw Error(ErrorCode::other, "the window's log has a line that is none: " + line);
+      throw Error(ErrorCode::other, "the window's log has an invalid line: " + line);
   }
   ViewTimes times;
   readFrames(lines, times);

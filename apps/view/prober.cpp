@@ -177,7 +177,7 @@ std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading,
 
 std::string profileCommand(const ProbeResult& result, const std::string& emitter) {
   if (!result.scenario || !result.reading || !result.reading->position) {
-    throw Error(ErrorCode::bad_input, "there is no path to explain: the probe holds no point of a scenario");
+    throw Error(ErrorCode::bad_input, "there is no path to explain: the probe has no point of a scenario");
   }
   const GeodeticPosition& position = *result.reading->position;
   return fmt::format("{} --emitter {} --to={:.7f},{:.7f},{:.2f} --time {:g}",

@@ -34,7 +34,7 @@ void drawProgress(PanelContext& context, const Area& picture) {
   ImGui::PopStyleVar();
 }
 
-/// What was typed.
+/// The text of the fields.
 struct Typed {
   char file[1024] = "";
   double begin_s = 0, end_s = 0, step_s = 0, frames_per_s = 10;

@@ -166,7 +166,7 @@ std::vector<Verb> Session::fileVerbs() {
   return {
       {"open",
        {{"file", kText, false}, {"scenario", kText, false}},
-       "Opens a scenario or volumes, beside which `scenario` may stand; shows a view file; takes colours "
+       "Opens a scenario, or volumes with an optional `scenario`; shows a view file; takes colours "
        "from "
        "a transfer function; without a file: asks for it",
        [](Session& session, const Command& command) {
@@ -197,7 +197,7 @@ std::vector<Verb> Session::fileVerbs() {
        }},
       {"save",
        {{"file", kText, false}},
-       "Writes the changed scenario; default: NAME.edited.yaml beside the input",
+       "Writes the changed scenario; default: NAME.edited.yaml next to the input",
        [](Session& session, const Command& command) { session.saveScenario(command.text("file"), false); }},
       {"restore",
        {},

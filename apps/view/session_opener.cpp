@@ -9,7 +9,7 @@ namespace emscape::view {
 bool SessionOpener::update(std::unique_ptr<Session>& session) {
   if (files_->request && !task_.active()) {
     OpenRequest request = *std::exchange(files_->request, std::nullopt);
-    endBeside(std::move(next_)); // there is a newer request
+    endBeside(std::move(next_));  // there is a newer request
     ViewOptions present = session->options();
     present.view = session->viewState();
     // A new input is shown with the options of the start, but with the present window.
@@ -34,7 +34,7 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
 void SessionOpener::take(Session& session) {
   try {
     opening_ = task_.take();
-    if (files_->request) return; // there is a newer request
+    if (files_->request) return;  // there is a newer request
     if (!opening_.colors.empty()) {
       files_->is_opening = false;
       session.perform({"transfer", {{"file", opening_.colors}}});

@@ -27,7 +27,8 @@ void requireRoom(const std::vector<CutPlane>& planes) {
 
 /// The plane that a command names: by its number, else the last one.
 std::size_t indexOf(const Command& command, const std::vector<CutPlane>& planes) {
-  if (planes.empty()) throw Error(ErrorCode::bad_input, "plane: there is none; `spec` or `kind` adds one");
+  if (planes.empty())
+    throw Error(ErrorCode::bad_input, "plane: there is no plane; `spec` or `kind` adds one");
   const double number = command.number("index", static_cast<double>(planes.size()));
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (number == static_cast<double>(i + 1)) return i;

@@ -146,7 +146,8 @@ std::vector<Verb> Session::stateVerbs() {
   return {
       {"save_state",
        {{"file", kText, false}},
-       "Writes the view: camera, colours, time, edits and the rest; default: NAME.view.json beside the input",
+       "Writes the view: camera, colours, time, edits and the rest; default: NAME.view.json next to the "
+       "input",
        [](Session& session, const Command& command) { session.saveView(command.text("file")); }},
       {"load_state",
        {{"file", kText, false}},

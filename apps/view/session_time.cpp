@@ -86,7 +86,7 @@ std::vector<Verb> Session::timeVerbs() {
        }},
       {"loop",
        {{"on", kBoolean, false}},
-       "Playing goes on from the other end of the playing range",
+       "Playing continues at the other end of the playing range",
        [](Session& session, const Command& command) {
          session.timeline_.setLoop(command.boolean("on", !session.timeline_.loop()));
        }},

@@ -193,7 +193,7 @@ std::vector<Verb> Session::transferVerbs() {
        [](Session& session, const Command& command) { session.saveTransfer(command.text("file")); }},
       {"reset_transfer",
        {},
-       "Colours and opacities fitted anew to how frequent the values of the step on screen are",
+       "Fits colours and opacities to the histogram of the step on screen",
        [](Session& session, const Command&) {
          session.requireTransfer();
          session.fit_ = Fit::anew;

@@ -37,7 +37,8 @@ void drawStart(PanelContext& context, const Area& picture) {
   ImGui::TextColored(accentColor(session.theme()), "Nothing is open");
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(
-      "Open a scenario (.yaml, .json), whose field is computed, or volumes that are computed already: a file "
+      "Open a scenario (.yaml, .json), whose field is computed, or volumes from an earlier computation: a "
+      "file "
       "(.vdb .nvdb .vti .raw .dat), a series (.pvd) or a folder.");
   ImGui::PopTextWrapPos();
   if (ImGui::Button("Open (Ctrl+O)")) perform(context, R"({"do":"open"})");

@@ -90,7 +90,8 @@ DatasetCheck checkItmPublished(const std::filesystem::path& folder) {
   const PointToPoint computed(folder);
   FigureCheck loss{"A_db", 0.006, "dB"};
   for (int i = 0; i < computed.cases.rows(); ++i) {
-    loss.compare(computed.result(i).loss_db, computed.cases.number(i, "A_db"), computed.cases.location(i).line);
+    loss.compare(computed.result(i).loss_db, computed.cases.number(i, "A_db"),
+                 computed.cases.location(i).line);
   }
   return {computed.cases.rows(), {loss}};
 }

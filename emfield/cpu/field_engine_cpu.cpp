@@ -12,7 +12,7 @@ namespace {
 
 /// Buffers of one channel.
 struct ChannelBuffers {
-  std::vector<float> value, largest;                  ///< accumulator over all emitters
+  std::vector<float> value, largest;                ///< accumulator over all emitters
   std::vector<float> static_value, static_largest;  ///< accumulator over the static emitters alone
   std::vector<std::shared_ptr<volume::DenseVolume>> pool;
 };
@@ -121,9 +121,9 @@ void CpuEngine::combine(const CombinePass& pass) {
     task.reductions.push_back(setup_.channel_plans[c].reduction);
     task.accumulators.push_back(pass.channels[c] ? Accumulator{orNull(value), orNull(largest)}
                                                  : Accumulator{});
-    task.initial.push_back(
-        pass.into_static_sums ? ConstAccumulator{}
-                          : ConstAccumulator{orNull(buffers.static_value), orNull(buffers.static_largest)});
+    task.initial.push_back(pass.into_static_sums ? ConstAccumulator{}
+                                                 : ConstAccumulator{orNull(buffers.static_value),
+                                                                    orNull(buffers.static_largest)});
   }
   for (const CombinePass::Member& member : pass.members) {
     task.emitters.push_back(member.emitter);

@@ -153,7 +153,7 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
 }
 
 std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRequest>& requests,
-                                                      cudaStream_t stream, StageClock& clock) {
+                                                    cudaStream_t stream, StageClock& clock) {
   std::vector<Work> works(requests.size());
   parallelFor(static_cast<int>(requests.size()), 1, [&](int begin, int end) {
     for (int r = begin; r < end; ++r) works[r] = prepare(requests[r]);
@@ -268,8 +268,8 @@ void DeviceGeometry::runBatch(Batch& batch, cudaStream_t stream, StageClock& clo
     extent.ranges = std::max(extent.ranges, sector.emitter.fan.range_count);
     has_slopes = has_slopes || sector.holds_slopes;
     if (isDiffraction(work)) {
-      diffraction.push_back(
-          {std::get<propagation::DiffractionExcess>(work.model->model), work.model->air, sector, work.excess});
+      diffraction.push_back({std::get<propagation::DiffractionExcess>(work.model->model), work.model->air,
+                             sector, work.excess});
     }
   }
   clock.begin(stream);

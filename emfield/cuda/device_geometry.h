@@ -21,7 +21,7 @@ class DeviceGeometry {
 
   /// Computes all requests in one batch of launches and waits for the results.
   std::vector<GeometryResult> compute(const std::vector<GeometryRequest>& requests, cudaStream_t stream,
-                                        StageClock& clock);
+                                      StageClock& clock);
   /// Inputs of the last computation of a slot.
   ColumnGeometryView view(int slot) const;
   const DeviceColumns& columns() const { return columns_; }

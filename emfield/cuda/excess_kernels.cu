@@ -14,8 +14,7 @@ using propagation::kBisectionStep;
 using propagation::kMissingTerrain;
 
 constexpr int kThreads = 128;
-/// Receivers of a column that share a walk over its profile.
-constexpr int kReceivers = 8;
+constexpr int kReceivers = propagation::kDiffractionReceivers;
 
 unsigned blocksFor(int threads) {
   return static_cast<unsigned>((threads + kThreads - 1) / kThreads);
@@ -73,7 +72,6 @@ class FanPosts {
   }
 
  private:
-
   const double* ranges_m_;
   long long azimuths_;
   int before_;

@@ -45,8 +45,8 @@ struct DiffractionTask {
 /// @param row            columns along x
 /// @param tilted         whether the columns are
 /// @param first_valid_k  voxels below get no excess; null: none is below
-void fillDiffraction(const DiffractionTask* tasks, const SectorExtent& extent, const ExcessGrid& grid, int row,
-                     bool tilted, const std::uint16_t* first_valid_k, cudaStream_t stream);
+void fillDiffraction(const DiffractionTask* tasks, const SectorExtent& extent, const ExcessGrid& grid,
+                     int row, bool tilted, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
 /// Any model: one thread per column, with its own scratch memory.
 /// @param excess     its tables in device memory

@@ -44,7 +44,7 @@ class DevicePattern {
 
 /// Buffers of one channel.
 struct ChannelBuffers {
-  Buffer<float> value, largest;                  ///< accumulator over all emitters
+  Buffer<float> value, largest;                ///< accumulator over all emitters
   Buffer<float> static_value, static_largest;  ///< accumulator over the static emitters alone
   volume::DeviceVolumeRing ring;
 };
@@ -141,7 +141,7 @@ void CudaEngine::combine(const CombinePass& pass) {
     task.accumulators.push_back(pass.channels[c] ? Accumulator{value.data(), largest.data()} : Accumulator{});
     task.initial.push_back(
         pass.into_static_sums ? ConstAccumulator{}
-                          : ConstAccumulator{buffers.static_value.data(), buffers.static_largest.data()});
+                              : ConstAccumulator{buffers.static_value.data(), buffers.static_largest.data()});
   }
   for (const CombinePass::Member& member : pass.members) {
     task.emitters.push_back(member.emitter);

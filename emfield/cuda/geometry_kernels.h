@@ -39,10 +39,10 @@ struct FanIndex {
 /// An emitter whose columns are located. Pointers are to device memory.
 struct LocateTask {
   Station station;
-  FanView fan;                     ///< range_count 0: no fan is needed
-  float* numbers = nullptr;        ///< kColumnNumbers x columns
-  float* shadow_edge_m = nullptr;  ///< initialised with "nothing is in shadow"
-  FanIndex* fan_indices = nullptr;      ///< one per column
+  FanView fan;                      ///< range_count 0: no fan is needed
+  float* numbers = nullptr;         ///< kColumnNumbers x columns
+  float* shadow_edge_m = nullptr;   ///< initialised with "nothing is in shadow"
+  FanIndex* fan_indices = nullptr;  ///< one per column
   /// One per azimuth: the number of ranges nearer than some column. Tilted columns need all ranges.
   int* used_ranges = nullptr;
   float near2_m2 = 0;  ///< square of the far field's distance

@@ -37,8 +37,8 @@ double freeSpaceDensity_wm2(const Emitter& emitter, const scenario::BeamPose& be
 }  // namespace
 
 std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int radar,
-                                          const std::vector<int>& jammers, const scenario::Terrain* terrain,
-                                          const FanResolution& resolution, std::string* warning) {
+                                    const std::vector<int>& jammers, const scenario::Terrain* terrain,
+                                    const FanResolution& resolution, std::string* warning) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const EmitterState& at = snapshot.emitters[radar];
   const double k_factor = scenario.atmosphere.k_factor;

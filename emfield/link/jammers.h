@@ -16,7 +16,7 @@ namespace emscape::emfield {
 /// is an error
 /// @throws Error (bad_input) for missing terrain, see warning
 std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int radar,
-                                          const std::vector<int>& jammers, const scenario::Terrain* terrain,
-                                          const FanResolution& resolution, std::string* warning);
+                                    const std::vector<int>& jammers, const scenario::Terrain* terrain,
+                                    const FanResolution& resolution, std::string* warning);
 
 }  // namespace emscape::emfield

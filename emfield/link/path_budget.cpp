@@ -230,7 +230,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   budget.warnings = budget.excess.warnings;
   if (geometry.slant_range_m < geometry.far_field_m) {
     budget.warnings.push_back(
-        fmt::format("the point lies {:.0f} m from the antenna, nearer than its far field (2 D^2 / lambda = "
+        fmt::format("the point is {:.0f} m from the antenna, nearer than its far field (2 D^2 / lambda = "
                     "{:.0f} m): the "
                     "far field's formula is taken all the same",
                     geometry.slant_range_m, geometry.far_field_m));

@@ -38,7 +38,7 @@ struct GeometryRequest {
 struct GeometryResult {
   long long unknown_columns = 0;  ///< columns whose path crosses missing terrain
   std::vector<bool> unknown;      ///< one per column; empty: none is unknown
-  unsigned warnings = 0;           ///< of the excess model: see warningMessages()
+  unsigned warnings = 0;          ///< of the excess model: see warningMessages()
   long long near_voxels = 0;      ///< voxels nearer than the emitter's far field
 };
 
@@ -52,9 +52,10 @@ struct CombinePass {
     std::vector<RadarShare> radars;  ///< its parts in channels of echoes
   };
   std::vector<Member> members;
-  std::vector<bool> channels;  ///< true for those of the pass
-  bool into_static_sums = false;   ///< true: computes the sums of static emitters, from nothing
-  bool keep = false;  ///< true: continues with the present sums; false: starts from the sums of static emitters
+  std::vector<bool> channels;     ///< true for those of the pass
+  bool into_static_sums = false;  ///< true: computes the sums of static emitters, from nothing
+  bool keep =
+      false;  ///< true: continues with the present sums; false: starts from the sums of static emitters
 };
 
 /// Stage 4 for one channel.

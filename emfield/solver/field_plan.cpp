@@ -19,7 +19,8 @@ FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
   const auto collect = [&curves](const ChannelPlan& channel_plan) {
     curves.insert(curves.end(), channel_plan.curves.begin(), channel_plan.curves.end());
   };
-  if (previous != nullptr) std::for_each(previous->channel_plans.begin(), previous->channel_plans.end(), collect);
+  if (previous != nullptr)
+    std::for_each(previous->channel_plans.begin(), previous->channel_plans.end(), collect);
   for (const Channel& channel : plan.channels) {
     plan.channel_plans.push_back(channelPlan(channel, *plan.scenario, curves));
     collect(plan.channel_plans.back());
@@ -42,7 +43,8 @@ bool haveSameChannels(const FieldPlan& a, const FieldPlan& b) {
   };
   return std::equal(a.channels.begin(), a.channels.end(), b.channels.begin(), b.channels.end(),
                     sameChannel) &&
-         std::equal(a.channel_plans.begin(), a.channel_plans.end(), b.channel_plans.begin(), b.channel_plans.end(), sameSums);
+         std::equal(a.channel_plans.begin(), a.channel_plans.end(), b.channel_plans.begin(),
+                    b.channel_plans.end(), sameSums);
 }
 
 }  // namespace emscape::emfield

@@ -14,8 +14,8 @@ struct FieldPlan {
   std::shared_ptr<const scenario::Scenario> scenario;
   std::vector<Channel> channels;
   std::vector<ChannelPlan> channel_plans;  ///< one per channel
-  std::vector<double> far_field_m;     ///< of each emitter: 2 D^2 / lambda
-  std::vector<std::string> warnings;   ///< of the models, on values of the scenario
+  std::vector<double> far_field_m;         ///< of each emitter: 2 D^2 / lambda
+  std::vector<std::string> warnings;       ///< of the models, on values of the scenario
 };
 
 /// @param quantities  names; empty: the scenario's

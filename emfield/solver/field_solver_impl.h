@@ -24,7 +24,7 @@ struct EmitterCache {
   std::optional<CombineInputs> combined;   ///< its part in the sums; none: not active
   bool is_cached = true;                   ///< false: its geometry is discarded after each use
   GeometryResult geometry_result;
-  bool mount_changed = true;           ///< since the previous update: moved, switched or turned as a whole
+  bool mount_changed = true;        ///< since the previous update: moved, switched or turned as a whole
   std::vector<JammerPath> jammers;  ///< of radars, for quantities with jamming
   WarningCounts warnings, jamming_warnings;
 };
@@ -32,8 +32,9 @@ struct EmitterCache {
 struct FieldSolver::Impl {
   FieldOptions options;
   FieldSetup setup;
-  Backend backend = Backend::cpu;       ///< cpu or cuda
-  std::unique_ptr<FieldEngine> engine;  ///< one slot per emitter plus a shared one for emitters that are not cached
+  Backend backend = Backend::cpu;  ///< cpu or cuda
+  std::unique_ptr<FieldEngine>
+      engine;  ///< one slot per emitter plus a shared one for emitters that are not cached
   std::vector<EmitterCache> emitters;
   std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
   std::vector<volume::Volume> volumes;

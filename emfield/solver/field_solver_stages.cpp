@@ -35,12 +35,12 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   if (geometry_result.unknown_columns > 0) {
     if (!options.allow_missing_terrain) {
       const auto first = std::find(geometry_result.unknown.begin(), geometry_result.unknown.end(), true);
-      throw Error(
-          ErrorCode::bad_input, {setup.scenario->file},
-          fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
-                      emitter.name, placeOf(static_cast<std::size_t>(first - geometry_result.unknown.begin())),
-                      geometry_result.unknown_columns - 1),
-          Hint::allow_missing_terrain);
+      throw Error(ErrorCode::bad_input, {setup.scenario->file},
+                  fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
+                              emitter.name,
+                              placeOf(static_cast<std::size_t>(first - geometry_result.unknown.begin())),
+                              geometry_result.unknown_columns - 1),
+                  Hint::allow_missing_terrain);
     }
     ++cache.warnings[fmt::format("emitter '{}': columns seen across missing terrain hold no field",
                                  emitter.name)];

@@ -155,7 +155,8 @@ void FieldSolver::Impl::findProducts(Changes& changes) {
   changes.products = changes.sums;
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     if (changes.is_edited && !changes.products[c]) {
-      changes.products[c] = !areSame(changes.before->channel_plans[c].product, setup.channel_plans[c].product);
+      changes.products[c] =
+          !areSame(changes.before->channel_plans[c].product, setup.channel_plans[c].product);
     }
     if (changes.products[c]) changes.report.volumes.push_back(static_cast<int>(c));
   }

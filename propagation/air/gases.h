@@ -18,13 +18,14 @@ constexpr ModelLimit kGasesSlantFrequency{
 constexpr ModelLimit kGasesElevation{
     "elevation (slant path)",      "deg", 3.14159265358979323846 / 180, 5, 90, Beyond::refused,
     "a flat stratified atmosphere"};
-constexpr ModelLimit kGasesHeight{"height",
-                                  "km",
-                                  1000,
-                                  -1,
-                                  100,
-                                  Beyond::clamped,
-                                  "no attenuation above 100 km; below sea level the lowest layer goes on"};
+constexpr ModelLimit kGasesHeight{
+    "height",
+    "km",
+    1000,
+    -1,
+    100,
+    Beyond::clamped,
+    "no attenuation above 100 km; below sea level the lowest layer is continued"};
 constexpr const ModelLimit* kGasesLimits[] = {&kGasesFrequency, &kGasesSlantFrequency, &kGasesElevation,
                                               &kGasesHeight};
 

@@ -58,7 +58,7 @@ constexpr SpectralLine kOxygenLines[] = {
     {834.145546, 183.100, 0.145, 14.700, 0, 0, 0},
 };
 
-/// P.676-13 table 2: water vapour, b1 to b6; the last stands for the continuum.
+/// P.676-13 table 2: water vapour, b1 to b6; the last is the continuum.
 constexpr SpectralLine kVapourLines[] = {
     {22.235080, 0.1079, 2.144, 26.38, 0.76, 5.087, 1.00},
     {67.803960, 0.0011, 8.732, 28.58, 0.69, 4.930, 0.82},

@@ -1,10 +1,13 @@
-/// Delta-Bullington for one column of receivers at the end of one profile, without memory for hulls: for
-/// devices where a thread has little of it.
+/// Delta-Bullington for one column of receivers at the end of one terrain profile, on CPU and GPU.
 ///
-/// Agrees with deltaBullington (diffraction.h) path by path. Posts are looked at in blocks, of which most are
-/// passed over: what no height in a block can exceed is known beforehand, and the largest values mostly come
-/// from a few peaks. What depends on the receiver is found for several at a time; as one goes up the column,
-/// the posts that matter only move toward the transmitter, as in diffraction_sweep.h.
+/// Gives the losses of deltaBullington (diffraction.h) in a fraction of its time:
+/// - Posts are visited in blocks. The maxima of a block, computed beforehand, bound every slope and nu in it;
+///   most blocks cannot exceed what a few peaks reach and are skipped.
+/// - Several receivers share each visit, which vectorises on a CPU.
+/// - As receivers rise, the post of the largest slope or nu only moves toward the transmitter: the posts
+///   beyond it are not visited again.
+/// - Once a receiver has no loss with the greatest margin, those above it have none.
+/// Memory per column: two numbers per block.
 #pragma once
 
 #include <cmath>
@@ -15,81 +18,85 @@
 
 namespace emscape::propagation {
 
-/// Posts of a block.
+/// Posts per block.
 constexpr int kDiffractionBlock = 16;
+/// Receivers that share a visit of the posts.
+constexpr int kDiffractionReceivers = 8;
 
 /// @tparam Posts  the profile:
-///     int count() const                      posts before the receivers, the transmitter's among them, >= 1
-///     double range_m(int) const              of a post, rising strictly from 0
-///     float height_msl_m(int) const          of the terrain there; NaN: missing
-///     float highest_msl_m(int block) const   no post of a block is higher
-///     float lowered_msl_m(int block) const   nor higher less the earth's bulge d^2 / (2 a)
-///     TerrainSums sumsBefore(int block) const  of the intervals that end before a block; heights from the
-///                                              first post's
-///     double distance_m() const              of the receivers, beyond the last post
-///     float ground_msl_m() const             below them
-///     int lastBefore(double range_m) const   post nearer than a range
+///     int count() const                      number of posts before the receivers, the transmitter's
+///                                            included, >= 1
+///     double range_m(int) const              range of a post, rising strictly from 0
+///     float height_msl_m(int) const          height of the terrain there; NaN: missing
+///     float highest_msl_m(int block) const   upper bound of the heights in a block
+///     float lowered_msl_m(int block) const   the same for heights less the earth's bulge d^2 / (2 a)
+///     TerrainSums sumsBefore(int block) const  sums over the intervals that end before the block; heights
+///                                              relative to the first post. Read for the last block alone
+///     double distance_m() const              range of the receivers, beyond the last post
+///     float ground_msl_m() const             height of the ground below them
+///     int lastBefore(double range_m) const   last post nearer than a range; 0 if there is none
 template <class Real, class Posts>
 class DiffractionColumn {
  public:
-  /// @param posts     stays alive
-  /// @param tx_msl_m  of the antenna; see kDiffractionAboveGround
+  /// @param posts     must outlive this object
+  /// @param tx_msl_m  height of the antenna; see kDiffractionAboveGround
   EMSCAPE_HD DiffractionColumn(const DiffractionModel<Real>& model, const Posts& posts, Real tx_msl_m);
 
-  /// Terrain is missing on the way: nothing is known of the losses.
+  /// Whether terrain is missing along the profile: the losses are unknown.
   EMSCAPE_HD bool isUnknown() const { return std::isnan(unknown_); }
 
-  /// Losses (dB) of some receivers; they must be above those of the last call.
+  /// Losses (dB) of some receivers, which must be above those of the last call.
   /// @param rx_msl_m  heights (m), rising; see kDiffractionAboveGround
-  /// @return whether receivers above the last one have no loss
+  /// @return whether all receivers above the last one have no loss
   template <int kReceivers>
   EMSCAPE_HD bool losses(const Real (&rx_msl_m)[kReceivers], Real (&loss_db)[kReceivers]);
 
  private:
-  /// The posts of a block that are obstacles.
+  /// The obstacles of a block: its posts without the transmitter's.
   struct Block {
     int first, last;
-    Real first_m, last_m;  ///< their ranges
+    Real first_m, last_m;  ///< ranges
   };
-  /// A receiver, and the largest values of all obstacles.
-  struct Found {
-    Real rx_m, slope;     ///< slope: of the line of sight
-    Real rx_slope;        ///< from the receiver, over the chord
-    Real nu;              ///< of a clear path; not below kKnifeEdgeClear
-    Real highest_m;       ///< over the line of sight, without the earth's bulge
-    Real rx_plain_slope;  ///< from the receiver, without the bulge
+  /// A receiver, and the maxima over all obstacles. "Plain" values leave out the earth's bulge.
+  struct Receiver {
+    Real rx_m;            ///< height
+    Real slope;           ///< of the line of sight
+    Real rx_slope;        ///< from the receiver to an obstacle, relative to the chord
+    Real nu;              ///< of a clear path; at least kKnifeEdgeClear
+    Real highest_m;       ///< height of an obstacle above the line of sight, plain
+    Real rx_plain_slope;  ///< from the receiver to an obstacle, plain
   };
 
-  static EMSCAPE_HD int larger(int a, int b) { return a > b ? a : b; }
+  static EMSCAPE_HD int maxOf(int a, int b) { return a > b ? a : b; }
   EMSCAPE_HD Real rangeOf(int i) const { return Real(posts_.range_m(i)); }
   EMSCAPE_HD Real heightOf(int i) const { return Real(posts_.height_msl_m(i)) - base_; }
   EMSCAPE_HD Block blockAt(int b) const;
   EMSCAPE_HD void findSteepest();
   template <int kReceivers>
-  EMSCAPE_HD void findRxSlopes(Found (&found)[kReceivers]);
+  EMSCAPE_HD void findRxSlopes(Receiver (&receivers)[kReceivers]);
   template <int kReceivers>
-  EMSCAPE_HD void findPlain(Found (&found)[kReceivers]);
+  EMSCAPE_HD void findPlain(Receiver (&receivers)[kReceivers]);
   template <int kReceivers>
-  EMSCAPE_HD void findNu(Found (&found)[kReceivers]);
+  EMSCAPE_HD void findNu(Receiver (&receivers)[kReceivers]);
   EMSCAPE_HD bool isBlocked(Real slope) const { return steepest_ + bulge_ >= slope; }
   EMSCAPE_HD bool isClearOfEarth(Real rx_m) const;
-  EMSCAPE_HD Real lackingDb(const Found& at);
+  EMSCAPE_HD Real smoothEarthCorrectionDb(const Receiver& at);
 
   DiffractionModel<Real> model_;
   const Posts& posts_;
-  Real base_;  ///< all heights are from the first post's
+  Real base_;  ///< height of the first post, to which all others are relative
   Real tx_;
   Real distance_m_;
-  Real bulge_;  ///< between slopes over the chord and lowered ones
-  Real unknown_ = 0;
-  TerrainTrend<Real> trend_{};       ///< as long as no obstacle is over the line of sight
-  Real steepest_ = -Real(HUGE_VAL);  ///< slope from the transmitter to an obstacle less its bulge d^2 / (2 a)
-  Real steepest_plain_ = -Real(HUGE_VAL);        ///< the same without the bulge
-  int steepest_at_ = 0, steepest_plain_at_ = 0;  ///< 0: there is no obstacle
-  /// Posts beyond which nothing matters to the receivers still to come, as the last receiver's largest values
-  /// are there; 0: nothing matters. What is there is looked at first, so that much else can be passed over.
+  Real bulge_;                       ///< difference of slopes relative to the chord and of lowered heights
+  Real unknown_ = 0;                 ///< NaN if terrain is missing
+  TerrainTrend<Real> trend_{};       ///< valid where no obstacle is above the line of sight
+  Real steepest_ = -Real(HUGE_VAL);  ///< max slope from the transmitter to a lowered obstacle
+  Real steepest_plain_ = -Real(HUGE_VAL);        ///< the same to a plain one
+  int steepest_at_ = 0, steepest_plain_at_ = 0;  ///< their posts; 0: no obstacle
+  /// Posts of the last receiver's maxima. Posts beyond them do not matter to receivers above; 0: none does.
+  /// They are visited first, as their values let most blocks be skipped.
   int slope_at_, plain_at_, highest_at_, nu_at_;
-  int smooth_clear_ = 0;  ///< see smoothEarthNu; 0: not looked for yet
+  int smooth_clear_ = 0;  ///< see smoothEarthNu; 0: not yet found
 };
 
 template <class Real, class Posts>
@@ -141,9 +148,9 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findSteepest() {
     const Block block = blockAt(b);
     const Real above = Real(posts_.highest_msl_m(b)) - base_ - tx_;
     const Real lowered = Real(posts_.lowered_msl_m(b)) - base_ - tx_;
-    const Real most_plain = above / (above > 0 ? block.first_m : block.last_m);
-    const Real most = lowered / (lowered > 0 ? block.first_m : block.last_m);
-    if (most <= steepest_ && most_plain <= steepest_plain_) continue;
+    const Real max_plain = above / (above > 0 ? block.first_m : block.last_m);
+    const Real max_lowered = lowered / (lowered > 0 ? block.first_m : block.last_m);
+    if (max_lowered <= steepest_ && max_plain <= steepest_plain_) continue;
     for (int i = block.first; i <= block.last; ++i) {
       const Real range = rangeOf(i), height = heightOf(i), inverse = 1 / range;
       const Real plain = (height - tx_) * inverse;
@@ -160,8 +167,8 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findSteepest() {
   }
 }
 
-/// Whether the smooth earth has no loss, for this receiver and those above. Obstacles over the line of sight
-/// would put the smooth surface lower, and both antennas higher above it.
+/// Whether the smooth earth has no loss for this receiver and those above. Obstacles above the line of sight
+/// only lower the smooth surface and so raise both antennas above it.
 template <class Real, class Posts>
 EMSCAPE_HD bool DiffractionColumn<Real, Posts>::isClearOfEarth(Real rx_m) const {
   const EffectiveHeights<Real> least = effectiveHeights(trend_, tx_, rx_m);
@@ -169,31 +176,31 @@ EMSCAPE_HD bool DiffractionColumn<Real, Posts>::isClearOfEarth(Real rx_m) const 
                            sightLine(model_.earth, distance_m_, least.tx_m, least.rx_m));
 }
 
-/// Slopes from the receivers to obstacles.
+/// Max slopes from the receivers to obstacles.
 template <class Real, class Posts>
 template <int kReceivers>
-EMSCAPE_HD void DiffractionColumn<Real, Posts>::findRxSlopes(Found (&found)[kReceivers]) {
+EMSCAPE_HD void DiffractionColumn<Real, Posts>::findRxSlopes(Receiver (&receivers)[kReceivers]) {
   const Real d = distance_m_, k = model_.half_curvature;
   Real rx_m[kReceivers], slope[kReceivers];
   EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) {
-    rx_m[j] = found[j].rx_m;
+    rx_m[j] = receivers[j].rx_m;
     slope[j] = -Real(HUGE_VAL);
   }
   const int last_block = slope_at_ / kDiffractionBlock;
-  const auto look = [&](int i) {
+  const auto visit = [&](int i) {
     const Real range = rangeOf(i), height = heightOf(i), inverse = 1 / (d - range), bend = k * range;
-    const Real of_last = slope[kReceivers - 1];
+    const Real last_before = slope[kReceivers - 1];
     EMSCAPE_UNROLL
     for (int j = 0; j < kReceivers; ++j) {
       const Real here = (height - rx_m[j]) * inverse + bend;
       slope[j] = here > slope[j] ? here : slope[j];
     }
-    if (slope[kReceivers - 1] > of_last) slope_at_ = i;
+    if (slope[kReceivers - 1] > last_before) slope_at_ = i;
   };
   const int before = slope_at_;
-  look(steepest_at_);
-  look(before);
+  visit(steepest_at_);
+  visit(before);
   for (int b = last_block; b >= 0; --b) {
     const Block block = blockAt(b);
     const Real lowered = Real(posts_.lowered_msl_m(b)) - base_ + bulge_ * d;
@@ -205,41 +212,41 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findRxSlopes(Found (&found)[kRec
       matters |= above * (above > 0 ? to_last : to_first) - bulge_ > slope[j];
     }
     if (!matters) continue;
-    for (int i = block.last; i >= block.first; --i) look(i);
+    for (int i = block.last; i >= block.first; --i) visit(i);
   }
   EMSCAPE_UNROLL
-  for (int j = 0; j < kReceivers; ++j) found[j].rx_slope = slope[j];
+  for (int j = 0; j < kReceivers; ++j) receivers[j].rx_slope = slope[j];
 }
 
-/// Heights over the lines of sight and slopes from the receivers, without the earth's bulge.
+/// Max plain heights above the lines of sight and plain slopes from the receivers.
 template <class Real, class Posts>
 template <int kReceivers>
-EMSCAPE_HD void DiffractionColumn<Real, Posts>::findPlain(Found (&found)[kReceivers]) {
+EMSCAPE_HD void DiffractionColumn<Real, Posts>::findPlain(Receiver (&receivers)[kReceivers]) {
   const Real d = distance_m_;
   Real rx_m[kReceivers], slope[kReceivers], highest_m[kReceivers], rx_slope[kReceivers];
   EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) {
-    rx_m[j] = found[j].rx_m;
-    slope[j] = found[j].slope;
+    rx_m[j] = receivers[j].rx_m;
+    slope[j] = receivers[j].slope;
     highest_m[j] = rx_slope[j] = -Real(HUGE_VAL);
   }
   const int slope_before = plain_at_, highest_before = highest_at_;
-  const auto look = [&](int i) {
+  const auto visit = [&](int i) {
     const Real range = rangeOf(i), height = heightOf(i), inverse = 1 / (d - range);
-    const Real of_last = rx_slope[kReceivers - 1], highest_of_last = highest_m[kReceivers - 1];
+    const Real last_before = rx_slope[kReceivers - 1], last_highest_before = highest_m[kReceivers - 1];
     EMSCAPE_UNROLL
     for (int j = 0; j < kReceivers; ++j) {
       const Real here = (height - rx_m[j]) * inverse, above = height - tx_ - slope[j] * range;
       rx_slope[j] = here > rx_slope[j] ? here : rx_slope[j];
       highest_m[j] = above > highest_m[j] ? above : highest_m[j];
     }
-    if (rx_slope[kReceivers - 1] > of_last) plain_at_ = i;
-    if (highest_m[kReceivers - 1] > highest_of_last) highest_at_ = i;
+    if (rx_slope[kReceivers - 1] > last_before) plain_at_ = i;
+    if (highest_m[kReceivers - 1] > last_highest_before) highest_at_ = i;
   };
-  look(steepest_plain_at_);
-  look(slope_before);
-  look(highest_before);
-  for (int b = larger(slope_before, highest_before) / kDiffractionBlock; b >= 0; --b) {
+  visit(steepest_plain_at_);
+  visit(slope_before);
+  visit(highest_before);
+  for (int b = maxOf(slope_before, highest_before) / kDiffractionBlock; b >= 0; --b) {
     const Block block = blockAt(b);
     const Real highest = Real(posts_.highest_msl_m(b)) - base_;
     const Real to_first = 1 / (d - block.first_m), to_last = 1 / (d - block.last_m);
@@ -251,49 +258,49 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findPlain(Found (&found)[kReceiv
       matters |= highest - tx_ - slope[j] * (slope[j] > 0 ? block.first_m : block.last_m) > highest_m[j];
     }
     if (!matters) continue;
-    for (int i = block.last; i >= block.first; --i) look(i);
+    for (int i = block.last; i >= block.first; --i) visit(i);
   }
   EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) {
-    found[j].highest_m = highest_m[j];
-    found[j].rx_plain_slope = rx_slope[j];
+    receivers[j].highest_m = highest_m[j];
+    receivers[j].rx_plain_slope = rx_slope[j];
   }
 }
 
-/// nu of clear paths.
+/// Max nu of clear paths.
 template <class Real, class Posts>
 template <int kReceivers>
-EMSCAPE_HD void DiffractionColumn<Real, Posts>::findNu(Found (&found)[kReceivers]) {
+EMSCAPE_HD void DiffractionColumn<Real, Posts>::findNu(Receiver (&receivers)[kReceivers]) {
   const Real d = distance_m_, k = model_.half_curvature;
   const Real factor2 = 2 * d / model_.earth.wavelength_m;
   Real slope[kReceivers], nu[kReceivers];
   EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) {
-    slope[j] = found[j].slope;
+    slope[j] = receivers[j].slope;
     nu[j] = kKnifeEdgeClear<Real>;
   }
   const int before = nu_at_;
   nu_at_ = 0;
-  const auto look = [&](int i) {
+  const auto visit = [&](int i) {
     const Real range = rangeOf(i), beyond = d - range;
     const Real factor = std::sqrt(factor2 / (range * beyond));
     const Real above = heightOf(i) - tx_ + k * range * beyond;
-    const Real of_last = nu[kReceivers - 1];
+    const Real last_before = nu[kReceivers - 1];
     EMSCAPE_UNROLL
     for (int j = 0; j < kReceivers; ++j) {
       const Real here = (above - slope[j] * range) * factor;
       nu[j] = here > nu[j] ? here : nu[j];
     }
-    if (nu[kReceivers - 1] > of_last) nu_at_ = i;
+    if (nu[kReceivers - 1] > last_before) nu_at_ = i;
   };
   if (before > 0) {
-    look(steepest_at_);
-    look(before);
+    visit(steepest_at_);
+    visit(before);
   }
   for (int b = before > 0 ? before / kDiffractionBlock : -1; b >= 0; --b) {
     const Block block = blockAt(b);
     const Real lowered = Real(posts_.lowered_msl_m(b)) - base_ - tx_;
-    // where the first Fresnel zone is widest
+    // the range in the block where the first Fresnel zone is widest
     const Real half = d / 2;
     const Real widest = half < block.first_m ? block.first_m : half > block.last_m ? block.last_m : half;
     const Real width2 = widest * (d - widest);
@@ -305,15 +312,16 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findNu(Found (&found)[kReceivers
       matters |= !isBlocked(slope[j]) && (above >= 0 || above * above * factor2 < nu[j] * nu[j] * width2);
     }
     if (!matters) continue;
-    for (int i = block.last; i >= block.first; --i) look(i);
+    for (int i = block.last; i >= block.first; --i) visit(i);
   }
   EMSCAPE_UNROLL
-  for (int j = 0; j < kReceivers; ++j) found[j].nu = nu[j];
+  for (int j = 0; j < kReceivers; ++j) receivers[j].nu = nu[j];
 }
 
-/// What Bullington's loss lacks of the spherical earth's (dB).
+/// Smooth-earth correction (dB): the spherical earth's loss less Bullington's, at least 0.
+/// @see P.526-15 eq. (68)
 template <class Real, class Posts>
-EMSCAPE_HD Real DiffractionColumn<Real, Posts>::lackingDb(const Found& at) {
+EMSCAPE_HD Real DiffractionColumn<Real, Posts>::smoothEarthCorrectionDb(const Receiver& at) {
   TerrainTrend<Real> trend = trend_;
   trend.highest_m = at.highest_m;
   if (at.highest_m > 0) {
@@ -331,10 +339,10 @@ EMSCAPE_HD Real DiffractionColumn<Real, Posts>::lackingDb(const Found& at) {
     smooth_clear_ = find(distance_m_ * heights.tx_m / (heights.tx_m + heights.rx_m));
   }
   const Real smooth_nu = smoothEarthNu(
-      model_, [&](int i) { return rangeOf(i); }, find, find, posts_.count() - 1, distance_m_, heights,
+      model_, [&](int i) { return rangeOf(i); }, find, posts_.count() - 1, distance_m_, heights,
       smooth_clear_);
-  const Real lacking_db = spherical_db - bullingtonLossDb(smooth_nu, distance_m_);
-  return lacking_db > 0 ? lacking_db : Real(0);
+  const Real correction_db = spherical_db - bullingtonLossDb(smooth_nu, distance_m_);
+  return correction_db > 0 ? correction_db : Real(0);
 }
 
 template <class Real, class Posts>
@@ -342,29 +350,29 @@ template <int kReceivers>
 EMSCAPE_HD bool DiffractionColumn<Real, Posts>::losses(const Real (&rx_msl_m)[kReceivers],
                                                        Real (&loss_db)[kReceivers]) {
   const Real infinity = Real(HUGE_VAL);
-  Found found[kReceivers];
+  Receiver receivers[kReceivers];
   EMSCAPE_UNROLL
   for (int j = 0; j < kReceivers; ++j) {
     const Real rx_m = model_.raised_m(rx_msl_m[j] - base_, trend_.rx_ground_msl_m);
-    found[j] = {rx_m, (rx_m - tx_) / distance_m_, -infinity, -infinity, -infinity, -infinity};
+    receivers[j] = {rx_m, (rx_m - tx_) / distance_m_, -infinity, -infinity, -infinity, -infinity};
   }
-  // Slopes and clearance rise with the receiver: these hold if they do for the lowest or the highest.
-  const bool has_earth = !isClearOfEarth(found[0].rx_m);
+  // Slopes and clearance rise with the receiver's height: the lowest or the highest receiver decides for all.
+  const bool has_earth = !isClearOfEarth(receivers[0].rx_m);
   if (steepest_at_ > 0) {
-    if (isBlocked(found[0].slope)) findRxSlopes(found);
-    if (!isBlocked(found[kReceivers - 1].slope)) findNu(found);
-    if (has_earth) findPlain(found);
+    if (isBlocked(receivers[0].slope)) findRxSlopes(receivers);
+    if (!isBlocked(receivers[kReceivers - 1].slope)) findNu(receivers);
+    if (has_earth) findPlain(receivers);
   }
-  // What follows is long, and is there once: its loop is not unrolled.
+  // Not unrolled: the body is long, and inlined once it stays in the instruction cache.
   bool is_free_above = false;
   for (int j = 0; j < kReceivers; ++j) {
-    const Found& at = found[j];
+    const Receiver& at = receivers[j];
     const Real nu = isBlocked(at.slope)
                         ? bullingtonEdgeNu(model_, distance_m_, at.slope, steepest_ + bulge_, at.rx_slope)
                         : at.nu;
     loss_db[j] = bullingtonLossDb(nu, distance_m_);
     const bool is_clear_of_earth = !has_earth || isClearOfEarth(at.rx_m);
-    if (!is_clear_of_earth) loss_db[j] += lackingDb(at);
+    if (!is_clear_of_earth) loss_db[j] += smoothEarthCorrectionDb(at);
     is_free_above = is_clear_of_earth && nu <= kKnifeEdgeClear<Real>;
   }
   return is_free_above;

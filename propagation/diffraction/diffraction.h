@@ -1,12 +1,12 @@
 /// Model `diffraction`: loss over terrain and the earth's bulge, ITU-R P.526-15 section 4.5 ("delta-
-/// Bullington"), as P.1812 and P.452 take it too; single edge and Deygout's construction as options in
-/// diffraction_edges.h.
+/// Bullington"), also used by P.1812 and P.452. edges.h has the options single edge and Deygout.
 ///
-/// Terrain is made into one knife edge, where the steepest rays from the two antennas meet (Bullington). That
-/// understates a smooth earth; what it lacks there, against the spherical earth, is added:
+/// Bullington replaces the terrain by one knife edge, where the steepest rays from the two antennas meet.
+/// Over a smooth earth its loss is too small; the smooth-earth correction is added:
 ///   L = L_bulla + max(L_dsph - L_bulls, 0)
-/// with L_bulls Bullington's loss and L_dsph the true one of a smooth earth under antennas as high above it
-/// as these are above the terrain's trend. The loss is continuous in range, height and frequency.
+/// with L_bulls Bullington's loss and L_dsph the spherical earth's, both for a smooth earth under antennas
+/// that are as high above it as the real ones above the terrain's trend. The loss is continuous in range,
+/// height and frequency.
 #pragma once
 
 #include <cmath>
@@ -29,7 +29,7 @@ constexpr ModelLimit kDiffractionHeight{
     -1,
     10,
     Beyond::warned,
-    "rays are taken as straight over an earth of k times its radius; higher up they are not"};
+    "rays are assumed straight over an earth of k times its radius; higher up they are not"};
 constexpr ModelLimit kDiffractionDistance{"distance",
                                           "km",
                                           1000,
@@ -48,7 +48,7 @@ constexpr ModelLimit kDiffractionAboveGround{
 constexpr const ModelLimit* kDiffractionLimits[] = {&kDiffractionFrequency, &kDiffractionHeight,
                                                     &kDiffractionAboveGround, &kDiffractionDistance};
 
-/// What a path's loss depends on besides terrain and antennas.
+/// Parameters of a path's loss besides terrain and antennas.
 struct DiffractionParameters {
   double frequency_hz = 0;
   double effective_earth_radius_m = 0;
@@ -70,7 +70,7 @@ struct DiffractionModel {
     return antenna_m > lowest ? antenna_m : lowest;
   }
 
-  /// nu of an obstacle that stands `above_m` over the line of sight, P.526 eq. (26) in metres.
+  /// nu of an obstacle `above_m` above the line of sight, P.526-15 eq. (26) in metres.
   EMSCAPE_HD Real nuOf(Real above_m, Real d1_m, Real d2_m) const {
     return above_m * std::sqrt(2 * (d1_m + d2_m) / (earth.wavelength_m * d1_m * d2_m));
   }
@@ -88,7 +88,7 @@ DiffractionModel<Real> diffractionModel(const DiffractionParameters& parameters)
   return model;
 }
 
-/// Bullington's loss (dB) from its edge's nu, eq. (56) or its like for a clear path, and eq. (57).
+/// Bullington's loss (dB) from the nu of its edge. @see P.526-15 eq. (56), (57)
 template <class Real>
 EMSCAPE_HD Real bullingtonLossDb(Real nu, Real distance_m) {
   const Real edge_db = knifeEdgeDb(nu);
@@ -96,8 +96,8 @@ EMSCAPE_HD Real bullingtonLossDb(Real nu, Real distance_m) {
   return edge_db + (1 - std::exp(-edge_db / 6)) * (10 + Real(2e-5) * distance_m);
 }
 
-/// nu of the edge where the steepest rays meet. With the rays' slopes t and r over the line of sight the edge
-/// stands at d r / (t + r), and as high as t times that: nu = sqrt(2 d t r / lambda).
+/// nu of the edge where the steepest rays meet. With slopes t and r of the rays relative to the line of sight
+/// the edge is at range d r / (t + r) and t times that above it: nu = sqrt(2 d t r / lambda).
 /// @param slope_to_rx  (h_rs - h_ts) / d
 /// @param tx_slope     largest slope from the transmitter to an obstacle, >= slope_to_rx
 /// @param rx_slope     the same from the receiver, >= -slope_to_rx
@@ -106,11 +106,11 @@ template <class Real>
 EMSCAPE_HD Real bullingtonEdgeNu(const DiffractionModel<Real>& model, Real distance_m, Real slope_to_rx,
                                  Real tx_slope, Real rx_slope) {
   const Real product = (tx_slope - slope_to_rx) * (rx_slope + slope_to_rx);
-  // Rounding may put the second factor below 0 where both are next to nothing.
+  // Rounding may make the second factor negative where both are near 0.
   return std::sqrt(2 * distance_m / model.earth.wavelength_m * (product > 0 ? product : Real(0)));
 }
 
-/// What the terrain does to the smooth surface under it.
+/// Input of the smooth surface under a terrain profile.
 template <class Real>
 struct TerrainTrend {
   Real start_msl_m, end_msl_m;  ///< of the line fitted to the terrain, eq. (60), (61)
@@ -140,18 +140,18 @@ EMSCAPE_HD EffectiveHeights<Real> effectiveHeights(const TerrainTrend<Real>& tre
   return {tx_msl_m - start, rx_msl_m - end};
 }
 
-/// Sums from which the line fitted to the terrain comes; in double precision.
+/// Running sums of the line fitted to the terrain; in double precision.
 struct TerrainSums {
   double v1 = 0, v2 = 0;
 
-  /// Takes in the interval that ends at post i >= 1. Heights are from the first post's.
+  /// Adds the interval that ends at post i >= 1. Heights are relative to the first post.
   /// @see P.526-15 eq. (58), (59)
   EMSCAPE_HD void add(const TerrainProfile& profile, int i) {
     const double base = profile.height_msl_m[0];
     add(profile.range_m[i - 1], profile.height_msl_m[i - 1] - base, profile.range_m[i],
         profile.height_msl_m[i] - base);
   }
-  /// The same for an interval from one range and height (m) to the next.
+  /// Adds an interval from one range and height (m) to the next.
   EMSCAPE_HD void add(double before, double h_before, double d, double h) {
     v1 += (d - before) * (h + h_before);
     v2 += (d - before) * (h * (2 * d + before) + h_before * (d + 2 * before));
@@ -165,12 +165,12 @@ struct TerrainSums {
   }
 };
 
-/// A path's loss and what it is made of.
+/// Loss of a path and its parts.
 template <class Real>
 struct DeltaBullington {
   Real loss_db = 0;                    ///< L_d, eq. (68)
   Real terrain_db = 0;                 ///< L_bulla
-  Real smooth_db = 0;                  ///< L_bulls; 0 where L_dsph is 0, as it does not matter then
+  Real smooth_db = 0;                  ///< L_bulls; not computed and 0 where L_dsph is 0
   Real spherical_db = 0;               ///< L_dsph
   EffectiveHeights<Real> effective{};  ///< above the smooth surface
 };
@@ -204,7 +204,7 @@ EMSCAPE_HD Real bullingtonNu(const DiffractionModel<Real>& model, const double* 
   return nu;
 }
 
-/// Loss of one path, from a profile whose last post lies below the receiver.
+/// Loss of one path over a profile whose last post is below the receiver.
 /// @param tx_msl_m, rx_msl_m  of the antennas; see kDiffractionAboveGround
 /// @return 0 with a single post; all NaN over missing terrain (NaN)
 /// @accuracy float within 0.02 dB of double to 500 km, 20 MHz to 40 GHz
@@ -217,7 +217,7 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
   const double distance_m = profile.range_m[last];
   const Real d = Real(distance_m);
   const Real base = Real(profile.height_msl_m[0]);
-  // Heights from the first post's on: single precision is for differences.
+  // Heights relative to the first post keep the precision of float.
   TerrainTrend<Real> trend;
   trend.tx_ground_msl_m = 0;
   trend.rx_ground_msl_m = Real(profile.height_msl_m[last]) - base;
@@ -260,8 +260,8 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
     result.smooth_db = bullingtonLossDb(bullingtonNu(model, profile.range_m, profile.count,
                                                      result.effective.tx_m, result.effective.rx_m, seaLevel),
                                         d);
-    const Real lacking_db = result.spherical_db - result.smooth_db;
-    result.loss_db += lacking_db > 0 ? lacking_db : Real(0);
+    const Real correction_db = result.spherical_db - result.smooth_db;
+    result.loss_db += correction_db > 0 ? correction_db : Real(0);
   }
   return result;
 }

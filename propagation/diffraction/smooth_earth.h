@@ -1,5 +1,5 @@
-/// Bullington's edge over a smooth earth with a profile's posts: what delta-Bullington compares with the true
-/// spherical earth.
+/// Bullington's edge over a smooth earth with the posts of a profile (P.526-15 section 4.5.3, step of
+/// L_bulls), which delta-Bullington compares with the loss of the spherical earth.
 #pragma once
 
 #include <cmath>
@@ -9,45 +9,30 @@
 
 namespace emscape::propagation {
 
-/// Posts at which the largest values were found last: they move little from receiver to receiver.
-struct SmoothEarthPosts {
-  int tx = 1, rx = 1, clear = 1;
-};
-
-/// Moves from a post to the last one not beyond a range, in 1..last.
-template <class Real, class RangeOf>
-EMSCAPE_HD int walkTo(int& post, Real range_m, int last, RangeOf rangeOf) {
-  post = post < last ? post : last;
-  while (post > 1 && rangeOf(post) > range_m) --post;
-  while (post < last && rangeOf(post + 1) <= range_m) ++post;
-  return post;
-}
-
-/// bullingtonNu over heights of 0, without looking at every post.
+/// bullingtonNu over heights of 0, without visiting every post.
 /// @param rangeOf         (int) -> range (m) of a post
-/// @param findTx, findRx  (Real range_m) -> last post not beyond the horizon of either antenna, in 1..last
+/// @param lastBefore      (Real range_m) -> last post nearer than a range, in 1..last
 /// @param last            the last post before the receiver
-/// @param clear           a post from which to look for the least clearance; it is left where that is
-template <class Real, class RangeOf, class FindTx, class FindRx>
-EMSCAPE_HD Real smoothEarthNu(const DiffractionModel<Real>& model, RangeOf rangeOf, FindTx findTx,
-                              FindRx findRx, int last, Real distance_m, const EffectiveHeights<Real>& heights,
-                              int& clear) {
+/// @param clear           post at which the search for the smallest clearance starts; set to where it is
+template <class Real, class RangeOf, class LastBefore>
+EMSCAPE_HD Real smoothEarthNu(const DiffractionModel<Real>& model, RangeOf rangeOf, LastBefore lastBefore,
+                              int last, Real distance_m, const EffectiveHeights<Real>& heights, int& clear) {
   if (last < 1) return -Real(HUGE_VAL);
   const Real k = model.half_curvature;
-  // Steepest ray to a point that an antenna sees at its horizon, or to the posts on either side of it.
+  // Max slope from an antenna: at its horizon, that is at one of the posts on either side of it.
   const auto txSlope = [&](int i) { return k * (distance_m - rangeOf(i)) - heights.tx_m / rangeOf(i); };
   const auto rxSlope = [&](int i) { return k * rangeOf(i) - heights.rx_m / (distance_m - rangeOf(i)); };
-  const auto largerOf = [last](int post, auto slopeOf) {
+  const auto maxOf = [last](int post, auto slopeOf) {
     const Real before = slopeOf(post), after = slopeOf(post < last ? post + 1 : post);
     return before > after ? before : after;
   };
-  const Real tx_slope = largerOf(findTx(std::sqrt(heights.tx_m / k)), txSlope);
+  const Real tx_slope = maxOf(lastBefore(std::sqrt(heights.tx_m / k)), txSlope);
   const Real slope_to_rx = (heights.rx_m - heights.tx_m) / distance_m;
   if (tx_slope >= slope_to_rx) {
-    const Real rx_slope = largerOf(findRx(distance_m - std::sqrt(heights.rx_m / k)), rxSlope);
+    const Real rx_slope = maxOf(lastBefore(distance_m - std::sqrt(heights.rx_m / k)), rxSlope);
     return bullingtonEdgeNu(model, distance_m, slope_to_rx, tx_slope, rx_slope);
   }
-  // The square of the clearance over d1 d2 has one least value between antennas that are not below ground.
+  // The square of the clearance over d1 d2 has a single minimum between antennas that are not below ground.
   const auto closeness = [&](int i) {
     const Real d1 = rangeOf(i), d2 = distance_m - d1;
     const Real clearance = heights.tx_m + slope_to_rx * d1 - k * d1 * d2;

@@ -112,7 +112,8 @@ struct ItmLink {
   bool vertical_polarization = true;
   Real relative_permittivity = 15;
   Real conductivity_s_m = Real(0.005);
-  Real sea_level_refractivity = 301;  ///< N_0 (N-units); gives the curvature of the rays, in place of a k factor
+  Real sea_level_refractivity =
+      301;  ///< N_0 (N-units); gives the curvature of the rays, in place of a k factor
   ItmClimate climate = ItmClimate::continental_temperate;
   int variability_mode = 12;  ///< 0..3, 10..13, 20..23: see itmQuantileDb
 };
@@ -202,7 +203,7 @@ EMSCAPE_HD ItmStatus checkPath(const ItmPath<Real>& path, unsigned& warnings) {
   const Real refractivity = path.surface_refractivity;
   if (!holds<kItmSurfaceRefractivity>(refractivity)) {
     return refractivity > kItmSurfaceRefractivity.max ? ItmStatus::surface_refractivity_too_large
-                                                       : ItmStatus::surface_refractivity_too_small;
+                                                      : ItmStatus::surface_refractivity_too_small;
   }
   if (!holds<kItmProvenSurfaceRefractivity>(refractivity)) warnings |= kItmWarnSurfaceRefractivity;
   if (!holds<kItmEffectiveEarth>(path.effective_earth_radius_m)) return ItmStatus::effective_earth;

@@ -104,7 +104,7 @@ std::vector<std::string> itmWarningMessages(unsigned warnings) {
   if (!all.empty()) messages.push_back(all);
   if ((warnings & kItmRefused) != 0) {
     messages.push_back(
-        "paths refused, on which 'diffraction' stands instead: the refractivity at the surface "
+        "paths refused, 'diffraction' is used instead: the refractivity at the surface "
         "or the effective earth is outside the model's limits");
   }
   return messages;
@@ -159,8 +159,8 @@ Explanation explainItm(const PathInputs& inputs, PathColumn& path) {
                   (1 - weight) * diffraction_db);
   explanation.why = weight == 1 ? "both ends and the distance are within ITM's limits"
                     : weight == 0
-                        ? "an end or the distance is outside ITM's limits: diffraction stands instead"
-                        : "near ITM's limits it goes over to diffraction by weights";
+                        ? "an end or the distance is outside ITM's limits: diffraction is used instead"
+                        : "near ITM's limits: a weighted mean with diffraction";
   return explanation;
 }
 

@@ -205,7 +205,8 @@ EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
 
   unsigned char bucket[kMost];
   unsigned char members[kBuckets] = {};
-  unsigned char more_members[kBuckets] = {};  // used alternately, so that equal buckets do not wait for each other
+  unsigned char more_members[kBuckets] =
+      {};  // used alternately, so that equal buckets do not wait for each other
   const Real scale = (kBuckets - 1) / (most - least);
   for (int i = 0; i < count; ++i)
     bucket[i] = static_cast<unsigned char>(static_cast<int>((values[i] - least) * scale));

@@ -117,8 +117,7 @@ double p528Fading_db(double k_db, double time_percent) {
   const ListPosition curve = positionIn(kK_db, k_db);
   const ListPosition column = positionIn(kPercentage, time_percent);
   const auto at = [&](int percentage) {
-    return lerp(kFading_db[curve.below][percentage], kFading_db[curve.below + 1][percentage],
-                   curve.fraction);
+    return lerp(kFading_db[curve.below][percentage], kFading_db[curve.below + 1][percentage], curve.fraction);
   };
   return lerp(at(column.below), at(column.below + 1), column.fraction);
 }

@@ -203,7 +203,8 @@ EMSCAPE_HD Real twoRayExcessDb(const TwoRayModel<Real>& model, Real distance_m, 
     return loss_db > 0 ? loss_db : Real(0);
   }
   const Real factor = interferenceFactor(model, reflectedPath(radius_m, distance_m, h1, h2), reflected_gain);
-  const Real interference_db = -kDbPerNeper<Real> * std::log(factor > kMinFieldFactor ? factor : kMinFieldFactor);
+  const Real interference_db =
+      -kDbPerNeper<Real> * std::log(factor > kMinFieldFactor ? factor : kMinFieldFactor);
   const LeastClearance<Real> least = leastClearance(model.earth, distance_m, h1, h2);
   const Real part = least.clearance_m / least.required_m;
   if (part >= 1) return interference_db;

@@ -60,7 +60,7 @@ std::vector<GridRow> readRows(const AntennaText& text, const std::vector<ColumnS
       fail(header[i], fmt::format("unknown column '{}'; the header should be {}", header[i].text, wanted));
     }
     std::size_t& index = position[static_cast<std::size_t>(column - columns.begin())];
-    if (index < header.size()) fail(header[i], fmt::format("column '{}' stands here twice", header[i].text));
+    if (index < header.size()) fail(header[i], fmt::format("column '{}' occurs twice", header[i].text));
     index = i;
   }
   if (header.size() < columns.size())
@@ -133,9 +133,8 @@ std::vector<double> inGridOrder(std::vector<GridRow> rows, const MeasuredAxis& a
       if (rows[row].values[2] == attenuations_db.back()) continue;
       throw Error(
           ErrorCode::bad_input, {file.file, rows[row].line, 1},
-          fmt::format(
-              "azimuth {} deg, elevation {} deg stands here a second time, with {} dB instead of {} dB",
-              pair.second, pair.first, rows[row].values[2], attenuations_db.back()));
+          fmt::format("azimuth {} deg, elevation {} deg occurs a second time, with {} dB instead of {} dB",
+                      pair.second, pair.first, rows[row].values[2], attenuations_db.back()));
     }
   }
   return attenuations_db;
@@ -192,7 +191,7 @@ AntennaPtr readAntenna(const std::string& file, double gain_dbi) {
   if (upperCase(std::filesystem::path(file).extension().string()) != ".CSV") return readMsi(file, gain_dbi);
   if (std::isnan(gain_dbi)) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
-                "a CSV grid holds no gain; gain_dbi must be given beside the file");
+                "a CSV grid has no gain; gain_dbi must be given with the file");
   }
   return readCsvGrid(file, gain_dbi);
 }

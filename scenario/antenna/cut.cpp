@@ -93,7 +93,8 @@ MeasuredCut::MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const SourceLo
 
 double MeasuredCut::amplitudeAt(double angle_deg) const {
   const AxisSample sample = axis_.locate(angle_deg);
-  return amplitudes_[sample.below] + sample.fraction * (amplitudes_[sample.above] - amplitudes_[sample.below]);
+  return amplitudes_[sample.below] +
+         sample.fraction * (amplitudes_[sample.above] - amplitudes_[sample.below]);
 }
 
 double MeasuredCut::attenuationAt_db(double angle_deg) const {

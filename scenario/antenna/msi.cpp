@@ -159,7 +159,7 @@ AntennaPtr readMsi(const std::string& file, double gain_dbi) {
   if (content.vertical.empty()) throw Error(ErrorCode::bad_input, location, "no VERTICAL cut");
   if (std::isnan(gain_dbi)) {
     if (!content.gain_dbi)
-      throw Error(ErrorCode::bad_input, location, "no GAIN, and gain_dbi is not given beside the file");
+      throw Error(ErrorCode::bad_input, location, "no GAIN, and gain_dbi is not given with the file");
     gain_dbi = *content.gain_dbi;
   }
   requireGain(gain_dbi);
@@ -170,7 +170,7 @@ AntennaPtr readMsi(const std::string& file, double gain_dbi) {
 
   if (content.tilt_deg && std::abs(peakAngle_deg(vertical) - *content.tilt_deg) > kTiltTolerance_deg) {
     logWarning(fmt::format(
-        "{}: the file tells of {} deg of tilt, but its VERTICAL cut has its maximum at {} deg; the cut is "
+        "{}: the file states {} deg of tilt, but its VERTICAL cut has its maximum at {} deg; the cut is "
         "used as it stands",
         file, *content.tilt_deg, peakAngle_deg(vertical)));
   }

@@ -148,7 +148,8 @@ double GridAntenna::amplitudeTowards(const Vec3d& direction, double, double) con
   const auto entry = [&](int i, int j) {
     return double(amplitudes_[static_cast<std::size_t>(row + j) * azimuth_count_ + column + i]);
   };
-  return lerp(lerp(entry(0, 0), entry(1, 0), x - column), lerp(entry(0, 1), entry(1, 1), x - column), y - row);
+  return lerp(lerp(entry(0, 0), entry(1, 0), x - column), lerp(entry(0, 1), entry(1, 1), x - column),
+              y - row);
 }
 
 GridNodes gridNodes(const std::vector<double>& azimuths_deg, const std::vector<double>& elevations_deg) {

@@ -44,7 +44,7 @@ class TerrainFile {
 
   /// True: the lattice is of WGS84 longitudes and latitudes (deg). False: of the file's own plane.
   bool isGeographic() const;
-  /// The same text for files whose lattices lie in the same plane.
+  /// A text that is equal for files whose lattices are in the same plane.
   const std::string& planeName() const;
   /// Transforms points of the plane to longitude and latitude (deg) in place; NaN where that fails.
   void toGeographic(std::vector<double>& x, std::vector<double>& y) const;

@@ -240,8 +240,8 @@ void TerrainFile::Impl::placePosts(GDALDataset& dataset) {
     fail("has a georeference of no extent");
   }
   if (reach > kMaxCrsCoordinate) {
-    fail("its posts lie nowhere on the earth: a coordinate is " + shortText(reach) +
-         ", more than the allowed " + shortText(kMaxCrsCoordinate));
+    fail("its posts are not on the earth: a coordinate is " + shortText(reach) + ", more than the allowed " +
+         shortText(kMaxCrsCoordinate));
   }
   const char* meaning = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
   is_area = meaning == nullptr || !EQUAL(meaning, GDALMD_AOP_POINT);

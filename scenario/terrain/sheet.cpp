@@ -111,7 +111,7 @@ void measureSpacing(TerrainSheet& sheet) {
   sheet.spacing_m = std::sqrt(across_m * along_m);
   if (!(sheet.spacing_m > 0.0)) {
     throw Error(ErrorCode::bad_input,
-                "elevation file " + sheet.file->name() + ": its posts lie nowhere on the earth");
+                "elevation file " + sheet.file->name() + ": its posts are not on the earth");
   }
   sheet.finest_m = std::max(std::min(across_m, along_m), 0.5 * std::max(across_m, along_m));
 }

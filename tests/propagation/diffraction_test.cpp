@@ -1,4 +1,4 @@
-// Diffraction: single edges, delta-Bullington path by path and by planes, over real and made-up terrain.
+// Diffraction: single edges, delta-Bullington path by path.
 #include "propagation/diffraction/diffraction.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,6 @@
 #include <random>
 
 #include "propagation/diffraction/edges.h"
-#include "propagation/diffraction/sweep.h"
 #include "tests/emfield/random_profile.h"
 
 namespace emscape::propagation {
@@ -16,8 +15,6 @@ namespace {
 
 using emfield::testing::madeUpProfile;
 using emfield::testing::ProfileData;
-using emfield::testing::randomProfile;
-using emfield::testing::whiteMountainsTile;
 
 constexpr double kEarth_m = 6371000.0 * 4 / 3;
 
@@ -128,120 +125,9 @@ TEST(Diffraction, UnknownTerrainIsNeverAClearPath) {
   profile.height_msl_m[40] = std::nanf("");
   const auto model = diffractionModel<double>(parametersAt(1e9));
   EXPECT_TRUE(std::isnan(deltaBullington(model, profile.view(), 5000.0, 5000.0).loss_db));
-  DiffractionMemory<double> memory(101);
-  const double heights[] = {100, 5000};
-  std::vector<double> plane(202);
-  diffractionPlane(model, profile.view(), 5000.0, heights, 2, memory.scratch(), plane.data());
-  EXPECT_FALSE(std::isnan(plane[2 * 39]));
-  for (int post : {40, 41, 100}) EXPECT_TRUE(std::isnan(plane[2 * std::size_t(post) + 1])) << post;
 }
 
-/// Differences between the planes of a profile and its paths one by one, at some posts and heights.
-struct Difference {
-  double largest_db = 0, float_db = 0, float_path_db = 0;
-  int paths = 0, lossy = 0;
-
-  void look(const ProfileData& data, const DiffractionParameters& parameters, double above_ground_m,
-            double top_msl_m, std::mt19937& random) {
-    const TerrainProfile profile = data.view();
-    const auto model = diffractionModel<double>(parameters);
-    const auto single = diffractionModel<float>(parameters);
-    constexpr int kHeights = 100;
-    std::vector<double> heights;
-    const double lowest = *std::min_element(data.height_msl_m.begin(), data.height_msl_m.end()) - 10;
-    for (int j = 0; j < kHeights; ++j) heights.push_back(lowest + (top_msl_m - lowest) * j / (kHeights - 1));
-    const std::vector<float> single_heights(heights.begin(), heights.end());
-    const double tx = data.height_msl_m[0] + above_ground_m;
-    std::vector<double> plane(std::size_t(profile.count) * kHeights);
-    std::vector<float> single_plane(plane.size());
-    DiffractionMemory<double> memory(profile.count);
-    DiffractionMemory<float> single_memory(profile.count);
-    diffractionPlane(model, profile, tx, heights.data(), kHeights, memory.scratch(), plane.data());
-    diffractionPlane(single, profile, float(tx), single_heights.data(), kHeights, single_memory.scratch(),
-                     single_plane.data());
-    std::uniform_int_distribution<int> any_post(1, profile.count - 1), any_height(0, kHeights - 1);
-    for (int n = 0; n < 50; ++n) {
-      const int post = any_post(random), j = any_height(random);
-      const auto path = deltaBullington(model, profile.upTo(post), tx, heights[std::size_t(j)]);
-      const auto single_path =
-          deltaBullington(single, profile.upTo(post), float(tx), single_heights[std::size_t(j)]);
-      const std::size_t at = std::size_t(post) * kHeights + std::size_t(j);
-      largest_db = std::max(largest_db, std::abs(plane[at] - path.loss_db));
-      float_db = std::max(float_db, std::abs(double(single_plane[at]) - path.loss_db));
-      float_path_db = std::max(float_path_db, std::abs(double(single_path.loss_db) - path.loss_db));
-      ASSERT_FALSE(std::isnan(plane[at]));
-      ++paths;
-      lossy += path.loss_db > 0;
-    }
-  }
-};
-
-DiffractionParameters anyParameters(std::mt19937& random) {
-  std::uniform_real_distribution<double> part(0, 1);
-  DiffractionParameters parameters = parametersAt(3e7 * std::pow(1000, part(random)));
-  parameters.effective_earth_radius_m = 6371000 * (0.8 + 1.2 * part(random));
-  if (part(random) < 0.5) parameters.polarization = LinearPolarization::vertical;
-  if (part(random) < 0.3) parameters.sea_fraction = part(random);
-  return parameters;
-}
-
-TEST(DiffractionPlane, AgreesWithPathsOverRealTerrain) {
-  const auto terrain = whiteMountainsTile();
-  std::mt19937 random(20);
-  Difference difference;
-  for (int n = 0; n < 200; ++n) {
-    const ProfileData profile = randomProfile(*terrain, random, 60 + n);
-    difference.look(profile, anyParameters(random),
-                    n % 3 == 0   ? 2
-                    : n % 3 == 1 ? 30
-                                 : 1500,
-                    800 + 20 * n, random);
-  }
-  EXPECT_EQ(difference.paths, 10000);
-  EXPECT_GT(difference.lossy, 2000);
-  EXPECT_LT(difference.largest_db, 1e-6);
-  EXPECT_LT(difference.float_db, 0.05);
-  EXPECT_LT(difference.float_path_db, 0.05);
-}
-
-TEST(DiffractionPlane, AgreesWithPathsOverMadeUpTerrain) {
-  std::mt19937 random(21);
-  Difference difference;
-  for (int n = 0; n < 100; ++n) {
-    const double relief_m = n % 4 == 0 ? 0 : std::pow(4, n % 4);
-    const ProfileData profile = madeUpProfile(random, 50 + n, n % 2 == 0 ? 20e3 : 300e3, relief_m);
-    difference.look(profile, anyParameters(random), n % 5, 100 + 80 * n, random);
-  }
-  EXPECT_GT(difference.lossy, 1000);
-  EXPECT_LT(difference.largest_db, 1e-6);
-  EXPECT_LT(difference.float_db, 0.05);
-  EXPECT_LT(difference.float_path_db, 0.05);
-}
-
-TEST(DiffractionPlane, HasNoJumpsOverRealTerrain) {
-  const auto terrain = whiteMountainsTile();
-  std::mt19937 random(22);
-  const auto model = diffractionModel<double>(parametersAt(1e9));
-  for (int n = 0; n < 5; ++n) {
-    const ProfileData profile = randomProfile(*terrain, random, 300);
-    DiffractionMemory<double> memory(300);
-    DiffractionSweep<double> sweep(model, profile.view(), profile.height_msl_m[0] + 10.0, memory.scratch());
-    std::vector<double> heights(4000), losses(4000);
-    while (sweep.post() < 290) {
-      sweep.advance();
-      if (sweep.post() % 29 != 5) continue;
-      const double ground_m = profile.height_msl_m[std::size_t(sweep.post())];
-      for (std::size_t j = 0; j < 4000; ++j) heights[j] = ground_m - 5 + 0.05 * double(j);
-      sweep.column(heights.data(), 4000, losses.data());
-      for (std::size_t j = 1; j < 4000; ++j) {
-        // 5 cm up: steep only close behind an edge
-        ASSERT_NEAR(losses[j], losses[j - 1], 1.0) << "post " << sweep.post() << ", " << heights[j] << " m";
-      }
-    }
-  }
-}
-
-TEST(DiffractionPlane, FrequencyMovesTheLossWithoutJumps) {
+TEST(Diffraction, FrequencyMovesTheLossWithoutJumps) {
   std::mt19937 random(23);
   const ProfileData profile = madeUpProfile(random, 200, 60e3, 40);
   double before = 0;
@@ -255,7 +141,7 @@ TEST(DiffractionPlane, FrequencyMovesTheLossWithoutJumps) {
   }
 }
 
-TEST(Traps, EffectiveEarthIsTheCallersAndNeverAppliedTwice) {
+TEST(Diffraction, EffectiveEarthIsTheCallersAndNeverAppliedTwice) {
   // The horizon over a smooth earth of a radius that is given: 6 dB of bulge where the path grazes.
   for (const double radius_m : {6371000.0, kEarth_m, 8.5e6}) {
     DiffractionParameters parameters = parametersAt(1e10);
@@ -267,25 +153,7 @@ TEST(Traps, EffectiveEarthIsTheCallersAndNeverAppliedTwice) {
   }
 }
 
-TEST(Traps, AtTheAntennaItselfAllStaysFinite) {
-  const ProfileData profile = flatProfile(1000, 1001, 300);
-  const auto model = diffractionModel<float>(parametersAt(1e9));
-  DiffractionMemory<float> memory(1001);
-  DiffractionSweep<float> sweep(model, profile.view(), 310, memory.scratch());
-  const float heights[] = {200, 301, 310, 5000};
-  float losses[4];
-  for (int post = 0; post < 4; ++post) {
-    if (post > 0) sweep.advance();
-    sweep.column(heights, 4, losses);
-    for (int j = 0; j < 4; ++j) {
-      EXPECT_TRUE(std::isfinite(losses[j])) << post << ", " << heights[j];
-      EXPECT_NEAR(losses[j], deltaBullington(model, profile.view().upTo(post), 310.f, heights[j]).loss_db,
-                  1e-3);
-    }
-  }
-}
-
-TEST(Traps, MissingTerrainIsNotSeaLevel) {
+TEST(Diffraction, MissingTerrainIsNotSeaLevel) {
   ProfileData profile = flatProfile(30e3, 101, 300);
   const auto model = diffractionModel<float>(parametersAt(1e9));
   profile.height_msl_m[100] = std::nanf("");

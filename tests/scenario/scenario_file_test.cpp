@@ -228,7 +228,7 @@ TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
   ASSERT_TRUE(result.scenario);
   ASSERT_EQ(result.problems.size(), 1u);
   EXPECT_EQ(result.problems[0].severity, Severity::warning);
-  EXPECT_EQ(result.problems[0].message, "emitter 'array radar' (9000000000 Hz) lies in none of the bands");
+  EXPECT_EQ(result.problems[0].message, "emitter 'array radar' (9000000000 Hz) is in none of the bands");
   EXPECT_EQ(result.problems[0].location.line, 39);
 }
 
@@ -242,7 +242,7 @@ TEST_F(ScenarioYaml, WarnsOfAJammerOutsideEveryRadarsBand) {
   ASSERT_EQ(result.problems.size(), 1u);
   EXPECT_EQ(result.problems[0].severity, Severity::warning);
   EXPECT_EQ(result.problems[0].message,
-            "jammer 'jammer' (3100000000 Hz, 20000000 Hz wide) lies outside the band of every radar: it jams "
+            "jammer 'jammer' (3100000000 Hz, 20000000 Hz wide) is outside the band of every radar: it jams "
             "none");
 }
 

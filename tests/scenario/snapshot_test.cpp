@@ -99,11 +99,11 @@ TEST(Snapshot, PlatformBelowGroundIsAnErrorWithTimeAndDepth) {
   scenario.terrain.emplace();
   const FlatTerrain terrain(250, -90);
   expectMessage(scenario, &terrain, 7.5,
-                "platform 'site' at t = 7.5 s (36.000000, -84.000000 deg) lies 12.0 m below ground");
+                "platform 'site' at t = 7.5 s (36.000000, -84.000000 deg) is 12.0 m below ground");
   scenario = oneEmitter(atMsl(250));
   scenario.terrain.emplace();
   EXPECT_NO_THROW(snap(scenario, 0, &terrain));
-  expectMessage(oneEmitter(atMsl(-3)), nullptr, 0, "lies 3.0 m below the smooth earth");
+  expectMessage(oneEmitter(atMsl(-3)), nullptr, 0, "is 3.0 m below the smooth earth");
 }
 
 TEST(Snapshot, HeightAboveMissingGroundIsAnError) {

@@ -62,7 +62,9 @@ class DeviceStorage {
   void endReading(cudaStream_t stream) const;
 
   /// Positions are those of voxel centres plus 0.5; beyond the outer centres their values are repeated.
-  cudaTextureObject_t linearTexture() const { return linear_; }  ///< interpolated by the GPU, with 8-bit fractions
+  cudaTextureObject_t linearTexture() const {
+    return linear_;
+  }  ///< interpolated by the GPU, with 8-bit fractions
   cudaTextureObject_t pointTexture() const { return point_; }
   /// In device memory; computed by endWriting().
   BricksView bricks() const;

@@ -23,7 +23,7 @@ Backend parseBackend(const std::string& name);
 struct ResolvedBackend {
   Backend backend = Backend::cpu;  ///< cpu or cuda
   std::string device = "cpu";      ///< for reports: "cpu", or the name of the GPU
-  std::string note;                ///< automatic was requested: one line that names the chosen backend and the reason
+  std::string note;  ///< automatic was requested: one line that names the chosen backend and the reason
 };
 
 /// @param device  what findDevice() found

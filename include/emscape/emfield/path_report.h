@@ -17,7 +17,7 @@ struct ReportLine {
 /// The ends of the path and its geometry.
 std::vector<ReportLine> geometryLines(const PathBudget& budget);
 
-/// A term's value with two decimals: "none" and "all" for infinities, without a sign what rounds to nothing.
+/// A term's value with two decimals; "no field" for -infinity, "infinite" for +infinity; 0.00 without a sign.
 std::string valueText(double value);
 
 /// Remark on an obstacle: "earth's bulge", "decides", both or empty.

@@ -31,8 +31,7 @@ namespace emscape::playback {
 struct LiveOptions {
   ComputeTarget target;
   render::ControllerOptions controller;
-  std::size_t cache_bytes = std::size_t{1}
-                            << 30;  ///< of the cached volumes of steps
+  std::size_t cache_bytes = std::size_t{1} << 30;  ///< of the cached volumes of steps
   bool allow_missing_terrain = false;
   std::string quantity;               ///< quantity or channel; empty: the first
   std::vector<scenario::Edit> edits;  ///< applied when the scenario is opened
@@ -53,10 +52,10 @@ struct LiveOptions {
 struct LiveStatus {
   render::ControllerState state = render::ControllerState::idle;
   render::Pattern pattern = render::Pattern::full;  ///< of the picture's busy frame
-  double rays_fraction = 0;                         ///< of that frame: fraction of pixels that were cast, 0..1
-  double cast_ms = 0;                               ///< of that frame, interpolation included
-  double labels_ms = 0;                             ///< to fetch the picture and draw its labels
-  double field_ms = 0;                              ///< of the last computed field
+  double rays_fraction = 0;  ///< of that frame: fraction of pixels that were cast, 0..1
+  double cast_ms = 0;        ///< of that frame, interpolation included
+  double labels_ms = 0;      ///< to fetch the picture and draw its labels
+  double field_ms = 0;       ///< of the last computed field
   /// Time from the oldest input that this picture is the first to show; 0: it shows no new input.
   double input_to_picture_ms = 0;
   double input_to_frame_ms = 0;  ///< from the same input to the begin of its frame
@@ -68,10 +67,10 @@ struct LiveStatus {
   bool computing = false;                          ///< the last requested field is being computed
   bool searching = false;                          ///< searchSeriesRange() is in progress
   std::optional<volume::ValueRange> series_range;  ///< result of the search; none before, and without values
-  std::vector<int> cached_steps;  ///< indices into times_s() of cached steps, ascending
-  std::string reason;             ///< reason for the pattern
-  std::string device;             ///< "cpu" or the name of the GPU
-  std::string error;              ///< the last failure, in one line; empty after the next success of its kind
+  std::vector<int> cached_steps;                   ///< indices into times_s() of cached steps, ascending
+  std::string reason;                              ///< reason for the pattern
+  std::string device;                              ///< "cpu" or the name of the GPU
+  std::string error;  ///< the last failure, in one line; empty after the next success of its kind
   ErrorCode error_code = ErrorCode::other;  ///< of an input that cannot be opened
   long long frame = 0;                      ///< number of the picture, from 1; 0: none yet
   long long fields_computed = 0;
@@ -163,7 +162,7 @@ class LiveView {
   void showTerrain(bool show);
   void showEmitters(bool show);
   void setTheme(render::Theme theme);
-  /// Whether busy pictures of a GPU stay in its memory, to be displayed from there; false at first.
+  /// Sets whether busy pictures of a GPU stay in its memory, to be displayed from there; false at first.
   void keepOnDevice(bool keep);
 
   /// Fits the colours to the step on screen.

@@ -19,7 +19,7 @@ class FrameCache;
 
 struct PrefetchOptions {
   std::size_t cache_bytes = std::size_t{1} << 30;  ///< of volumes; one frame is kept even if it is larger
-  int steps_ahead = 4;  ///< number of frames computed after the requested one
+  int steps_ahead = 4;                             ///< number of frames computed after the requested one
   /// Minimum interval (ms) between the starts of two frames that are requested out of order, as by dragging a
   /// slider; only the last request is served.
   double min_seek_interval_ms = 60;

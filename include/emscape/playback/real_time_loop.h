@@ -74,7 +74,7 @@ class RealTimeLoop {
   void raiseEvents();
   void raise(render::SceneEvent event);
 
-  // What the controller asks for
+  // Requests of the controller
   void act(const render::ControllerAction& action);
   void drawFrame(const render::FramePlan& plan);
   void beginRestoration();

@@ -3,9 +3,11 @@
 /// Besides the volumes, the folder contains
 ///   series.json   the recipe; at the end also the value range of each channel over the series.
 ///                 Written at the beginning and at the end.
-///   series.steps  the journal: a line of JSON for each step whose files are complete, with the range of its values, the range in its files, and size and CRC-32 of each file. A later line replaces an
+///   series.steps  the journal: a line of JSON for each step whose files are complete, with the range of its
+///   values, the range in its files, and size and CRC-32 of each file. A later line replaces an
 ///                 earlier one.
-///   NAME.pvd      with .vti files: the list for ParaView. Updated each time the number of steps has grown by half, at the end, and when the work is stopped.
+///   NAME.pvd      with .vti files: the list for ParaView. Updated each time the number of steps has grown by
+///   half, at the end, and when the work is stopped.
 /// Each step is computed once. Its files are complete at once, with the range over the steps so far; at the
 /// end the range over the series is written into all of them (volume::setStoredRange). An interrupted and
 /// resumed series is then identical to the byte (except for FieldOptions::move_tolerance_m, which counts from
@@ -48,8 +50,8 @@ std::vector<std::string> writableFormats();
 /// computed.
 ///
 /// With Existing::resume a finished step is accepted if its files have the size and the CRC-32 in the
-/// journal; otherwise it is recomputed. The recipe and the elevation files (by their CRC-32) must be unchanged;
-/// files that a .vrt elevation file refers to are not checked.
+/// journal; otherwise it is recomputed. The recipe and the elevation files (by their CRC-32) must be
+/// unchanged; files that a .vrt elevation file refers to are not checked.
 /// @param progress  receives the fraction of steps that are done; may be empty
 /// @throws Error (usage) if the folder has a series, or for one range for several channels; (bad_input) for a
 /// series.json or series.steps that is damaged or of another recipe; (other) where writing fails or another

@@ -21,10 +21,10 @@ enum class PatternKind {
   isotropic,     ///< 1 everywhere
   gaussian,      ///< exp of a quadratic form in azimuth and elevation, not below side_lobe_amplitude
   separable,     ///< azimuth_table(azimuth) * elevation_table(elevation), not below side_lobe_amplitude
-  phased_array,  ///< planar aperture, evenly illuminated or of elements: azimuth_table(u - u0) * elevation_table(v -
-                 ///< v0) * element pattern, side_lobe_amplitude behind it; u = right, v = up (direction
-                 ///< cosines)
-  grid,          ///< bilinear in azimuth and elevation
+  phased_array,  ///< planar aperture, evenly illuminated or of elements: azimuth_table(u - u0) *
+                 ///< elevation_table(v - v0) * element pattern, side_lobe_amplitude behind it; u = right, v =
+                 ///< up (direction cosines)
+  grid,  ///< bilinear in azimuth and elevation
 };
 
 /// A pattern as plain data, for host and device loops. Amplitudes are relative voltages: 1 at the

@@ -85,8 +85,8 @@ struct Emitter {
   propagation::ModelSettings propagation;
   RadarReceiver receiver;              ///< radars only
   std::vector<TimeInterval> active_s;  ///< empty: always
-  SourceLocation location;                ///< in the scenario
-  SourceLocation frequency_location;      ///< of its frequency
+  SourceLocation location;             ///< in the scenario
+  SourceLocation frequency_location;   ///< of its frequency
 };
 
 }  // namespace emscape::scenario

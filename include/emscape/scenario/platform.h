@@ -40,9 +40,9 @@ struct Platform {
   std::string name;
   /// One point: a fixed site. More: strictly increasing t_s; held at the ends outside the track's time.
   std::vector<TrackPoint> track;
-  Attitude attitude;       ///< of a fixed site
-  std::string track_file;  ///< empty for a fixed site
-  SourceLocation location;    ///< in the scenario
+  Attitude attitude;        ///< of a fixed site
+  std::string track_file;   ///< empty for a fixed site
+  SourceLocation location;  ///< in the scenario
 };
 
 /// Position and attitude of a platform at t_s: position along the geodesic between the points before and

@@ -1,4 +1,4 @@
-/// How an antenna's beam moves.
+/// Motion of an antenna's beam.
 #pragma once
 
 #include <vector>

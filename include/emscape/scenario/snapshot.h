@@ -49,7 +49,7 @@ bool isSteered(const Emitter& emitter);
 /// The scenario at t_s seconds since its epoch. Pure. Thread-safe.
 /// @param terrain  for heights above ground; may be null if no platform uses them
 /// @throws Error (bad_input) if a height above ground is asked for where the terrain is missing, or a
-/// platform lies below ground
+/// platform is below ground
 Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s);
 
 }  // namespace emscape::scenario

@@ -22,7 +22,7 @@ struct GeoBox {
 };
 
 struct TerrainSpec {
-  std::vector<std::string> files;      ///< as resolved: absolute or relative to the working folder
+  std::vector<std::string> files;         ///< as resolved: absolute or relative to the working folder
   std::vector<SourceLocation> locations;  ///< of each file's name in the scenario
   VerticalDatum vertical_datum = VerticalDatum::egm96;
 };
@@ -50,9 +50,10 @@ struct TerrainFileInfo {
 /// Heights above mean sea level, bilinear between posts. Immutable; safe to share between threads.
 ///
 /// - Posts are at the centres of GDAL's pixels, whether these stand for points or areas.
-/// - Files whose posts lie on one lattice (to a hundredth of a post) and touch are one raster: heights go on
-///   between them. Where two have the same post (tiles that share an edge) the file listed first takes precedence, unless it is void there. A raster of areas reaches half a post beyond its outer posts, with their
-///   heights.
+/// - Files whose posts are on one lattice (to a hundredth of a post) and touch are one raster: heights go on
+///   between them. Where two have the same post (tiles that share an edge) the file listed first takes
+///   precedence, unless it is void there. A raster of areas reaches half a post beyond its outer posts, with
+///   their heights.
 /// - Where rasters overlap, the finest with a height is used; at its rim it is continued into its neighbours.
 /// - Voids are the file's nodata value or mask, -32767 and -32768, NaN, and heights outside the range found
 /// on earth. A point between posts is void if one of its four posts is void and has a weight.

@@ -52,7 +52,8 @@ struct DenseVolume {
 constexpr int kMaxVoxelsPerAxis = 65535;     ///< first_valid_k counts in 16 bits
 constexpr long long kMaxVoxels = 1LL << 32;  ///< 16 GiB of values
 
-/// @throws Error (bad_input) at `location` unless each of the dims and their product is within the limits above
+/// @throws Error (bad_input) at `location` unless each of the dims and their product is within the limits
+/// above
 void checkDims(const Dims& dims, const SourceLocation& location);
 
 /// Checks that a volume has a name, as many values as voxels and a mask, if any, of as many columns.
