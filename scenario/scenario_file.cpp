@@ -356,8 +356,8 @@ std::vector<std::string> filesOf(const Scenario& scenario) {
 std::string scenarioJsonSchema() {
   return document::jsonSchema(
       scenarioSpec(), "Emscape scenario",
-      "Made from the table that the parser checks by. The parser also refuses what a schema cannot say: "
-      "repeated names, platforms that do not exist, files that cannot be read.");
+      "Made from the parser's table. The parser also reports what a schema cannot express: repeated names, "
+      "platforms that do not exist, files that cannot be read.");
 }
 
 std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits) {

@@ -272,8 +272,7 @@ Example:
   addListOption(*command, "--rays", options->rays,
                 "Patterns besides the full one, separated by commas; default: all");
   addToleranceOption(*command, options->tolerance_levels);
-  command->add_option("--frames", options->frames, "Views, after one to warm up")
-      ->check(CLI::Range(1, 100000));
+  command->add_option("--frames", options->frames, "Views, after a warm-up")->check(CLI::Range(1, 100000));
   command
       ->add_option(
           "--repeats", options->repeats,

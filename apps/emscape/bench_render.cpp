@@ -92,9 +92,9 @@ Example:
   command->add_option("--interpolate", options->interpolate,
                       "Precision of interpolated pixels: float or 8bit");
   addToleranceOption(*command, options->tolerance_levels);
-  command->add_option("--frames", options->frames, "Frames that are timed, after one to warm up")
+  command->add_option("--frames", options->frames, "Timed frames, after a warm-up")
       ->check(CLI::Range(1, 100000));
-  command->add_option("--picture", options->picture, "NAME.png: writes the frame, before black");
+  command->add_option("--picture", options->picture, "NAME.png: writes the frame, on black");
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchRender(*options, global); }; });
 }

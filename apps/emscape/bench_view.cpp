@@ -166,7 +166,7 @@ int benchView(const BenchViewOptions& options, const GlobalOptions& global) {
 }  // namespace
 
 void addBenchView(CLI::App& bench, const GlobalOptions& global, Action& action) {
-  CLI::App* command = bench.add_subcommand("view", "Measure how fast the window answers");
+  CLI::App* command = bench.add_subcommand("view", "Measure the window's response times");
   command->fallthrough();
   command->footer(R"(
 Opens the window on the display and drives it with a script of half a minute to some minutes: the camera turns, single inputs,
@@ -179,12 +179,12 @@ Example:
   auto options = std::make_shared<BenchViewOptions>();
   command->add_option("input", options->input, "Scenario or volumes")->required();
   addSetOption(*command, options->edits);
-  command->add_option("--size", options->size, "Of the window, WIDTHxHEIGHT")->capture_default_str();
-  command->add_option("--idle", options->idle_s, "Seconds in which nothing is done")
+  command->add_option("--size", options->size, "Size of the window, WIDTHxHEIGHT")->capture_default_str();
+  command->add_option("--idle", options->idle_s, "Seconds of the idle phase")
       ->check(CLI::Range(1.0, 600.0))
       ->capture_default_str();
   command->add_flag("--share-gpu", options->share_gpu, "As of 'emscape view'");
-  command->add_option("--log", options->log, "Keep the window's log in this file");
+  command->add_option("--log", options->log, "Write the window's log to this file");
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchView(*options, global); }; });
 }

@@ -114,7 +114,7 @@ Examples:
 Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not or none was run, 3 for a file that
 is malformed.)");
   auto dir = std::make_shared<std::string>();
-  command->add_option("DIR", *dir, "Folder of datasets, one a folder")->required();
+  command->add_option("DIR", *dir, "Folder of datasets, one per folder")->required();
   command->callback([dir, &global, &action] { action = [dir, &global] { return check(*dir, global); }; });
 }
 

@@ -192,8 +192,7 @@ int info(const std::string& file, const GlobalOptions& global) {
 }  // namespace
 
 void addInfo(CLI::App& app, const GlobalOptions& global, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("info", "Say what a scenario, volume, elevation or antenna file holds");
+  CLI::App* command = app.add_subcommand("info", "Describe a scenario, volume, elevation or antenna file");
   command->fallthrough();
   command->footer(R"(
 Scenarios: .yaml .yml .json. Volumes: .vdb .nvdb .vti .raw .dat; series: .pvd or a folder (its first step is described).

@@ -27,7 +27,7 @@ Exit status: 0 done, 1 another error, 2 usage, 3 bad input, 4 device, 5 a check 
 128 + N stopped by signal N (130 after Ctrl-C; finished files stay).)";
 
 void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
-  app.add_option("--backend", global.backend, "Where to compute: auto, cpu or cuda")
+  app.add_option("--backend", global.backend, "Processor: auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
   app.add_option("--threads", global.threads, "Threads to use; 0: one per core")

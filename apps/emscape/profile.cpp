@@ -126,7 +126,7 @@ int profile(const ProfileOptions& options, const GlobalOptions& global) {
 
 void addProfile(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "profile", "Why is there no coverage here? The path from an emitter to a point, term by term");
+      "profile", "Explain the coverage at a point: the path from an emitter, term by term");
   command->fallthrough();
   command->footer(R"(
 Prints how the path lies, what of the terrain stands in its way, every term of the budget from the transmitter's power to
@@ -148,7 +148,7 @@ or a path over missing terrain.)");
   command->add_option("--to", options->to, "The point: LAT,LON,HEIGHT (deg, deg, m)")->required();
   command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
   command->add_flag("--agl", options->above_ground, "HEIGHT is above the ground");
-  addListOption(*command, "--model", options->models, "Models to compare the emitter's own with")
+  addListOption(*command, "--model", options->models, "Models to compare with the emitter's model")
       ->check(CLI::IsMember(names));
   command->add_option("--plot", options->plot, "Draw the path into a file, .png or .svg")
       ->check([](const std::string& file) {

@@ -302,10 +302,10 @@ void addRealTimeOptions(CLI::App& command, RenderOptions& options) {
   const auto add = [&](const char* name, auto& value, const char* help) {
     return command.add_option(name, value, help)->needs(realtime);
   };
-  add("--speed", options.speed, "Scenario seconds in a second")->check(CLI::Range(1e-3, 1e3));
+  add("--speed", options.speed, "Scenario seconds per second")->check(CLI::Range(1e-3, 1e3));
   add("--duration", options.duration_s, "Seconds of playing; default: the whole series")
       ->check(CLI::Range(0.0, 1e6));
-  add("--budget", options.budget_ms, "Milliseconds between two pictures; default: as --fps says, else 40")
+  add("--budget", options.budget_ms, "Milliseconds between two pictures; default: from --fps, else 40")
       ->check(CLI::Range(1.0, 1e5));
   add("--epsilon", options.epsilon_ms,
       "Milliseconds without a change before the picture is made exact; default: measured")
@@ -351,7 +351,7 @@ Examples:
   command->add_option("-o,--output", options->outputs,
                       "NAME.png, NAME.mp4 or a folder for frames; may be given several times");
   command->add_option("--size", options->size, "Picture size in pixels, WxH; default: 1280x720");
-  command->add_option("--mode", options->mode, "How samples become a pixel; default: dvr")
+  command->add_option("--mode", options->mode, "Compositing mode; default: dvr")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
   command->add_option("--rays", options->rays, "Pixels that are cast, the rest interpolated; auto: all")
       ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter", "adaptive"}));
@@ -368,7 +368,7 @@ Examples:
   command->add_option("--quantity", options->quantity, "Quantity or channel to draw; default: the first");
   command->add_option("--range", options->range, "MIN:MAX of the colours; default: the range of the series");
   command->add_option("--scenario", options->selection.scenario,
-                      "Scenario whose ground and emitters are drawn with volumes");
+                      "Scenario of the ground and emitters to draw with volumes");
   command
       ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
       ->check(CLI::Range(0.0, 100.0));
@@ -381,14 +381,14 @@ Examples:
                       "Value of the isosurface, in the quantity's unit; default: the middle of the colours");
   command->add_option("--iso-opacity", options->iso_opacity, "Opacity of the isosurface")
       ->check(CLI::Range(0.0, 1.0));
-  command->add_flag("--shading", options->shading, "Light on the fog of dvr and mida; iso always has it");
+  command->add_flag("--shading", options->shading, "Shading of dvr and mida; iso is always shaded");
   command->add_option("--theme", options->theme, "Background and labels; default: dark")
       ->check(CLI::IsMember({"dark", "light"}));
   command
       ->add_option("--fps", options->frames_per_s,
                    "Frames per second of a video (default 10); with --realtime: the maximum")
       ->check(CLI::Range(0.1, 240.0));
-  command->add_flag("--exact", options->exact, "No early end of rays");
+  command->add_flag("--exact", options->exact, "No early termination of rays");
   command->add_option("--terrain", options->show_terrain, "Draw the ground: on or off");
   command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off");
   command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,

@@ -131,7 +131,8 @@ Examples:
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
   addCompareOption(*command, options->compare, "Write");
-  command->add_option("-o,--output", options->folder, "Folder of the series; made if need be")->required();
+  command->add_option("-o,--output", options->folder, "Folder of the series; created if necessary")
+      ->required();
   addListOption(*command, "--format", options->formats,
                 "File formats, with commas between them: vdb, nvdb, vti, raw")
       ->check(CLI::IsMember(playback::writableFormats()));
@@ -142,7 +143,7 @@ Examples:
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
   command->add_option("--range", options->range,
                       "MIN:MAX of the series if it is known: files state it from the beginning");
-  command->add_flag("--resume", options->resume, "Go on with the series that the folder holds");
+  command->add_flag("--resume", options->resume, "Continue the series of the folder");
   command->add_flag("--force", options->force, "Replace the series in the folder")->excludes("--resume");
   command->add_flag("--allow-missing-terrain", options->allow_missing_terrain,
                     "Compute although elevation data is missing; voxels over holes are masked");

@@ -61,7 +61,7 @@ std::vector<Verb> Session::timeVerbs() {
        }},
       {"rate",
        {{"value", kNumber, false}, {"change", kNumber, false}},
-       "Scenario seconds in a second, backwards if negative; or `change`, 1 or -1: the next usual rate above "
+       "Scenario seconds per second, backwards if negative; or `change`, 1 or -1: the next usual rate above "
        "or below, below the slowest backwards",
        [](Session& session, const Command& command) {
          constexpr double kLimit = 1e4;

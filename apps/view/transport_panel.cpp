@@ -83,7 +83,7 @@ void drawRate(PanelContext& context) {
   ImGui::InputDouble("##rate", &typed, 0, 0, "× %.4g", ImGuiInputTextFlags_AutoSelectAll);
   if (ImGui::IsItemDeactivatedAfterEdit()) session.perform({"rate", {{"value", typed}}});
   if (ImGui::IsItemHovered()) {
-    ImGui::SetTooltip("Scenario seconds in a second, negative: backwards (J lower, L higher)");
+    ImGui::SetTooltip("Scenario seconds per second, negative: backwards (J lower, L higher)");
   }
   ImGui::SameLine(0, 2 * s);
   if (ImGui::BeginCombo("##rates", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_HeightLargest)) {

@@ -39,7 +39,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
       "INPUT", options.input,
       "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes; without it the window "
       "asks for one");
-  app.add_option("--scenario", options.scenario, "Scenario whose ground and emitters are drawn with volumes");
+  app.add_option("--scenario", options.scenario, "Scenario of the ground and emitters to draw with volumes");
   app.add_option("--state", typed.state,
                  "View file: camera, colours, time, edits and the rest; options that are given count more");
   app::addSetOption(app, typed.edits);
@@ -48,9 +48,9 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
                  "Window size in pixels, WxH; default: 1200x900, with --state as large as its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
       ->check(CLI::Range(0.5, 4.0));
-  app.add_option("--time", typed.time_s, "Shown first, in seconds; default: 0");
+  app.add_option("--time", typed.time_s, "First instant, in seconds; default: 0");
   app.add_option("--quantity", typed.quantity, "Quantity or channel to draw; default: the first");
-  app.add_option("--mode", typed.mode, "How samples become a pixel; default: dvr")
+  app.add_option("--mode", typed.mode, "Compositing mode; default: dvr")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
   app.add_option("--camera", typed.camera, "orbit:azimuth_deg=..,.. or lookat:eye_x_m=..,..; default: orbit");
   app.add_option("--range", typed.range, "MIN:MAX of the colours; default: fitted to the first step");
@@ -70,12 +70,12 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_flag("--shading", typed.shading, "Light on the fog");
   app.add_flag("--allow-missing-terrain", options.allow_missing_terrain,
                "Compute although elevation data is missing; the holes are drawn as such");
-  app.add_option("--script", options.script, "JSON lines: what to do and when (docs/viewer.md)");
-  app.add_option("--log", options.log, "Writes what happens, as JSON lines");
+  app.add_option("--script", options.script, "Script: JSON lines (docs/viewer.md)");
+  app.add_option("--log", options.log, "Writes the window's log, as JSON lines");
   app.add_flag("--share-gpu", options.share_gpu,
                "Hand pictures from CUDA to OpenGL on the GPU while they change, where both are on one; "
                "experimental");
-  app.add_option("--backend", options.backend, "Where to compute: auto, cpu or cuda")
+  app.add_option("--backend", options.backend, "Processor: auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   app.add_option("--threads", options.threads, "Threads to use; 0: one per core")->check(CLI::Range(0, 4096));
   app.add_flag("--quiet,-q", options.quiet, "Only warnings and errors on standard error");
