@@ -45,7 +45,7 @@ struct FastGeodesy {
   }
 };
 
-/// @param latitude_deg -90..90, longitude_deg any
+/// @param latitude_deg  -90..90, longitude_deg any
 SurfacePoint surfacePoint(double latitude_deg, double longitude_deg);
 FastGeodesy fastGeodesy(double latitude_deg, double longitude_deg);
 

@@ -22,7 +22,7 @@ enum class RadarMeasure {
   root_of_signal_to_noise,
   signal_to_jamming,  ///< S / J, times a factor, at most a ceiling, which is its value without jamming; 0
                       ///< without echo
-  detection,  ///< probability of detection from S / (N + J); 0 without echo
+  detection,          ///< probability of detection from S / (N + J); 0 without echo
 };
 
 /// Jamming at a radar.

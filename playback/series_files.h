@@ -27,7 +27,7 @@ class SeriesFiles {
   /// there
   void write(int step, const std::vector<volume::Volume>& channels) const;
 
-  /// Changes the ranges in a step's files. @param ranges one per channel; the files keep theirs if empty
+  /// Changes the ranges in a step's files. @param ranges  one per channel; the files keep theirs if empty
   /// @return the names of the files that may have changed
   /// @throws Error
   std::set<std::string> setRanges(int step, const std::vector<ValueRange>& ranges) const;

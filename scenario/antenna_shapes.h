@@ -14,7 +14,7 @@ AntennaPtr makeIsotropic(double gain_dbi = 0);
 /// the angle; the two planes add in dB.
 /// @param beamwidth_az_deg  0..360; 360: the same in every azimuth
 /// @param beamwidth_el_deg  0..180; 180: the same in every elevation
-/// @param side_lobe_db      -200..0: level under which the pattern does not fall
+/// @param side_lobe_db      -200..0: lower limit of the pattern
 AntennaPtr makeGaussian(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg,
                         double side_lobe_db);
 
@@ -34,8 +34,8 @@ AntennaPtr makeSinc(double gain_dbi, double beamwidth_az_deg, double beamwidth_e
 /// @param beamwidth_az_deg   0..360; 360: the same in every azimuth
 /// @param beamwidth_el_deg   of the nose, 0..180
 /// @param max_elevation_deg  beamwidth_el_deg / 2 .. 90
-/// @param side_lobe_db -200..0: lower limit of the pattern @see Skolnik, Introduction to Radar Systems, 3rd
-/// ed., 9.11
+/// @param side_lobe_db       -200..0: lower limit of the pattern
+/// @see Skolnik, Introduction to Radar Systems, 3rd ed., 9.11
 AntennaPtr makeCosecant2(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg,
                          double max_elevation_deg, double side_lobe_db);
 

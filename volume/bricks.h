@@ -48,7 +48,7 @@ struct BricksView {
 /// NaN is empty.
 class Bricks {
  public:
-  /// Computed in parallel. @param edge voxels, >= 1; @throws Error (bad_input) for another edge
+  /// Computed in parallel. @param edge  voxels, >= 1; @throws Error (bad_input) for another edge
   explicit Bricks(const DenseVolume& volume, int edge = kBrickEdge);
 
   /// Recomputes the ranges from another volume; memory is reused if the dims allow.

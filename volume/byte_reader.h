@@ -25,7 +25,7 @@ class ByteReader {
   const std::string& file() const { return file_; }
   const std::uint8_t* here() const { return bytes_ + position_; }
 
-  /// Skips `count` bytes and returns a pointer to them. @param what names them in the message
+  /// Skips `count` bytes and returns a pointer to them. @param what  names them in the message
   const std::uint8_t* take(std::uint64_t count, const char* what) {
     if (count > left()) {
       fail(std::string(what) + " needs " + std::to_string(count) + " bytes at offset " +

@@ -196,9 +196,9 @@ void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action)
   CLI::App* command = bench.add_subcommand("field", "Time the stages of the field computation");
   command->fallthrough();
   command->footer(R"(
-all moved: every emitter is shifted a little more than the tolerance, so that its terrain fan and planes are computed anew;
-one moved: the first emitter alone; beams turned: only the beams change. --emitters: these alone move and turn, the others rest. Voxel-emitters per second: voxels times emitters over
-the time of the combine stage with all moved.
+all moved: every emitter is shifted by more than the tolerance, so that its terrain fan and excess are recomputed; one moved: only the
+first emitter; beams turned: only the beams change. --emitters: only these move and turn, the others are static. Voxel-emitters per
+second: voxels times emitters over the time of the combine stage with all moved.
 
 Example:
   emscape bench field scenarios/jacksboro.yaml --threads 2 --json

@@ -262,8 +262,8 @@ void addBenchReconstruction(CLI::App& bench, const GlobalOptions& global, Action
   command->footer(R"(
 The camera goes once around the volume in as many views as there are frames; each view is drawn in every way in turn. Ratios are
 medians over the views. Errors are those of 8-bit levels against the full picture of the same view: max, the mean over the views
-cut to an integer; mean, per erroneous pixel; err %, erroneous pixels to pixels that are not all zero. That restoring gives the
-full picture, bit by bit, is checked in every view (exit status 5).
+truncated to an integer; mean, per erroneous pixel; err %, erroneous pixels to pixels that are not all zero. Every view checks that
+restoring gives the full picture, bit by bit (exit status 5).
 
 Example:
   emscape bench reconstruction scenarios/eme_200.yaml --transfer scenarios/transfer/paper.json --frames 100 --mode mida)");

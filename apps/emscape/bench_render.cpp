@@ -80,7 +80,7 @@ void addBenchRender(CLI::App& bench, const GlobalOptions& global, Action& action
   CLI::App* command = bench.add_subcommand("render", "Time frames of a volume");
   command->fallthrough();
   command->footer(R"(
-One view, drawn again and again; nothing is kept from frame to frame but what belongs to the volume and the colours. Samples are
+One view, drawn repeatedly; only data of the volume and the colours are kept between frames. Samples are
 the positions on all rays of a full picture between the faces of the volume's box, whether they are taken or not; samples per
 second: those over the median time.
 

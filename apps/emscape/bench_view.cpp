@@ -169,10 +169,10 @@ void addBenchView(CLI::App& bench, const GlobalOptions& global, Action& action) 
   CLI::App* command = bench.add_subcommand("view", "Measure the window's response times");
   command->fallthrough();
   command->footer(R"(
-Opens the window on the display and drives it with a script of half a minute to some minutes: the camera turns, single inputs,
-inputs in the middle of a restoration, the power of the first emitter changed, seeking, nothing at all. All times are those of
-the window's log (--log): from the input to the frame that shows it. A frame of the user interface: its events, panels and drawing
-commands; "with the display": until the display, or the software renderer, has taken it.
+Opens the window on the display and runs a script of half a minute to some minutes: a turning camera, single inputs, inputs
+during a restoration, a change of the first emitter's power, seeking, an idle phase. All times are from the window's log (--log): from
+the input to the frame that shows it. A frame of the user interface: its events, panels and drawing commands; "with the display":
+until the display, or the software renderer, has finished.
 
 Example:
   emscape bench view scenarios/jacksboro.yaml)");

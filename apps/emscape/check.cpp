@@ -104,8 +104,8 @@ void addCheck(CLI::App& app, const GlobalOptions& global, Action& action) {
       app.add_subcommand("check", "Compare the propagation models with a folder of reference figures");
   command->fallthrough();
   command->footer(R"(
-Every dataset in the folder that is known by name is run: its largest difference from the reference is shown beside what
-is allowed. Datasets that no model answers to, that are absent or that are unknown are named and passed over.
+Runs every known dataset of the folder and shows its largest difference from the reference and the tolerance. Datasets without a
+model, absent and unknown datasets are listed and skipped.
 
 Examples:
   emscape check reference

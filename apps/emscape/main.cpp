@@ -24,7 +24,7 @@ Examples:
   emscape info out/jacksboro_0001.vdb --json
 
 Exit status: 0 done, 1 another error, 2 usage, 3 bad input, 4 device, 5 a check failed,
-128 + N stopped by signal N (130 after Ctrl-C; finished files stay).)";
+128 + N stopped by signal N (130 after Ctrl-C; finished files are kept).)";
 
 void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
   app.add_option("--backend", global.backend, "Processor: auto, cpu or cuda")
@@ -62,7 +62,7 @@ int run(const Action& action) {
     finishResult();
     return status;
   } catch (const playback::Stopped&) {
-    printMessage("emscape: stopped by signal {}; finished files stay\n", caughtSignal());
+    printMessage("emscape: stopped by signal {}; finished files are kept\n", caughtSignal());
     return 128 + caughtSignal();
   } catch (const Error& error) {
     return fail(error.code(), error.what() + optionText(error.hint()));

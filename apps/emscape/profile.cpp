@@ -129,15 +129,15 @@ void addProfile(CLI::App& app, const GlobalOptions& global, Action& action) {
       "profile", "Explain the coverage at a point: the path from an emitter, term by term");
   command->fallthrough();
   command->footer(R"(
-Prints how the path lies, what of the terrain stands in its way, every term of the budget from the transmitter's power to
-what arrives, and a sentence that says what decides. HEIGHT is in metres above mean sea level (EGM96), with --agl above the ground.
+Prints the geometry of the path, the obstacles, every term of the budget from the transmitter's power to the power density at the
+point, and a sentence with the dominant cause. HEIGHT is in metres above mean sea level (EGM96), with --agl above the ground.
 
 Examples:
   emscape profile scenarios/jacksboro.yaml --emitter "search radar" --to 36.35,-84.25,900 --plot path.png
   emscape profile scenarios/jacksboro.yaml --emitter jammer --time 80 --to 36.249,-84.147,10 --agl --model diffraction,free_space
   emscape profile scenarios/jacksboro.yaml --emitter "search radar" --to 36.35,-84.25,900 --json
 
-Exit status: 0, whether there is coverage or not; 2 for an emitter or a point that is not one; 3 for a point below the ground
+Exit status: 0, whether there is coverage or not; 2 for an invalid emitter or point; 3 for a point below the ground
 or a path over missing terrain.)");
   auto options = std::make_shared<ProfileOptions>();
   std::vector<std::string> names;

@@ -324,8 +324,8 @@ void addRender(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand("render", "Draw a scenario or volumes: pictures, video");
   command->fallthrough();
   command->footer(R"(
-A scenario is computed and drawn without files between. Volumes are drawn as they are; --scenario adds the ground and the
-emitters of the scenario that they came from.
+A scenario is computed and drawn without intermediate files. For volumes, --scenario adds the ground and the emitters of their
+scenario.
 
 Examples:
   emscape render scenarios/jacksboro.yaml -o now.png --times 30

@@ -119,8 +119,8 @@ void addSimulate(CLI::App& app, const GlobalOptions& global, Action& action) {
       app.add_subcommand("simulate", "Compute a scenario's field over time and write it as volumes");
   command->fallthrough();
   command->footer(R"(
-Every volume states the value range of the whole series. Each step is computed once; while the work goes on, files state the
-range so far. The folder also holds series.json, what was asked for, and series.steps, which steps are done.
+Every volume has the value range of the whole series. Each step is computed once; until the end, files have the range so far. The
+folder also contains series.json, the description of the series, and series.steps, the finished steps.
 
 Examples:
   emscape simulate scenarios/jacksboro.yaml -o out

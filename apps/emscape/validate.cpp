@@ -124,15 +124,15 @@ void addValidate(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand("validate", "Check a scenario and every file it names");
   command->fallthrough();
   command->footer(R"(
-All faults are told at once, each as file:line:column: error: message. Besides the files themselves it is checked that the
-elevation files cover the region and that no platform is below the ground at any step.
+Reports all faults at once, each as file:line:column: error: message. Also checks that the elevation files cover the region and that
+no platform is below the ground at any step.
 
 Examples:
   emscape validate scenarios/jacksboro.yaml
   emscape validate mine.yaml --set "emitters.search radar.power_w=500"
   emscape validate mine.yaml --json        {"ok", "problems": [{"file", "line", "column", "severity", "message"}]}
 
-Exit status: 0 without errors (warnings do not count), 3 otherwise.)");
+Exit status: 0 without errors (warnings are ignored), 3 otherwise.)");
   auto file = std::make_shared<std::string>();
   command->add_option("SCENARIO", *file, "Scenario (YAML or JSON)")->required();
   auto edits = std::make_shared<std::vector<scenario::Edit>>();

@@ -23,7 +23,7 @@ class BackgroundJobs {
   BackgroundJobs(const BackgroundJobs&) = delete;
   BackgroundJobs& operator=(const BackgroundJobs&) = delete;
 
-  /// Does not wait. @param job its exceptions are rethrown by finish()
+  /// Does not wait. @param job  its exceptions are rethrown by finish()
   void run(Job job);
   /// True if a job waits, runs, or is not finished.
   bool busy() const;

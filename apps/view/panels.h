@@ -55,7 +55,7 @@ void drawTransport(PanelContext& context);
 void drawStatusBar(PanelContext& context, const Area& area);
 /// Shown in place of the picture while nothing is open.
 void drawStart(PanelContext& context, const Area& picture);
-/// A list of recently opened inputs to choose from. @param max_count largest number of entries
+/// A list of recently opened inputs to choose from. @param max_count  largest number of entries
 void drawRecentFiles(PanelContext& context, std::size_t max_count);
 /// The notice, and the message before the first picture.
 void drawNotice(PanelContext& context, const Area& picture);

@@ -200,7 +200,7 @@ void drawProbe(PanelContext& context, const Area& picture) {
       ImGui::TextWrapped("%s", result->error.c_str());
       ImGui::PopStyleColor();
     } else if (!result->reading) {
-      ImGui::TextDisabled("beside the volume");
+      ImGui::TextDisabled("outside the volume");
     } else {
       drawReading(context, *result);
     }

@@ -114,7 +114,7 @@ class Session {
   const std::optional<playback::AutosavedView>& keptView() const { return kept_view_; }
   /// Files of the input that have changed on the disk since they were read.
   const std::vector<std::string>& changedFiles() const { return changed_files_; }
-  /// Ends this session. @param keeps_edits true: unsaved edits are offered when the input is opened again
+  /// Ends this session. @param keeps_edits  true: unsaved edits are offered when the input is opened again
   void leave(bool keeps_edits);
   /// Called when the session comes on screen. @param left_out  edits that did not apply; may be empty
   void shown(const std::string& left_out);

@@ -21,7 +21,8 @@ class SessionOpener {
   /// @param make  a session that shares `files`
   SessionOpener(std::shared_ptr<Files> files, Make make) : files_(std::move(files)), make_(std::move(make)) {}
 
-  /// @param session replaced when the new one is ready @return true if it was
+  /// @param session  replaced when the new one is ready
+  /// @return true if it was
   bool update(std::unique_ptr<Session>& session);
   /// True if update() is to be called often.
   bool active() const { return task_.active() || files_->request || next_; }

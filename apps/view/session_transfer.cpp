@@ -216,7 +216,7 @@ std::vector<Verb> Session::transferVerbs() {
        }},
       {"opacity_preset",
        {{"name", kText}, {"value", kNumber, false}},
-       "Opacity curve by name: ramp, late ramp, threshold, shell, bands, opaque; a threshold or shell lies "
+       "Opacity curve by name: ramp, late ramp, threshold, shell, bands, opaque; a threshold or shell is "
        "at "
        "`value`, else in the middle",
        [](Session& session, const Command& command) {

@@ -12,7 +12,7 @@
 namespace emscape::emfield::cuda {
 
 /// One pass over the grid, as combineCpu(): all pointers are to device memory.
-/// @param first_valid_k lowest layer above ground of each column, null: 0. Values below it are undefined.
+/// @param first_valid_k  lowest layer above ground of each column, null: 0. Values below it are undefined.
 void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
 /// One radar's pass, as radarCpu(): all pointers are to device memory.

@@ -18,7 +18,7 @@ namespace emscape::scenario {
 class TerrainFile {
  public:
   /// Opens the file; reads no heights.
-  /// @param location of its name in the scenario; may be empty
+  /// @param location  of its name in the scenario; may be empty
   /// @throws Error (bad_input): no such file, not a raster, no georeference, heights of an unknown unit
   TerrainFile(const std::string& file, const SourceLocation& location);
   ~TerrainFile();

@@ -86,7 +86,7 @@ struct TerrainView {
   int count = 0;
 
   /// Height above mean sea level (m): of the finest raster that has one here; NaN if none has.
-  /// @param latitude_rad -pi/2..pi/2, longitude_rad any
+  /// @param latitude_rad  -pi/2..pi/2, longitude_rad any
   EMSCAPE_HD float heightAt(double latitude_rad, double longitude_rad) const {
     float height = NAN;
     for (int k = 0; k < count && !(height == height); ++k) {

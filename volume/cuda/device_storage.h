@@ -75,11 +75,11 @@ class DeviceStorage {
   const std::int32_t* firstValidK() const { return masked_below_ > 0 ? first_valid_k_.data() : nullptr; }
   int maskedBelow() const { return masked_below_; }
 
-  /// Waits for readers. @param first_valid_k one per column, or none
+  /// Waits for readers. @param first_valid_k  one per column, or none
   void setMask(const std::vector<std::uint16_t>& first_valid_k);
   /// On the stream: writes all voxels from values in dense order, masked ones are not read.
   void writeFrom(const float* host_values, cudaStream_t stream);
-  /// Of a sparse volume: replaces all voxels, on the stream. @param grid as returned by readyForSampling()
+  /// Of a sparse volume: replaces all voxels, on the stream. @param grid  as returned by readyForSampling()
   /// @throws Error (device) that names the bytes needed and free
   void setSparse(const std::uint8_t* grid, std::size_t bytes, cudaStream_t stream);
   /// On the stream; waits for it. Masked voxels get the floor.

@@ -92,7 +92,7 @@ class FieldSolver {
   /// changed, else the combine stage, else the products alone. After a change of region, terrain or list of
   /// emitters everything is recomputed; memory for both fields is needed for a moment. A scenario must not be
   /// changed in place while a solver holds it.
-  /// @param terrain of the snapshot's scenario; the caller loads it. Another object than before is another
+  /// @param terrain  of the snapshot's scenario; the caller loads it. Another object than before is another
   /// terrain
   /// @throws Error (bad_input) if terrain is missing, unless allowed, and as the constructor. The solver
   /// then still has the scenario of the last successful update, its channels and volumes, and the next update

@@ -123,8 +123,8 @@ struct LivePicture {
 /// and settings it reproduces the picture.
 class LiveView {
  public:
-  /// @param input scenario or volume file, .pvd, folder of volumes; empty: no pictures
-  /// @param scenario_beside_volumes scenario of the ground and emitters that are drawn with volumes; may be
+  /// @param input  scenario or volume file, .pvd, folder of volumes; empty: no pictures
+  /// @param scenario_beside_volumes  scenario of the ground and emitters that are drawn with volumes; may be
   /// empty
   /// @param style  a size of 0: nothing is drawn before resize()
   /// @param wake   called on the threads of this object after each picture and each change of the status; may
@@ -141,7 +141,7 @@ class LiveView {
   /// The step nearest to a time. @param time_s  any, beyond the ends too
   void seek(double time_s);
   /// An edited scenario: results that the edit does not invalidate are kept; cached steps are dropped. If a
-  /// model refuses it, the message is in status().error and the picture stays. @param scenario not null
+  /// model refuses it, the message is in status().error and the picture stays. @param scenario  not null
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario);
   /// Another quantity or channel; empty: the first. Colours are fitted again.
   void setQuantity(const std::string& quantity);

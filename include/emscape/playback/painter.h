@@ -88,7 +88,7 @@ class Painter {
   /// the first frame was set.
   render::Renderer& renderer() { return renderer_; }
 
-  /// The last picture with background and labels. @param note small, at the bottom
+  /// The last picture with background and labels. @param note  small, at the bottom
   render::Image8 picture(const std::string& note);
   /// The same for a fetched picture; differs by at most one level.
   render::Image8 annotated(const render::Image8& fetched, const std::string& note);

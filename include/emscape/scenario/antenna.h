@@ -24,7 +24,7 @@ enum class PatternKind {
   phased_array,  ///< planar aperture, evenly illuminated or of elements: azimuth_table(u - u0) *
                  ///< elevation_table(v - v0) * element pattern, side_lobe_amplitude behind it; u = right, v =
                  ///< up (direction cosines)
-  grid,  ///< bilinear in azimuth and elevation
+  grid,          ///< bilinear in azimuth and elevation
 };
 
 /// A pattern as plain data, for host and device loops. Amplitudes are relative voltages: 1 at the

@@ -21,7 +21,7 @@ struct ParseResult {
 
 /// Reads a scenario and every file it names (tracks, antennas; elevation files are opened, not read). Faults
 /// in the files do not throw: all are in the result, each with file, line and column.
-/// @param edits applied before the check; the location of a fault that one causes is the edit, as
+/// @param edits  applied before the check; the location of a fault that one causes is the edit, as
 /// "PATH=VALUE"
 ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {});
 

@@ -73,7 +73,7 @@ class Terrain {
   virtual ~Terrain() = default;
   /// Height (m, EGM96 mean sea level); NaN over a void or outside the files: missing terrain never looks like
   /// sea level.
-  /// @param latitude_deg -90..90, longitude_deg any (wrapped)
+  /// @param latitude_deg  -90..90, longitude_deg any (wrapped)
   virtual double heightMsl_m(double latitude_deg, double longitude_deg) const = 0;
   /// The same heights for loops, without a virtual call; valid while the terrain lives.
   virtual TerrainView view() const = 0;

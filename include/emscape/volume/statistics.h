@@ -31,7 +31,7 @@ struct Histogram {
   long long above = 0;  ///< greater than upper
 };
 
-/// @param bins 1..65536, @param lower, @param upper finite, lower < upper
+/// @param bins  1..65536, @param lower, @param upper  finite, lower < upper
 /// @throws Error (bad_input) outside these
 Histogram histogramOf(const DenseVolume& volume, int bins, float lower, float upper);
 
