@@ -296,7 +296,7 @@ class ProfilePlot {
   double unit_;  ///< pixels of the picture in one of an 1200 x 800 one
   Rect frame_;
   double bottom_m_ = 0, top_m_ = 0;  ///< over the chord between the ends' sea levels
-  std::vector<Rect> labels_;         ///< places taken by words
+  std::vector<Rect> labels_;         ///< areas of labels
 };
 
 }  // namespace
