@@ -2,11 +2,11 @@
 
 namespace emscape {
 
-std::string toString(const SourceLocation& place) {
-  std::string text = place.file;
-  if (place.line > 0) {
-    text += ":" + std::to_string(place.line);
-    if (place.column > 0) text += ":" + std::to_string(place.column);
+std::string toString(const SourceLocation& location) {
+  std::string text = location.file;
+  if (location.line > 0) {
+    text += ":" + std::to_string(location.line);
+    if (location.column > 0) text += ":" + std::to_string(location.column);
   }
   return text;
 }
@@ -14,10 +14,10 @@ std::string toString(const SourceLocation& place) {
 Error::Error(ErrorCode code, const std::string& message)
     : std::runtime_error(message), code_(code), message_(message) {}
 
-Error::Error(ErrorCode code, const SourceLocation& place, const std::string& message, Hint hint)
-    : std::runtime_error(place.file.empty() ? message : toString(place) + ": " + message),
+Error::Error(ErrorCode code, const SourceLocation& location, const std::string& message, Hint hint)
+    : std::runtime_error(location.file.empty() ? message : toString(location) + ": " + message),
       code_(code),
-      place_(place),
+      location_(location),
       message_(message),
       hint_(hint) {}
 

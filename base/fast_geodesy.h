@@ -15,7 +15,7 @@ namespace emscape {
 constexpr double kWgs84SemiMajor_m = 6378137.0;
 constexpr double kWgs84EccentricitySquared = (2.0 - 1.0 / 298.257223563) / 298.257223563;
 
-/// A point of the ellipsoid (height 0) as the loops want it.
+/// A point of the ellipsoid (height 0), with the vectors that the loops need.
 struct SurfacePoint {
   Vec3d ecef_m;  ///< foot on the ellipsoid
   Vec3d up;      ///< outward unit normal
@@ -45,7 +45,7 @@ struct FastGeodesy {
   }
 };
 
-/// @param latitude_deg -90..90, longitude_deg any
+/// @param latitude_deg  -90..90, longitude_deg any
 SurfacePoint surfacePoint(double latitude_deg, double longitude_deg);
 FastGeodesy fastGeodesy(double latitude_deg, double longitude_deg);
 

@@ -2,7 +2,7 @@
 /// and device, so that a plain loop over them under `#pragma omp simd` becomes SIMD code.
 ///
 /// g++ 12 vectorises such loops with -O3 -fopenmp-simd -fno-trapping-math, and needs -fno-math-errno too
-/// where std::sqrt stands beside them: set these on the one file that holds the loop. Never compile them with
+/// if they also call std::sqrt: set these on the one file that holds the loop. Never compile them with
 /// -ffast-math or -fassociative-math: rounding to an integer relies on the order of additions. Accuracies
 /// hold with and without fused multiply-add.
 #pragma once
@@ -16,7 +16,7 @@
 namespace emscape {
 namespace fast_math_detail {
 
-constexpr float kSmallestNormal = 1.17549435e-38f;
+constexpr float kMinNormal = 1.17549435e-38f;
 /// 1.5 * 2^23: adding it leaves a number's nearest integer in the low bits of the sum's mantissa.
 constexpr float kRoundingMagic = 12582912.0f;
 constexpr std::uint32_t kRoundingMagicBits = 0x4b400000u;
@@ -51,7 +51,7 @@ EMSCAPE_HD inline Rounded roundToInt(float value) {
   return {shifted - kRoundingMagic, bitsOf(shifted) - kRoundingMagicBits};
 }
 
-/// 2^(exponent - 1) for exponent in -126..128, where -126 stands for a result of 0.
+/// 2^(exponent - 1) for exponent in -126..128, where -126 gives 0.
 EMSCAPE_HD inline float halfPowerOfTwo(std::uint32_t exponent) {
   return floatOf((exponent + 126u) << 23);
 }
@@ -62,9 +62,9 @@ struct Log2Parts {
   float fraction;
 };
 EMSCAPE_HD inline Log2Parts log2Parts(float x) {
-  const float positive = x < kSmallestNormal ? kSmallestNormal : x;
+  const float positive = x < kMinNormal ? kMinNormal : x;
   const std::uint32_t bits = bitsOf(positive);
-  // Splits at sqrt(1/2), so that the mantissa lies evenly about 1.
+  // Splits at sqrt(1/2), so that the mantissa is evenly distributed about 1.
   const std::uint32_t biased = (bits + (0x3f800000u - 0x3f3504f3u)) >> 23;
   const float f = floatOf(bits - ((biased - 127u) << 23)) - 1.0f;
   // Minimax polynomial of log2(1 + f) / f, weighted by |f|.
@@ -150,7 +150,7 @@ EMSCAPE_HD inline float fastAtan2(float y, float x) {
   const bool steep = abs_y > abs_x;
   const float smaller = steep ? abs_x : abs_y;
   const float larger = steep ? abs_y : abs_x;
-  const float q = smaller / (larger < kSmallestNormal ? kSmallestNormal : larger);
+  const float q = smaller / (larger < kMinNormal ? kMinNormal : larger);
   const float s = q * q;
   // Minimax polynomial of (atan(q) / q - 1) / q^2 in q^2, weighted by q^3, 0 <= q <= 1.
   float p = 2.62224372e-3f;

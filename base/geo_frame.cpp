@@ -13,7 +13,7 @@
 namespace emscape {
 namespace {
 
-/// Rejects an origin that lies nowhere on the earth, before anything is computed from it.
+/// Rejects an origin that is not a position on the earth, before anything is computed from it.
 const FrameOrigin& checked(const FrameOrigin& origin) {
   if (!(std::abs(origin.latitude_deg) <= 90.0)) {
     throw Error(ErrorCode::bad_input, "frame origin: latitude_deg " + std::to_string(origin.latitude_deg) +

@@ -27,9 +27,9 @@ constexpr int kStride = kColumns + 2 * kPad;
 
 std::mutex settings_mutex;
 std::string chosen_file;  ///< of setGeoidFile()
-bool is_read = false;     ///< the grid was read: chosen_file no longer counts
+bool is_read = false;     ///< the grid was read: chosen_file has no effect any more
 
-/// Folders where PROJ keeps its grids, the environment's first.
+/// Folders in which PROJ looks for its grids, those of the environment first.
 std::vector<std::string> gridFolders() {
   std::vector<std::string> folders;
   for (const char* variable : {"PROJ_DATA", "PROJ_LIB"}) {

@@ -27,14 +27,14 @@ std::optional<std::size_t> systemBytes() {
   return std::nullopt;
 }
 
-/// What is left of a control group's limit; its page cache, which can be dropped, counts as taken.
+/// Remainder of a control group's limit; its page cache, although it can be dropped, counts as used.
 std::optional<std::size_t> groupBytes() {
   const auto limit = numberIn("/sys/fs/cgroup/memory.max"), taken = numberIn("/sys/fs/cgroup/memory.current");
   if (!limit || !taken) return std::nullopt;
   return *limit > *taken ? *limit - *taken : 0;
 }
 
-/// What is left of the limit on the address space (ulimit -v).
+/// Remainder of the limit on the address space (ulimit -v).
 std::optional<std::size_t> addressBytes() {
   rlimit limit{};
   const auto pages = numberIn("/proc/self/statm");

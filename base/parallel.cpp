@@ -38,8 +38,8 @@ int threadCount() {
 
 #if defined(__SANITIZE_THREAD__)
 
-// The thread sanitizer cannot see how libtbb hands work over and would report every loop. Plain threads it
-// sees whole.
+// The thread sanitizer does not see the synchronisation inside libtbb and would report every loop. It does
+// see that of plain threads.
 void parallelFor(int count, int grain, const std::function<void(int begin, int end)>& body) {
   const long long piece = std::max(grain, 1);
   std::atomic<long long> next{0};

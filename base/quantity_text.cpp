@@ -24,11 +24,10 @@ double rounded(double value, int digits) {
 
 std::string numberText(double value, int digits) {
   // Six digits would write 1000000 as 1e+06.
-  constexpr double kLongestPlain = 1e10;
+  constexpr double kMaxPlain = 1e10;
   const double shown = rounded(value, digits);
-  return std::abs(shown) < kLongestPlain && shown == std::round(shown)
-             ? fmt::format("{:.0f}", shown + 0.0)
-             : fmt::format("{:.{}g}", value, digits);
+  return std::abs(shown) < kMaxPlain && shown == std::round(shown) ? fmt::format("{:.0f}", shown + 0.0)
+                                                                   : fmt::format("{:.{}g}", value, digits);
 }
 
 std::string withUnit(const std::string& number, const std::string& unit) {

@@ -2,7 +2,8 @@
 #pragma once
 
 /// Put before a function's definition: g++ compiles it for AVX-512, for AVX2 and for the plain target, with
-/// all that is inlined into it. Off under sanitizers, whose run time is not ready when the choice is made.
+/// all that is inlined into it. Off under sanitizers, whose run time is not initialised when the version is
+/// chosen.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define EMSCAPE_SIMD_CLONES __attribute__((flatten, target_clones("avx512f", "avx2", "default")))

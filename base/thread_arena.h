@@ -15,9 +15,8 @@ class ThreadArena {
  public:
   /// @param threads  >= 1, the calling thread included; less counts as 1. More than the machine or
   /// setThreadLimit() allow has no effect
-  /// @param niceness  0..19: threads that enter yield to others of the process by so much, as nice(1) does,
-  /// from then on: what a program with a window gives to its work behind it. Linux alone; elsewhere nothing
-  /// happens
+  /// @param niceness 0..19: nice value, as of nice(1), that threads get when they enter, for good: background
+  /// work then yields to a window. Linux only; no effect elsewhere
   explicit ThreadArena(int threads, int niceness = 0);
   ~ThreadArena();
   ThreadArena(const ThreadArena&) = delete;

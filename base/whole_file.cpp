@@ -32,7 +32,7 @@ std::string causeOf(int error_number) {
   throw Error(ErrorCode::other, {path.string()}, "cannot write: " + cause);
 }
 
-/// Opens, fsyncs and closes; folders too, so that a rename in them is on the disk.
+/// Opens, fsyncs and closes a file or a folder; a rename is on the disk only after fsync of its folder.
 /// @return errno, 0 if all went well
 int syncToDisk(const fs::path& path, int flags) {
   const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
@@ -58,7 +58,7 @@ long writerOf(const fs::path& path) {
   return digits ? std::stol(process) : 0;
 }
 
-/// Whether a process has ended that nobody has waited for yet; only where the system tells.
+/// True if a process is a zombie: ended, not yet waited for. False if the system does not report it.
 bool isZombie(long process) {
   std::ifstream stream("/proc/" + std::to_string(process) + "/stat");
   std::string text;
@@ -67,7 +67,7 @@ bool isZombie(long process) {
   return name_end != std::string::npos && text.compare(name_end + 2, 1, "Z") == 0;
 }
 
-/// Whether a file is a temporary whose writer no longer runs.
+/// True if a file is a temporary whose writer no longer runs.
 bool isStale(const fs::path& path) {
   const long process = writerOf(path);
   if (process == 0) return false;
@@ -191,7 +191,7 @@ void publish(const fs::path& temporary, const fs::path& path) {
     fs::remove(temporary, ignored);
     failWriting(path, causeOf(cause));
   }
-  // Some file systems cannot sync a folder; the file itself is whole under its name all the same.
+  // Some file systems cannot sync a folder; the file under its name is complete anyway.
   syncToDisk(folderOf(path), O_RDONLY | O_DIRECTORY);
 }
 

@@ -1,4 +1,4 @@
-/// Files that appear under their name only when they are whole, and files read whole.
+/// Atomic file writes: a file appears under its name only when it is complete. Reading of whole files.
 #pragma once
 
 #include <cstdint>
@@ -18,21 +18,21 @@ struct OutputFile {
   std::function<void(std::ostream&)> write;
 };
 
-/// Writes files that belong together: each beside its final name, flushed to the disk, and only when all are
-/// whole renamed, in the order given. Files of the same name are replaced. On any failure nothing new lies
-/// under a final name and the temporaries are gone; only a killed process leaves one, which isTemporary()
-/// recognises.
+/// Writes files that belong together: each under a temporary name in the same folder, flushed to the disk.
+/// When all are complete they are renamed, in the order given. Files of the same name are replaced. On any
+/// failure no final name is written and the temporaries are removed; only a killed process leaves one, which
+/// isTemporary() recognises.
 /// @throws Error (other) that names the path and the cause: missing folder, no permission, no space;
 /// exceptions that
 ///         `write` throws for reasons of its own pass through
 void writeWhole(const std::vector<OutputFile>& files);
 void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
-/// The name under which a file is written before it is whole, for programs that write it themselves:
+/// The temporary name of a file, for programs that write it themselves:
 /// NAME.part-PID.
 std::filesystem::path temporaryFor(const std::filesystem::path& path);
 
-/// Brings a temporary that is whole to the disk and under its final name.
+/// Flushes a complete temporary to the disk and renames it to its final name.
 /// @throws Error (other); the temporary is then removed
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
 
@@ -46,18 +46,18 @@ int removeStaleTemporaries(const std::filesystem::path& folder);
 /// Removes the temporaries of one file that were left by processes that no longer run.
 void removeStaleTemporariesOf(const std::filesystem::path& path);
 
-/// Bytes that replace as many others of a file.
+/// Bytes that overwrite as many bytes of a file.
 struct FilePatch {
   std::uint64_t offset = 0;
   std::string bytes;
 };
 
-/// Overwrites parts of a file where it lies; they are on the disk at return. Not all or nothing: a crash of
+/// Overwrites parts of a file in place; they are on the disk at return. Not all or nothing: a crash of
 /// the machine may leave some of the patches unwritten.
 /// @throws Error (other)
 void patchFile(const std::filesystem::path& path, const std::vector<FilePatch>& patches);
 
-/// Adds bytes to the end of a file, which is created if need be; they are on the disk at return.
+/// Appends bytes to a file, which is created if it does not exist; they are on the disk at return.
 /// @throws Error (other); a part of the bytes may then be there
 void appendToFile(const std::filesystem::path& path, const std::string& bytes);
 
@@ -99,7 +99,7 @@ class FolderLock {
 /// permission, more than max_bytes
 std::vector<std::uint8_t> readWhole(const std::filesystem::path& path,
                                     std::uintmax_t max_bytes = UINTMAX_MAX);
-/// The same bytes, for those who read text in them. The encoding is not checked.
+/// The same bytes as a string. The encoding is not checked.
 std::string readWholeText(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
 
 }  // namespace emscape

@@ -45,7 +45,7 @@ def field_table(results):
         return
     cpus = {results[f"cpu-{name}"]["threads"] for name in names if f"cpu-{name}" in results}
     threads = f" ({', '.join(str(count) for count in sorted(cpus))} threads)" if cpus else ""
-    print(f"\n| field (ms) | fan | plane | combine | product | all moved | by the host's clock | beams turned | each voxel "
+    print(f"\n| field (ms) | fan | excess | combine | product | all moved | by the host's clock | beams turned | each voxel "
           f"written once | CPU{threads}: all moved | beams turned |")
     print("|---" * 11 + "|")
     for name in names:

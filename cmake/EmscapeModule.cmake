@@ -1,6 +1,6 @@
 # emscape_module(NAME SOURCES ... [LINKS ...] [PRIVATE_LINKS ...])
 # A library emscape_NAME, called emscape::NAME, of one module's sources. Its public headers lie in
-# include/emscape/NAME, the internal ones beside the sources.
+# include/emscape/NAME, the internal ones next to the sources.
 function(emscape_module name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS")
   add_library(emscape_${name} ${ARG_SOURCES})

@@ -21,7 +21,7 @@ endif()
 find_program(EMSCAPE_CCACHE ccache)
 mark_as_advanced(EMSCAPE_CCACHE)
 if(EMSCAPE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # What ccache needs to be told before it keeps objects made with precompiled headers.
+  # Options that ccache needs to cache objects made with precompiled headers.
   set(CMAKE_CXX_COMPILER_LAUNCHER
     "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${EMSCAPE_CCACHE}")
 endif()
@@ -38,7 +38,7 @@ elseif(EMSCAPE_SANITIZE)
   message(FATAL_ERROR "EMSCAPE_SANITIZE=${EMSCAPE_SANITIZE}: must be address, thread or empty")
 endif()
 
-# What the sanitizers must not report lies in each program itself, so that it holds however the program is started.
+# The suppressions of the sanitizers are linked into each program, so that they apply however it is started.
 if(EMSCAPE_SANITIZE)
   add_library(emscape_sanitizer_defaults OBJECT "${PROJECT_SOURCE_DIR}/cmake/sanitizer_defaults.cpp")
   link_libraries(

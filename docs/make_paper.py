@@ -51,7 +51,7 @@ PAPER_ERRORS = {
 class Volume:
     def __init__(self, name, file, shown, equal, computed):
         self.name = name
-        self.file = file  # None: not to be had
+        self.file = file  # None: not available
         self.shown = shown  # as commands in the document call it
         self.sizes = {"large": LARGE, "equal": equal}
         self.computed = computed  # else scanned
@@ -132,7 +132,7 @@ def error_table(measured, all_volumes, size, mode):
             max_text, mean_text, share = PAPER_ERRORS[volume.name][size][ratio]
             row = [volume.name if ratio == "1:1" else "", f"`{pattern}` ({ratio})", max_text, mean_text, f"{share}"]
             if result is None:
-                row += ["not to be had", "", "", "", "", "", ""]
+                row += ["not available", "", "", "", "", "", ""]
             else:
                 row += [error_cells(result["by"][pattern, way]["error"]) for way in ("8bit", "float")]
                 row += [psnr(result["by"][pattern, "float"]["error"])]
@@ -369,7 +369,7 @@ def document(options, emscape, all_volumes, measured):
         "error_command": emscape.command(all_volumes[2], "equal", "dvr", options.views, *PATTERNS),
         "pictures": picture_section(emscape, present),
         "claims": Claims(measured, present).text(), "beyond": beyond(measured, present),
-        "absent": f"Not to be had here: {', '.join(absent)}; its rows hold the paper's figures alone.\n" if absent else "",
+        "absent": f"Not available here: {', '.join(absent)}; its rows hold the paper's figures alone.\n" if absent else "",
         "opacity": opacity_text(), "tolerance": timed["tolerance_levels"],
         "many_max": "-".join(map(str, many_views["max"])), "many_worst": "-".join(map(str, many_views["max_worst"])),
     }

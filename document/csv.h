@@ -25,7 +25,7 @@ class CsvReader {
   /// @param text  must outlive the reader and its cells
   explicit CsvReader(std::string_view text) : text_(text) {}
 
-  /// Reads the next row into `row`, whose memory is used again. @return false at the end
+  /// Reads the next row into `row`, whose memory is reused. @return false at the end
   bool next(CsvRow& row);
   /// Lines read so far.
   int lines() const { return line_; }

@@ -17,9 +17,9 @@ namespace emscape::document {
 
 namespace {
 
-constexpr int kDeepestNesting = 32;
-constexpr long long kMostValues = 1000000;
-constexpr int kMostTabReports = 20;
+constexpr int kMaxNesting = 32;
+constexpr long long kMaxValues = 1000000;
+constexpr int kMaxTabReports = 20;
 
 /// A fault after which reading cannot go on.
 struct FatalFault {
@@ -55,7 +55,7 @@ class PositionFinder {
  private:
   std::string_view text_;
   std::vector<std::size_t> line_begins_;
-  // The last place found: the next one mostly lies further on, which counts on a file of one long line.
+  // The last position found: the next one is mostly after it, which saves time in a file of one long line.
   std::size_t line_ = 0, byte_ = 0;
   int column_ = 1;
 };
@@ -84,7 +84,7 @@ class TreeBuilder : public YAML::EventHandler {
     const auto found = anchors_.find(anchor);
     if (found == anchors_.end()) throw FatalFault{position, "alias of an unknown anchor"};
     if (open_anchors_.count(found->second.get()) != 0) {
-      throw FatalFault{position, "an alias cannot stand within its own anchor"};
+      throw FatalFault{position, "an alias cannot be within its own anchor"};
     }
     place(found->second, position);
   }
@@ -133,15 +133,14 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void refuseTag(const TextPosition& position, const std::string& tag) {
-    problems_.addError(placeOf(position), fmt::format("tag '{}' is not allowed", tag));
+    problems_.addError(locationOf(position), fmt::format("tag '{}' is not allowed", tag));
   }
 
   void open(NodeKind kind, const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor) {
     auto node = makeNode(kind, mark, anchor);
     if (!tag.empty() && tag != "?" && tag != "!") refuseTag(node->position, tag);
-    if (frames_.size() >= kDeepestNesting) {
-      throw FatalFault{node->position,
-                       fmt::format("nested deeper than the allowed {} levels", kDeepestNesting)};
+    if (frames_.size() >= kMaxNesting) {
+      throw FatalFault{node->position, fmt::format("nested deeper than the allowed {} levels", kMaxNesting)};
     }
     open_anchors_.insert(node.get());
     Frame frame;
@@ -158,7 +157,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   void finish(const std::shared_ptr<DocumentNode>& node) { place(node, node->position); }
 
-  /// Puts a whole value where it belongs. `position` is where it, or its alias, stands.
+  /// Adds a complete value to its parent. @param position  of the value or its alias
   void place(const DocumentNodePtr& node, const TextPosition& position) {
     if (frames_.empty()) {
       root_ = node;
@@ -170,8 +169,8 @@ class TreeBuilder : public YAML::EventHandler {
       return;
     }
     frame.node->unfolded_count += node->unfolded_count;
-    if (frame.node->unfolded_count > kMostValues) {
-      throw FatalFault{position, fmt::format("more than the allowed {} values", kMostValues)};
+    if (frame.node->unfolded_count > kMaxValues) {
+      throw FatalFault{position, fmt::format("more than the allowed {} values", kMaxValues)};
     }
     if (frame.node->kind == NodeKind::sequence) {
       frame.node->items.push_back(node);
@@ -187,13 +186,13 @@ class TreeBuilder : public YAML::EventHandler {
     frame.key_position = position;
     frame.key_is_sound = node.kind == NodeKind::scalar && !(node.text == "<<" && !node.quoted);
     if (node.kind != NodeKind::scalar) {
-      problems_.addError(placeOf(position), "a key must be text");
+      problems_.addError(locationOf(position), "a key must be text");
     } else if (!frame.key_is_sound) {
-      problems_.addError(placeOf(position), "merge key '<<' is not allowed; write the keys out");
+      problems_.addError(locationOf(position), "merge key '<<' is not allowed; write the keys out");
     }
   }
 
-  SourceLocation placeOf(const TextPosition& position) const {
+  SourceLocation locationOf(const TextPosition& position) const {
     return {file_, position.line, position.column};
   }
 
@@ -212,7 +211,7 @@ bool hasTabsAsIndentation(const std::string& file, const std::string& text, Prob
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && (text[first] == '{' || text[first] == '[')) return false;
   int line = 1, reports = 0;
-  for (std::size_t begin = 0; begin < text.size() && reports < kMostTabReports; ++line) {
+  for (std::size_t begin = 0; begin < text.size() && reports < kMaxTabReports; ++line) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::size_t word = std::min(text.find_first_not_of(" \t\r", begin), end);
     const std::size_t tab = std::string_view(text).substr(begin, word - begin).find('\t');

@@ -17,7 +17,7 @@ constexpr std::size_t kMaxNamesShown = 20;
   throw Error(ErrorCode::bad_input, message);
 }
 
-/// The byte behind a name in quotes that begins at `begin`; npos if it has no end.
+/// The byte after a name in quotes that begins at `begin`; npos if it has no end.
 std::size_t endOfQuotes(const std::string& text, std::size_t begin) {
   for (std::size_t i = begin + 1; i < text.size(); ++i) {
     if (text[i] == '\\') {
@@ -111,7 +111,7 @@ class Resolver {
       }
     }
     const KeySpec* row = object_->find(name, variant.empty() ? nullptr : &variant);
-    // A key of another variant: the edits may bring that variant, too.
+    // A key of another variant: the edits may also select that variant.
     const bool applies = row != nullptr;
     if (!applies) row = object_->find(name, nullptr);
     if (row == nullptr) fail(unknownKeyMessage(name, *object_, nullptr));

@@ -8,28 +8,28 @@
 
 namespace emscape::document {
 
-/// Where a path leads.
+/// The value that a path leads to.
 struct ResolvedPath {
   NodePath steps;
   std::string text;                 ///< the path with quotes where an edit's text needs them
   std::string name;                 ///< of the key or item, for messages
   const ValueSpec* spec = nullptr;  ///< of the value
   bool required = false;            ///< a key that must be given
-  bool exists = false;              ///< a value stands there
+  bool exists = false;              ///< the document has a value there
 };
 
 /// Follows a path from the root. Steps are separated by points: keys; items of a list by their name, or by
-/// their index from 0 where they have none. Names are matched against those in the document, the longest
-/// first, so that they may hold points; a name in double quotes (\" and \\ within) is taken as it is. Keys
-/// need not exist in the document, items must.
-/// @throws Error (bad_input), without a place, for what the format or the document does not have, with what
-/// it does
+/// their index from 0 if they have none. Names are matched against those in the document, the longest first,
+/// so that they may contain points; a name in double quotes (\" and \\ within) is taken literally. Keys need
+/// not exist in the document, items must.
+/// @throws Error (bad_input), without a location, for keys and items that do not exist; the message names
+/// those that do
 ResolvedPath resolvePath(const std::string& path, const DocumentNodePtr& root, const ObjectSpec& spec);
 
 /// A name in double quotes, with \" and \\ for a quote and a backslash.
 std::string quotedName(const std::string& name);
 
-/// The byte of the first '=' of "PATH=VALUE" that does not stand in a quoted name; npos if there is none.
+/// The byte of the first '=' of "PATH=VALUE" outside quoted names; npos if there is none.
 std::size_t endOfPath(const std::string& text);
 
 }  // namespace emscape::document

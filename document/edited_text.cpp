@@ -19,7 +19,7 @@ std::size_t offsetOf(const std::string& text, int line, int column) {
   return at;
 }
 
-SourceLocation placeOf(const std::string& file, const std::string& text, std::size_t offset) {
+SourceLocation locationOf(const std::string& file, const std::string& text, std::size_t offset) {
   const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size()));
   const int line = static_cast<int>(std::count(text.begin(), end, '\n')) + 1;
   const std::size_t newline = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
@@ -47,7 +47,7 @@ void EditedText::apply(const Splice& splice, const std::string& label) {
       }
       continue;
     }
-    // The part of the splice that lies outside the change belongs to the file.
+    // The part of the splice outside the change belongs to the file.
     const std::size_t before = change.new_begin > merged.new_begin ? change.new_begin - merged.new_begin : 0;
     if (!met) merged.begin = change.begin - before;
     merged.new_begin = std::min(merged.new_begin, change.new_begin);
@@ -76,16 +76,16 @@ void EditedText::apply(const Splice& splice, const std::string& label) {
   changes_ = std::move(kept);
 }
 
-SourceLocation EditedText::originOf(const SourceLocation& place) const {
-  if (changes_.empty() || place.file != file_ || place.line == 0) return place;
-  const std::size_t at = offsetOf(text_, place.line, place.column);
+SourceLocation EditedText::originOf(const SourceLocation& location) const {
+  if (changes_.empty() || location.file != file_ || location.line == 0) return location;
+  const std::size_t at = offsetOf(text_, location.line, location.column);
   std::size_t origin = at;
   for (const Change& change : changes_) {
     if (at < change.new_begin) break;
     if (at < change.new_end) return {change.label, 0, 0};
     origin = change.end + (at - change.new_end);
   }
-  return placeOf(file_, original_, origin);
+  return locationOf(file_, original_, origin);
 }
 
 }  // namespace emscape::document

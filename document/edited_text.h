@@ -10,8 +10,8 @@
 
 namespace emscape::document {
 
-/// The text of a file with changes, and where each of its places stands in the file. Changes that meet become
-/// one: there are at most as many as places that were changed.
+/// The text of a file with changes, and the location in the file of each of its positions. Adjacent changes
+/// are merged.
 class EditedText {
  public:
   EditedText() = default;
@@ -20,12 +20,12 @@ class EditedText {
   const std::string& file() const { return file_; }
   const std::string& text() const { return text_; }
 
-  /// @param label  names what made the change
+  /// @param label  names the origin of the change
   void apply(const Splice& splice, const std::string& label);
 
-  /// A place in text() as its reader knows it: its line and column in the file itself, or the label of the
-  /// change that wrote it there. Places in other files are returned as they are.
-  SourceLocation originOf(const SourceLocation& place) const;
+  /// Maps a location in text() to its line and column in the file itself, or to the label of the change that
+  /// wrote it. Locations in other files are returned unchanged.
+  SourceLocation originOf(const SourceLocation& location) const;
 
  private:
   /// file bytes [begin, end) became text() bytes [new_begin, new_end).

@@ -36,7 +36,7 @@ bool isPlainCharacter(char c) {
          c == '(' || c == ')';
 }
 
-/// Whether a text means itself without quotes, in every context.
+/// True if a text needs no quotes in any context.
 bool canBePlain(const std::string& text) {
   if (text.empty() || text.front() == ' ' || text.back() == ' ' || text.front() == '-' || text == "null" ||
       text == "Null" || text == "NULL") {

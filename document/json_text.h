@@ -1,4 +1,4 @@
-/// JSON for people: what fits on a line stands on one.
+/// JSON for people: a value that fits on a line is written on one line.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,9 +6,9 @@
 
 namespace emscape::document {
 
-/// Strict JSON in UTF-8 that ends with a line end. The members of the root stand on lines of their own; so do
-/// those of every other object or list that is longer than a line. Numbers have the digits that give the same
-/// double again.
+/// Strict JSON in UTF-8 that ends with a line end. The members of the root are on lines of their own; so are
+/// those of every other object or list that is longer than a line. Numbers have enough digits to read the
+/// same double again.
 std::string jsonText(const nlohmann::ordered_json& root);
 
 /// A float as the shortest decimal number that is this float once it is read as a double and rounded.

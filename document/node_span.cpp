@@ -32,8 +32,8 @@ std::size_t endOfQuoted(std::string_view text, std::size_t begin) {
   refuse("a text in quotes has no end");
 }
 
-/// A text without quotes, perhaps over several lines: what it holds but for blanks stands in the file as it
-/// is.
+/// A text without quotes, perhaps over several lines: except for blanks, its characters are those of the
+/// file.
 std::size_t endOfPlain(std::string_view text, std::size_t begin, std::string_view value) {
   std::size_t i = begin, end = begin;
   for (const char c : value) {
@@ -111,12 +111,12 @@ std::size_t afterColon(std::string_view text, const MapEntry& entry) {
   const bool in_quotes = text[begin] == '"' || text[begin] == '\'';
   std::size_t i = in_quotes ? endOfQuoted(text, begin) : endOfPlain(text, begin, entry.key);
   while (i < text.size() && isBlank(text[i])) ++i;
-  if (i == text.size() || text[i] != ':') refuse("a key has no colon, or an anchor stands before it");
+  if (i == text.size() || text[i] != ':') refuse("a key has no colon, or an anchor before it");
   return i + 1;
 }
 
 Span spanOf(std::string_view text, const DocumentNode& node) {
-  if (node.anchored) refuse("an anchor (&) or an alias (*) stands there; write the value out in the file");
+  if (node.anchored) refuse("there is an anchor (&) or an alias (*); write the value out in the file");
   const std::size_t begin = node.position.offset;
   if (begin >= text.size()) refuse("a value is not where it should be");
   if (node.kind == NodeKind::map || node.kind == NodeKind::sequence)
@@ -129,7 +129,7 @@ Span spanOf(std::string_view text, const DocumentNode& node) {
   if (!node.quoted) return {begin, endOfPlain(text, begin, node.text)};
   if (text[begin] == '"' || text[begin] == '\'') return {begin, endOfQuoted(text, begin)};
   if (text[begin] == '|' || text[begin] == '>') return {begin, endOfBlockText(text, begin, node.text)};
-  refuse("a tag stands there");
+  refuse("there is a tag");
 }
 
 Span valueSpanOf(std::string_view text, const MapEntry& entry) {

@@ -8,26 +8,26 @@ namespace emscape::document {
 
 namespace {
 
-constexpr std::size_t kMostProblems = 1000;
+constexpr std::size_t kMaxProblems = 1000;
 
 }  // namespace
 
-void ProblemList::addError(const SourceLocation& place, const std::string& message) {
-  add(place, {place, Severity::error, message});
+void ProblemList::addError(const SourceLocation& location, const std::string& message) {
+  add(location, {location, Severity::error, message});
 }
 
-void ProblemList::addWarning(const SourceLocation& place, const std::string& message) {
-  add(place, {place, Severity::warning, message});
+void ProblemList::addWarning(const SourceLocation& location, const std::string& message) {
+  add(location, {location, Severity::warning, message});
 }
 
-void ProblemList::addErrorElsewhere(const SourceLocation& named_at, const SourceLocation& place,
+void ProblemList::addErrorElsewhere(const SourceLocation& named_at, const SourceLocation& location,
                                     const std::string& message) {
-  add(named_at, {place, Severity::error, message});
+  add(named_at, {location, Severity::error, message});
 }
 
 void ProblemList::add(const SourceLocation& order, Problem problem) {
-  if (entries_.size() > kMostProblems) return;
-  if (entries_.size() == kMostProblems) problem.message = "further faults are not told";
+  if (entries_.size() > kMaxProblems) return;
+  if (entries_.size() == kMaxProblems) problem.message = "further faults are not reported";
   entries_.push_back({std::move(problem), order.line, order.column});
 }
 
@@ -39,7 +39,7 @@ bool ProblemList::hasErrors() const {
 std::vector<Problem> ProblemList::inOrder() const {
   std::vector<Entry> sorted = entries_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) {
-    const SourceLocation &at = a.problem.place, &bt = b.problem.place;
+    const SourceLocation &at = a.problem.location, &bt = b.problem.location;
     return std::tie(a.line, a.column, at.file, at.line, at.column) <
            std::tie(b.line, b.column, bt.file, bt.line, bt.column);
   });

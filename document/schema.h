@@ -14,7 +14,7 @@ struct ObjectSpec;
 
 enum class ValueType { number, integer, boolean, text, choice, timestamp, file, object, list };
 
-/// What a value may be.
+/// Type and limits of a value.
 struct ValueSpec {
   ValueType type = ValueType::text;
   std::string unit;                                           ///< number
@@ -50,17 +50,17 @@ struct KeySpec {
 
 /// A set of keys.
 struct ObjectSpec {
-  std::string name;           ///< as messages and the JSON Schema's definitions call it
-  std::string discriminator;  ///< key whose choice says which other keys apply; empty: none
+  std::string name;           ///< in messages and in the JSON Schema's definitions
+  std::string discriminator;  ///< key whose value selects the variant; empty: none
   std::vector<KeySpec> keys;
   std::vector<std::vector<std::string>> exactly_one_of = {};        ///< groups of which one key must be given
-  std::vector<std::pair<std::string, std::string>> goes_with = {};  ///< first only beside second
+  std::vector<std::pair<std::string, std::string>> goes_with = {};  ///< first only together with second
 
   /// The row of a key, or null. @param variant  the discriminator's value; null: any
   const KeySpec* find(const std::string& key, const std::string* variant) const;
 };
 
-/// Functions that write a table.
+/// Functions that build a table.
 namespace spec {
 
 ValueSpec number(const std::string& unit = "");

@@ -17,14 +17,14 @@ namespace emscape::document {
 
 namespace {
 
-constexpr std::size_t kLongestQuotation = 40;
+constexpr std::size_t kMaxQuotation = 40;
 
 std::string withUnit(const std::string& unit) {
   return unit.empty() ? "" : " (" + unit + ")";
 }
 
 std::string quoted(const std::string& text) {
-  std::size_t length = std::min(text.size(), kLongestQuotation);
+  std::size_t length = std::min(text.size(), kMaxQuotation);
   while (length < text.size() && length > 0 && (static_cast<unsigned char>(text[length]) & 0xC0) == 0x80)
     --length;
   std::string shown = text.substr(0, length) + (length < text.size() ? "..." : "");
@@ -86,7 +86,7 @@ std::string expectation(const ValueSpec& spec) {
   return "";
 }
 
-/// YAML reads these as something else than text.
+/// YAML does not read these as text.
 bool looksLikeText(const DocumentNode& node) {
   return node.quoted || (!numberOf(node.text) && !booleanOf(node.text));
 }
@@ -124,7 +124,8 @@ class Checker {
     const std::string* variant = variantOf(node, spec);
     std::map<std::string, int> lines;
     std::set<std::string> seen;
-    std::vector<std::string> meant;  // what unknown keys were probably meant to be: one fault, one message
+    std::vector<std::string>
+        meant;  // probable meanings of unknown keys; the missing keys among them are not reported again
     for (const MapEntry& entry : node.entries) {
       const auto [first, is_new] = lines.emplace(entry.key, entry.position.line);
       if (!is_new) {
@@ -148,7 +149,7 @@ class Checker {
     problems_.addError({file_, position.line, position.column}, message);
   }
 
-  /// The discriminator's value where it is sound.
+  /// The discriminator's value if it is valid.
   static const std::string* variantOf(const DocumentNode& node, const ObjectSpec& spec) {
     for (const MapEntry& entry : node.entries) {
       if (spec.discriminator.empty() || entry.key != spec.discriminator) continue;
@@ -275,10 +276,10 @@ bool checkObject(const std::string& file, const DocumentNode& node, const Object
 void requireNoProblem(const ProblemList& problems) {
   const std::vector<Problem> all = problems.inOrder();
   if (all.empty()) return;
-  if (all.size() == 1) throw Error(ErrorCode::bad_input, all.front().place, all.front().message);
+  if (all.size() == 1) throw Error(ErrorCode::bad_input, all.front().location, all.front().message);
   std::string text;
   for (const Problem& problem : all) {
-    text += (text.empty() ? "" : "\n") + toString(problem.place) + ": " + problem.message;
+    text += (text.empty() ? "" : "\n") + toString(problem.location) + ": " + problem.message;
   }
   throw Error(ErrorCode::bad_input, text);
 }
@@ -307,7 +308,7 @@ std::optional<double> numberOf(const std::string& text) {
   const auto result = std::from_chars(text.data() + sign, end, value);
   if (result.ptr != end || result.ec == std::errc::invalid_argument) return std::nullopt;
   if (result.ec == std::errc::result_out_of_range) {
-    // Too large or too close to zero: only the exponent's sign tells them apart.
+    // Too large or too close to zero: the exponent's sign distinguishes them.
     const std::size_t exponent = text.find_first_of("eE");
     value = exponent != std::string::npos && text[exponent + 1] == '-'
                 ? 0.0
@@ -325,7 +326,7 @@ std::string rangeFault(const std::string& name, const std::string& text, double 
   }
   const bool low = spec.minimum_excluded ? value <= spec.minimum : value < spec.minimum;
   if (!low && value <= spec.maximum) return "";
-  constexpr int kDigits = 12;  // limits are told in full
+  constexpr int kDigits = 12;  // limits are shown in full
   return fmt::format("{} is {}, outside the allowed {}{}", name, text, spec.minimum_excluded ? "above " : "",
                      rangeText(spec.minimum, spec.maximum, spec.unit, kDigits));
 }

@@ -10,28 +10,29 @@
 
 namespace emscape::document {
 
-/// Tells every fault of an object: unknown and duplicate keys, missing ones, wrong types, values out of
+/// Reports every fault of an object: unknown and duplicate keys, missing ones, wrong types, values out of
 /// range.
-/// @param file  for the problems' places
-/// @return whether there was none
+/// @param file  for the problems' locations
+/// @return true if there is none
 bool checkObject(const std::string& file, const DocumentNode& node, const ObjectSpec& spec,
                  ProblemList& problems);
 
-/// The number that a scalar's text stands for (YAML 1.2 core schema, decimal); none if it is not one.
+/// The number in a scalar's text (YAML 1.2 core schema, decimal); none if it is not one.
 /// Infinity and NaN are numbers here.
 std::optional<double> numberOf(const std::string& text);
 
-/// @throws Error (bad_input) if there is any problem: one keeps its place, several are told one a line
+/// @throws Error (bad_input) if there is any problem: a single one with its location, several as one message
+/// with one line each
 void requireNoProblem(const ProblemList& problems);
 
-/// The truth value that a scalar's text stands for (YAML 1.2 core schema); none if it is not one.
+/// The truth value in a scalar's text (YAML 1.2 core schema); none if it is not one.
 std::optional<bool> booleanOf(const std::string& text);
 
-/// What is wrong with a number, as `'name' is 95, outside the allowed -90 to 90 deg`; empty if nothing is.
+/// The fault of a number, as `'name' is 95, outside the allowed -90 to 90 deg`; empty if it has none.
 std::string rangeFault(const std::string& name, const std::string& text, double value, const ValueSpec& spec);
 
-/// The message for a key that an object does not have: with the unit's suffix that is missing, or with what
-/// was probably meant.
+/// The message for a key that an object does not have: with the missing unit suffix, or with the key that was
+/// probably meant.
 /// @param meant  set to the names that the message proposes
 std::string unknownKeyMessage(const std::string& key, const ObjectSpec& spec, const std::string* variant,
                               std::vector<std::string>* meant = nullptr);

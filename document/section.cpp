@@ -134,18 +134,19 @@ std::vector<std::vector<double>> Section::numberLists(const std::string& key) co
   return all;
 }
 
-SourceLocation Section::place() const {
-  return placeAt(node_ == nullptr ? TextPosition{} : node_->position);
+SourceLocation Section::location() const {
+  return locationAt(node_ == nullptr ? TextPosition{} : node_->position);
 }
 
-SourceLocation Section::placeOf(const std::string& key) const {
+SourceLocation Section::locationOf(const std::string& key) const {
   const DocumentNode* node = find(key);
-  return node == nullptr ? place() : placeAt(node->position);
+  return node == nullptr ? location() : locationAt(node->position);
 }
 
-SourceLocation Section::placeOf(const std::string& key, std::size_t item) const {
+SourceLocation Section::locationOf(const std::string& key, std::size_t item) const {
   const DocumentNode* list = find(key);
-  return list == nullptr || item >= list->items.size() ? placeOf(key) : placeAt(list->items[item]->position);
+  return list == nullptr || item >= list->items.size() ? locationOf(key)
+                                                       : locationAt(list->items[item]->position);
 }
 
 }  // namespace emscape::document

@@ -10,19 +10,18 @@
 
 namespace emscape::document {
 
-/// One object of the file. Reading a value that is not given gives the table's default. Where there is none,
-/// and where the value is faulty, which checkObject() has told already, numbers are NaN, so that no
-/// comparison finds fault with them again, whole numbers 0, and texts and lists empty. Asking for a key that
-/// the table does not have is a programming error (std::logic_error). Valid as long as the document, the
-/// table and `file`.
+/// One object of the file. Reading a value that is not given returns the table's default. If there is none,
+/// or if the value is faulty (checkObject() has reported it), numbers are NaN, so that later checks stay
+/// silent, whole numbers 0, and texts and lists empty. Asking for a key that the table does not have is a
+/// programming error (std::logic_error). Valid as long as the document, the table and `file` are.
 class Section {
  public:
   /// @param node  null for an object that is not there: everything has its default
   Section(const std::string& file, const DocumentNode* node, const ObjectSpec& spec);
 
-  /// Whether the key is given, with a value of the right type.
+  /// True if the key is given, with a value of the right type.
   bool has(const std::string& key) const;
-  /// Whether the object is given and checkObject() finds nothing wrong in it.
+  /// True if the object is given and checkObject() finds nothing wrong in it.
   bool sound() const;
 
   double number(const std::string& key) const;
@@ -47,17 +46,17 @@ class Section {
 
   /// The object itself; null if it is not given.
   const DocumentNode* node() const { return node_; }
-  /// Where the object stands.
-  SourceLocation place() const;
-  /// Where the key's value stands; where the object stands if it is not given.
-  SourceLocation placeOf(const std::string& key) const;
-  /// Where an item of the key's list stands.
-  SourceLocation placeOf(const std::string& key, std::size_t item) const;
+  /// Location of the object.
+  SourceLocation location() const;
+  /// Location of the key's value; that of the object if the key is not given.
+  SourceLocation locationOf(const std::string& key) const;
+  /// Location of an item of the key's list.
+  SourceLocation locationOf(const std::string& key, std::size_t item) const;
 
  private:
   const KeySpec& row(const std::string& key) const;
   const DocumentNode* find(const std::string& key) const;
-  SourceLocation placeAt(const TextPosition& position) const {
+  SourceLocation locationAt(const TextPosition& position) const {
     return {*file_, position.line, position.column};
   }
 

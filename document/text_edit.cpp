@@ -21,7 +21,7 @@ DocumentNodePtr childOf(const DocumentNode& node, const PathStep& step) {
   return nullptr;
 }
 
-/// The value that a chain of keys without any value would hold: {a: {b: value}}.
+/// Nested maps for a chain of keys: {a: {b: value}}.
 DocumentNodePtr wrapped(const NodePath& path, std::size_t from, DocumentNodePtr value) {
   for (std::size_t i = path.size(); i-- > from;) {
     auto map = std::make_shared<DocumentNode>();
@@ -37,7 +37,7 @@ std::size_t lineBegin(string_view text, std::size_t at) {
   return newline == string_view::npos ? 0 : newline + 1;
 }
 
-/// Of the line that holds a byte: where its line end stands, and behind that.
+/// The line that contains a byte: the position of its line end, and the position after it.
 Span lineEnd(string_view text, std::size_t at) {
   const std::size_t newline = std::min(text.find('\n', at), text.size());
   const bool has_return = newline > at && text[newline - 1] == '\r';
@@ -75,7 +75,7 @@ class Splicer {
     throw Error(ErrorCode::bad_input, "the file cannot be edited here: " + why);
   }
   [[noreturn]] static void refuseAnchor() {
-    refuse("an anchor (&) or an alias (*) stands there; write the value out in the file");
+    refuse("there is an anchor (&) or an alias (*); write the value out in the file");
   }
 
   static const MapEntry& entryOf(const DocumentNode& map, const std::string& key) {
@@ -93,8 +93,8 @@ class Splicer {
     const DocumentNode& old = *entry.value;
     const Span span = valueSpanOf(text_, entry);
     if (span.begin == span.end) return {span.begin, span.end, " " + written};
-    // A block begins on a line of its own, where what is written on one line may be less indented than
-    // allowed.
+    // A block begins on a line of its own; a value that was on one line may have less indentation than a
+    // block needs.
     const bool is_block =
         (old.kind == NodeKind::map || old.kind == NodeKind::sequence) && !isFlow(text_, old);
     const std::size_t colon = afterColon(text_, entry);
@@ -159,8 +159,8 @@ class Splicer {
     if (!parent.items.empty()) begin = dashBefore(begin);
     const std::size_t line = lineBegin(text_, begin);
     if (!isOnlyBlanks(string_view(text_).substr(line, begin - line))) {
-      // On the line of the dash before it: the next takes its place.
-      if (is_last) refuse("a key stands on the line of another value");
+      // The key is on the line of a dash: the next key moves there.
+      if (is_last) refuse("a key is on the line of another value");
       return {children[index].begin, children[index + 1].begin, ""};
     }
     const Span end = lineEnd(text_, children[index].end);

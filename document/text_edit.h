@@ -1,4 +1,4 @@
-/// Changes values in the text of a document and leaves everything else as it stands: comments, order, quotes,
+/// Changes values in the text of a document and leaves everything else unchanged: comments, order, quotes,
 /// line ends.
 #pragma once
 
@@ -26,23 +26,24 @@ struct Splice {
 DocumentNodePtr valueAt(const DocumentNodePtr& root, const NodePath& path);
 
 /// The document with the value at a path replaced, or added as the last key of its map; keys on the way that
-/// do not exist become maps. Only what lies on the path is copied.
+/// do not exist become maps. Only the nodes on the path are copied.
 /// @param value  null: the key or item is removed
-/// @pre every index of the path is that of an item, and every key that of a map or of what does not exist
+/// @pre every index of the path is that of an existing item, and every key belongs to a map or to a missing
+/// value
 DocumentNodePtr withValueAt(const DocumentNodePtr& root, const NodePath& path, const DocumentNodePtr& value);
 
-/// How the text must change for withValueAt(root, path, value). The new value is written on one line.
-/// @param text  what readDocument() made `root` of
-/// @throws Error (bad_input), without a place, where the text cannot be changed at one place: anchors,
+/// The change of the text for withValueAt(root, path, value). The new value is written on one line.
+/// @param text  the text from which readDocument() built `root`
+/// @throws Error (bad_input), without a location, if the text cannot be changed in one span: anchors,
 /// aliases, block texts with an indentation indicator
 Splice spliceFor(const std::string& text, const DocumentNodePtr& root, const NodePath& path,
                  const DocumentNodePtr& value);
 
-/// Whether two documents mean the same: kinds, texts, order of keys; numbers differ from texts that look like
-/// them.
+/// True if two documents are equal in kinds, texts and order of keys; a number differs from a text that looks
+/// like it.
 bool sameValue(const DocumentNode& a, const DocumentNode& b);
 
-/// A value on one line, as YAML's flow style.
+/// A value on one line, in YAML's flow style.
 /// @param json  all texts and keys in double quotes
 std::string flowText(const DocumentNode& node, bool json);
 

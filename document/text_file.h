@@ -1,4 +1,4 @@
-/// Text files that people write: UTF-8, and whether one has changed.
+/// Text files that people write: UTF-8 check and checksum.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 
 namespace emscape::document {
 
-/// Takes a byte order mark off and checks that the rest is UTF-8 text without control characters.
-/// @throws Error (bad_input) with the place of the first byte that is not
+/// Removes a byte order mark and checks that the rest is UTF-8 text without control characters.
+/// @throws Error (bad_input) with the location of the first byte that is not
 std::string checkedUtf8(const std::string& file, std::string bytes);
 
 /// Characters (code points) of UTF-8 text.
 std::size_t characterCount(std::string_view text);
 
-/// FNV-1a, 64 bits, over all that was added: tells whether inputs changed; no protection against forgery.
+/// FNV-1a, 64 bits, over all that was added: detects changed inputs; no protection against forgery.
 class ContentHash {
  public:
   void add(std::string_view bytes);

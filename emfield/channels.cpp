@@ -10,7 +10,7 @@ using scenario::CombineMode;
 using scenario::EmitterKind;
 using scenario::Quantity;
 
-/// Quantities that are one number for all emitters, whatever the combination.
+/// Quantities with one value for all emitters, for any combination.
 bool countsEmitters(Quantity quantity) {
   return quantity == Quantity::emitter_count || quantity == Quantity::dominant_emitter;
 }
@@ -24,10 +24,10 @@ std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
     const Quantity quantity = scenario::quantityFromName(name);
     std::vector<int> emitters;
     for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
-      const bool enters = !isOfRadars(quantity) || scenario.emitters[e].kind == EmitterKind::radar;
+      const bool enters = !needsRadar(quantity) || scenario.emitters[e].kind == EmitterKind::radar;
       if (enters) emitters.push_back(static_cast<int>(e));
     }
-    if (isOfRadars(quantity) && emitters.empty()) {
+    if (needsRadar(quantity) && emitters.empty()) {
       throw Error(ErrorCode::bad_input, {scenario.file},
                   "quantity '" + name + "' needs an emitter of kind 'radar'");
     }
@@ -44,14 +44,14 @@ std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
           const double frequency_hz = scenario.emitters[e].frequency_hz;
           return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
         });
-        if (!isOfRadars(quantity) || !channel.emitters.empty()) channels.push_back(channel);
+        if (!needsRadar(quantity) || !channel.emitters.empty()) channels.push_back(channel);
       }
     } else {
       channels.push_back({quantity, name, emitters});
     }
   }
   for (Channel& channel : channels) {
-    for (std::size_t e = 0; isOfJamming(channel.quantity) && e < scenario.emitters.size(); ++e) {
+    for (std::size_t e = 0; needsJammer(channel.quantity) && e < scenario.emitters.size(); ++e) {
       if (scenario.emitters[e].kind == EmitterKind::jammer) channel.jammers.push_back(static_cast<int>(e));
     }
   }

@@ -1,4 +1,4 @@
-/// Where a column of the grid lies as seen from an emitter: what the loops over voxels start from.
+/// Geometry of the grid's columns relative to an emitter: the input of the loops over voxels.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,7 @@
 
 namespace emscape::emfield {
 
-/// Column arrays as the loops read them, x fastest. In the emitter's east-north-up axes a voxel at z = t lies
-/// at b + t d.
+/// Column arrays, x fastest. In the emitter's east-north-up axes a voxel at z = t is at b + t d.
 struct ColumnGeometryView {
   const float* base_east_m = nullptr;
   const float* base_north_m = nullptr;
@@ -22,7 +21,7 @@ struct ColumnGeometryView {
   const float* axis_north = nullptr;
   const float* axis_up = nullptr;
   /// Squared distance (m2) of the emitter from the column's line, and t (m) of the point nearest to it, so
-  /// that the distance squared is offset2 + (t - nearest)^2: no cancellation, however near.
+  /// that the distance squared is offset2 + (t - nearest)^2, without cancellation at any distance.
   const float* offset2_m2 = nullptr;
   const float* nearest_t_m = nullptr;
   /// Added to the straight line's rise (m) so that it points along the start of the refracted ray.

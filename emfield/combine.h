@@ -26,10 +26,10 @@ struct EmitterBeam {
   float eirp_over_4pi_w = 0;
 };
 
-/// Nearer than this (m) the distance is taken as this: the field stays finite at the emitter itself.
-constexpr float kSmallestDistance_m = 1;
+/// Lower limit (m) of the distance, so that the field is finite at the emitter itself.
+constexpr float kMinDistance_m = 1;
 
-/// A voxel as an emitter sees it.
+/// A voxel relative to an emitter.
 struct VoxelRay {
   Vec3f direction;  ///< of the refracted ray's start, in the antenna's frame (forward, right, up); not a unit
                     ///< vector
@@ -48,15 +48,15 @@ EMSCAPE_HD inline VoxelRay voxelRay(const EmitterBeam& emitter, std::size_t colu
 
   const float along_m = t_m - g.nearest_t_m[column];
   const float distance2 = g.offset2_m2[column] + along_m * along_m;
-  constexpr float kSmallest2 = kSmallestDistance_m * kSmallestDistance_m;
+  constexpr float kMin2 = kMinDistance_m * kMinDistance_m;
   const float lit_w = t_m >= g.shadow_edge_m[column] ? emitter.eirp_over_4pi_w : 0.0f;
   return {{dot(ray, emitter.forward), dot(ray, emitter.right), dot(ray, emitter.up)},
           dot(ray, ray),
-          lit_w / (distance2 > kSmallest2 ? distance2 : kSmallest2)};
+          lit_w / (distance2 > kMin2 ? distance2 : kMin2)};
 }
 
-/// Power density (W/m2) of one emitter at the voxel at z = t_m of a column, but for the excess loss of its
-/// path (excessFactor of ColumnGeometryView::excess, where there is one); 0 in shadow and where the path is
+/// Power density (W/m2) of one emitter at the voxel at z = t_m of a column, without the excess loss of its
+/// path (excessFactor of ColumnGeometryView::excess, if there is one); 0 in shadow and where the path is
 /// unknown. Nearer than the far field (2 D^2 / lambda) it is the extrapolated far field.
 /// @accuracy 1e-4 dB of double precision on axis and on smooth patterns, to 500 km
 template <scenario::PatternKind kind>
@@ -71,7 +71,7 @@ EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, std::size_t
   return ray.isotropic_wm2 * amplitude * amplitude;
 }
 
-/// The same where the voxel lies outside the pattern's lobe.
+/// The same for a voxel outside the pattern's lobe.
 /// @param depth  below 0 where it does (scenario::depthInLobe)
 EMSCAPE_HD inline float sideLobePowerDensity_wm2(const EmitterBeam& emitter, std::size_t column, float t_m,
                                                  float& depth) {
@@ -80,12 +80,12 @@ EMSCAPE_HD inline float sideLobePowerDensity_wm2(const EmitterBeam& emitter, std
   return ray.isotropic_wm2 * emitter.pattern.side_lobe_amplitude * emitter.pattern.side_lobe_amplitude;
 }
 
-/// How the emitters' power densities S become a channel's accumulator.
+/// Reduction of the emitters' power densities S to a channel's accumulator.
 enum class Reduction {
   sum,       ///< sum of weight * S
   maximum,   ///< largest weight * S
   count,     ///< number of emitters with S > weight
-  dominant,  ///< index of the emitter with the largest S, -1 where all are 0
+  dominant,  ///< index of the emitter with the largest S, -1 if all are 0
 };
 
 /// A channel's accumulator, dense order; `largest` holds the largest S so far for Reduction::dominant, else
@@ -99,7 +99,7 @@ struct ConstAccumulator {
   const float* largest = nullptr;
 };
 
-/// Adds one emitter's power densities to a piece of a channel.
+/// Adds one emitter's power densities to some voxels of a channel.
 /// @param weight  see Reduction
 EMSCAPE_HD inline void reduce(Reduction reduction, float weight, int emitter_index, float power_density_wm2,
                               float& value, float* largest) {
@@ -121,7 +121,7 @@ EMSCAPE_HD inline void reduce(Reduction reduction, float weight, int emitter_ind
 }
 
 /// An emitter's part in one channel.
-struct ChannelShare {
+struct ChannelWeight {
   int channel = 0;  ///< index into CombineTask::accumulators
   float weight = 1;
 };
@@ -129,7 +129,7 @@ struct ChannelShare {
 struct CombineEmitter {
   EmitterBeam beam;
   int emitter_index = 0;
-  std::vector<ChannelShare> shares;
+  std::vector<ChannelWeight> shares;
   /// Power density (W/m2) at every voxel, dense order, excess loss included: written by the pass, or read by
   /// it in place of being computed. Null: neither.
   float* power_wm2 = nullptr;
@@ -142,21 +142,21 @@ struct CombineTask {
   const float* t_m = nullptr;        ///< z of each layer
   const int* first_row_k = nullptr;  ///< for each y the lowest layer with a voxel above ground; null: 0
   std::vector<CombineEmitter> emitters;
-  std::vector<Reduction> reductions;      ///< one a channel
-  std::vector<Accumulator> accumulators;  ///< one a channel; value null: not part of this pass
-  std::vector<ConstAccumulator> initial;  ///< where each accumulator starts; value null: from nothing
-  bool keep = false;                      ///< true: go on from what the accumulators hold
+  std::vector<Reduction> reductions;      ///< one per channel
+  std::vector<Accumulator> accumulators;  ///< one per channel; value null: not part of this pass
+  std::vector<ConstAccumulator> initial;  ///< initial value of each accumulator; value null: nothing
+  bool keep = false;                      ///< true: continue with the values in the accumulators
 };
 
-/// Whether a pass adds an emitter to any of its accumulators; radars' echoes are not added by it.
+/// True if a pass adds an emitter to any of its accumulators; radars' echoes are not added by it.
 inline bool takesPart(const CombineTask& task, const CombineEmitter& emitter) {
-  for (const ChannelShare& share : emitter.shares) {
+  for (const ChannelWeight& share : emitter.shares) {
     if (task.accumulators[static_cast<std::size_t>(share.channel)].value != nullptr) return true;
   }
   return false;
 }
 
-/// Runs a pass on the CPU, rows of x in SIMD. Voxels below first_row_k are left as they are.
+/// Runs a pass on the CPU, rows of x in SIMD. Voxels below first_row_k are not changed.
 void combineCpu(const CombineTask& task);
 
 }  // namespace emscape::emfield

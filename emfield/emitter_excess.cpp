@@ -18,14 +18,14 @@ using propagation::PathInputs;
 using scenario::Emitter;
 using scenario::Scenario;
 
-/// Whether a model's excess points to tables.
+/// True if a model's excess points to tables.
 template <class Model, class = void>
 struct HasTables : std::false_type {};
 template <class Model>
 struct HasTables<Model, std::void_t<decltype(Model::tables)>> : std::true_type {};
 
 /// Height (m above mean sea level) of the smooth surface below an emitter.
-/// @throws Error (bad_input) where it is to be the ground and that is missing
+/// @throws Error (bad_input) if it is the ground and that is missing
 double smoothSurface_msl_m(const Scenario& scenario, const Emitter& emitter, const ModelInfo& model,
                            const Station& station, const scenario::Terrain* terrain) {
   if (scenario.ground.surface_msl_m) return *scenario.ground.surface_msl_m;
@@ -33,7 +33,7 @@ double smoothSurface_msl_m(const Scenario& scenario, const Emitter& emitter, con
   const double ground_m =
       terrain->heightMsl_m(radToDeg(station.geodesy.latitude_rad), radToDeg(station.geodesy.longitude_rad));
   if (std::isnan(ground_m)) {
-    throw Error(ErrorCode::bad_input, emitter.place,
+    throw Error(ErrorCode::bad_input, emitter.location,
                 fmt::format("emitter '{}': '{}' stands on a smooth surface at the height of the ground below "
                             "the emitter, and that is missing; the key 'surface_msl_m' of 'ground' sets it",
                             emitter.name, model.name));
@@ -81,7 +81,7 @@ PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const St
 }
 
 PathExtent pathExtent(const Station& station, const GridColumns& columns) {
-  // A grid's corners hold its farthest columns; they or its middle those whose heights reach farthest.
+  // The farthest columns are at a grid's corners; the extreme heights are there or in its middle.
   PathExtent extent;
   extent.lowest_msl_m = HUGE_VAL;
   extent.highest_msl_m = -HUGE_VAL;

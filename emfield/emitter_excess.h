@@ -1,4 +1,5 @@
-/// The excess loss of an emitter's paths: a model of the registry, what the air takes, and their tables.
+/// The excess loss of an emitter's paths: a model of the registry, the attenuation by the air, and their
+/// tables.
 #pragma once
 
 #include <memory>
@@ -14,37 +15,37 @@
 
 namespace emscape::emfield {
 
-/// What the paths from one emitter lose over free space.
+/// Excess loss of the paths from one emitter.
 struct EmitterExcess {
   propagation::ExcessModel model;
   propagation::AirLoss air;
 
-  /// What model and air point to, in host memory; empty where they need none.
+  /// Tables of model and air, in host memory; empty if they need none.
   std::shared_ptr<const std::vector<float>> model_tables, air_tables;
   /// The same, pointing to copies of the tables elsewhere.
   EmitterExcess withTablesAt(const float* model_tables_copy, const float* air_tables_copy) const;
 
-  /// Whether profiles are read.
+  /// True if profiles are read.
   bool needsTerrain() const;
 };
 
-/// What the models are told of an emitter of a scenario.
+/// The models' inputs for an emitter of a scenario.
 propagation::EmitterInputs emitterInputs(const scenario::Scenario& scenario,
                                          const scenario::Emitter& emitter);
 
-/// What the models are told of the emitter's paths from where it stands.
+/// The models' inputs for the emitter's paths from its site.
 /// @param terrain     null: none
 /// @param extent      read only where propagation::needsExtent()
 /// @param resolution  of profiles
-/// @throws Error (bad_input) for a model without terrain where the ground below the emitter is missing
+/// @throws Error (bad_input) for a model without terrain if the ground below the emitter is missing
 propagation::PathInputs pathInputs(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                    const Station& station, const scenario::Terrain* terrain,
                                    const propagation::PathExtent& extent, const FanResolution& resolution);
 
-/// Where a grid's paths from a station end.
+/// Extent of the paths from a station to a grid.
 propagation::PathExtent pathExtent(const Station& station, const GridColumns& columns);
 
-/// Whether an emitter's voxels have an excess: false for free_space and horizon in clear air, which need no
+/// True if an emitter's voxels have an excess: false for free_space and horizon in clear air, which need no
 /// memory for it.
 bool hasExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
 

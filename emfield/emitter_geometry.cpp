@@ -32,7 +32,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
   excess_.clear();
   unknown_columns_ = 0;
-  remarks_ = 0;
+  warnings_ = 0;
   const bool has_shadow = propagation::modelInfo(emitter.propagation.model).casts_shadow;
   std::optional<EmitterExcess> excess;
   if (hasExcess(scenario, emitter)) {
@@ -40,17 +40,17 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
     excess_.resize(column_count_ * columns.t_m.size());
   }
   times.fan_ms += watch.lap_ms();
-  const double lean_m = leanOf(columns);
+  const double tilt_m = tiltOf(columns);
   const ExcessGrid grid = excessGrid(columns, resolution);
   const ExcessOutput out{excess_.data(), shadow_edge_m_.data()};
   const bool needs_terrain = excess && excess->needsTerrain();
   if (excess && !needs_terrain) {
-    remarks_ |= fillExcessCpu(*excess, station, grid, {}, out);
-    times.plane_ms += watch.lap_ms();
+    warnings_ |= fillExcessCpu(*excess, station, grid, {}, out);
+    times.excess_ms += watch.lap_ms();
   }
   if (has_shadow || needs_terrain) {
     // Some intervals at a time, so that a fine fan over a wide region does not fill the memory.
-    const FanShape shape = fanShape(station, coordinates, terrain, resolution, lean_m);
+    const FanShape shape = fanShape(station, coordinates, terrain, resolution, tilt_m);
     const int at_once = columns.tilted ? shape.interval_count : std::max(1, kFanSamples / shape.rangeCount());
     times.fan_ms += watch.lap_ms();
     for (int first = 0; first < shape.interval_count; first += at_once) {
@@ -59,15 +59,15 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
       times.fan_ms += watch.lap_ms();
       if (has_shadow) findShadowEdges(station, columns, coordinates, shape, fan, shadow_edge_m_);
       if (needs_terrain) {
-        remarks_ |=
+        warnings_ |=
             fillExcessCpu(*excess, station, grid, {shape.view(), fan.height_msl_m.data(), first, count}, out);
       }
-      times.plane_ms += watch.lap_ms();
+      times.excess_ms += watch.lap_ms();
     }
   }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
-  times.plane_ms += watch.lap_ms();
+  times.excess_ms += watch.lap_ms();
 }
 
 std::size_t EmitterGeometry::bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,

@@ -1,4 +1,4 @@
-/// What the combine stage keeps of an emitter's place: per column of the grid, and per voxel for models with
+/// Cached geometry of an emitter for the combine stage: per column of the grid, and per voxel for models with
 /// an excess loss, until the emitter moves.
 #pragma once
 
@@ -14,9 +14,9 @@ namespace emscape::emfield {
 /// Stages 1 and 2 of one emitter.
 class EmitterGeometry {
  public:
-  /// Milliseconds that the two stages took.
+  /// Times of the two stages (ms).
   struct Times {
-    double fan_ms = 0, plane_ms = 0;
+    double fan_ms = 0, excess_ms = 0;
   };
 
   /// @param emitter  of the scenario
@@ -29,11 +29,11 @@ class EmitterGeometry {
   /// Columns whose path crosses missing terrain.
   long long unknownColumns() const { return unknown_columns_; }
   bool isUnknown(std::size_t column) const;
-  /// What the model remarks on the paths: see remarkMessages().
-  unsigned remarks() const { return remarks_; }
+  /// Warning bits of the model on the paths: see warningMessages().
+  unsigned warnings() const { return warnings_; }
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
-  /// Bytes that an emitter takes, of a grid with so many columns and layers.
+  /// Bytes per emitter for a grid of so many columns and layers.
   static std::size_t bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                              std::size_t columns, int layers);
   std::size_t bytes() const {
@@ -49,7 +49,7 @@ class EmitterGeometry {
   std::vector<float> shadow_edge_m_;
   std::vector<ExcessCode> excess_;  ///< columns x layers, or empty
   long long unknown_columns_ = 0;
-  unsigned remarks_ = 0;
+  unsigned warnings_ = 0;
 };
 
 }  // namespace emscape::emfield

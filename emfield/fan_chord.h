@@ -1,5 +1,5 @@
 /// Positions along the azimuths of a fan: exact at the ends of short chords and linear in latitude and
-/// longitude between. Over so short a piece the geodesic leaves its chord by less than a metre, except near
+/// longitude between. Over this length the geodesic deviates from its chord by less than a metre, except near
 /// the poles, where the chords are shorter still.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace emscape::emfield {
 
-/// The chords of one station lie end to end along every azimuth: chord n begins at range n times this (m).
+/// The chords of one station are consecutive along every azimuth: chord n begins at range n times this (m).
 EMSCAPE_HD inline double fanChordLength_m(const Station& station) {
   constexpr double kSineOf80Degrees = 0.984807753012208;
   return std::fabs(station.geodesy.station.up.z) < kSineOf80Degrees ? 800 : 10;
@@ -25,10 +25,10 @@ EMSCAPE_HD inline int fanChordAt(double range_m, double chord_m) {
 /// One chord.
 struct FanChord {
   double begin_m = 0;
-  double latitude_rad = 0, longitude_rad = 0;  ///< where it begins
+  double latitude_rad = 0, longitude_rad = 0;  ///< of its start
   double latitude_slope = 0, longitude_slope = 0;
 
-  /// Terrain height (m) at a range within the chord; NaN where it is missing.
+  /// Terrain height (m) at a range within the chord; NaN if it is missing.
   EMSCAPE_HD float heightAt(const scenario::TerrainView& terrain, double range_m) const {
     const double beyond_m = range_m - begin_m;
     return terrain.heightAt(latitude_rad + beyond_m * latitude_slope,

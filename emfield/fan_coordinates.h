@@ -1,4 +1,4 @@
-/// Where points of the grid lie as seen from a station: azimuth and ground range.
+/// Polar coordinates of the grid's points about a station: azimuth and ground range.
 #pragma once
 
 #include <vector>

@@ -1,8 +1,9 @@
-/// Heights of a fan as the models read them: at a point, and as the profile up to it.
+/// Heights of a fan: at a point, and as the profile up to it.
 #pragma once
 
 #include <cstddef>
 
+#include "base/device_math.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/base/host_device.h"
 #include "propagation/column.h"
@@ -21,7 +22,7 @@ EMSCAPE_HD float heightBetween(const FanView& shape, double range_m, HeightOf he
   const float low = heightOf(before);
   if (after == before) return low;
   const double part = (range_m - shape.ranges_m[before]) / (shape.ranges_m[after] - shape.ranges_m[before]);
-  return low + static_cast<float>(part) * (heightOf(after) - low);
+  return lerp(low, heightOf(after), static_cast<float>(part));
 }
 
 /// Heights of some of a fan's intervals, as plain data.
@@ -41,7 +42,7 @@ struct FanHeights {
     const float* left =
         height_msl_m + static_cast<std::size_t>(interval - first_interval) * shape.range_count + range;
     const float right = left[shape.range_count];
-    return *left + weight * (right - *left);
+    return lerp(*left, right, weight);
   }
   /// The same at any range up to the last.
   EMSCAPE_HD float heightAt(double azimuth_index, double range_m) const {
@@ -50,7 +51,7 @@ struct FanHeights {
 };
 
 /// The profile to a point of the ground: the fan's samples nearer than it, linear between the azimuths, and
-/// the point itself. So every column has a profile of its own, and there are no seams between azimuths.
+/// the point itself. Every column has its own profile, so that there are no seams between azimuths.
 EMSCAPE_HD inline TerrainProfile readProfile(const FanHeights& fan, double azimuth_index, double range_m,
                                              float ground_msl_m, const ExcessScratch& scratch) {
   const int before = fan.shape.lastBefore(range_m);

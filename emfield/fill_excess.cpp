@@ -19,12 +19,12 @@ template <class Model>
 unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
   const ExcessGrid& grid = task.grid;
   const int columns = static_cast<int>(grid.column_count);
-  std::atomic<unsigned> all_remarks{0};
+  std::atomic<unsigned> all_warnings{0};
   parallelFor((columns + kBlock - 1) / kBlock, 4, [&](int begin, int end) {
     std::vector<double> memory(ExcessScratch::bytes(task.posts(), grid.layers) / sizeof(double) + 1);
     const ExcessScratch scratch = ExcessScratch::in(memory.data(), task.posts(), grid.layers);
     std::vector<ExcessCode> codes(static_cast<std::size_t>(grid.layers) * kBlock);
-    unsigned remarks = 0;
+    unsigned warnings = 0;
     for (int block = begin; block < end; ++block) {
       const int first = block * kBlock, count = std::min(kBlock, columns - first);
       bool is_filled[kBlock];
@@ -33,7 +33,7 @@ unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
         is_filled[i] = task.fillColumn(static_cast<std::size_t>(first + i), scratch, of_column);
         if (!is_filled[i]) continue;
         if (of_column & kMissingTerrain) out.markUnknown(static_cast<std::size_t>(first + i));
-        remarks |= of_column;
+        warnings |= of_column;
         for (int k = 0; k < grid.layers; ++k) {
           codes[static_cast<std::size_t>(k) * kBlock + i] = excessCode(scratch.excess_db[k]);
         }
@@ -45,9 +45,9 @@ unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
         }
       }
     }
-    all_remarks |= remarks;
+    all_warnings |= warnings;
   });
-  return all_remarks;
+  return all_warnings;
 }
 
 }  // namespace
@@ -59,9 +59,9 @@ ExcessGrid excessGrid(const GridColumns& columns, const FanResolution& resolutio
   grid.t_m = columns.t_m.data();
   grid.layers = static_cast<int>(columns.t_m.size());
   if (columns.tilted) {
-    // A piece leans no further than the fan's azimuths lie apart.
-    grid.pieces =
-        std::clamp(static_cast<int>(std::ceil(2 * leanOf(columns) / resolution.arc_m)), 1, grid.layers);
+    // The ground track of a segment is not longer than the spacing of the fan's azimuths.
+    grid.segments =
+        std::clamp(static_cast<int>(std::ceil(2 * tiltOf(columns) / resolution.arc_m)), 1, grid.layers);
   } else if (!columns.ground_msl_m.empty()) {
     grid.ground_msl_m = columns.ground_msl_m.data();
   }

@@ -1,5 +1,5 @@
-/// Stage 2 of the models with an excess loss: fills the voxels of columns. Nothing else in the pipeline knows
-/// which model ran.
+/// Stage 2 of the models with an excess loss: fills the voxels of columns. The other stages do not depend on
+/// the model.
 #pragma once
 
 #include <cmath>
@@ -22,18 +22,18 @@ struct ExcessGrid {
   std::size_t column_count = 0;
   const float* t_m = nullptr;
   int layers = 0;
-  /// Ground below each column; null: taken from the fan (columns that lean), or none.
+  /// Ground below each column; null: taken from the fan (tilted columns), or none.
   const float* ground_msl_m = nullptr;
-  /// Leaning columns are cut into as many pieces, each over one point of the ground.
-  int pieces = 1;
+  /// Number of segments of a tilted column, each above one point of the ground; 1 for vertical columns.
+  int segments = 1;
 
-  EMSCAPE_HD int firstLayer(int piece) const {
-    return static_cast<int>(static_cast<long long>(layers) * piece / pieces);
+  EMSCAPE_HD int firstLayer(int segment) const {
+    return static_cast<int>(static_cast<long long>(layers) * segment / segments);
   }
-  /// Where a piece stands as seen from a station.
-  EMSCAPE_HD FanCoordinates placeOf(const Station& station, std::size_t column, int piece) const {
-    const auto first_m = static_cast<double>(t_m[firstLayer(piece)]);
-    const auto last_m = static_cast<double>(t_m[firstLayer(piece + 1) - 1]);
+  /// Azimuth and range of a segment from a station.
+  EMSCAPE_HD FanCoordinates coordinatesOf(const Station& station, std::size_t column, int segment) const {
+    const auto first_m = static_cast<double>(t_m[firstLayer(segment)]);
+    const auto last_m = static_cast<double>(t_m[firstLayer(segment + 1) - 1]);
     return fanCoordinates(station, columns[column], (first_m + last_m) / 2);
   }
 };
@@ -53,15 +53,15 @@ struct ExcessTask {
   /// Posts of the longest profile.
   int posts() const { return fan.shape.range_count + 1; }
 
-  /// Reads what a model is told of a piece of a column.
-  /// @return false if the column lies beyond the fan's intervals
-  EMSCAPE_HD bool readPiece(std::size_t c, int piece, const ExcessScratch& scratch,
-                            ExcessColumn& part) const {
-    const int first = grid.firstLayer(piece);
-    const FanCoordinates point = grid.placeOf(station, c, piece);
+  /// Builds the ExcessColumn of a segment of a column. @return false if the column is outside the fan's
+  /// intervals
+  EMSCAPE_HD bool readSegment(std::size_t c, int segment, const ExcessScratch& scratch,
+                              ExcessColumn& part) const {
+    const int first = grid.firstLayer(segment);
+    const FanCoordinates point = grid.coordinatesOf(station, c, segment);
     part.range_m = point.range_m;
     part.height_msl_m = scratch.height_msl_m + first;
-    part.count = grid.firstLayer(piece + 1) - first;
+    part.count = grid.firstLayer(segment + 1) - first;
     if constexpr (Model::kNeedsTerrain) {
       const double azimuth_index = fan.shape.azimuthIndex(point.azimuth_rad);
       if (!fan.holds(azimuth_index)) return false;
@@ -76,7 +76,7 @@ struct ExcessTask {
     return true;
   }
 
-  /// What air adds to some heights of a piece.
+  /// Adds the attenuation by the air at some heights of a segment.
   EMSCAPE_HD void addAir(const ExcessColumn& part, int begin, int end, float* excess_db) const {
     if (air.isClear()) return;
     for (int k = begin; k < end; ++k) {
@@ -85,20 +85,20 @@ struct ExcessTask {
   }
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
-  /// @return false if the column lies beyond the fan's intervals; `remarks` gets bits of the model
-  EMSCAPE_HD bool fillColumn(std::size_t c, const ExcessScratch& scratch, unsigned& remarks) const {
-    for (int piece = 0; piece < grid.pieces; ++piece) {
+  /// @return false if the column is outside the fan's intervals; `warnings` receives the bits of the model
+  EMSCAPE_HD bool fillColumn(std::size_t c, const ExcessScratch& scratch, unsigned& warnings) const {
+    for (int segment = 0; segment < grid.segments; ++segment) {
       ExcessColumn part;
-      if (!readPiece(c, piece, scratch, part)) return false;
-      float* const excess_db = scratch.excess_db + grid.firstLayer(piece);
-      remarks |= model(part, scratch, excess_db);
+      if (!readSegment(c, segment, scratch, part)) return false;
+      float* const excess_db = scratch.excess_db + grid.firstLayer(segment);
+      warnings |= model(part, scratch, excess_db);
       addAir(part, 0, part.count, excess_db);
     }
     return true;
   }
 };
 
-/// Where the results go: dense order, the columns of a layer one after another.
+/// Arrays of the results: dense order, the columns of a layer one after another.
 struct ExcessOutput {
   ExcessCode* codes = nullptr;
   float* shadow_edge_m = nullptr;  ///< set to NaN where terrain is missing: the column is unknown
@@ -107,7 +107,7 @@ struct ExcessOutput {
 };
 
 /// Runs a task on the CPU.
-/// @return the models' remarks on all columns
+/// @return the models' warnings on all columns
 unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
                        const FanHeights& fan, const ExcessOutput& out);
 

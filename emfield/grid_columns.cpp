@@ -29,7 +29,7 @@ GridColumn verticalColumn(const GeoFrame& frame, const Vec3d& base_m) {
 }
 
 /// Exact at the column's lower end, middle and upper end; a parabola between.
-GridColumn leaningColumn(const GeoFrame& frame, const Vec3d& base_m, double upper_m) {
+GridColumn tiltedColumn(const GeoFrame& frame, const Vec3d& base_m, double upper_m) {
   const Vec3d middle_m{base_m.x, base_m.y, base_m.z + 0.5 * upper_m};
   const Vec3d top_m{base_m.x, base_m.y, base_m.z + upper_m};
   const GeodeticPosition base = frame.toGeodetic(base_m), top = frame.toGeodetic(top_m);
@@ -53,7 +53,7 @@ double groundBelow(const scenario::Terrain& terrain, const GridColumn& column, d
 
 }  // namespace
 
-double leanOf(const GridColumns& columns) {
+double tiltOf(const GridColumns& columns) {
   if (!columns.tilted) return 0;
   const double half_height_m = 0.5 * (columns.t_m.back() - columns.t_m.front());
   double drift = 0;
@@ -82,7 +82,7 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
         const Vec3d base_m{center.x, center.y, 0};
         GridColumn& column = result.columns[c];
         column =
-            result.tilted ? leaningColumn(frame, base_m, grid.upper_m().z) : verticalColumn(frame, base_m);
+            result.tilted ? tiltedColumn(frame, base_m, grid.upper_m().z) : verticalColumn(frame, base_m);
         if (terrain == nullptr) continue;
         double ground = groundBelow(*terrain, column, result.t_m.front());
         result.ground_msl_m[c] = static_cast<float>(ground);

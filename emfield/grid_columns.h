@@ -1,4 +1,4 @@
-/// The columns of a grid as they stand on the earth; the same for every emitter.
+/// The columns of a grid on the earth; the same for every emitter.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct GridColumn {
   Vec3d base_ecef_m;       ///< at t = 0
   Vec3d axis;              ///< unit vector of growing t
   Vec3d foot_ecef_m;       ///< point of the ellipsoid below t = 0
-  Vec3d foot_drift;        ///< how the foot moves per metre of t; zero in the altitude frame
+  Vec3d foot_drift;        ///< displacement of the foot per metre of t; zero in the altitude frame
   double height_msl_m[3];  ///< height above mean sea level = h0 + h1 t + h2 t^2
 };
 
@@ -29,7 +29,7 @@ EMSCAPE_HD inline double heightMsl_m(const GridColumn& column, double t_m) {
 /// All columns of a grid, x fastest. Immutable once made.
 struct GridColumns {
   Dims dims;
-  bool tilted = false;  ///< columns lean against the vertical (enu frame)
+  bool tilted = false;  ///< columns are not vertical (enu frame)
   std::vector<GridColumn> columns;
   std::vector<float> t_m;           ///< z of each layer
   std::vector<float> ground_msl_m;  ///< ground below each column (m); NaN over holes; empty without terrain
@@ -43,8 +43,8 @@ struct GridColumns {
   double middle_m() const { return 0.5 * (t_m.front() + t_m.back()); }
 };
 
-/// How far (m) a point of a column may lie from its middle over the ground.
-double leanOf(const GridColumns& columns);
+/// Largest ground distance (m) of a point of a column from its middle; 0 for vertical columns.
+double tiltOf(const GridColumns& columns);
 
 /// @param terrain  null: nothing is below ground
 /// @accuracy enu: heights along a column within 1 mm, its foot within 1 m, for regions to 500 km

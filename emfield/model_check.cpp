@@ -22,13 +22,13 @@ std::string inModel(const Emitter& emitter, const std::string& model, const std:
 const SourceLocation& locationOf(InputOrigin origin, const Scenario& scenario, const Emitter& emitter) {
   switch (origin) {
     case InputOrigin::frequency:
-      return emitter.frequency_place;
+      return emitter.frequency_location;
     case InputOrigin::ground:
-      return scenario.ground.place;
+      return scenario.ground.location;
     case InputOrigin::settings:
-      return emitter.propagation.place;
+      return emitter.propagation.location;
   }
-  return emitter.place;
+  return emitter.location;
 }
 
 }  // namespace
@@ -60,9 +60,9 @@ std::vector<std::string> checkModels(const Scenario& scenario) {
 }
 
 std::vector<std::string> pathWarnings(const Emitter& emitter, const propagation::PathInputs& inputs,
-                                      unsigned remarks) {
+                                      unsigned warnings) {
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
-  std::vector<std::string> messages = model.remarkMessages(remarks);
+  std::vector<std::string> messages = model.warningMessages(warnings);
   for (std::string& warning : model.pathWarnings(inputs)) messages.push_back(std::move(warning));
   for (std::string& message : messages) message = inModel(emitter, model.name, message);
   return messages;

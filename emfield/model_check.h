@@ -1,5 +1,5 @@
-/// Whether the models that a scenario's emitters choose can compute what they are asked for. What they say
-/// comes from their rows in the registry; here it gets the emitter's name and the line in the scenario.
+/// Checks that the emitters' models can compute the scenario. The messages come from the models' rows in the
+/// registry; here the emitter's name and the line in the scenario are added.
 #pragma once
 
 #include <string>
@@ -10,18 +10,18 @@
 
 namespace emscape::emfield {
 
-/// What can be said before anything is computed.
+/// Checks before anything is computed.
 /// @return warnings, each naming its emitter
-/// @throws Error (bad_input) at the place in the scenario for a value that a model refuses
+/// @throws Error (bad_input) at the location in the scenario for a value that a model refuses
 std::vector<std::string> checkModels(const scenario::Scenario& scenario);
 /// The same of one emitter.
 std::vector<std::string> checkModel(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
 
-/// What can be said of an emitter where it stands, and of where its paths end.
+/// Warnings that depend on an emitter's site and the extent of its paths.
 /// @param inputs   of the emitter's paths, extent included
-/// @param remarks  of the model on the paths
+/// @param warnings  of the model on the paths
 /// @return warnings, each naming the emitter
 std::vector<std::string> pathWarnings(const scenario::Emitter& emitter, const propagation::PathInputs& inputs,
-                                      unsigned remarks);
+                                      unsigned warnings);
 
 }  // namespace emscape::emfield

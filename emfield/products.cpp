@@ -11,7 +11,7 @@ namespace {
 using scenario::Emitter;
 using scenario::Quantity;
 
-/// What a channel of a radar quantity does with each radar's echo, before the look is known.
+/// The task of a radar in a channel of a radar quantity, without the look.
 RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::OutputSpec& output) {
   RadarTask task;
   task.echo_root = static_cast<float>(echoRoot_m2_w(radar));
@@ -30,7 +30,7 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Out
     case Quantity::burn_through_margin_db:
       task.measure = RadarMeasure::signal_to_jamming;
       task.factor = static_cast<float>(dbToRatio(-requiredSignalToJammerDb(radar.receiver)));
-      task.ceiling = kLargestMargin;
+      task.ceiling = kMaxMargin;
       break;
     default:
       break;
@@ -63,69 +63,70 @@ const char* scaleOf(Quantity quantity) {
   }
 }
 
-ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario,
-                       const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
-  ChannelRecipe recipe;
-  recipe.product.floor = static_cast<float>(scenario.output.floor);
-  if (scenario.output.combine == scenario::CombineMode::max) recipe.reduction = Reduction::maximum;
-  recipe.weights.assign(channel.emitters.size(), 1.0f);
+ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario,
+                        const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
+  ChannelPlan plan;
+  plan.product.floor = static_cast<float>(scenario.output.floor);
+  if (scenario.output.combine == scenario::CombineMode::max) plan.reduction = Reduction::maximum;
+  plan.weights.assign(channel.emitters.size(), 1.0f);
   const auto weigh = [&](auto weightOf) {
     for (std::size_t i = 0; i < channel.emitters.size(); ++i) {
-      recipe.weights[i] = static_cast<float>(weightOf(scenario.emitters[channel.emitters[i]]));
+      plan.weights[i] = static_cast<float>(weightOf(scenario.emitters[channel.emitters[i]]));
     }
   };
   switch (channel.quantity) {
     case Quantity::power_density_dbwm2:
       break;
     case Quantity::field_strength_dbuvm:
-      recipe.product.offset_db = static_cast<float>(kFieldStrengthOfPowerDensity_db);
+      plan.product.offset_db = static_cast<float>(kFieldStrengthOfPowerDensity_db);
       break;
     case Quantity::received_power_dbm:
       if (scenario.receivers.empty()) {
         throw Error(ErrorCode::bad_input, {scenario.file},
                     "quantity 'received_power_dbm' needs an entry under 'receivers'");
       }
-      recipe.product.offset_db = 30;
+      plan.product.offset_db = 30;
       weigh([&](const Emitter& emitter) { return receivingArea_m2(emitter, scenario.receivers.front()); });
       break;
     case Quantity::snr_db:
-      recipe.reduction = Reduction::maximum;
-      recipe.product.scale = 2;
+      plan.reduction = Reduction::maximum;
+      plan.product.scale = 2;
       weigh(echoRoot_m2_w);
       break;
     case Quantity::detection_probability:
-      recipe.product.decibels = false;
-      recipe.product.floor = 0;
+      plan.product.decibels = false;
+      plan.product.floor = 0;
       break;
     case Quantity::jammer_to_signal_db:
-      recipe.product.scale = -1;
+      plan.product.scale = -1;
       break;
     case Quantity::burn_through_margin_db:
       break;
     case Quantity::emitter_count:
-      recipe.reduction = Reduction::count;
-      recipe.product.decibels = false;
-      recipe.product.floor = 0;
+      plan.reduction = Reduction::count;
+      plan.product.decibels = false;
+      plan.product.floor = 0;
       weigh([&](const Emitter&) { return dbToRatio(scenario.output.count_threshold_dbwm2); });
       break;
     case Quantity::dominant_emitter:
-      recipe.reduction = Reduction::dominant;
-      recipe.product.decibels = false;
-      recipe.product.floor = -1;
+      plan.reduction = Reduction::dominant;
+      plan.product.decibels = false;
+      plan.product.floor = -1;
       break;
   }
-  // The beam's own power density is what the combine stage has: a look of its own and jamming are not.
+  // The combine stage has the power density of the beam's own direction, but not that of another look, and no
+  // jamming.
   const bool is_plain =
       channel.quantity == Quantity::snr_db && scenario.output.radar_look == scenario::RadarLook::scan;
-  if (!isOfRadars(channel.quantity) || is_plain) return recipe;
+  if (!needsRadar(channel.quantity) || is_plain) return plan;
   for (int e : channel.emitters) {
     const Emitter& radar = scenario.emitters[e];
-    recipe.radars.push_back(radarTask(channel.quantity, radar, scenario.output));
+    plan.radars.push_back(radarTask(channel.quantity, radar, scenario.output));
     if (channel.quantity != Quantity::detection_probability) continue;
-    recipe.curves.push_back(curveOf(radar.receiver, known_curves));
-    recipe.radars.back().curve = recipe.curves.back()->view();
+    plan.curves.push_back(curveOf(radar.receiver, known_curves));
+    plan.radars.back().curve = plan.curves.back()->view();
   }
-  return recipe;
+  return plan;
 }
 
 }  // namespace emscape::emfield

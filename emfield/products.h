@@ -16,8 +16,8 @@
 
 namespace emscape::emfield {
 
-/// How a channel's accumulator becomes its quantity: decibels = scale * 10 log10(accumulator) + offset, or
-/// the accumulator itself.
+/// Conversion of a channel's accumulator to its quantity: decibels = scale * 10 log10(accumulator) + offset,
+/// or the accumulator itself.
 struct ProductScale {
   bool decibels = true;
   float scale = 1;
@@ -30,27 +30,27 @@ EMSCAPE_HD inline float decibelsOf(const ProductScale& product, float accumulato
   return (accumulator > 0) & (value > product.floor) ? value : product.floor;
 }
 
-/// Largest burn-through margin (60 dB): also that of a radar that nothing jams.
-constexpr float kLargestMargin = 1e6f;
+/// Largest burn-through margin (60 dB): also that of a radar without jamming.
+constexpr float kMaxMargin = 1e6f;
 
-/// The scale of a quantity's colours as volumes name it (volume::kScaleKey); null: none.
+/// The scale of a quantity's colours (a value of volume::kScaleKey); null: none.
 const char* scaleOf(scenario::Quantity quantity);
 
-/// How a channel is made: its reduction, each emitter's weight in it, and its scale.
-struct ChannelRecipe {
+/// Computation of a channel: its reduction, each emitter's weight, and its scale.
+struct ChannelPlan {
   Reduction reduction = Reduction::sum;
   ProductScale product;
   std::vector<float> weights;  ///< in the order of Channel::emitters
-  /// In the same order: radars that enter by their echoes instead of by their weights; empty: none does.
+  /// In the same order: radars that enter by their echoes instead of their weights; empty: none.
   std::vector<RadarTask> radars;
-  /// What the tasks' curves point to (detection_probability), in the same order.
+  /// The curves that the tasks point to (detection_probability), in the same order.
   std::vector<std::shared_ptr<const DetectionCurve>> curves;
 };
 
-/// @param known_curves  taken where one is that of a radar's detector
+/// @param known_curves  reused for radars with the same detector
 /// @throws Error (bad_input) if the scenario lacks what the quantity needs (a receiver, a radar)
-ChannelRecipe recipeOf(const Channel& channel, const scenario::Scenario& scenario,
-                       const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves = {});
+ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario,
+                        const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves = {});
 
 /// Values of one channel.
 struct ProductTask {

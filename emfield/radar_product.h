@@ -1,9 +1,9 @@
-/// What a radar makes of a target at a voxel: signal-to-noise with and without jamming, detections,
+/// Radar quantities of a target at a voxel: signal-to-noise with and without jamming, detection,
 /// burn-through.
 ///
-/// With S the radar's one-way power density at the voxel, an echo's signal-to-noise is (root S)^2: all that
-/// the path does to a wave is in S and counts twice with it. Jamming comes one way; what it is at the radar's
-/// receiver on boresight, over the noise, does not depend on the voxel, but where the beam points does.
+/// With S the radar's one-way power density at the voxel, an echo's signal-to-noise is (root S)^2: S contains
+/// all effects of the path, which enter twice. Jamming is one-way; its power over the noise at the radar's
+/// receiver, on boresight, does not depend on the voxel, but the beam's direction does.
 #pragma once
 
 #include <vector>
@@ -17,11 +17,11 @@
 
 namespace emscape::emfield {
 
-/// What a radar adds to a channel.
+/// The measure that a radar adds to a channel.
 enum class RadarMeasure {
   root_of_signal_to_noise,
-  signal_to_jamming,  ///< S / J, times a factor, at most a ceiling, which it is without jamming; 0 without
-                      ///< echo
+  signal_to_jamming,  ///< S / J, times a factor, at most a ceiling, which is its value without jamming; 0
+                      ///< without echo
   detection,          ///< probability of detection from S / (N + J); 0 without echo
 };
 
@@ -34,8 +34,7 @@ struct JammerAtRadar {
 /// A radar's part in a channel, as plain data.
 struct RadarTask {
   RadarMeasure measure = RadarMeasure::root_of_signal_to_noise;
-  Reduction reduction =
-      Reduction::maximum;  ///< detections: sum stands for detections independent of each other
+  Reduction reduction = Reduction::maximum;  ///< for detections, sum means independent detections
   RadarLook look;
   float echo_root = 0;  ///< (m2/W)
   float factor = 1;     ///< of signal_to_jamming
@@ -45,7 +44,7 @@ struct RadarTask {
   int jammer_count = 0;
 };
 
-/// Root of an echo's signal-to-noise, but for the excess loss of the path; 0 in shadow.
+/// Root of an echo's signal-to-noise without the excess loss of the path; 0 in shadow.
 /// @param beam  with the look's frame as its forward, right and up
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline float echoToNoiseRoot(const RadarTask& task, const EmitterBeam& beam, std::size_t column,
@@ -66,7 +65,7 @@ EMSCAPE_HD inline float jammingToNoise(const RadarTask& task, const EmitterBeam&
   return jammer.boresight_to_noise * amplitude * amplitude;
 }
 
-/// A channel's accumulator with what a radar makes of its echo. Without branches, for SIMD.
+/// Adds a radar's echo to a channel's accumulator. Without branches, for SIMD.
 template <RadarMeasure measure>
 EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
                                  float accumulated) {
@@ -86,7 +85,7 @@ EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root
   return value > accumulated ? value : accumulated;
 }
 
-/// The same where the measure is not known before.
+/// The same for a measure that is not a template parameter.
 EMSCAPE_HD inline float withRadar(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
                                   float accumulated) {
   switch (task.measure) {
@@ -127,7 +126,7 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
   pass.accumulator[voxel] = withRadar(task, root, jamming, pass.accumulator[voxel]);
 }
 
-/// Runs a pass on the CPU. Voxels below first_row_k are left as they are.
+/// Runs a pass on the CPU. Voxels below first_row_k are not changed.
 void radarCpu(const RadarPass& pass);
 
 /// A radar's part in a channel with the data that it points to.
@@ -140,7 +139,7 @@ struct RadarShare {
 };
 
 /// @param beam  with views of its geometry and pattern
-/// @param task  the pass over the ordinary shares
+/// @param task  the pass over the other emitters
 inline RadarPass radarPass(const RadarShare& share, const EmitterBeam& beam, const CombineTask& task,
                            float* accumulator) {
   RadarPass pass{share.task, beam, task.dims, task.t_m, task.first_row_k, accumulator};

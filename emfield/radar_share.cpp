@@ -7,18 +7,18 @@ namespace emscape::emfield {
 using scenario::EmitterState;
 
 RadarShare radarShare(const scenario::Scenario& scenario, int radar, const EmitterState& state,
-                      const RadarTask& task, const std::vector<JammerInSight>& jammers) {
+                      const RadarTask& task, const std::vector<JammerPath>& jammers) {
   RadarShare share;
   share.task = task;
   const scenario::BeamPose& frame = task.look.kind == LookKind::held ? state.beam : state.mount;
-  if (task.look.kind != LookKind::steered) {  // that one is steered onto the target
+  if (task.look.kind != LookKind::steered) {  // an array is steered onto the target
     share.task.look.steer_u = static_cast<float>(state.beam.steer_u);
     share.task.look.steer_v = static_cast<float>(state.beam.steer_v);
   }
   share.forward = vecCast<float>(frame.forward);
   share.right = vecCast<float>(frame.right);
   share.up = vecCast<float>(frame.up);
-  for (const JammerInSight& jammer : jammers) {
+  for (const JammerPath& jammer : jammers) {
     const Vec3d& ray = jammer.direction;
     const double to_noise = jammer.power_density_wm2 *
                             jammingToNoise_m2_w(scenario.emitters[radar], scenario.emitters[jammer.jammer]);

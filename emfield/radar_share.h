@@ -9,18 +9,19 @@
 
 namespace emscape::emfield {
 
-/// A jammer as a radar receives it.
-struct JammerInSight {
+/// The path of a jammer to a radar.
+struct JammerPath {
   int jammer = 0;  ///< index of the emitter
   /// Unit vector from the radar along the start of the refracted ray to the jammer, east-north-up.
   Vec3d direction;
-  double power_density_wm2 = 0;  ///< at the radar: with the jammer's antenna, propagation model and losses
+  double power_density_wm2 =
+      0;  ///< at the radar, with the jammer's antenna gain, propagation model and losses
 };
 
 /// A radar's part in a channel at one instant.
-/// @param task     as the channel's recipe has it
+/// @param task     as the channel's plan has it
 /// @param jammers  that count in the channel
 RadarShare radarShare(const scenario::Scenario& scenario, int radar, const scenario::EmitterState& state,
-                      const RadarTask& task, const std::vector<JammerInSight>& jammers);
+                      const RadarTask& task, const std::vector<JammerPath>& jammers);
 
 }  // namespace emscape::emfield

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/device_math.h"
 #include "emfield/fan_coordinates.h"
 #include "emfield/terrain_fan.h"
 #include "emscape/base/host_device.h"
@@ -40,11 +41,11 @@ struct SlopePlanes {
     const float* slope = slopes + (interval - first_interval) * azimuth_stride + before * range_stride;
     const float left = geometry.heightOn(slope[0], terms);
     const float right = geometry.heightOn(slope[azimuth_stride], terms);
-    return left + weight * (right - left);
+    return lerp(left, right, weight);
   }
 };
 
-/// z of the edge in a column that leans: the layers are tried from the top down.
+/// z of the edge in a tilted column: the layers are tested from the top down.
 /// @param planes  of all intervals
 /// @param t_m     z of the layers
 EMSCAPE_HD inline float edgeInLeaningColumn(const Station& station, const SlopePlanes& planes,

@@ -1,4 +1,4 @@
-/// An emitter's place as the geometry of the pipeline wants it.
+/// An emitter's position, with the derived quantities that the geometry needs.
 #pragma once
 
 #include "base/fast_geodesy.h"
@@ -26,7 +26,7 @@ inline Station makeStation(const GeodeticPosition& position, double height_msl_m
   return station;
 }
 
-/// What is added to the rise (m) of the straight line to a point so that it starts along the refracted ray.
+/// Correction of the rise (m) of the straight line to a point, so that it starts along the refracted ray.
 /// @param range_m  over the ground
 /// @param level_m  distance of the point in the station's horizontal plane
 EMSCAPE_HD inline double refractionLift_m(const Station& station, double range_m, double level_m) {

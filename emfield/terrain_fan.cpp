@@ -11,14 +11,14 @@
 namespace emscape::emfield {
 namespace {
 
-/// Azimuths between which all columns lie.
+/// The azimuths between which all columns are.
 struct Sector {
   double first_rad = 0;
   double width_rad = 2 * kPi;
   bool full_circle = true;
 };
 
-constexpr double kWidestSector_rad = 0.9 * kPi;
+constexpr double kMaxSector_rad = 0.9 * kPi;
 
 Sector sectorOf(const std::vector<FanCoordinates>& coordinates, double margin_m) {
   const double reference = coordinates[coordinates.size() / 2].azimuth_rad;
@@ -33,7 +33,7 @@ Sector sectorOf(const std::vector<FanCoordinates>& coordinates, double margin_m)
   const double margin_rad = std::asin(margin_m / nearest_m);
   lowest -= margin_rad;
   highest += margin_rad;
-  if (highest - lowest > kWidestSector_rad) return {};
+  if (highest - lowest > kMaxSector_rad) return {};
   return {reference + lowest, highest - lowest, false};
 }
 
@@ -63,10 +63,10 @@ std::vector<FanCoordinates> fanCoordinates(const Station& station, const GridCol
 }
 
 std::vector<double> fanRanges(double farthest_m, double even_step_m) {
-  constexpr double kNearestStep_m = 2, kGrowth = 0.1;
+  constexpr double kMinStep_m = 2, kGrowth = 0.1;
   std::vector<double> ranges{0};
   while (ranges.back() < farthest_m) {
-    const double step_m = std::min(even_step_m, std::max(kNearestStep_m, kGrowth * ranges.back()));
+    const double step_m = std::min(even_step_m, std::max(kMinStep_m, kGrowth * ranges.back()));
     ranges.push_back(ranges.back() + step_m);
   }
   return ranges;
@@ -80,10 +80,10 @@ FanResolution fanResolution(const volume::Grid& grid, const scenario::Terrain* t
 }
 
 FanShape fanShape(const Station& station, const std::vector<FanCoordinates>& coordinates,
-                  const scenario::Terrain* terrain, const FanResolution& resolution, double lean_m) {
+                  const scenario::Terrain* terrain, const FanResolution& resolution, double tilt_m) {
   double farthest_m = 0;
   for (const FanCoordinates& point : coordinates) farthest_m = std::max(farthest_m, point.range_m);
-  farthest_m = std::min(farthest_m + lean_m, 0.5 * kPi * station.earth_radius_m);
+  farthest_m = std::min(farthest_m + tilt_m, 0.5 * kPi * station.earth_radius_m);
 
   FanShape shape;
   shape.ranges_m = fanRanges(farthest_m, resolution.range_m);
@@ -92,14 +92,14 @@ FanShape fanShape(const Station& station, const std::vector<FanCoordinates>& coo
     return shape;
   }
 
-  const Sector sector = sectorOf(coordinates, lean_m);
+  const Sector sector = sectorOf(coordinates, tilt_m);
   const double finest_rad = resolution.arc_m / std::max(farthest_m, resolution.arc_m);
   shape.interval_count = std::max(8, static_cast<int>(std::ceil(sector.width_rad / finest_rad)));
   shape.full_circle = sector.full_circle;
   shape.first_azimuth_rad = sector.first_rad;
   shape.azimuth_step_rad = sector.width_rad / shape.interval_count;
 
-  shape.used_ranges.assign(shape.interval_count + 1, lean_m > 0 ? shape.rangeCount() : 0);
+  shape.used_ranges.assign(shape.interval_count + 1, tilt_m > 0 ? shape.rangeCount() : 0);
   const FanView view = shape.view();
   for (const FanCoordinates& point : coordinates) {
     const int interval = static_cast<int>(view.azimuthIndex(point.azimuth_rad));

@@ -11,15 +11,15 @@
 
 namespace emscape::emfield {
 
-/// Distances between the samples of a fan: the azimuths' at the farthest column, and along a range away from
-/// the station (m).
+/// Distances (m) between the samples of a fan: between azimuths at the farthest column, and along the range
+/// far from the station.
 struct FanResolution {
   double arc_m = 0;
   double range_m = 0;
 };
 
-/// Resolution at which no post of the terrain is passed over, but no finer than an eighth (along a range: a
-/// sixteenth) of a voxel.
+/// The spacing of the terrain's posts, but not finer than an eighth (along the range: a sixteenth) of a
+/// voxel.
 FanResolution fanResolution(const volume::Grid& grid, const scenario::Terrain* terrain);
 
 /// The shape of a fan as plain data, for loops on host and device; see FanShape.
@@ -55,16 +55,16 @@ struct FanView {
   }
 };
 
-/// Where a fan's samples lie: azimuths first_azimuth_rad + a * azimuth_step_rad for a = 0..interval_count,
-/// the same ranges along each. Immutable once made.
+/// The positions of a fan's samples: azimuths first_azimuth_rad + a * azimuth_step_rad for a =
+/// 0..interval_count, the same ranges along each. Immutable once made.
 struct FanShape {
   double first_azimuth_rad = 0;
   double azimuth_step_rad = 0;
   int interval_count = 1;    ///< between azimuths
   bool full_circle = false;  ///< the last azimuth is the first one again
-  /// From 0 (the station) outwards: dense near it, where a few metres of ground hide much of the sky.
+  /// From 0 (the station) outwards: dense near it, where a few metres of ground mask a large angle.
   std::vector<double> ranges_m;
-  /// For each azimuth the number of ranges that a column of the grid lies behind; 0: none.
+  /// For each azimuth the number of ranges nearer than some column of the grid; 0: none.
   std::vector<int> used_ranges;
 
   int rangeCount() const { return static_cast<int>(ranges_m.size()); }
@@ -78,12 +78,11 @@ struct FanShape {
 /// in proportion to the range, then evenly.
 std::vector<double> fanRanges(double farthest_m, double even_step_m);
 
-/// The fan that reaches every column: a full circle, or the sector that holds the grid for a station well
-/// outside it.
-/// @param terrain  null: a smooth earth, one interval serves all azimuths
-/// @param lean_m  how far (m) a point may lie off its column's middle; 0 for upright columns
+/// The fan that reaches every column: a full circle, or the sector of the grid for a station well outside it.
+/// @param terrain  null: a smooth earth, with one interval for all azimuths
+/// @param tilt_m  tiltOf(): largest ground distance (m) of a point from its column's middle
 FanShape fanShape(const Station& station, const std::vector<FanCoordinates>& coordinates,
-                  const scenario::Terrain* terrain, const FanResolution& resolution, double lean_m);
+                  const scenario::Terrain* terrain, const FanResolution& resolution, double tilt_m);
 
 /// Heights of some neighbouring intervals of a fan.
 struct TerrainFan {

@@ -73,7 +73,7 @@ void Autosaves::keep(const std::string& input, const ViewState& state) {
   for (int number = 1; claims_.count(first) == 0; ++number) {
     if (number > kMaxFiles) {
       throw Error(ErrorCode::other, {first.string(), 0, 0},
-                  "the view cannot be kept: no file beside this one is free");
+                  "the view cannot be stored: all autosave files are in use");
     }
     const fs::path file = autosaveFileOf(input, number);
     if (!writtenAt_ms(file)) claim(input, file);

@@ -1,4 +1,4 @@
-/// Work that runs beside the computation, in order, on a thread of its own.
+/// Background jobs, in order, on one thread.
 #pragma once
 
 #include <condition_variable>
@@ -16,7 +16,7 @@ class BackgroundWriter {
  public:
   /// @param max_waiting  push() waits while so many jobs are waiting: the bound on the memory that they hold
   explicit BackgroundWriter(std::size_t max_waiting);
-  /// Finishes the job that runs, drops those that wait.
+  /// Finishes the running job and drops the waiting ones.
   ~BackgroundWriter();
   BackgroundWriter(const BackgroundWriter&) = delete;
   BackgroundWriter& operator=(const BackgroundWriter&) = delete;

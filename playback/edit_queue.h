@@ -1,4 +1,4 @@
-/// Edits of a scenario that are read and checked beside the thread that asks for them.
+/// Edits of a scenario that are read and checked on a background thread.
 #pragma once
 
 #include <deque>
@@ -12,15 +12,15 @@
 
 namespace emscape::playback {
 
-/// Carries out changes of an EditHistory in the order in which they were asked for. To read a large scenario
-/// again takes longer than a frame of a window: that is done on a thread of this object, everything else in
-/// update(). Of the moves of a drag that are not begun only the last is made. One thread uses it.
+/// Executes changes of an EditHistory in the order of the requests. Reading a large scenario again takes
+/// longer than a frame of a window: it is done on a thread of this object, everything else in update(). Of
+/// the pending moves of a drag only the last is made. One thread uses it.
 class EditQueue {
  public:
-  /// What came of set() or drag().
+  /// Result of set() or drag().
   struct Outcome {
     std::vector<scenario::Edit> edits;
-    std::string error;  ///< empty: they are made; else all faults, and nothing is changed
+    std::string error;  ///< empty: success; else all faults, and nothing is changed
   };
 
   /// @param wake  called on the thread of this object when update() has something to do; may be empty
@@ -32,16 +32,16 @@ class EditQueue {
   void drag(std::vector<scenario::Edit> edits);
   void endDrag();
   void cancelDrag();
-  /// Calls back from update() when all that was asked for before is done.
+  /// Calls back from update() when all earlier requests are done.
   void then(std::function<void()> callback) { push({Kind::callback, {}, std::move(callback)}); }
 
   /// Between the first drag() and the end of the drag.
   bool isDragging() const { return is_dragging_; }
-  /// Whether anything that was asked for is still to be done.
+  /// True if a request is pending.
   bool isBusy() const { return !waiting_.empty(); }
-  /// Makes what can be made now. @return the edits that have been made or refused since the last call
+  /// Executes what can be done now. @return the edits made or refused since the last call
   std::vector<Outcome> update(EditHistory& history);
-  /// Forgets what has not been done.
+  /// Drops all pending requests.
   void clear();
 
  private:
@@ -66,7 +66,7 @@ class EditQueue {
   bool makeEdits(EditHistory& history, std::vector<Outcome>& outcomes);
 
   std::deque<Operation> waiting_;
-  bool is_asked_ = false;  // the first one that waits is under way
+  bool is_asked_ = false;  // the first pending one is in progress
   bool is_dragging_ = false;
   long long number_ = 0;
   LatestWorker<Request, Result> worker_;

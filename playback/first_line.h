@@ -1,4 +1,4 @@
-/// Failures as a status tells them. Internal to the module.
+/// Error messages for a status line. Internal to the module.
 #pragma once
 
 #include <exception>
@@ -13,7 +13,7 @@ inline ErrorCode codeOf(const std::exception& failure) {
   return error != nullptr ? error->code() : ErrorCode::other;
 }
 
-/// The first line of what has failed; where a device has failed, what can be done.
+/// The first line of a failure; for a device, with a remedy.
 inline std::string failureLine(const std::exception& failure) {
   const std::string what = failure.what();
   const char* help = codeOf(failure) == ErrorCode::device ? "; --backend cpu computes without the GPU" : "";

@@ -13,17 +13,17 @@ namespace emscape::playback {
 /// One thread at a time uses it.
 class FrameCache {
  public:
-  /// How soon the frame of an index may be of use again: the smaller the sooner.
+  /// Distance of a frame from the next expected one; the frame with the largest is dropped first.
   using Distance = std::function<long long(int index)>;
 
   /// @param max_bytes  of volumes; one frame is kept even if it is larger
   explicit FrameCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  /// Null if the frame is not there.
+  /// Null if the frame is not cached.
   const Frame* find(int index) const;
-  /// Adds a frame; those with the largest distance go where the bound asks for it.
+  /// Adds a frame; drops those with the largest distance to keep the bound.
   void keep(int index, Frame frame, const Distance& distance);
-  /// Whether a frame would be kept: there is room, or one with a larger distance.
+  /// True if a frame would be kept: there is room, or one with a larger distance.
   bool wouldKeep(int index, const Distance& distance) const;
   /// Ascending.
   std::vector<int> indices() const;

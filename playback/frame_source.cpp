@@ -110,8 +110,7 @@ class StoredFrames : public FrameSource {
     if (!selection.scenario.empty()) {
       scene_ = loadScenarioWithTerrain(selection.scenario, selection.edits);
     } else if (!selection.edits.empty()) {
-      throw Error(ErrorCode::usage,
-                  "edits change a scenario; volumes have none unless one is named beside them");
+      throw Error(ErrorCode::usage, "edits change a scenario; volumes have none unless --scenario names one");
     }
     namespace fs = std::filesystem;
     const fs::path input = selection.input;
@@ -166,7 +165,7 @@ class StoredFrames : public FrameSource {
     return files;
   }
 
-  /// The time line of files, for times on the command line that say no step.
+  /// The time line of files, for times on the command line without a step.
   static scenario::Clock clockOf(const std::vector<VolumeFile>& files) {
     scenario::Clock clock;
     clock.duration_s = files.back().time_s;
@@ -213,7 +212,7 @@ void FrameSource::setQuantity(const std::string& quantity) {
 
 int FrameSource::nearestIndex(double time_s) const {
   int first = 0, last = count() - 1;
-  while (last - first > 1) {  // time_s(first) <= time_s < time_s(last), or time_s lies beyond an end
+  while (last - first > 1) {  // time_s(first) <= time_s < time_s(last), or time_s is beyond an end
     const int middle = first + (last - first) / 2;
     (this->time_s(middle) <= time_s ? first : last) = middle;
   }
@@ -235,7 +234,7 @@ std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const Co
   }
 }
 
-/// What frames of a selection are compared with.
+/// The reference of a selection's comparison.
 FrameSelection referenceOf(const FrameSelection& selection) {
   FrameSelection reference = selection;
   reference.scenario.clear();
@@ -259,7 +258,7 @@ std::unique_ptr<DifferenceSource> openComparison(const FrameSelection& selection
   const bool compares = !selection.compare.empty();
   if (compares) {
     field.range.reset();  // a range is that of the differences
-    referenceOf(field);   // what is wrong with it is told now
+    referenceOf(field);   // throws its faults now
   }
   const auto openReference = [field, target, stop] {
     return openField(referenceOf(field), target, {}, stop);

@@ -1,4 +1,4 @@
-/// Work beside the thread that asks for it, of which only the latest counts.
+/// Background work of which only the latest request is served.
 #pragma once
 
 #include <atomic>
@@ -12,9 +12,9 @@
 
 namespace emscape::playback {
 
-/// Does one piece of work after another on a thread of its own. A request that is not begun when the next one
-/// comes is forgotten; so is a result that is not taken when the next one is there. One thread asks and
-/// takes; nothing waits but the destructor, for the end of the work that runs.
+/// Runs one task after another on its own thread. A new request replaces a pending one, and a new result
+/// replaces one that was not taken. One thread requests and takes; only the destructor waits, for the end of
+/// the running task.
 template <class Request, class Result>
 class LatestWorker {
  public:
@@ -39,7 +39,7 @@ class LatestWorker {
     if (result_) taken_ = done_;
     return std::exchange(result_, std::nullopt);
   }
-  /// Whether the result of the last request is still to come, or to be taken.
+  /// True if the result of the last request is pending or not taken.
   bool isBusy() const { return taken_ != asked_; }
 
  private:

@@ -283,7 +283,7 @@ void LiveCaster::act(const ControllerAction& action) {
     case ControllerAction::Kind::restore:
       restore();
       break;
-    case ControllerAction::Kind::stop_restore:  // a restoration has ended before events are told of
+    case ControllerAction::Kind::stop_restore:  // restorations end before events are reported
       break;
     case ControllerAction::Kind::wait:
       if (std::isinf(action.until_ms)) {

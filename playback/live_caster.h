@@ -20,7 +20,7 @@
 
 namespace emscape::playback {
 
-/// A value, and how often it was set: tells who keeps a copy whether it is another one.
+/// A value with a revision count, by which holders of a copy detect changes.
 template <class T>
 struct Versioned {
   T value{};
@@ -32,7 +32,7 @@ struct Versioned {
   }
 };
 
-/// Where colours come from.
+/// Source of the colours.
 struct ColorOrder {
   enum class Kind {
     first_step,  ///< fitted to the first step that is drawn, or as the style says
@@ -45,7 +45,7 @@ struct ColorOrder {
   render::TransferFunction function;
 };
 
-/// All that is asked of the view.
+/// A request for the view.
 struct ViewRequest {
   long long revision = 0;  ///< counts requests
   Versioned<render::CameraSpec> camera;
@@ -62,20 +62,20 @@ struct ViewRequest {
 struct CasterStatus {
   render::ControllerState state = render::ControllerState::idle;
   std::string reason;
-  long long scene = 0;          ///< counts changes of what there is to be shown
+  long long scene = 0;          ///< counts changes of the scene
   long long view_revision = 0;  ///< of the last requests that were taken
   long long field_revision = 0;
   std::string error;
   long long wake_ups = 0;
 };
 
-/// How far a picture is.
+/// Progress of a picture.
 struct PictureProgress {
   long long scene = 0;    ///< that it shows
   bool complete = false;  ///< all of its pixels are cast
 };
 
-/// Draws what was asked for last: the state machine of render::FrameController on a thread of its own.
+/// Draws the last request: the state machine of render::FrameController on a thread of its own.
 class LiveCaster {
  public:
   struct Events {
@@ -84,7 +84,7 @@ class LiveCaster {
     std::function<void()> changed;  ///< of the status
   };
 
-  /// @param first    the request that `style` stands for
+  /// @param first    the request that corresponds to `style`
   /// @param threads   of loops; 0: all
   /// @param niceness  of the threads
   /// @throws Error (bad_input, device)
@@ -97,7 +97,7 @@ class LiveCaster {
   /// Any thread calls these.
   void request(ViewRequest request);
   void deliver(FieldDelivery delivery, Mailbox<FieldDelivery>::Time asked);
-  /// Ends what is under way soon.
+  /// Stops the work in progress soon.
   void stop();
   /// stop(), and waits for the end.
   void close();
@@ -123,7 +123,7 @@ class LiveCaster {
   void changeLabels();
   void countScene();
   void noteInput(Time since);
-  // What the controller asks for
+  // Requests of the controller
   bool canDraw() const;
   void act(const render::ControllerAction& action);
   void drawFrame(const render::FramePlan& plan);
@@ -151,13 +151,13 @@ class LiveCaster {
   std::optional<FieldDelivery> field_;
   std::optional<ValueRange> range_;
   PictureProgress progress_;     // of the picture
-  bool is_labels_only_ = false;  // the next picture has other labels on what was cast
+  bool is_labels_only_ = false;  // the next picture only needs new labels
   bool is_raised_ = false;       // an event since the last frame was begun
   std::optional<Time> input_;    // the oldest that no picture shows yet
   double input_to_frame_ms_ = 0;
   double prepare_ms_ = 0;          // since the last frame
   render::FrameReport drawn_;      // the busy frame
-  bool has_image_ = false;         // what was cast last can be shown again
+  bool has_image_ = false;         // the last picture can be shown again
   bool finished_is_exact_ = true;  // the picture that was published last was not quantised before its labels
   render::Image8 busy_image_;      // memory for a picture on the way to its labels
   std::optional<Time> shown_input_;  // that the next picture is the first to show

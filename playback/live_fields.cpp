@@ -23,7 +23,7 @@ std::vector<double> timesOf(const FrameSource& source) {
   return times_s;
 }
 
-/// After a request, so long nothing is done that nobody asked for.
+/// Delay after a request before unrequested work starts.
 constexpr double kQuiet_ms = 150;
 /// A field that takes longer leaves a core to others even if they do not need it yet.
 constexpr double kLongField_ms = 200;
@@ -105,7 +105,7 @@ void LiveFields::accept(Mailbox<FieldRequest>::Letter letter) {
 }
 
 void LiveFields::serve() {
-  if (!source_) {  // why is told already, if there was something to open
+  if (!source_) {  // the error has already been reported
     const FieldsStatus told = status();
     fail(told.error, told.error_code);
     return;

@@ -19,7 +19,7 @@
 
 namespace emscape::playback {
 
-/// All that is asked of the field.
+/// A request for the field.
 struct FieldRequest {
   long long revision = 0;  ///< counts requests
   double time_s = 0;
@@ -57,16 +57,15 @@ struct FieldsStatus {
   long long wake_ups = 0;
 };
 
-/// Serves the latest request; one that was not begun when the next one came is never served. When nothing was
-/// asked for during a moment it computes the next steps of a series that is being played, and searches its
-/// range.
+/// Serves the latest request; a new one replaces a pending one. Without requests for a moment it computes the
+/// next steps of a series that is being played, and searches its range.
 class LiveFields {
  public:
   struct Options {
     std::size_t cache_bytes = 0;
     double min_seek_interval_ms = 0;
     int steps_ahead = 0;
-    int threads = 0;  ///< 0: one fewer than there are while others need them
+    int threads = 0;  ///< 0: one fewer than all while other threads need them
     int niceness = 0;
   };
   /// Called on the thread of this object. `deliver` and `changed` are required.
@@ -88,7 +87,7 @@ class LiveFields {
 
   /// Any thread calls these.
   void request(FieldRequest request) { box_.put(std::move(request)); }
-  /// Ends what is under way after its step.
+  /// Stops the work in progress after its step.
   void stop();
   /// stop(), and waits for the end.
   void close();
@@ -107,7 +106,7 @@ class LiveFields {
   void fail(const std::string& line, ErrorCode code);
   void beginSearch();
   void endSearch(const ValueRange& range);
-  /// @return the step to be computed when nothing is asked for; none: there is nothing to do
+  /// @return the step to compute without a request; none: nothing to do
   std::optional<int> idleStep() const;
   void doIdleWork(int index);
   void waitUntil(Time time);
@@ -129,7 +128,7 @@ class LiveFields {
   FieldRequest wanted_;
   Time asked_;  // when
   bool is_due_ = false;
-  std::shared_ptr<const scenario::Scenario> scenario_;  // that the source has, if it is not the opened one
+  std::shared_ptr<const scenario::Scenario> scenario_;  // of the source, if it is not the opened one
   std::string quantity_;
   bool compares_ = false;
   int index_ = 0;                    // of the step asked for last, in the source

@@ -64,7 +64,7 @@ struct LiveView::Impl {
   std::string device;
 
   mutable std::mutex mutex;  // of what follows, up to the threads
-  ViewRequest view;          // as asked for last
+  ViewRequest view;          // the last request
   FieldRequest field;        // the same
   std::shared_ptr<const LivePicture> picture;
   PictureProgress progress;  // of the picture
@@ -116,7 +116,7 @@ struct LiveView::Impl {
     tell();
   }
 
-  /// Adds what is being done to what the picture shows. The mutex is locked.
+  /// Adds the work in progress to the picture's status. The mutex is locked.
   LiveStatus completed(LiveStatus status) const {
     const CasterStatus cast = caster.status();
     FieldsStatus solve = fields.status();
@@ -140,7 +140,7 @@ struct LiveView::Impl {
     return status;
   }
 
-  /// Changes what is asked of the view.
+  /// Changes the request for the view.
   void askView(const std::function<void(ViewRequest&)>& change) {
     ViewRequest request;
     {

@@ -1,4 +1,4 @@
-/// What one thread asks of another one: a single slot in which the latest request wins.
+/// A mailbox with a single slot in which the latest request wins.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ class Mailbox {
   using Time = std::chrono::steady_clock::time_point;
   struct Letter {
     T value;
-    Time since;  ///< when the oldest request that this value stands for was put: it or one that it replaced
+    Time since;  ///< time of the oldest request that this value replaces, or its own
   };
 
   /// @param event  set by each put(); outlives this
@@ -26,7 +26,7 @@ class Mailbox {
   Mailbox(const Mailbox&) = delete;
   Mailbox& operator=(const Mailbox&) = delete;
 
-  /// @param since  when what the value stands for was asked for
+  /// @param since  time of the request
   void put(T value, Time since = std::chrono::steady_clock::now()) {
     {
       const std::lock_guard<std::mutex> lock(mutex_);

@@ -111,7 +111,7 @@ void Painter::showEmitters(bool show) {
 }
 
 render::FrameReport Painter::draw(const render::FramePlan& plan, const StopFlag* stop) {
-  // Where the picture lies in the host's memory anyway, it need not be fetched.
+  // A picture in host memory need not be fetched.
   fetched_ = renderer_.backend() == Backend::cpu;
   return fetched_ ? renderer_.draw(plan, style_.size, image_, stop) : renderer_.draw(plan, style_.size, stop);
 }

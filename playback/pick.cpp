@@ -13,7 +13,7 @@ namespace {
 
 using volume::DenseVolume;
 
-/// A ray in frame metres: origin + t * direction, of which a part lies in the box.
+/// A ray in frame metres, origin + t * direction, with its interval inside the box.
 struct Ray {
   Vec3d origin_m, direction;
   double begin = 0, end = 0;
@@ -34,7 +34,7 @@ Ray rayOf(const render::Camera& camera, const render::SceneBox& box, render::Ima
   return {origin, box.toFrame(eye + drawn) - origin, 0, std::numeric_limits<double>::infinity()};
 }
 
-/// @return none where the ray passes the box by, or the box lies behind the eye
+/// @return none if the ray misses the box, or the box is behind the eye
 std::optional<Ray> rayThrough(const render::Camera& camera, const render::SceneBox& box,
                               render::ImageSize size, double x, double y) {
   Ray ray = rayOf(camera, box, size, x, y);
@@ -55,7 +55,7 @@ std::optional<Ray> rayThrough(const render::Camera& camera, const render::SceneB
   return ray;
 }
 
-/// What a plane keeps: dot(outward, position) <= offset, in frame metres.
+/// The half space that a plane keeps: dot(outward, position) <= offset, in frame metres.
 struct HalfSpace {
   Vec3d outward;
   double offset_m = 0;
@@ -120,7 +120,7 @@ double heightAt_m(const render::HeightField& ground, double x_m, double y_m) {
   return (post(0, 0) * (1 - u) + post(1, 0) * u) * (1 - v) + (post(0, 1) * (1 - u) + post(1, 1) * u) * v;
 }
 
-/// Where the ray goes below the ground: looked for every half post, then halved to a thousandth of that.
+/// Intersection of the ray with the ground: searched every half post, then bisected to a thousandth of that.
 std::optional<double> meetGround(const Ray& ray, const render::HeightField& ground) {
   const auto clearance_m = [&](double t) {
     const Vec3d at = ray.at(t);
@@ -147,7 +147,7 @@ std::optional<double> meetGround(const Ray& ray, const render::HeightField& grou
   return std::nullopt;
 }
 
-/// Where the largest value of the ray is; none where it meets no field.
+/// Position of the ray's largest value; none if it meets no field.
 std::optional<double> strongestOn(const Ray& ray, const DenseVolume& volume) {
   const Vec3d spacing_m = volume.grid.spacing_m;
   const double voxels = length(Vec3d{ray.direction.x / spacing_m.x, ray.direction.y / spacing_m.y,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxPoints = 200;        // of a line
 constexpr int kMaxPointsOfAll = 4000;  // of all lines
-constexpr int kFewestPoints = 64;      // heights above ground follow it
+constexpr int kMinPoints = 64;         // heights above ground follow it
 
 /// Times of a line's points: those of the track, and others between them so that the line follows the ground.
 std::vector<double> timesOf(const std::vector<scenario::TrackPoint>& track, double duration_s,
@@ -23,8 +23,8 @@ std::vector<double> timesOf(const std::vector<scenario::TrackPoint>& track, doub
   }
   std::vector<double> times_s;
   if (!(begin_s < end_s)) return times_s;
-  const bool keeps_all = static_cast<int>(track.size()) + kFewestPoints <= max_points;
-  const int evenly = keeps_all ? kFewestPoints : max_points;
+  const bool keeps_all = static_cast<int>(track.size()) + kMinPoints <= max_points;
+  const int evenly = keeps_all ? kMinPoints : max_points;
   for (int i = 0; i < evenly; ++i) times_s.push_back(begin_s + (end_s - begin_s) * i / (evenly - 1));
   if (keeps_all) {
     for (const scenario::TrackPoint& point : track) {

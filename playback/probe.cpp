@@ -98,7 +98,7 @@ VolumeSample sampleVolume(const DenseVolume& volume, const Vec3d& position_m) {
   using Kind = VolumeSample::Kind;
   const Dims& dims = volume.grid.dims;
   const Vec3d at = inVoxels(volume.grid, position_m);
-  constexpr double kRounding = 1e-6;  // voxels; a ray's end lies in the box
+  constexpr double kRounding = 1e-6;  // voxels; a ray's end is in the box
   const auto isInside = [](double position, int count) {
     return position >= -0.5 - kRounding && position <= count - 0.5 + kRounding;
   };

@@ -35,7 +35,7 @@ RealTimeLoop::RealTimeLoop(const RealTimeOptions& options, const PictureStyle& s
       painter_(painter),
       period_ms_(1000 / options.frames_per_s) {
   if (options.orbit_rate_deg_s != 0 && style.camera.kind != render::CameraSpec::Kind::orbit) {
-    throw Error(ErrorCode::usage, "a camera that goes round must be an orbit");
+    throw Error(ErrorCode::usage, "a rotating camera must be an orbit");
   }
   report_.frames_per_s = options.frames_per_s;
 }
@@ -218,7 +218,7 @@ void RealTimeLoop::drawFrame(const render::FramePlan& plan) {
   }
   event.prepare_ms = now_ms() - begin_ms;
   drawn_ = painter_.draw(plan);
-  beginNextField();  // beside what follows, and what the frame leaves of its slot
+  beginNextField();  // in parallel with the rest, in the remaining time of the slot
   event.labels_ms = show();
   event.rays = drawn_.rays;
   event.cast_ms = drawn_.cast_ms;
@@ -280,7 +280,7 @@ void RealTimeLoop::countSlots(long long slot, RealTimeEvent& event) {
   accounted_slot_ = std::max(accounted_slot_, slot);
 }
 
-/// Puts the picture on display. @return what that took (ms)
+/// Displays the picture. @return its time (ms)
 double RealTimeLoop::show() {
   if (!display_) return 0;
   const double begin_ms = clock_.now_ms();
@@ -293,7 +293,7 @@ double RealTimeLoop::show() {
   return clock_.now_ms() - begin_ms;
 }
 
-/// What was on display has been there until now.
+/// Ends the display of the present picture.
 void RealTimeLoop::passOn(double now_ms) {
   const long long slot = slotAt(std::min(now_ms, end_ms()));
   if (displayed_) display_(*displayed_, static_cast<int>(slot - displayed_since_));

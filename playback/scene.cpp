@@ -22,11 +22,12 @@ double groundZ_m(const scenario::Terrain& terrain, const GeoFrame& frame, double
   double z_m = 0;
   const int rounds = frame.origin().kind == FrameKind::enu ? 2 : 1;
   for (int round = 0; round < rounds; ++round) {
-    GeodeticPosition place = frame.toGeodetic({x_m, y_m, z_m});
-    const double height_msl_m = terrain.heightMsl_m(place.latitude_deg, place.longitude_deg);
+    GeodeticPosition position = frame.toGeodetic({x_m, y_m, z_m});
+    const double height_msl_m = terrain.heightMsl_m(position.latitude_deg, position.longitude_deg);
     if (std::isnan(height_msl_m) || frame.origin().kind == FrameKind::altitude) return height_msl_m;
-    place.height_ellipsoid_m = height_msl_m + geoidUndulation_m(place.latitude_deg, place.longitude_deg);
-    z_m = frame.toLocal(place).z;
+    position.height_ellipsoid_m =
+        height_msl_m + geoidUndulation_m(position.latitude_deg, position.longitude_deg);
+    z_m = frame.toLocal(position).z;
   }
   return z_m;
 }

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kVtkFormat = "vti";
 
-/// Formats that keep what a volume is in a JSON file beside it.
+/// Formats with a JSON sidecar.
 bool hasSidecar(const fs::path& file) {
   return file.extension() == ".raw" || file.extension() == ".nvdb";
 }

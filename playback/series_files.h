@@ -20,25 +20,24 @@ class SeriesFiles {
   SeriesFiles(std::filesystem::path folder, const std::string& name, const std::vector<std::string>& formats,
               std::vector<std::string> channels, std::vector<double> times_s);
 
-  /// Names in the folder of all files of a step, those beside volumes included; always in the same order.
+  /// Names in the folder of all files of a step, sidecars included; always in the same order.
   std::vector<std::string> namesOf(int step) const;
 
   /// Writes a step in every format. @throws Error (other, device); then no file of the format that failed is
   /// there
   void write(int step, const std::vector<volume::Volume>& channels) const;
 
-  /// Puts other ranges into a step's files. @param ranges  one per channel; where empty, the files keep
-  /// theirs
+  /// Changes the ranges in a step's files. @param ranges  one per channel; the files keep theirs if empty
   /// @return the names of the files that may have changed
   /// @throws Error
   std::set<std::string> setRanges(int step, const std::vector<ValueRange>& ranges) const;
 
-  /// Whether there is a list of the files that writeIndex() writes.
+  /// True if there is a list of the files that writeIndex() writes.
   bool hasIndex() const;
   /// Writes it. @param finished  one per step
   void writeIndex(const std::vector<bool>& finished) const;
 
-  /// Removes the files of any series of this name, and what describes it, from the folder.
+  /// Removes the files of any series of this name, and its description, from the folder.
   void removeOld() const;
 
  private:

@@ -78,7 +78,7 @@ std::vector<std::optional<StepRecord>> SeriesJournal::read(int steps, std::size_
       const bool is_json = dynamic_cast<const nlohmann::json::parse_error*>(&error) == nullptr;
       throw Error(ErrorCode::bad_input, {file_.string(), line},
                   std::string("not a step of the series (") + (is_json ? error.what() : "no JSON") +
-                      "); begin the series anew");
+                      "); start the series again");
     }
     at = line_end + 1;
   }

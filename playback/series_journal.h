@@ -1,4 +1,4 @@
-/// series.steps: the steps of a series whose files are whole. Internal to the module.
+/// series.steps: the steps of a series whose files are complete. Internal to the module.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace emscape::playback {
 
-/// A step whose files are whole.
+/// A step whose files are complete.
 struct StepRecord {
   struct File {
     std::string name;
@@ -29,8 +29,8 @@ class SeriesJournal {
  public:
   explicit SeriesJournal(const std::filesystem::path& folder);
 
-  /// The records of a journal by step; none where there is no file. A last line without its end was being
-  /// written when the process died: it is left out.
+  /// The records of a journal by step; none if there is no file. A last line without its end, left by a
+  /// process that died, is ignored.
   /// @param channels  ranges that each record must hold
   /// @throws Error (bad_input) that names file and line for any other line that is no record
   std::vector<std::optional<StepRecord>> read(int steps, std::size_t channels) const;

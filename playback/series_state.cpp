@@ -89,7 +89,7 @@ std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder) 
   const std::vector<std::uint8_t> bytes = readWhole(file);
   const auto fail = [&](int line, const char* what) {
     throw Error(ErrorCode::bad_input, {file.string(), line, 0},
-                std::string("not the state of a series (") + what + "); begin the series anew");
+                std::string("not the state of a series (") + what + "); start the series again");
   };
   try {
     return fromJson(Json::parse(bytes.begin(), bytes.end()));
@@ -120,11 +120,11 @@ void checkSameRecipe(const std::filesystem::path& folder, const SeriesState& fou
   if (!differences.empty()) {
     throw Error(ErrorCode::bad_input, {file},
                 "the series was begun with another " + differences +
-                    "; resume it with the same, begin it anew, or take another folder");
+                    "; resume it with the same, replace it, or use another folder");
   }
   if (found.channels != wanted.channels) {
     throw Error(ErrorCode::bad_input, {file},
-                "damaged: 'ranges' does not hold each quantity once; begin the series anew");
+                "damaged: 'ranges' does not contain each quantity once; start the series again");
   }
 }
 

@@ -1,5 +1,5 @@
-/// series.json: what a folder of volumes holds, so that an interrupted series can go on. Internal to the
-/// module.
+/// series.json: description of a folder of volumes, from which an interrupted series is resumed. Internal to
+/// the module.
 #pragma once
 
 #include <filesystem>
@@ -16,11 +16,11 @@ namespace emscape::playback {
 using Json = nlohmann::ordered_json;
 
 struct SeriesState {
-  /// All that the values and names of the files depend on; a series goes on only with the same.
+  /// All inputs that the values and names of the files depend on; a series is resumed only with the same.
   Json recipe;
   std::vector<std::string> channels;
   std::vector<ValueRange> ranges;  ///< one per channel, over the series; of use if complete
-  bool complete = false;           ///< every step is there and its files state these ranges
+  bool complete = false;           ///< every step is present and its files have these ranges
 };
 
 /// @throws Error (bad_input) for an elevation file that cannot be read

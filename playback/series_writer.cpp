@@ -62,7 +62,7 @@ class SeriesWriter {
       result.steps_computed = computeMissing();
       setFinalRanges();
     } catch (...) {
-      // What is finished is listed; the first failure is the one that counts.
+      // Finished files are listed; the first failure is rethrown.
       try {
         writeIndex();
       } catch (const std::exception&) {
@@ -80,7 +80,7 @@ class SeriesWriter {
   }
 
  private:
-  /// Begins a new series, or goes on with the one that the folder holds.
+  /// Starts a new series, or resumes that of the folder.
   void beginState() {
     state_.recipe = recipeOf(series_, options_);
     state_.channels = namesOf(series_.channels());
@@ -102,7 +102,7 @@ class SeriesWriter {
     if (found->complete && !is_whole) writeSeriesState(options_.folder, state_);
   }
 
-  /// Forgets the steps whose files are not as the journal says.
+  /// Drops the steps whose files do not match the journal.
   void checkFiles() {
     int finished = 0, forgotten = 0;
     std::string first_forgotten;
@@ -126,7 +126,7 @@ class SeriesWriter {
     if (finished > 0) logInfo(fmt::format("{} of {} steps are there already", finished, series_.count()));
   }
 
-  /// Empty if all files are as the journal says.
+  /// Empty if all files match the journal.
   std::string firstWrongFile(const StepRecord& step) const {
     std::vector<std::string> expected = files_.namesOf(step.step);
     for (const std::string& name : expected) {
@@ -190,7 +190,7 @@ class SeriesWriter {
     }
   }
 
-  /// Puts the range over the series into all files that state another.
+  /// Writes the range over the series into all files that have another one.
   void setFinalRanges() {
     int done = 0;
     for (std::optional<StepRecord>& step : steps_) {

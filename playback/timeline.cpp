@@ -65,7 +65,7 @@ std::optional<double> secondsOfDay(const std::string& text) {
 }
 
 /// Of the steps' span.
-constexpr double kSmallestVisible = 1e-6;
+constexpr double kMinVisible = 1e-6;
 
 }  // namespace
 
@@ -193,7 +193,7 @@ TimeInterval Timeline::visible() const {
 void Timeline::setVisible(double from_s, double to_s) {
   if (!(from_s < to_s) || !hasSpan()) return;
   const double span_s = end_s() - begin_s();
-  const double length_s = std::clamp(to_s - from_s, kSmallestVisible * span_s, span_s);
+  const double length_s = std::clamp(to_s - from_s, kMinVisible * span_s, span_s);
   const double begin = std::clamp(from_s, begin_s(), end_s() - length_s);
   visible_ = TimeInterval{begin, begin + length_s};
   if (length_s >= span_s) visible_.reset();

@@ -10,13 +10,13 @@
 
 namespace emscape::playback {
 
-/// Writes one .mp4 (H.264, yuv420p): the frames go to ffmpeg through a pipe, the file appears when it is
-/// whole.
+/// Writes one .mp4 (H.264, yuv420p): the frames go to ffmpeg through a pipe, the file is renamed when it is
+/// complete.
 class VideoFile {
  public:
   /// @throws Error (other) if there is no ffmpeg on PATH or it does not start
   VideoFile(std::filesystem::path path, render::ImageSize size, double frames_per_s);
-  /// Without finish(): nothing is left.
+  /// Without finish(): no file is left.
   ~VideoFile();
   VideoFile(const VideoFile&) = delete;
   VideoFile& operator=(const VideoFile&) = delete;

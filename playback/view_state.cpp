@@ -151,7 +151,7 @@ class Reader {
     try {
       camera = render::parseCamera(section.text("camera"));
     } catch (const Error& error) {
-      problems_.addError(section.placeOf("camera"), error.message());
+      problems_.addError(section.locationOf("camera"), error.message());
     }
   }
 
@@ -159,7 +159,7 @@ class Reader {
     const volume::ValueRange range{static_cast<float>(section.number("min")),
                                    static_cast<float>(section.number("max"))};
     if (!(range.min < range.max)) {
-      problems_.addError(section.placeOf("max"),
+      problems_.addError(section.locationOf("max"),
                          fmt::format("'max' is {}, not above 'min', {}", range.max, range.min));
     }
     return range;
@@ -170,8 +170,8 @@ class Reader {
     const Section section = root.section(key);
     const scenario::TimeInterval interval{section.number("begin_s"), section.number("end_s")};
     if (!(interval.begin_s < interval.end_s)) {
-      problems_.addError(section.placeOf("end_s"), fmt::format("'end_s' is {}, not above 'begin_s', {}",
-                                                               interval.end_s, interval.begin_s));
+      problems_.addError(section.locationOf("end_s"), fmt::format("'end_s' is {}, not above 'begin_s', {}",
+                                                                  interval.end_s, interval.begin_s));
     }
     return interval;
   }
@@ -196,7 +196,7 @@ class Reader {
       try {
         items.push_back(parse(texts[i]));
       } catch (const Error& error) {
-        problems_.addError(root.placeOf(key, i), error.message());
+        problems_.addError(root.locationOf(key, i), error.message());
       }
     }
   }
@@ -215,7 +215,7 @@ void refuseNewerVersion(const std::string& file, const DocumentNodePtr& root) {
       fmt::format("this view is of schema_version {}; this program reads {}", version->text, kVersion));
 }
 
-/// What is in the unit of what was shown before.
+/// Removes values in the unit of the previous quantity.
 void dropColors(ViewState& state) {
   state.transfer.reset();
   state.range.reset();

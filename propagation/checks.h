@@ -1,4 +1,4 @@
-/// What a model finds wrong with its inputs.
+/// Faults that a model reports of its inputs.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace emscape::propagation {
 
-/// Where a value comes from, for messages to name its line.
+/// Origin of a value, by which messages name its line in the scenario.
 enum class InputOrigin { frequency, ground, settings };
 
 struct InputFault {
@@ -26,7 +26,7 @@ inline void checkInput(const ModelLimit& limit, double value_si, InputOrigin ori
 }
 
 /// Adds a warning for each end of the paths whose height over the smooth surface is outside a limit (m).
-/// Heights below the surface are no voxels': of where paths end, only the upper limit counts.
+/// No voxel is below the surface: only the upper limit is checked at the far end.
 std::vector<std::string> smoothHeightWarnings(const ModelLimit& limit, const PathInputs& inputs);
 
 }  // namespace emscape::propagation

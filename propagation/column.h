@@ -1,4 +1,4 @@
-/// What a model of excess loss is given of a column of the grid: the terrain up to it, and the heights of its
+/// Inputs of an excess-loss model for one column of the grid: the terrain up to it and the heights of its
 /// voxels.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace emscape::propagation {
 
-/// A column, or the piece of a leaning one that stands over one point of the ground.
+/// A column, or the segment of a tilted one above one point of the ground.
 struct ExcessColumn {
   double range_m = 0;      ///< along the ground from the emitter
   float ground_msl_m = 0;  ///< NaN over missing terrain
@@ -18,7 +18,7 @@ struct ExcessColumn {
   int count = 0;
 };
 
-/// What a model says of a column besides its losses: bits of its own, and this one, that terrain is missing.
+/// Warning bit that models return for missing terrain; their other bits are their own.
 constexpr unsigned kMissingTerrain = 1u << 31;
 
 /// Some of a column's heights, for a model that fills them by bisection.
@@ -26,15 +26,15 @@ struct ColumnPart {
   int begin = 0, end = 0;      ///< heights begin..end - 1; begin is a multiple of kBisectionStep
   float* memory_db = nullptr;  ///< for a height more
 
-  /// Heights of the bisection: up to the first of the next part, of which so many are in question.
+  /// Number of heights of the bisection, including the first of the next part.
   EMSCAPE_HD int reach(int count) const { return (end < count ? end + 1 : count) - begin; }
 };
 
-/// Memory for one column at a time, cut from one block: a thread has its own.
+/// Scratch memory for one column at a time, cut from one block; one per thread.
 struct ExcessScratch {
   double* range_m = nullptr;
   float* ground_msl_m = nullptr;
-  float* even_ground_msl_m = nullptr;  ///< for models that want even spacing; a post more
+  float* even_ground_msl_m = nullptr;  ///< for models that need even spacing; size: posts + 1
   float* height_msl_m = nullptr;
   float* excess_db = nullptr;
   float* other_db = nullptr;      ///< of a second model

@@ -16,7 +16,7 @@ GroundConstants waterConstants(double frequency_hz, double temperature_c, double
   const double f1 = 20.20 - 146.4 * theta + 316 * theta * theta;
   const double f2 = 39.8 * f1;
 
-  // what salt does to them
+  // effect of salt on them
   const double salt_still = still * std::exp(s * (-3.33330e-3 + 4.74868e-6 * s));
   const double salt_f1 =
       f1 * (1 + s * (2.3232e-3 + t * (-7.9208e-5 + t * (3.6764e-6 + t * (-3.5594e-7 + t * 8.9795e-9)))));

@@ -6,7 +6,7 @@
 
 namespace emscape::propagation {
 
-/// How a wave's electric field lies to the ground.
+/// Orientation of a wave's electric field to the ground.
 enum class LinearPolarization { horizontal, vertical };
 /// Mixed polarisations count as vertical, the part that is diffracted more strongly.
 LinearPolarization linearPolarization(Polarization polarization);
@@ -24,7 +24,7 @@ struct GroundConstants {
   static constexpr double kSiemensPerMetreToLoss_hz = 1.79751e10;
 };
 
-/// The constants that P.526 takes for land and sea in its spherical-earth part.
+/// The constants of land and sea of P.526 for the spherical earth.
 constexpr GroundConstants kDiffractionLand{22, 0.003};
 constexpr GroundConstants kDiffractionSea{80, 5};
 
@@ -33,7 +33,7 @@ constexpr GroundConstants kDiffractionSea{80, 5};
 /// all frequencies (wet 25 and 0.02 S/m, average 15 and 0.005, dry 4 and 0.001; the NTIA's figures for ITM;
 /// concrete 5.3 and 0.1, P.2040 at 3 GHz): above some 10 GHz their loss is understated.
 GroundConstants groundConstants(GroundKind kind, double frequency_hz);
-/// Those that a ground states, and its kind's for the rest.
+/// The constants given for a ground; for the others, those of its kind.
 GroundConstants groundConstants(const Ground& ground, double frequency_hz);
 
 /// Water at a temperature (degrees Celsius, -4..40) and salinity (g/kg, 0..40); frequency up to 1000 GHz.

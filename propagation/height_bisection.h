@@ -1,4 +1,4 @@
-/// Losses over a column's heights from as few evaluations of a model as their course allows.
+/// Losses over a column's heights by adaptive bisection, from few evaluations of a model.
 #pragma once
 
 #include <cmath>
@@ -7,12 +7,12 @@
 
 namespace emscape::propagation {
 
-/// Indices between evaluations that are made in any case; what lies between two of them depends on no other.
+/// Indices between evaluations that are always made; values between two of them depend on these two only.
 constexpr int kBisectionStep = 16;
 
 /// Evaluates a function at some indices of 0..count - 1 and draws straight lines between them: every
-/// kBisectionStep indices and at the last one, and wherever half way between two evaluations it leaves their
-/// line by more than a tolerance, or where it is so steep that a bend may hide beside the middle.
+/// kBisectionStep indices and at the last one, and between two evaluations if the value half way differs from
+/// their line by more than a tolerance, or if the slope is so large that a bend may be missed.
 /// @param evaluate  double or float of an index; called no more than once for each
 /// @param out       `count` values
 template <class Evaluate>
@@ -31,8 +31,8 @@ EMSCAPE_HD void fillByBisection(Evaluate evaluate, int count, float tolerance_db
     const float line = out[begin] + part * (out[end] - out[begin]);
     return std::fabs(out[middle] - line) <= tolerance_db && std::fabs(out[end] - out[begin]) <= kSteep_db;
   };
-  // One place calls the function: threads of a GPU's warp are to call it together.
-  int ends[kDeepest];  // of the pieces still to do, the nearest last
+  // One call site only, so that the threads of a GPU's warp call the function together.
+  int ends[kDeepest];  // of the intervals still to do, the nearest last
   int waiting = 0, from = 0, at = 0;
   bool is_middle = false;
   for (;;) {

@@ -1,11 +1,11 @@
-/// What a propagation model is told of an emitter, of where it stands and of where its paths end.
+/// Inputs of a propagation model: the emitter, its site, and the extent of its paths.
 #pragma once
 
 #include "emscape/propagation/settings.h"
 
 namespace emscape::propagation {
 
-/// An emitter's wave and settings, and what the wave meets.
+/// An emitter's wave and model settings, the ground and the atmosphere.
 struct EmitterInputs {
   double frequency_hz = 0;
   Polarization polarization = Polarization::vertical;
@@ -14,7 +14,7 @@ struct EmitterInputs {
   Atmosphere atmosphere;
 };
 
-/// Where the emitter stands.
+/// The emitter's site.
 struct Site {
   double latitude_deg = 0;
   double height_msl_m = 0;
@@ -22,24 +22,24 @@ struct Site {
   double effective_earth_radius_m = 0;  ///< k times that
 };
 
-/// Where the paths from an emitter may end.
+/// Extent of the paths from an emitter.
 struct PathExtent {
   double farthest_m = 0;  ///< along the ground
   double lowest_msl_m = 0, highest_msl_m = 0;
 };
 
-/// All that the paths from an emitter have in common.
+/// All inputs that the paths from an emitter have in common.
 struct PathInputs {
   EmitterInputs emitter;
   Site site;
   /// Height of the smooth surface; set for models with ModelInfo::on_smooth_surface.
   double surface_msl_m = 0;
-  /// Set for models with ModelInfo::needs_extent, and where the air takes its part.
+  /// Set for models with ModelInfo::needs_extent, and if the air attenuates.
   PathExtent extent;
   double post_spacing_m = 0;  ///< of terrain profiles far from the emitter
 };
 
-/// Whether the electric field keeps one plane, horizontal or vertical.
+/// True if the polarisation is horizontal or vertical.
 inline bool isLinear(Polarization polarization) {
   return polarization == Polarization::horizontal || polarization == Polarization::vertical;
 }

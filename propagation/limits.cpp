@@ -23,7 +23,7 @@ std::string unitOf(const ModelLimit& limit) {
 }
 
 std::string rangeOf(const ModelLimit& limit) {
-  return fmt::format("outside {:.6g}..{:.6g}{}: {}", limit.least, limit.most, unitOf(limit),
+  return fmt::format("outside {:.6g}..{:.6g}{}: {}", limit.min, limit.max, unitOf(limit),
                      toString(limit.beyond));
 }
 
@@ -42,8 +42,8 @@ std::string limitsTable(const ModelLimit* const* limits, int count) {
   std::string table = "| parameter | unit | least | most | outside | remark |\n|---|---|---|---|---|---|\n";
   for (int i = 0; i < count; ++i) {
     const ModelLimit& limit = *limits[i];
-    table += fmt::format("| {} | {} | {:.6g} | {:.6g} | {} | {} |\n", limit.parameter, limit.unit,
-                         limit.least, limit.most, toString(limit.beyond), limit.remark);
+    table += fmt::format("| {} | {} | {:.6g} | {:.6g} | {} | {} |\n", limit.parameter, limit.unit, limit.min,
+                         limit.max, toString(limit.beyond), limit.remark);
   }
   return table;
 }

@@ -1,4 +1,4 @@
-/// Where a propagation model holds: one table a model, from which its check, its message and its
+/// Range of validity of a propagation model: one table per model, from which its checks, messages and
 /// documentation come.
 ///
 /// A model's header lists its limits as named constants, and all of them in one table:
@@ -6,7 +6,7 @@
 ///     constexpr ModelLimit kP528Frequency{"frequency", "MHz", 1e6, 100, 30000, Beyond::warned, "..."};
 ///     constexpr const ModelLimit* kP528Limits[] = {&kP528Frequency, ...};
 ///
-/// docs/models.md holds limitsTable() of every model word for word; a test compares.
+/// docs/models.md contains the output of limitsTable() for every model; a test compares them.
 #pragma once
 
 #include <cmath>
@@ -20,36 +20,36 @@ namespace emscape::propagation {
 /// For parameters that have no upper limit.
 constexpr double kNoLimit = HUGE_VAL;
 
-/// What becomes of a value outside its limits.
+/// Treatment of a value outside its limits.
 enum class Beyond {
-  warned,   ///< computed all the same; the result carries a warning
-  clamped,  ///< computed with the nearest value that is allowed; the result carries a warning
+  warned,   ///< computed without change; the result has a warning
+  clamped,  ///< computed with the nearest allowed value; the result has a warning
   refused,  ///< no result: NaN in loops, an error where input comes in
 };
 
 /// One parameter's limits. Values are given and compared in SI units (m, Hz, rad, K, ...) and shown in
 /// `unit`.
 struct ModelLimit {
-  std::string_view parameter;  ///< as messages and tables name it: "frequency"
-  std::string_view unit;       ///< as messages and tables show it: "MHz"; empty for pure numbers
+  std::string_view parameter;  ///< name in messages and tables: "frequency"
+  std::string_view unit;       ///< unit in messages and tables: "MHz"; empty for dimensionless numbers
   double si_per_unit;          ///< SI units in one `unit`: 1e6
-  double least;                ///< in `unit`
-  double most;                 ///< in `unit`
+  double min;                  ///< in `unit`
+  double max;                  ///< in `unit`
   Beyond beyond;
-  std::string_view remark;  ///< why, or what it means; may be empty
+  std::string_view remark;  ///< reason or consequence; may be empty
 
-  /// NaN is never within. On the host; functions for both sides call holds<limit>().
+  /// False for NaN. Host only; host/device functions call holds<limit>().
   constexpr bool holds(double value_si) const {
-    return value_si >= least * si_per_unit && value_si <= most * si_per_unit;
+    return value_si >= min * si_per_unit && value_si <= max * si_per_unit;
   }
 };
 
-/// limit.holds(value), for host and device: device code knows constants, not the objects that hold them.
+/// limit.holds(value), for host and device: device code can use constants, but not host objects.
 template <const ModelLimit& limit>
 EMSCAPE_HD constexpr bool holds(double value_si) {
-  constexpr double least = limit.least * limit.si_per_unit;
-  constexpr double most = limit.most * limit.si_per_unit;
-  return value_si >= least && value_si <= most;
+  constexpr double min = limit.min * limit.si_per_unit;
+  constexpr double max = limit.max * limit.si_per_unit;
+  return value_si >= min && value_si <= max;
 }
 
 /// "frequency outside 20..20000 MHz: refused".

@@ -1,4 +1,4 @@
-/// One path as a column of one voxel, for models to say what its loss is made of.
+/// One path as a column of one voxel, from which models explain the parts of its loss.
 #pragma once
 
 #include <vector>
@@ -27,18 +27,18 @@ class PathColumn {
   /// Excess (dB) by a model's function for columns.
   template <class Model>
   double excess_db(const Model& model) {
-    remarks_ |= model(column_, scratch_, scratch_.excess_db);
+    warnings_ |= model(column_, scratch_, scratch_.excess_db);
     return static_cast<double>(scratch_.excess_db[0]);
   }
   const ExcessColumn& column() const { return column_; }
-  /// Of all models so far.
-  unsigned remarks() const { return remarks_; }
+  /// Warnings of all models evaluated so far.
+  unsigned warnings() const { return warnings_; }
 
  private:
   std::vector<double> memory_;
   ExcessScratch scratch_;
   ExcessColumn column_;
-  unsigned remarks_ = 0;
+  unsigned warnings_ = 0;
 };
 
 }  // namespace emscape::propagation

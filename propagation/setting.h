@@ -1,5 +1,5 @@
-/// A setting of a propagation model, as files and programs name it: the schema of scenarios, its validation
-/// and the comparison of two scenarios come from these rows.
+/// A setting of a propagation model by its name in files: the scenario schema, its validation and the
+/// comparison of two scenarios come from these rows.
 #pragma once
 
 #include <string>

@@ -11,7 +11,7 @@ struct TerrainProfile {
   const float* height_msl_m = nullptr;
   int count = 0;
 
-  /// Up to a post, the new end of the path.
+  /// The part of the profile up to a post.
   EMSCAPE_HD TerrainProfile upTo(int last) const { return {range_m, height_msl_m, last + 1}; }
 };
 

@@ -53,7 +53,7 @@ class Reader {
     }
     format_.hasMap() ? spreadMap(root, function) : readColors(root, function);
     if (!problems_.hasErrors() && !(function.highest() > function.lowest())) {
-      problems_.addError(root.placeOf("opacity"),
+      problems_.addError(root.locationOf("opacity"),
                          fmt::format("all points are at {}: expected an interval", function.lowest()));
     }
     return function;
@@ -63,11 +63,11 @@ class Reader {
   void readUnit(const Section& root, TransferFunction& function) {
     function.unit = info_ != nullptr ? info_->unit : root.text("unit");
     if (format_.isRelative() && info_ == nullptr) {
-      problems_.addError(root.placeOf("domain"), "'domain' must be value here: no volume gives the range");
+      problems_.addError(root.locationOf("domain"), "'domain' must be value here: no volume gives the range");
     } else if (root.has("unit") && format_.isRelative()) {
-      problems_.addError(root.placeOf("unit"), "a unit is given, but the domain is relative");
+      problems_.addError(root.locationOf("unit"), "a unit is given, but the domain is relative");
     } else if (root.has("unit") && info_ != nullptr && root.text("unit") != info_->unit) {
-      problems_.addError(root.placeOf("unit"),
+      problems_.addError(root.locationOf("unit"),
                          fmt::format("unit '{}' is not that of the volume: {} is in '{}'", root.text("unit"),
                                      info_->quantity, info_->unit));
     }
@@ -83,7 +83,7 @@ class Reader {
       at = info_->range_min + range * given;
     }
     if (before != nullptr && (may_repeat ? at < *before : at <= *before)) {
-      problems_.addError(point.placeOf("at"), fmt::format("at {}: points must {}", given,
+      problems_.addError(point.locationOf("at"), fmt::format("at {}: points must {}", given,
                                                           may_repeat ? "not decrease" : "increase"));
     }
     return at;
@@ -94,7 +94,7 @@ class Reader {
     const double lowest = function.opacities.front().at;
     const double range = function.opacities.back().at - lowest;
     if (!(range > 0)) {
-      problems_.addError(root.placeOf("colors"),
+      problems_.addError(root.locationOf("colors"),
                          "a colour map by name needs opacity points at two different values");
     }
     for (const ColorMap::Point& point : colorMap(root.text("colors")).points) {
@@ -115,7 +115,7 @@ class Reader {
       try {
         function.colors.push_back({at, parseColor(point.text("color"))});
       } catch (const Error& error) {
-        problems_.addError(point.placeOf("color"), error.message());
+        problems_.addError(point.locationOf("color"), error.message());
       }
     }
   }

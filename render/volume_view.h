@@ -66,10 +66,6 @@ struct CellPosition {
   EMSCAPE_HD int nearest() const { return fraction < 0.5F ? low : high; }
 };
 
-EMSCAPE_HD inline float lerp(float a, float b, float fraction) {
-  return multiplyAdd(fraction, b - a, a);
-}
-
 /// Voxels of an array.
 struct ArrayVoxels {
   const VolumeView& volume;

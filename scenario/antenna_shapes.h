@@ -1,5 +1,5 @@
-/// Makes antennas: closed forms, measured patterns. All throw Error (bad_input) that names the value and its
-/// range.
+/// Constructors of antennas: closed forms and measured patterns. All throw Error (bad_input) that names the
+/// value and its range.
 #pragma once
 
 #include <string>
@@ -14,33 +14,34 @@ AntennaPtr makeIsotropic(double gain_dbi = 0);
 /// the angle; the two planes add in dB.
 /// @param beamwidth_az_deg  0..360; 360: the same in every azimuth
 /// @param beamwidth_el_deg  0..180; 180: the same in every elevation
-/// @param side_lobe_db      -200..0: level under which the pattern does not fall
+/// @param side_lobe_db      -200..0: lower limit of the pattern
 AntennaPtr makeGaussian(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg,
                         double side_lobe_db);
 
-/// Evenly lit rectangular aperture: sinc(D u / lambda) sinc(H v / lambda) in the direction cosines u (right)
-/// and v (up), with D and H such that the half-power points stand at half of each beamwidth (D = 0.886 lambda
-/// / beamwidth where it is narrow). First side lobes at -13.26 dB; true nulls. Can be steered electronically.
+/// Evenly illuminated rectangular aperture: sinc(D u / lambda) sinc(H v / lambda) in the direction cosines u
+/// (right) and v (up), with D and H such that the half-power points are at half of each beamwidth (D = 0.886
+/// lambda / beamwidth if it is narrow). First side lobes at -13.26 dB; true nulls. Can be steered
+/// electronically.
 /// @param beamwidth_az_deg, beamwidth_el_deg  0..180
 /// @param side_lobe_db      -200..0: level everywhere behind the aperture
 /// @see Balanis, Antenna Theory, 4th ed., table 12.1
 AntennaPtr makeSinc(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg, double side_lobe_db);
 
 /// Gaussian in azimuth. In elevation Gaussian up to the nose's upper half-power point (half the beamwidth),
-/// from there csc^2(elevation) / csc^2(beamwidth / 2), 3 dB down where they meet, and beyond
+/// from there csc^2(elevation) / csc^2(beamwidth / 2), 3 dB below the maximum where they meet, and beyond
 /// max_elevation_deg a Gaussian of the same beamwidth down to side_lobe_db. Elevation counts from the
 /// antenna's boresight, the nose's maximum.
 /// @param beamwidth_az_deg   0..360; 360: the same in every azimuth
 /// @param beamwidth_el_deg   of the nose, 0..180
 /// @param max_elevation_deg  beamwidth_el_deg / 2 .. 90
-/// @param side_lobe_db       -200..0: level under which the pattern does not fall
+/// @param side_lobe_db       -200..0: lower limit of the pattern
 /// @see Skolnik, Introduction to Radar Systems, 3rd ed., 9.11
 AntennaPtr makeCosecant2(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg,
                          double max_elevation_deg, double side_lobe_db);
 
 /// Planar array of evenly weighted elements. The pattern is the array factor, with its grating lobes, times
-/// an element's cos(angle off boresight)^element_exponent in amplitude; nothing behind. Steered off boresight
-/// the beam loses what the element loses there.
+/// an element's cos(angle off boresight)^element_exponent in amplitude; nothing behind the array. A steered
+/// beam is reduced by the element's pattern.
 /// @param gain_dbi             of the unsteered array
 /// @param columns, rows        1..1024
 /// @param spacing_wavelengths  0.1..1, both ways
@@ -58,22 +59,22 @@ double gainFromArray_dbi(int columns, int rows, double spacing_wavelengths);
 
 /// MSI/Planet (.msi, .pln): horizontal and vertical cuts, attenuations below the maximum. GAIN is in dBd
 /// unless the file says dBi. Azimuth runs clockwise, the vertical angle downwards from the horizon ahead, so
-/// that a cut with tilt has its maximum at a positive angle; the cut holds the tilt already, TILT and
-/// ELECTRICAL_TILT only tell of it. How the cuts become a pattern in space: scenario/antenna/msi.cpp.
+/// that a cut with tilt has its maximum at a positive angle; the cut contains the tilt already, TILT and
+/// ELECTRICAL_TILT are informative. For the interpolation in space see scenario/antenna/msi.cpp.
 /// @param gain_dbi  NaN: the file's own
 /// @throws Error (bad_input) with file, line and column
 AntennaPtr readMsi(const std::string& file, double gain_dbi);
 AntennaPtr readMsi(const std::string& file);
 
 /// CSV cuts, two files: columns `azimuth_deg,attenuation_db` and `elevation_deg,attenuation_db`, rows in any
-/// order, attenuation >= 0 below the maximum. Azimuths go all round, elevations from -90 to 90, with gaps of
-/// at most 90 degrees. The attenuations add. Interpolated linearly in amplitude.
+/// order, attenuation >= 0 below the maximum. Azimuths cover the full circle, elevations from -90 to 90, with
+/// gaps of at most 90 degrees. The attenuations add. Interpolated linearly in amplitude.
 /// @throws Error (bad_input) with file, line and column
 AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& elevation_file, double gain_dbi);
 
-/// CSV grid: columns `azimuth_deg,elevation_deg,attenuation_db`, rows in any order, with every pair of an
-/// azimuth and an elevation that occur; coverage as of cuts. Interpolated linearly in amplitude.
-/// @throws Error (bad_input) with file, line and column; a hole is named by its pair
+/// CSV grid: columns `azimuth_deg,elevation_deg,attenuation_db`, rows in any order, one for every pair of the
+/// azimuths and elevations in the file; coverage as for cuts. Interpolated linearly in amplitude.
+/// @throws Error (bad_input) with file, line and column; a missing row is named by its pair
 AntennaPtr readCsvGrid(const std::string& file, double gain_dbi);
 
 /// A CSV grid by its ending, .csv; else an MSI/PLN file (.msi, .pln, .txt).

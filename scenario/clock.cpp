@@ -12,7 +12,7 @@ namespace emscape::scenario {
 
 namespace {
 
-constexpr double kMostTimes = 1e7;
+constexpr double kMaxTimes = 1e7;
 
 double secondsOf(const std::string& text, const std::string& whole) {
   char* end = nullptr;
@@ -32,15 +32,14 @@ std::vector<double> timesOf(double begin_s, double end_s, double step_s) {
   if (!std::isfinite(begin_s) || !std::isfinite(end_s) || !(step_s > 0) || !std::isfinite(step_s) ||
       end_s < begin_s) {
     throw Error(ErrorCode::usage,
-                fmt::format("times from {} s to {} s in steps of {} s: the end must not lie before "
+                fmt::format("times from {} s to {} s in steps of {} s: the end must not be before "
                             "the beginning and the step must be above 0 s",
                             begin_s, end_s, step_s));
   }
-  // A step that meets the end up to rounding does meet it.
+  // A step that reaches the end within rounding includes it.
   const double steps = std::floor((end_s - begin_s) / step_s * (1 + 1e-12) + 1e-9);
-  if (steps >= kMostTimes) {
-    throw Error(ErrorCode::usage,
-                fmt::format("{} times are more than the allowed {}", steps + 1, kMostTimes));
+  if (steps >= kMaxTimes) {
+    throw Error(ErrorCode::usage, fmt::format("{} times are more than the allowed {}", steps + 1, kMaxTimes));
   }
   std::vector<double> times(static_cast<std::size_t>(steps) + 1);
   for (std::size_t i = 0; i < times.size(); ++i) times[i] = begin_s + static_cast<double>(i) * step_s;

@@ -20,7 +20,7 @@ using document::NodeKind;
 using document::ResolvedPath;
 using document::ValueType;
 
-/// A common value for what a choice needs; the table has no default for it.
+/// A common value for a key that a choice requires and that has no default.
 constexpr std::array<std::pair<const char*, const char*>, 12> kCommonValues{{
     {"beamwidth_az_deg", "10"},
     {"beamwidth_el_deg", "10"},
@@ -61,7 +61,7 @@ bool isIn(const std::vector<std::string>& list, const std::string& word) {
   return std::find(list.begin(), list.end(), word) != list.end();
 }
 
-/// Whether the settings of a model enter with the model that is chosen; not if that is no model's name.
+/// True if the chosen model reads the settings of a model; false if it is not the name of a model.
 bool enters(const propagation::ModelInfo& settings_of, const std::string& chosen_name) {
   const propagation::ModelInfo* const chosen = propagation::modelNamed(chosen_name);
   return chosen != nullptr && propagation::settingsEnter(settings_of, *chosen);

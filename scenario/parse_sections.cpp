@@ -17,7 +17,7 @@ namespace emscape::scenario {
 
 namespace {
 
-constexpr std::size_t kLargestNamedFile = std::size_t{64} << 20;
+constexpr std::size_t kMaxNamedFileBytes = std::size_t{64} << 20;
 
 AntennaPtr makeAntenna(const Section& section, const ParseContext& context) {
   const double azimuth_deg = section.number("beamwidth_az_deg"),
@@ -67,7 +67,7 @@ ScanSpec parseScan(const Section& section, bool steers_electronically, ParseCont
   scan.bars = std::max(section.integer("bars"), 1);
   const double highest_deg = std::abs(scan.elevation_deg) + (scan.bars - 1) / 2.0 * scan.elevation_step_deg;
   if (highest_deg > 90) {
-    context.problems.addError(section.placeOf("bars"),
+    context.problems.addError(section.locationOf("bars"),
                               fmt::format("the bars reach {} deg of elevation, outside the "
                                           "allowed -90 to 90 deg",
                                           highest_deg));
@@ -77,7 +77,7 @@ ScanSpec parseScan(const Section& section, bool steers_electronically, ParseCont
     scan.dwells.push_back(dwell);
     if (steers_electronically && std::abs(dwell.azimuth_deg) >= 90) {
       context.problems.addError(
-          item.placeOf("azimuth_deg"),
+          item.locationOf("azimuth_deg"),
           fmt::format("'azimuth_deg' is {}: a phased array is steered within less than 90 deg of its "
                       "boresight",
                       dwell.azimuth_deg));
@@ -94,7 +94,7 @@ std::vector<TimeInterval> parseActive(const Section& section, ParseContext& cont
     intervals.push_back({lists[i][0], lists[i][1]});
     if (lists[i][0] >= lists[i][1]) {
       context.problems.addError(
-          section.placeOf("active_s", i),
+          section.locationOf("active_s", i),
           fmt::format("the interval from {} s to {} s ends before it begins", lists[i][0], lists[i][1]));
     }
   }
@@ -117,7 +117,7 @@ RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
   receiver.detection = section.choice<DetectionMethod>("detection");
   if (receiver.detection == DetectionMethod::albersheim && receiver.swerling != 0) {
     context.problems.addError(
-        section.placeOf("detection"),
+        section.locationOf("detection"),
         fmt::format(
             "'detection' is albersheim, which knows steady targets alone (swerling 0), not swerling {}",
             receiver.swerling));
@@ -127,7 +127,7 @@ RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
   return receiver;
 }
 
-/// The model and the settings of all models; those of a model that does not enter are an error.
+/// The model and the settings of all models; settings of a model that is not used are an error.
 propagation::ModelSettings parsePropagation(const Section& section, ParseContext& context) {
   propagation::ModelSettings settings;
   settings.model = section.choice<propagation::PropagationModel>("propagation");
@@ -138,10 +138,10 @@ propagation::ModelSettings parsePropagation(const Section& section, ParseContext
     for (const propagation::Setting& setting : model.settings) {
       setting.set(settings, setting.choices.empty() ? own.number(setting.key) : own.choiceIndex(setting.key));
     }
-    if (model.model == chosen.model) settings.place = own.place();
+    if (model.model == chosen.model) settings.location = own.location();
     if (propagation::settingsEnter(model, chosen) || !section.has(model.name)) continue;
     context.problems.addError(
-        section.placeOf(model.name),
+        section.locationOf(model.name),
         fmt::format("'{}' sets up a model that is not used: 'propagation' is {}", model.name, chosen.name));
   }
   return settings;
@@ -166,13 +166,13 @@ bool ParseContext::addNamed(const Section& section, const std::string& key, std:
     digest = before->digests.at(named);
   } else {
     try {
-      std::string content = readWholeText(named, kLargestNamedFile);
+      std::string content = readWholeText(named, kMaxNamedFileBytes);
       document::ContentHash of_file;
       of_file.add(content);
       digest = of_file.hex();
       if (bytes != nullptr) *bytes = std::move(content);
     } catch (const Error& error) {
-      problems.addError(section.placeOf(key), fmt::format("'{}': {}: {}", key, named, error.message()));
+      problems.addError(section.locationOf(key), fmt::format("'{}': {}: {}", key, named, error.message()));
       return false;
     }
   }
@@ -192,7 +192,7 @@ std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
     points = context.before->tracks.at(file);
   } else {
     points = std::make_shared<const std::vector<TrackPoint>>(
-        parseTrack(file, bytes, track.placeOf("file"), context.problems));
+        parseTrack(file, bytes, track.locationOf("file"), context.problems));
   }
   return *points;
 }
@@ -202,7 +202,7 @@ std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
 Platform parsePlatform(const Section& section, ParseContext& context) {
   Platform platform;
   platform.name = section.text("name");
-  platform.place = section.place();
+  platform.location = section.location();
   if (section.has("track")) {
     const Section track = section.section("track");
     platform.track = trackOf(track, context);
@@ -236,8 +236,8 @@ AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
   try {
     if (!antenna) antenna = makeAntenna(section, context);
   } catch (const Error& error) {
-    const SourceLocation place = error.place().file.empty() ? section.place() : error.place();
-    context.problems.addErrorElsewhere(section.place(), place, error.message());
+    const SourceLocation location = error.location().file.empty() ? section.location() : error.location();
+    context.problems.addErrorElsewhere(section.location(), location, error.message());
   }
   return antenna;
 }
@@ -245,7 +245,7 @@ AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
   Emitter emitter;
   emitter.name = section.text("name");
-  emitter.place = section.place();
+  emitter.location = section.location();
   const std::string carrier = section.text("platform");
   const auto found = std::find_if(platforms.begin(), platforms.end(),
                                   [&](const Platform& platform) { return platform.name == carrier; });
@@ -254,8 +254,9 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   } else if (!carrier.empty()) {
     std::vector<std::string> names;
     for (const Platform& platform : platforms) names.push_back(platform.name);
-    context.problems.addError(section.placeOf("platform"), fmt::format("there is no platform '{}'{}", carrier,
-                                                                       document::didYouMean(carrier, names)));
+    context.problems.addError(
+        section.locationOf("platform"),
+        fmt::format("there is no platform '{}'{}", carrier, document::didYouMean(carrier, names)));
   }
   emitter.kind = section.choice<EmitterKind>("kind");
   emitter.frequency_hz = section.number("frequency_hz");
@@ -263,7 +264,7 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   emitter.power_w = section.number("power_w");
   emitter.losses_db = section.number("losses_db");
   emitter.polarization = section.choice<propagation::Polarization>("polarization");
-  emitter.frequency_place = section.placeOf("frequency_hz");
+  emitter.frequency_location = section.locationOf("frequency_hz");
   emitter.propagation = parsePropagation(section, context);
   if (section.has("antenna")) emitter.antenna = parseAntenna(section.section("antenna"), context);
   const bool steers = emitter.antenna && emitter.antenna->view().kind == PatternKind::phased_array;

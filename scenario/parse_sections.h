@@ -1,4 +1,4 @@
-/// Turns checked sections of a scenario file into what they describe.
+/// Parsers of the checked sections of a scenario file.
 #pragma once
 
 #include <optional>
@@ -18,30 +18,30 @@ namespace emscape::scenario {
 using document::ProblemList;
 using document::Section;
 
-/// What the parsers of one file share.
+/// Context that the parsers of one file share.
 struct ParseContext {
   std::string file;
   ProblemList problems;
   document::ContentHash hash;
-  const NamedFiles* before = nullptr;  ///< what an earlier reading found in the files; null: read them
-  NamedFiles files;                    ///< what this reading found
+  const NamedFiles* before = nullptr;  ///< content of the files from an earlier reading; null: read them
+  NamedFiles files;                    ///< content of the files from this reading
 
-  /// A name in the scenario as seen from the working folder: relative names count from the scenario's folder.
+  /// Path of a file named in the scenario; relative names are relative to the scenario's folder.
   std::string resolve(const std::string& name) const;
   /// Adds the content of a file named in a section to the hash; false, and a problem, if it cannot be read.
   /// @param bytes  of a track; set to the content if the file was read now
   bool addNamed(const Section& section, const std::string& key, std::string* bytes = nullptr);
 };
 
-/// Faults that checkObject() finds are told already: these tell only what it cannot see. Where a section is
-/// faulty the result is incomplete.
+/// checkObject() has already reported schema errors; these functions report only semantic ones. The result of
+/// a faulty section is incomplete.
 Platform parsePlatform(const Section& section, ParseContext& context);
 AntennaPtr parseAntenna(const Section& section, ParseContext& context);  ///< null if faulty
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
 
-/// Rows of a track file (CSV: a header line, then rows; empty lines and lines that begin with # do not
-/// count). Every fault is told with its line and column, at most 50 of one file.
-/// @param named_at  where the scenario names the file
+/// Rows of a track file (CSV: a header line, then rows; empty lines and lines that begin with # are skipped).
+/// Every fault is reported with its line and column, at most 50 per file.
+/// @param named_at  location of the file's name in the scenario
 std::vector<TrackPoint> parseTrack(const std::string& file, const std::string& bytes,
                                    const SourceLocation& named_at, ProblemList& problems);
 

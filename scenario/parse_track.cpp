@@ -18,7 +18,7 @@ using document::CsvCell;
 using document::CsvReader;
 using document::CsvRow;
 
-constexpr int kMostFaults = 50;
+constexpr int kMaxFaults = 50;
 
 class TrackReader {
  public:
@@ -27,7 +27,7 @@ class TrackReader {
 
   std::vector<TrackPoint> read(const std::string& text) {
     CsvReader reader(text);
-    for (CsvRow row; faults_ <= kMostFaults && reader.next(row);) {
+    for (CsvRow row; faults_ <= kMaxFaults && reader.next(row);) {
       if (columns_.empty()) {
         readHeader(row.cells, row.line);
         if (faults_ > 0) return {};
@@ -47,11 +47,11 @@ class TrackReader {
   static std::string header() { return "a header line such as t_s,latitude_deg,longitude_deg,height_msl_m"; }
 
   void fault(int line, int column, const std::string& message) {
-    if (++faults_ < kMostFaults) {
+    if (++faults_ < kMaxFaults) {
       problems_.addErrorElsewhere(named_at_, {file_, line, column}, message);
-    } else if (faults_ == kMostFaults) {
+    } else if (faults_ == kMaxFaults) {
       problems_.addErrorElsewhere(named_at_, {file_, line, column},
-                                  message + " (further faults of this file are not told)");
+                                  message + " (further faults of this file are not reported)");
     }
   }
 
@@ -66,7 +66,7 @@ class TrackReader {
         fault(line, cell.column, document::unknownKeyMessage(name, spec, nullptr, &meant));
         seen.insert(seen.end(), meant.begin(), meant.end());
       } else if (has(seen, name)) {
-        fault(line, cell.column, fmt::format("column '{}' stands here twice", name));
+        fault(line, cell.column, fmt::format("column '{}' occurs twice", name));
       }
       seen.push_back(name);
       columns_.push_back(key);
@@ -149,7 +149,7 @@ std::vector<TrackPoint> parseTrack(const std::string& file, const std::string& b
   try {
     return TrackReader(file, named_at, problems).read(document::checkedUtf8(file, bytes));
   } catch (const Error& error) {
-    problems.addErrorElsewhere(named_at, error.place(), error.message());
+    problems.addErrorElsewhere(named_at, error.location(), error.message());
     return {};
   }
 }

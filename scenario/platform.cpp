@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/device_math.h"
 #include "emscape/base/units.h"
 
 namespace emscape::scenario {
@@ -14,16 +15,13 @@ double positiveDegrees(double angle_deg) {
   return rest < 0 ? rest + 360.0 : rest;
 }
 
-double mix(double a, double b, double part) {
-  return a + (b - a) * part;
-}
-
-std::optional<double> mix(const std::optional<double>& a, const std::optional<double>& b, double part) {
+std::optional<double> lerpIfBoth(const std::optional<double>& a, const std::optional<double>& b,
+                                 double part) {
   if (!a || !b) return std::nullopt;
-  return mix(*a, *b, part);
+  return lerp(*a, *b, part);
 }
 
-double mixDegrees(double a_deg, double b_deg, double part) {
+double lerpDegrees(double a_deg, double b_deg, double part) {
   return positiveDegrees(a_deg + std::remainder(b_deg - a_deg, 360.0) * part);
 }
 
@@ -44,7 +42,7 @@ std::optional<double> courseOnLeg(const std::vector<TrackPoint>& track, std::siz
                                                : positiveDegrees(radToDeg(behind.azimuth_rad) + 180);
 }
 
-/// Course (deg) at a point of leg i; where the platform stands still, the last course before, else the first
+/// Course (deg) at a point of leg i; if the platform is stationary, the last course before, else the first
 /// after, else 0.
 double courseAt(const std::vector<TrackPoint>& track, std::size_t i, const SitePosition& at) {
   if (const auto course = courseOnLeg(track, i, at)) return *course;
@@ -67,9 +65,9 @@ SitePosition positionOnLeg(const SitePosition& a, const SitePosition& b, double 
     position.latitude_deg = foot.latitude_deg;
     position.longitude_deg = foot.longitude_deg;
   }
-  position.height_msl_m = mix(a.height_msl_m, b.height_msl_m, part);
-  position.height_agl_m = mix(a.height_agl_m, b.height_agl_m, part);
-  position.height_ellipsoid_m = mix(a.height_ellipsoid_m, b.height_ellipsoid_m, part);
+  position.height_msl_m = lerpIfBoth(a.height_msl_m, b.height_msl_m, part);
+  position.height_agl_m = lerpIfBoth(a.height_agl_m, b.height_agl_m, part);
+  position.height_ellipsoid_m = lerpIfBoth(a.height_ellipsoid_m, b.height_ellipsoid_m, part);
   return position;
 }
 
@@ -91,10 +89,10 @@ TrackPoint pointAt(const Platform& platform, double t_s) {
     const TrackPoint& b = track[i + 1];
     const double part = std::clamp((t_s - a.t_s) / (b.t_s - a.t_s), 0.0, 1.0);
     point.position = positionOnLeg(a.position, b.position, part);
-    point.heading_deg = a.heading_deg && b.heading_deg ? mixDegrees(*a.heading_deg, *b.heading_deg, part)
+    point.heading_deg = a.heading_deg && b.heading_deg ? lerpDegrees(*a.heading_deg, *b.heading_deg, part)
                                                        : courseAt(track, i, point.position);
-    point.pitch_deg = mix(a.pitch_deg, b.pitch_deg, part).value_or(0);
-    point.roll_deg = mix(a.roll_deg, b.roll_deg, part).value_or(0);
+    point.pitch_deg = lerpIfBoth(a.pitch_deg, b.pitch_deg, part).value_or(0);
+    point.roll_deg = lerpIfBoth(a.roll_deg, b.roll_deg, part).value_or(0);
   }
   point.t_s = t_s;
   return point;

@@ -17,9 +17,9 @@ const std::vector<QuantityInfo>& quantityTable() {
       {Quantity::detection_probability, "detection_probability", "", QuantityKind::of_jamming,
        "probability that the radars detect their target, jamming included"},
       {Quantity::jammer_to_signal_db, "jammer_to_signal_db", "dB", QuantityKind::of_jamming,
-       "jamming over the target's echo at the receiver of the radar that bears it best", false, true},
+       "jamming over the target's echo, at the least affected radar", false, true},
       {Quantity::burn_through_margin_db, "burn_through_margin_db", "dB", QuantityKind::of_jamming,
-       "how far the echo exceeds what burning through the jamming takes; 60 dB at most", false, true},
+       "echo above the level needed for burn-through; at most 60 dB", false, true},
       {Quantity::emitter_count, "emitter_count", "", QuantityKind::of_emitters,
        "emitters above the count threshold"},
       {Quantity::dominant_emitter, "dominant_emitter", "", QuantityKind::of_emitters,
@@ -32,11 +32,11 @@ const QuantityInfo& info(Quantity quantity) {
   return quantityTable()[static_cast<std::size_t>(quantity)];
 }
 
-bool isOfRadars(Quantity quantity) {
-  return info(quantity).kind == QuantityKind::of_radars || isOfJamming(quantity);
+bool needsRadar(Quantity quantity) {
+  return info(quantity).kind == QuantityKind::of_radars || needsJammer(quantity);
 }
 
-bool isOfJamming(Quantity quantity) {
+bool needsJammer(Quantity quantity) {
   return info(quantity).kind == QuantityKind::of_jamming;
 }
 

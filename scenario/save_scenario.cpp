@@ -17,7 +17,7 @@ using document::DocumentNodePtr;
 using document::NodePath;
 using document::Splice;
 
-/// The name of a file, given relative to one folder, relative to another; absolute names stay.
+/// Converts a file name from relative to one folder to relative to another; absolute names are kept.
 std::string renamed(const std::string& name, const fs::path& from, const fs::path& to) {
   if (fs::path(name).is_absolute()) return name;
   return fs::absolute(from / name).lexically_normal().lexically_relative(to).generic_string();
@@ -41,7 +41,7 @@ void forEachFileName(const DocumentNodePtr& node, const ValueSpec& spec, NodePat
   }
 }
 
-/// The text with the names of files as another folder sees them.
+/// The text with file names relative to another folder.
 std::string textFor(const ScenarioSource& source, const fs::path& folder) {
   const std::string& text = source.text.text();
   const fs::path old_folder = fs::absolute(source.text.file()).parent_path().lexically_normal();

@@ -61,7 +61,7 @@ class BoxBuilder {
 };
 
 void addRegion(BoxBuilder& builder, const Region& region) {
-  // Points of the edge are dense enough that nothing between them lies outside the margin for any region
+  // Points of the edge are dense enough that nothing between them is outside the margin for any region
   // within a hemisphere.
   constexpr int kPointsPerEdge = 33;
   const GeoFrame frame(region.origin);

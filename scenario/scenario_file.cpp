@@ -19,16 +19,16 @@ namespace emscape::scenario {
 
 namespace {
 
-constexpr double kMostVoxels = 2147483648.0;
-constexpr double kMostSteps = 1e7;
+constexpr double kMaxVoxels = 2147483648.0;
+constexpr double kMaxSteps = 1e7;
 constexpr double kMaxVoxelAspect = 1000;  ///< of x over y
 
 Clock parseClock(const Section& root, ParseContext& context) {
   const Clock clock{root.text("epoch"), root.number("duration_s"), root.number("step_s")};
-  if (clock.duration_s >= clock.step_s * kMostSteps) {
-    context.problems.addError(root.placeOf("step_s"),
+  if (clock.duration_s >= clock.step_s * kMaxSteps) {
+    context.problems.addError(root.locationOf("step_s"),
                               fmt::format("steps of {} s over {} s are more than the allowed {}",
-                                          clock.step_s, clock.duration_s, kMostSteps));
+                                          clock.step_s, clock.duration_s, kMaxSteps));
   }
   return clock;
 }
@@ -39,10 +39,10 @@ Region parseRegion(const Section& section, ParseContext& context) {
   region.origin = {section.choice<FrameKind>("frame"), origin.number("latitude_deg"),
                    origin.number("longitude_deg"), origin.number("height_msl_m")};
   std::vector<double> size_m = section.numbers("size_m"), dims = section.numbers("dims");
-  if (dims.size() == 3 && dims[0] * dims[1] * dims[2] > kMostVoxels) {
-    context.problems.addError(section.placeOf("dims"),
+  if (dims.size() == 3 && dims[0] * dims[1] * dims[2] > kMaxVoxels) {
+    context.problems.addError(section.locationOf("dims"),
                               fmt::format("'dims' are {} voxels in all, outside the allowed 8 to {}",
-                                          dims[0] * dims[1] * dims[2], kMostVoxels));
+                                          dims[0] * dims[1] * dims[2], kMaxVoxels));
   }
   if (!section.sound()) return region;
   region.size_m = {size_m[0], size_m[1], size_m[2]};
@@ -50,7 +50,7 @@ Region parseRegion(const Section& section, ParseContext& context) {
   const double width_m = size_m[0] / dims[0], depth_m = size_m[1] / dims[1];
   if (std::max(width_m, depth_m) > kMaxVoxelAspect * std::min(width_m, depth_m)) {
     context.problems.addError(
-        section.placeOf("size_m"),
+        section.locationOf("size_m"),
         fmt::format(
             "'size_m' and 'dims' make voxels of {} m by {} m; one side may be at most {} times the other",
             width_m, depth_m, kMaxVoxelAspect));
@@ -58,7 +58,7 @@ Region parseRegion(const Section& section, ParseContext& context) {
   return region;
 }
 
-/// The files are opened, not read; those that an earlier reading found are believed.
+/// The files are opened, not read; files of an earlier reading are not opened again.
 TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
   TerrainSpec terrain;
   std::string digest;
@@ -69,16 +69,16 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
   const std::vector<std::string> names = section.texts("files");
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (names[i].empty()) continue;
-    const SourceLocation place = section.placeOf("files", i);
+    const SourceLocation location = section.locationOf("files", i);
     const std::string file = context.resolve(names[i]);
     terrain.files.push_back(file);
-    terrain.places.push_back(place);
+    terrain.locations.push_back(location);
     if (known) continue;
     std::error_code failure;
     const std::uintmax_t size = std::filesystem::file_size(file, failure);
     if (failure || !std::ifstream(file)) {
-      context.problems.addError(
-          place, fmt::format("elevation file {}: {}", file, failure ? failure.message() : "cannot be read"));
+      context.problems.addError(location, fmt::format("elevation file {}: {}", file,
+                                                      failure ? failure.message() : "cannot be read"));
       continue;
     }
     digest += fmt::format("{}:{}", names[i], size);
@@ -110,7 +110,7 @@ propagation::Ground parseGround(const Section& section) {
   ground.conductivity_s_m = section.optionalNumber("conductivity_s_m");
   ground.roughness_m = section.number("roughness_m");
   ground.surface_msl_m = section.optionalNumber("surface_msl_m");
-  ground.place = section.place();
+  ground.location = section.location();
   return ground;
 }
 
@@ -131,13 +131,13 @@ Band parseBand(const Section& section, ParseContext& context) {
   const Band band{section.text("name"), section.number("begin_hz"), section.number("end_hz")};
   if (band.begin_hz >= band.end_hz) {
     context.problems.addError(
-        section.placeOf("end_hz"),
+        section.locationOf("end_hz"),
         fmt::format("'end_hz' is {}, not above 'begin_hz', {} Hz", band.end_hz, band.begin_hz));
   }
   return band;
 }
 
-/// What the output asks for must be there.
+/// Checks that the scenario has everything that the output needs.
 OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseContext& context) {
   const OutputSpec output{section.texts("quantities"), section.choice<CombineMode>("combine"),
                           section.choice<RadarLook>("radar_look"), section.number("floor"),
@@ -146,29 +146,29 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
     return std::any_of(scenario.emitters.begin(), scenario.emitters.end(),
                        [kind](const Emitter& emitter) { return emitter.kind == kind; });
   };
-  const auto need = [&](bool met, const SourceLocation& place, const std::string& what,
+  const auto need = [&](bool met, const SourceLocation& location, const std::string& what,
                         const std::string& needed) {
     if (!met)
-      context.problems.addError(place, fmt::format("{} needs {}; the scenario has none", what, needed));
+      context.problems.addError(location, fmt::format("{} needs {}; the scenario has none", what, needed));
   };
   for (std::size_t i = 0; i < output.quantities.size(); ++i) {
     const std::string& quantity = output.quantities[i];
-    const SourceLocation place = section.placeOf("quantities", i);
+    const SourceLocation location = section.locationOf("quantities", i);
     const auto row = std::find_if(quantityTable().begin(), quantityTable().end(),
                                   [&](const QuantityInfo& known) { return quantity == known.name; });
     if (row == quantityTable().end()) continue;  // already reported
     if (row->kind == QuantityKind::of_receiver) {
-      need(!scenario.receivers.empty(), place, quantity, "a receiver");
+      need(!scenario.receivers.empty(), location, quantity, "a receiver");
     }
-    if (isOfRadars(row->quantity)) {
-      need(hasKind(EmitterKind::radar), place, quantity, "an emitter of kind radar");
+    if (needsRadar(row->quantity)) {
+      need(hasKind(EmitterKind::radar), location, quantity, "an emitter of kind radar");
     }
     if (row->needs_jammer) {
-      need(hasKind(EmitterKind::jammer), place, quantity, "an emitter of kind jammer");
+      need(hasKind(EmitterKind::jammer), location, quantity, "an emitter of kind jammer");
     }
   }
   if (output.combine == CombineMode::per_band) {
-    need(!scenario.bands.empty(), section.placeOf("combine"), "combine per_band", "bands");
+    need(!scenario.bands.empty(), section.locationOf("combine"), "combine per_band", "bands");
   }
   return output;
 }
@@ -181,17 +181,17 @@ void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, Pa
       return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
     });
     if (in_band) continue;
-    context.problems.addWarning(sections[i].placeOf("frequency_hz"),
-                                fmt::format("emitter '{}' ({} Hz) lies in none of the bands",
-                                            scenario.emitters[i].name, frequency_hz));
+    context.problems.addWarning(
+        sections[i].locationOf("frequency_hz"),
+        fmt::format("emitter '{}' ({} Hz) is in none of the bands", scenario.emitters[i].name, frequency_hz));
   }
 }
 
-/// Jammers that are in no radar's band, where the output asks what jamming does.
+/// Warns of jammers that are in no radar's band, if the output depends on jamming.
 void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<std::string>& quantities = scenario.output.quantities;
   const bool counts = std::any_of(quantities.begin(), quantities.end(), [](const std::string& quantity) {
-    return isOfJamming(quantityFromName(quantity));
+    return needsJammer(quantityFromName(quantity));
   });
   const std::vector<Section> sections = root.sections("emitters");
   for (std::size_t i = 0; i < sections.size() && counts; ++i) {
@@ -205,8 +205,8 @@ void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseConte
         });
     if (jams) continue;
     context.problems.addWarning(
-        sections[i].placeOf("frequency_hz"),
-        fmt::format("jammer '{}' ({} Hz, {} Hz wide) lies outside the band of every radar: it jams none",
+        sections[i].locationOf("frequency_hz"),
+        fmt::format("jammer '{}' ({} Hz, {} Hz wide) is outside the band of every radar: it jams none",
                     jammer.name, jammer.frequency_hz, jammer.bandwidth_hz));
   }
 }
@@ -241,21 +241,21 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
 
 namespace {
 
-/// The places that a scenario holds, as places in its file.
+/// Maps the locations in a scenario from the edited text to its file.
 void mapPlaces(Scenario& scenario, const document::EditedText& text) {
-  const auto map = [&text](SourceLocation& place) { place = text.originOf(place); };
-  map(scenario.ground.place);
-  for (Platform& platform : scenario.platforms) map(platform.place);
+  const auto map = [&text](SourceLocation& location) { location = text.originOf(location); };
+  map(scenario.ground.location);
+  for (Platform& platform : scenario.platforms) map(platform.location);
   for (Emitter& emitter : scenario.emitters) {
-    map(emitter.place);
-    map(emitter.frequency_place);
-    map(emitter.propagation.place);
+    map(emitter.location);
+    map(emitter.frequency_location);
+    map(emitter.propagation.location);
   }
   if (!scenario.terrain) return;
-  for (SourceLocation& place : scenario.terrain->places) map(place);
+  for (SourceLocation& location : scenario.terrain->locations) map(location);
 }
 
-/// Reads the scenario from its edited text. @param before  null, or what an earlier reading found
+/// Reads the scenario from its edited text. @param before  null, or the content of an earlier reading
 ParseResult readSource(ScenarioSource source, const NamedFiles* before, ParseContext& context) {
   context.before = before;
   std::shared_ptr<Scenario> scenario;
@@ -267,7 +267,7 @@ ParseResult readSource(ScenarioSource source, const NamedFiles* before, ParseCon
   }
   ParseResult result;
   result.problems = context.problems.inOrder();
-  for (Problem& problem : result.problems) problem.place = source.text.originOf(problem.place);
+  for (Problem& problem : result.problems) problem.location = source.text.originOf(problem.location);
   if (!scenario || context.problems.hasErrors()) return result;
   mapPlaces(*scenario, source.text);
   source.files = std::move(context.files);
@@ -281,7 +281,7 @@ void applyEdits(ScenarioSource& source, const std::vector<Edit>& edits, ParseCon
     try {
       applyEdit(source, edit);
     } catch (const Error& error) {
-      context.problems.addError(error.place(), error.message());
+      context.problems.addError(error.location(), error.message());
     }
   }
 }
@@ -292,7 +292,7 @@ void requireScenario(const ParseResult& result) {
   std::string all;
   for (const Problem& problem : result.problems) {
     if (problem.severity == Severity::warning) continue;
-    all += (all.empty() ? "" : "\n") + toString(problem.place) + ": " + problem.message;
+    all += (all.empty() ? "" : "\n") + toString(problem.location) + ": " + problem.message;
   }
   throw Error(ErrorCode::bad_input, all);
 }
@@ -307,7 +307,7 @@ ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edit
     source.text = {file, document::checkedUtf8(file, readWholeText(file, kMaxScenarioBytes))};
     source.root = document::readDocument(file, source.text.text(), context.problems);
   } catch (const Error& error) {
-    context.problems.addError(error.place(), error.message());
+    context.problems.addError(error.location(), error.message());
   }
   if (source.root) applyEdits(source, edits, context);
   return readSource(std::move(source), nullptr, context);
@@ -356,14 +356,15 @@ std::vector<std::string> filesOf(const Scenario& scenario) {
 std::string scenarioJsonSchema() {
   return document::jsonSchema(
       scenarioSpec(), "Emscape scenario",
-      "Made from the table that the parser checks by. The parser also refuses what a schema cannot say: "
-      "repeated names, platforms that do not exist, files that cannot be read.");
+      "Made from the parser's table. The parser also reports what a schema cannot express: repeated names, "
+      "platforms that do not exist, files that cannot be read.");
 }
 
 std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits) {
   const ParseResult result = parseScenario(file, edits);
   for (const Problem& problem : result.problems) {
-    if (problem.severity == Severity::warning) logWarning(toString(problem.place) + ": " + problem.message);
+    if (problem.severity == Severity::warning)
+      logWarning(toString(problem.location) + ": " + problem.message);
   }
   requireScenario(result);
   return result.scenario;

@@ -52,7 +52,7 @@ const ValueSpec kFrequency = number("Hz").from(1e6).to(1e12);
 const ValueSpec kBandwidth = number("Hz").above(0).to(1e11);
 const ValueSpec kLoss = number("dB").from(0).to(100);
 const ValueSpec kGain = number("dBi").from(-50).to(80);
-constexpr int kMostItems = 10000;
+constexpr int kMaxItems = 10000;
 
 KeySpec latitudeKey() {
   return required("latitude_deg", kLatitude, "geodetic, WGS84");
@@ -102,10 +102,9 @@ const ObjectSpec& terrainSpec() {
       "terrain",
       "",
       {
-          required("files", listOf(kFile, 1, kMostItems),
+          required("files", listOf(kFile, 1, kMaxItems),
                    "elevation files (HGT, DTED, GeoTIFF, VRT), relative to the scenario's folder"),
-          byDefault("vertical_datum", choice({"egm96", "ellipsoid"}), "egm96",
-                    "what the files' heights count from"),
+          byDefault("vertical_datum", choice({"egm96", "ellipsoid"}), "egm96", "datum of the files' heights"),
       }};
   return spec;
 }
@@ -124,13 +123,14 @@ const ObjectSpec& atmosphereSpec() {
           byDefault("vapour_g_m3", number("g/m3").from(0).to(100), Atmosphere{}.vapour_g_m3, "water vapour"),
           byDefault("rain_mm_h", number("mm/h").from(0).to(200), Atmosphere{}.rain_mm_h,
                     "rain rate, everywhere up to rain_height_m; its loss is added to every model's"),
-          optional("rain_height_m", number("m").from(0).to(20000),
-                   "above mean sea level, up to where it rains; by default by latitude, 5000 in the tropics"),
+          optional(
+              "rain_height_m", number("m").from(0).to(20000),
+              "upper limit of the rain, above mean sea level; by default by latitude, 5000 in the tropics"),
           byDefault("gases", choiceUpTo(GasLosses::never), toString(Atmosphere{}.gases),
-                    "loss to oxygen and water vapour; auto: with every model but free_space and horizon; "
-                    "p528 holds its own"),
+                    "attenuation by oxygen and water vapour; auto: with every model except free_space and "
+                    "horizon; p528 includes its own"),
           byDefault("sea_level_refractivity", number().from(200).to(450), Atmosphere{}.sea_level_refractivity,
-                    "N-units; for itm, whose rays bend by it and not by k_factor"),
+                    "N-units; for itm, whose rays are bent by it, not by k_factor"),
           byDefault("climate", choiceUpTo(RadioClimate::maritime_temperate_over_sea),
                     toString(Atmosphere{}.climate), "for itm's statistics"),
       }};
@@ -143,7 +143,7 @@ const ObjectSpec& groundSpec() {
       "",
       {
           byDefault("kind", choiceUpTo(GroundKind::concrete), toString(Ground{}.kind),
-                    "what the ground is to the waves; sea and fresh water by frequency"),
+                    "electrical constants of the ground; for sea and fresh water by frequency"),
           optional("relative_permittivity", number().from(1).to(200), "by default that of the kind"),
           optional("conductivity_s_m", number("S/m").from(0).to(100), "by default that of the kind"),
           byDefault("roughness_m", number("m").from(0).to(1000), Ground{}.roughness_m,
@@ -237,7 +237,7 @@ const ObjectSpec& platformSpec() {
       "platform",
       "",
       {
-          required("name", kName, "by which emitters name it"),
+          required("name", kName, "emitters refer to it by this name"),
           optional("position", object(positionSpec()), "of a fixed site"),
           optional("attitude", object(attitudeSpec()), "of a fixed site; level and north by default"),
           optional("track", object(trackSpec()), "of a moving platform"),
@@ -268,15 +268,16 @@ const ObjectSpec& antennaSpec() {
           required("beamwidth_az_deg", number("deg").above(0).to(360), "between half-power points", beams),
           required("beamwidth_el_deg", number("deg").above(0).to(180), "between half-power points", beams),
           byDefault("side_lobe_db", number("dB").from(-100).to(0), -40.0,
-                    "level relative to the maximum below which the pattern does not fall", beams),
+                    "lower limit of the pattern, relative to the maximum", beams),
           byDefault("max_elevation_deg", number("deg").above(0).to(90), 40.0,
-                    "where the cosecant-squared part ends", {"cosecant2"}),
+                    "end of the cosecant-squared part", {"cosecant2"}),
           required("columns", kInteger.from(1).to(1024), "elements in azimuth", {"phased_array"}),
           required("rows", kInteger.from(1).to(1024), "elements in elevation", {"phased_array"}),
           byDefault("spacing_wavelengths", number().from(0.1).to(1), 0.5, "between elements",
                     {"phased_array"}),
           byDefault("element_exponent", number().from(0).to(10), 0.5,
-                    "an element's amplitude is the cosine off boresight to this power", {"phased_array"}),
+                    "exponent of the element's amplitude, a power of the cosine off boresight",
+                    {"phased_array"}),
           required("file", kFile, "relative to the scenario's folder", {"file"}),
           required("azimuth_file", kFile, "CSV: azimuth_deg, attenuation_db", {"cuts"}),
           required("elevation_file", kFile, "CSV: elevation_deg, attenuation_db", {"cuts"}),
@@ -302,7 +303,7 @@ const ObjectSpec& scanSpec() {
       "scan",
       "kind",
       {
-          required("kind", choiceUpTo(ScanKind::dwell_list), "how the beam moves"),
+          required("kind", choiceUpTo(ScanKind::dwell_list), "motion of the beam"),
           byDefault(
               "azimuth_deg", kAngle, 0.0,
               "off the platform's heading, clockwise: boresight; rotate: at t = 0; sector, raster: centre"),
@@ -313,14 +314,14 @@ const ObjectSpec& scanSpec() {
           required("rate_deg_s", number("deg/s").above(0).to(1e5), "azimuth speed", sweeps),
           required("elevation_step_deg", number("deg").above(0).to(90), "between bars", {"raster"}),
           required("bars", kInteger.from(1).to(1000), "sweeps stacked, from the lowest upwards", {"raster"}),
-          required("dwells", listOf(object(dwellSpec()), 1, kMostItems), "repeated for ever", {"dwell_list"}),
+          required("dwells", listOf(object(dwellSpec()), 1, kMaxItems), "repeated", {"dwell_list"}),
       }};
   return spec;
 }
 
 KeySpec crossPolarKey() {
   return byDefault("cross_polar_isolation_db", number("dB").from(0).to(100), kCrossPolarIsolation_db,
-                   "how far the antenna keeps the orthogonal polarisation down");
+                   "isolation of the orthogonal polarisation by the antenna");
 }
 
 const ObjectSpec& radarReceiverSpec() {
@@ -330,14 +331,14 @@ const ObjectSpec& radarReceiverSpec() {
       {
           required("noise_figure_db", number("dB").from(0).to(60), "referred to 290 K"),
           byDefault("antenna_temperature_k", number("K").from(0).to(10000),
-                    RadarReceiver{}.antenna_temperature_k, "what the antenna sees of sky and ground"),
+                    RadarReceiver{}.antenna_temperature_k, "noise from sky and ground"),
           required("bandwidth_hz", kBandwidth, "of the noise"),
-          byDefault("losses_db", kLoss, RadarReceiver{}.losses_db,
-                    "between antenna and receiver; the emitter's losses_db, of its transmit path, do not "
-                    "count again"),
+          byDefault(
+              "losses_db", kLoss, RadarReceiver{}.losses_db,
+              "between antenna and receiver; the emitter's losses_db, of its transmit path, is not added"),
           byDefault(
               "processing_gain_db", number("dB").from(-100).to(100), RadarReceiver{}.processing_gain_db,
-              "of an echo over noise and jamming: pulse compression, coherent integration, less losses"),
+              "of an echo over noise and jamming: pulse compression and coherent integration, net of losses"),
           optional("polarization", choiceUpTo(Polarization::circular_left),
                    "for jamming; by default the emitter's. target_rcs_m2 is that between the two"),
           crossPolarKey(),
@@ -347,10 +348,10 @@ const ObjectSpec& radarReceiverSpec() {
           byDefault("swerling", kInteger.from(0).to(4), double(RadarReceiver{}.swerling),
                     "case of target fluctuation"),
           byDefault("detection", choiceUpTo(DetectionMethod::shnidman), toString(RadarReceiver{}.detection),
-                    "how detection_probability is found: exact statistics or a formula; albersheim with "
-                    "swerling 0 alone"),
+                    "method of detection_probability: exact statistics or a formula; albersheim only with "
+                    "swerling 0"),
           optional("required_signal_to_jammer_db", number("dB").from(-100).to(100),
-                   "where the radar burns through; by default what a detection probability of 0.5 takes"),
+                   "required for burn-through; by default that of a detection probability of 0.5"),
           byDefault("target_rcs_m2", number("m2").above(0).to(1e9), RadarReceiver{}.target_rcs_m2,
                     "radar cross section"),
       }};
@@ -363,8 +364,8 @@ const ObjectSpec& emitterSpec() {
       withPropagation(
           {
               required("name", kName, "on pictures and in volumes"),
-              required("platform", kName, "name of the platform that carries it"),
-              required("kind", choiceUpTo(EmitterKind::jammer), "what it is"),
+              required("platform", kName, "name of its platform"),
+              required("kind", choiceUpTo(EmitterKind::jammer), "kind"),
               required("frequency_hz", kFrequency, "carrier"),
               byDefault("bandwidth_hz", number("Hz").from(0).to(1e11), Emitter{}.bandwidth_hz,
                         "of the signal; 0: narrower than any receiver"),
@@ -373,12 +374,11 @@ const ObjectSpec& emitterSpec() {
               byDefault("polarization", choiceUpTo(Polarization::circular_left),
                         toString(Emitter{}.polarization), "of the transmitted wave"),
               required("antenna", object(antennaSpec()), "pattern and gain"),
-              optional("scan", object(scanSpec()),
-                       "how the beam moves; by default it is fixed along the heading"),
+              optional("scan", object(scanSpec()), "motion of the beam; by default fixed along the heading"),
           },
           {
               required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
-              optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMostItems),
+              optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMaxItems),
                        "[begin, end) of the times at which it radiates; always by default"),
           })};
   return spec;
@@ -396,7 +396,7 @@ const ObjectSpec& receiverSpec() {
                    "by default that of each emitter"),
           crossPolarKey(),
           optional("center_frequency_hz", kFrequency, "by default that of each emitter"),
-          optional("bandwidth_hz", kBandwidth, "by default as wide as each emitter's signal"),
+          optional("bandwidth_hz", kBandwidth, "by default that of each emitter's signal"),
       }};
   return spec;
 }
@@ -423,15 +423,15 @@ const ObjectSpec& outputSpec() {
       "output",
       "",
       {
-          byDefault("quantities", listOf(choice(quantityChoices()), 1, kMostItems).distinct(),
-                    OutputSpec{}.quantities, "what the volumes hold"),
+          byDefault("quantities", listOf(choice(quantityChoices()), 1, kMaxItems).distinct(),
+                    OutputSpec{}.quantities, "one volume per quantity"),
           byDefault("combine", choiceUpTo(CombineMode::per_band), toString(OutputSpec{}.combine),
-                    "how emitters are put together"),
+                    "combination of the emitters"),
           byDefault("radar_look", choiceUpTo(RadarLook::target), toString(OutputSpec{}.radar_look),
-                    "for snr_db and detection_probability: beams where their scans have them at the time, or "
-                    "on each voxel in turn (coverage)"),
+                    "for snr_db and detection_probability: beams in the direction of their scans at the "
+                    "time, or towards each voxel (coverage)"),
           byDefault("floor", number().from(-1000).to(1000), OutputSpec{}.floor,
-                    "lowest value kept, in each quantity's unit"),
+                    "lowest stored value, in each quantity's unit"),
           byDefault("count_threshold_dbwm2", number("dBW/m2").from(-1000).to(1000),
                     OutputSpec{}.count_threshold_dbwm2, "emitter_count counts emitters above it"),
       }};
@@ -457,18 +457,19 @@ const ObjectSpec& scenarioSpec() {
           byDefault("duration_s", kTime, Clock{}.duration_s, "of the scenario"),
           byDefault("step_s", number("s").from(1e-6).to(1e8), Clock{}.step_s,
                     "between volumes; at most 10^7 in all"),
-          required("region", object(regionSpec()), "the box that the field fills"),
+          required("region", object(regionSpec()), "the box of the field"),
           optional("terrain", object(terrainSpec()),
                    "the ground; by default a smooth earth at mean sea level"),
-          optional("atmosphere", object(atmosphereSpec()), "what the waves travel through"),
-          optional("ground", object(groundSpec()), "what the waves meet below"),
-          required("platforms", listOf(object(platformSpec()), 1, kMostItems).distinct(),
-                   "what carries emitters"),
-          required("emitters", listOf(object(emitterSpec()), 1, kMostItems).distinct(), "what radiates"),
-          optional("receivers", listOf(object(receiverSpec()), 1, kMostItems).distinct(),
-                   "placed at every voxel for received_power_dbm, which takes the first"),
-          optional("bands", listOf(object(bandSpec()), 1, kMostItems).distinct(), "for combine per_band"),
-          optional("output", object(outputSpec()), "what is computed"),
+          optional("atmosphere", object(atmosphereSpec()), "refraction and attenuation by the air"),
+          optional("ground", object(groundSpec()), "electrical properties of the ground"),
+          required("platforms", listOf(object(platformSpec()), 1, kMaxItems).distinct(),
+                   "carriers of emitters"),
+          required("emitters", listOf(object(emitterSpec()), 1, kMaxItems).distinct(),
+                   "radars, transmitters and jammers"),
+          optional("receivers", listOf(object(receiverSpec()), 1, kMaxItems).distinct(),
+                   "placed at every voxel for received_power_dbm, which uses the first"),
+          optional("bands", listOf(object(bandSpec()), 1, kMaxItems).distinct(), "for combine per_band"),
+          optional("output", object(outputSpec()), "quantities and their combination"),
       }};
   return spec;
 }

@@ -9,7 +9,7 @@ using document::KeySpec;
 using document::ObjectSpec;
 using document::ValueSpec;
 
-/// Forms of antenna that a scenario can ask for, in the order of the table's choices.
+/// Kinds of antenna in a scenario, in the order of the table's choices.
 enum class AntennaForm { isotropic, gaussian, sinc, cosecant2, phased_array, file, cuts };
 const char* toString(AntennaForm form);
 

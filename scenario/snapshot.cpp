@@ -35,7 +35,7 @@ PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Pl
   if (at.height_agl_m) {
     if (std::isnan(ground_m)) {
       throw Error(
-          ErrorCode::bad_input, platform.place,
+          ErrorCode::bad_input, platform.location,
           fmt::format("{}: its height is given above ground, but {}", whereAndWhen(platform, at, t_s),
                       terrain == nullptr ? "the terrain was not loaded"
                                          : "the terrain is missing there (a void, or outside the files)"));
@@ -46,12 +46,11 @@ PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Pl
   }
   if (ground_m - state.height_msl_m > kGroundTolerance_m) {
     throw Error(
-        ErrorCode::bad_input, platform.place,
-        fmt::format(
-            "{} lies {:.1f} m below {}: it is at {:.1f} m, the ground at {:.1f} m above mean sea level",
-            whereAndWhen(platform, at, t_s), ground_m - state.height_msl_m,
-            scenario.terrain ? "ground" : "the smooth earth that stands for the missing terrain",
-            state.height_msl_m, ground_m));
+        ErrorCode::bad_input, platform.location,
+        fmt::format("{} is {:.1f} m below {}: it is at {:.1f} m, the ground at {:.1f} m above mean sea level",
+                    whereAndWhen(platform, at, t_s), ground_m - state.height_msl_m,
+                    scenario.terrain ? "ground" : "the smooth earth in place of the missing terrain",
+                    state.height_msl_m, ground_m));
   }
   state.position = {at.latitude_deg, wrapLongitude_deg(at.longitude_deg), state.height_msl_m + undulation_m};
   state.attitude = {point.heading_deg.value_or(0), point.pitch_deg.value_or(0), point.roll_deg.value_or(0)};

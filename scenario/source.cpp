@@ -39,13 +39,13 @@ DocumentNodePtr valueOf(const Edit& edit) {
   return value;
 }
 
-/// Whether a path leads to the other's value or into it.
+/// True if a path leads to the value of the other path or into it.
 bool leadsInto(const std::string& outer, const std::string& inner) {
   return inner.compare(0, outer.size(), outer) == 0 &&
          (inner.size() == outer.size() || inner[outer.size()] == '.');
 }
 
-/// Index of the last edit of a path before `end` that could be made anew without regard to what follows it;
+/// Index of the last edit of a path before `end` that can be repeated independently of the edits after it;
 /// npos if there is none.
 std::size_t lastEditOf(const std::string& path, const std::vector<MadeEdit>& edits, std::size_t end) {
   for (std::size_t i = end; i-- > 0;) {
@@ -56,8 +56,8 @@ std::size_t lastEditOf(const std::string& path, const std::vector<MadeEdit>& edi
   return std::string::npos;
 }
 
-/// Adds an edit to those made. They stay few: a value set again takes its earlier place, and what was set
-/// only to be removed again is forgotten.
+/// Adds an edit to the list. A repeated edit of a value replaces the earlier one, and a value that was added
+/// and then removed leaves no edit.
 void remember(std::vector<MadeEdit>& edits, MadeEdit made) {
   const std::size_t last =
       made.moves_paths ? std::string::npos : lastEditOf(made.edit.path, edits, edits.size());
@@ -98,7 +98,7 @@ void apply(ScenarioSource& source, const Edit& edit) {
     }
     document::ProblemList problems;
     edited.root = document::readDocument(edited.text.file(), edited.text.text(), problems);
-    // The text is changed at one place, and must then mean what was asked for: nothing else may have changed.
+    // The text is changed in one span and parsed again: nothing else may have changed.
     const DocumentNodePtr wanted = document::withValueAt(source.root, path.steps, value);
     if (!edited.root || problems.hasErrors() || !document::sameValue(*edited.root, *wanted)) {
       throw Error(ErrorCode::bad_input,

@@ -13,7 +13,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr ValueRange kEmpty{kInfinity, -kInfinity};
 
-/// Least and greatest value of each x over the voxel rows of y and z. Elementwise, so that the compiler can
+/// Smallest and largest value of each x over the voxel rows of y and z. Elementwise, so that the compiler can
 /// vectorise it; NaN fails both comparisons.
 void foldRows(const DenseVolume& volume, VoxelInterval y, VoxelInterval z, std::vector<float>& least,
               std::vector<float>& greatest) {

@@ -1,4 +1,4 @@
-/// The value range of each small block of a volume, so that a ray caster can step over what it would not
+/// The value range of each small block of a volume, so that a ray caster can skip blocks that it would not
 /// show.
 #pragma once
 
@@ -11,7 +11,7 @@
 
 namespace emscape::volume {
 
-/// Voxels along a brick's edge, unless others are asked for.
+/// Voxels along a brick's edge, by default.
 constexpr int kBrickEdge = 8;
 
 /// The voxels of a brick and its apron along one axis.
@@ -24,7 +24,7 @@ EMSCAPE_HD inline VoxelInterval withApron(int brick, int edge, int voxels) {
   return {begin > 0 ? begin : 0, end < voxels ? end : voxels};
 }
 
-/// How many bricks a volume has.
+/// Numbers of bricks of a volume.
 inline Dims brickDims(const Dims& voxels, int edge) {
   const auto along = [edge](int count) { return (count + edge - 1) / edge; };
   return {along(voxels.x), along(voxels.y), along(voxels.z)};
@@ -43,15 +43,15 @@ struct BricksView {
 
 /// Min-max bricks of a volume. Brick (x, y, z) owns the voxels [x, x + 1) * edge and so on; its range is
 /// taken with an apron of one voxel all around, so that every trilinear sample taken inside the box of its
-/// voxels (which reaches half a voxel beyond their centres) lies within [min, max]. NaN voxels do not count.
-/// Masked voxels count with the value that they hold; a brick whose voxels, apron included, are all
-/// masked or all NaN is empty.
+/// voxels (which reaches half a voxel beyond their centres) is within [min, max]. NaN voxels are ignored.
+/// Masked voxels enter with their stored value; a brick whose voxels, apron included, are all masked or all
+/// NaN is empty.
 class Bricks {
  public:
-  /// Computed in parallel. @param edge voxels, >= 1; @throws Error (bad_input) for another edge
+  /// Computed in parallel. @param edge  voxels, >= 1; @throws Error (bad_input) for another edge
   explicit Bricks(const DenseVolume& volume, int edge = kBrickEdge);
 
-  /// Computes the ranges anew from a volume of the same dims; memory is kept where the dims allow.
+  /// Recomputes the ranges from another volume; memory is reused if the dims allow.
   void update(const DenseVolume& volume);
 
   BricksView view() const { return {ranges_.data(), dims_, edge_}; }

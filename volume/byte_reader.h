@@ -1,4 +1,4 @@
-/// Reads a file's bytes in order and never past their end. Internal to the module.
+/// Reads a file's bytes in order, with a check of the end. Internal to the module.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 namespace emscape::volume {
 
 static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
-              "the files of this module are read and written as they lie in memory");
+              "the files of this module are read and written in memory order");
 
 class ByteReader {
  public:
@@ -25,7 +25,7 @@ class ByteReader {
   const std::string& file() const { return file_; }
   const std::uint8_t* here() const { return bytes_ + position_; }
 
-  /// Moves on by `count` bytes and returns where they begin. @param what  names them in the message
+  /// Skips `count` bytes and returns a pointer to them. @param what  names them in the message
   const std::uint8_t* take(std::uint64_t count, const char* what) {
     if (count > left()) {
       fail(std::string(what) + " needs " + std::to_string(count) + " bytes at offset " +
@@ -44,7 +44,7 @@ class ByteReader {
     return result;
   }
 
-  /// A text with its length in 32 bits before it.
+  /// A text after its length in 32 bits.
   std::string text(const char* what) {
     const auto length = value<std::uint32_t>(what);
     const std::uint8_t* begin = take(length, what);

@@ -21,25 +21,25 @@ std::string dimsText(const Dims& dims) {
 
 }  // namespace
 
-void checkDims(const Dims& dims, const SourceLocation& place) {
+void checkDims(const Dims& dims, const SourceLocation& location) {
   // Each factor fits 16 bits, so the product cannot overflow.
   const auto allowed = [](int count) { return count >= 1 && count <= kMaxVoxelsPerAxis; };
   if (!allowed(dims.x) || !allowed(dims.y) || !allowed(dims.z)) {
     throw Error(
-        ErrorCode::bad_input, place,
+        ErrorCode::bad_input, location,
         "dims " + dimsText(dims) + ": each must be 1.." + std::to_string(kMaxVoxelsPerAxis) + " voxels");
   }
   if (dims.count() > kMaxVoxels) {
-    throw Error(ErrorCode::bad_input, place,
+    throw Error(ErrorCode::bad_input, location,
                 "dims " + dimsText(dims) + ": at most " + std::to_string(kMaxVoxels) + " voxels in all");
   }
 }
 
-void checkVolume(const DenseVolume& volume, const SourceLocation& place) {
+void checkVolume(const DenseVolume& volume, const SourceLocation& location) {
   const Dims& dims = volume.grid.dims;
   const std::string who = "volume " + volume.info.quantity + ": ";
-  const auto fail = [&](const std::string& what) { throw Error(ErrorCode::bad_input, place, who + what); };
-  checkDims(dims, place);
+  const auto fail = [&](const std::string& what) { throw Error(ErrorCode::bad_input, location, who + what); };
+  checkDims(dims, location);
   if (volume.info.quantity.empty()) fail("a volume needs the name of its quantity");
   if (static_cast<long long>(volume.values.size()) != dims.count()) {
     fail(std::to_string(volume.values.size()) + " values for " + dimsText(dims) + " voxels");
@@ -56,13 +56,13 @@ void checkVolume(const DenseVolume& volume, const SourceLocation& place) {
   }
 }
 
-std::vector<std::int32_t> toIndices(const DenseVolume& volume, const SourceLocation& place) {
+std::vector<std::int32_t> toIndices(const DenseVolume& volume, const SourceLocation& location) {
   constexpr float kGreatest = 1 << 24;
   const auto toIndex = [&](float value) {
     if (!(std::abs(value) <= kGreatest) || value != std::floor(value)) {
-      throw Error(ErrorCode::bad_input, place,
+      throw Error(ErrorCode::bad_input, location,
                   "volume " + volume.info.quantity + ": " + std::to_string(value) +
-                      " is no index; categorical values are whole numbers -16777216..16777216");
+                      " is not an index; categorical values are whole numbers -16777216..16777216");
     }
     return static_cast<std::int32_t>(value);
   };

@@ -24,7 +24,7 @@ std::string lowerAlphanumeric(const std::string& text) {
   return result;
 }
 
-/// A quantity's name without its unit and the name of a radar, and these two.
+/// A quantity's name split into base name, unit and name of a radar.
 struct NameParts {
   std::string name, unit_suffix, radar;
 };

@@ -26,7 +26,7 @@ struct Format {
   void (*set_range)(const fs::path& path, const std::vector<StoredRange>& ranges);
 };
 
-/// For files that hold one volume: the name, if given, has to be its.
+/// For files that hold one volume: checks the name, if given.
 DenseVolume named(DenseVolume volume, const fs::path& path, const std::string& name) {
   if (!name.empty() && volume.info.quantity != name) {
     throw Error(ErrorCode::bad_input, {path.string()},
@@ -114,7 +114,7 @@ std::vector<fs::path> filesOfFolder(const fs::path& folder) {
   throw Error(ErrorCode::bad_input, {folder.string()}, "the folder holds no volume file");
 }
 
-/// The files beside a numbered one that differ from it in the number alone.
+/// The files in the folder of a numbered one that differ from it only in the number.
 std::vector<fs::path> filesBeside(const fs::path& path) {
   const SeriesName own(path);
   if (own.number < 0) return {path};

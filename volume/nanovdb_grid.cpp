@@ -1,4 +1,4 @@
-// The one unit that turns OpenVDB grids into NanoVDB's: it takes long to compile.
+// The only unit that converts OpenVDB grids to NanoVDB: it takes long to compile.
 #include "volume/nanovdb_grid.h"
 
 #include <nanovdb/util/OpenToNanoVDB.h>
@@ -9,8 +9,8 @@
 
 namespace emscape::volume {
 
-nano::Handle toNano(const DenseVolume& volume, const SourceLocation& place) {
-  const openvdb::GridBase::Ptr grid = toOpenVdb(volume, place);
+nano::Handle toNano(const DenseVolume& volume, const SourceLocation& location) {
+  const openvdb::GridBase::Ptr grid = toOpenVdb(volume, location);
   if (volume.info.categorical) {
     return nanovdb::OpenToNanoVDB<std::int32_t, std::int32_t>()(
         *openvdb::gridPtrCast<openvdb::Int32Grid>(grid));

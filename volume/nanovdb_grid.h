@@ -8,12 +8,11 @@ namespace emscape::volume {
 
 /// A grid of the voxels that are neither masked nor at the floor: of floats, of a categorical volume of
 /// int32.
-/// @throws Error (bad_input) at `place` for categorical values that are no indices
-nano::Handle toNano(const DenseVolume& volume, const SourceLocation& place);
+/// @throws Error (bad_input) at `location` for categorical values that are not indices
+nano::Handle toNano(const DenseVolume& volume, const SourceLocation& location);
 
-/// What toNano() makes a grid of floats from that can be sampled between voxels: nothing is masked, but what
-/// was holds the value of the first voxel above it that was not where a sample in the air can reach it, and
-/// the floor elsewhere.
+/// The volume from which toNano() makes a grid of floats for sampling between voxels: without a mask. Masked
+/// voxels that a sample in the air can reach repeat the first value above them; the others have the floor.
 DenseVolume readyForSampling(const DenseVolume& volume);
 
 }  // namespace emscape::volume

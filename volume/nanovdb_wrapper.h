@@ -1,5 +1,5 @@
-/// NanoVDB 10 under names of our own, because its headers and names changed in later versions: whoever uses
-/// NanoVDB includes this and no header of NanoVDB. Compiles as CUDA too.
+/// Aliases of NanoVDB 10, whose headers and names changed in later versions: include this header, not those
+/// of NanoVDB. Compiles also as CUDA.
 #pragma once
 
 #include <nanovdb/NanoVDB.h>

@@ -1,7 +1,7 @@
 /// Volumes as NanoVDB grids, as GPUs read them, with a sidecar.
 ///
-/// PATH holds one grid a quantity, the same as in a .vdb file (vdb.h), uncompressed. NanoVDB has no room for
-/// metadata: they stand in the sidecar PATH.json, {"volumes": [...]}, each with its grid, info and mask.
+/// PATH holds one grid per quantity, as in a .vdb file (vdb.h), uncompressed. NanoVDB has no metadata: they
+/// are in the sidecar PATH.json, {"volumes": [...]}, each with its grid, info and mask.
 #pragma once
 
 #include <filesystem>
@@ -18,10 +18,10 @@ void writeNvdb(const std::filesystem::path& path, const std::vector<const DenseV
 /// Reads a grid: with its sidecar exactly what was written; without one, or a grid that it does not name,
 /// over the box of the active voxels. Float, double, int32 and int64 grids without compression can be read.
 /// @param grid_name  empty: the first grid
-/// @throws Error (bad_input), which lists the file's grids where it has none of that name
+/// @throws Error (bad_input), which lists the file's grids if none has that name
 DenseVolume readNvdb(const std::filesystem::path& path, const std::string& grid_name = "");
 
-/// What each grid holds, without values and mask.
+/// The grids without values and mask.
 std::vector<DenseVolume> describeNvdb(const std::filesystem::path& path);
 
 }  // namespace emscape::volume

@@ -25,8 +25,8 @@ struct DenseBox {
   std::vector<float>& values;
 };
 
-/// A grid as it lies in memory. NanoVDB follows the offsets in it wherever they lead; here none is followed
-/// before it is known to lead to a node inside the grid.
+/// A grid in memory. NanoVDB follows its offsets unchecked; here each is checked to point to a node inside
+/// the grid first.
 template <class Value>
 class NanoGrid {
  public:
@@ -66,7 +66,7 @@ class NanoGrid {
  private:
   static constexpr int kLeafEdge = 8, kLowerEdge = 128, kUpperEdge = 4096;
 
-  [[noreturn]] void damaged() const { file_.fail("a node of the tree lies outside the grid"); }
+  [[noreturn]] void damaged() const { file_.fail("a node of the tree is outside the grid"); }
 
   template <class Node>
   const Node* at(const void* base, std::int64_t offset) const {
@@ -82,7 +82,7 @@ class NanoGrid {
     return reinterpret_cast<const Node*>(begin_ + position);
   }
 
-  /// Each node takes its own place, so more of them than fit are the same ones again.
+  /// More nodes than fit into the grid mean that some are visited twice.
   void countNode(std::uint64_t bytes) {
     visited_bytes_ += bytes;
     if (visited_bytes_ > size_) file_.fail("nodes of the tree overlap");
@@ -110,7 +110,7 @@ class NanoGrid {
     }
   }
 
-  /// Wraps around where a damaged key would overflow.
+  /// Wraps around instead of overflowing on a damaged key.
   static nano::Coord shifted(const nano::Coord& origin, const nano::Coord& local, int edge) {
     const auto sum = [&](int axis) {
       return static_cast<std::int32_t>(static_cast<std::uint32_t>(origin[axis]) +
@@ -123,7 +123,7 @@ class NanoGrid {
     int begin = 0, end = 0;  ///< voxels of the box
   };
 
-  /// The part of a node along one axis that lies in the box.
+  /// The part of a node along one axis inside the box.
   static Interval overlap(int node, int edge, int first, int count) {
     const long long begin = static_cast<long long>(node) - first;
     return {static_cast<int>(std::clamp<long long>(begin, 0, count)),
@@ -191,7 +191,7 @@ class NvdbFile {
     fail("no grid \"" + name + "\"; the file holds " + names);
   }
 
-  /// What the sidecar says of a grid; dims 0 where it says nothing.
+  /// The sidecar's description of a grid; dims 0 if there is none.
   DenseVolume description(const GridEntry& entry) const {
     const auto found = std::find_if(sidecar_.begin(), sidecar_.end(), [&](const DenseVolume& volume) {
       return volume.info.quantity == entry.name;

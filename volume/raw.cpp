@@ -15,13 +15,13 @@ namespace {
 
 constexpr char kOrder[] = "x fastest, then y, then z";
 
-/// A volume without values and how they lie in the file.
+/// A volume without values, and their layout in the file.
 struct Described {
   DenseVolume volume;
   VoxelType type = VoxelType::uint8;
   bool big_endian = false;
   std::uint64_t offset = 0;  ///< of the first voxel
-  bool has_range = false;    ///< the header says the range
+  bool has_range = false;    ///< the header has the range
 };
 
 std::string textOf(const fs::path& path) {

@@ -1,4 +1,4 @@
-/// Volumes as bare voxels: .raw with a JSON header beside it or its layout in its name, and .dat.
+/// Volumes as bare voxels: .raw with a JSON sidecar as header or the layout in the file name, and .dat.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace emscape::volume {
 
-/// What a .raw file without a header does not say. Voxels lie x fastest, then y, then z.
+/// Layout of a .raw file without a header. Voxels are stored x fastest, then y, then z.
 struct RawLayout {
   Dims dims;
   VoxelType type = VoxelType::uint8;
@@ -26,7 +26,7 @@ void writeRaw(const std::filesystem::path& path, const DenseVolume& volume);
 std::optional<RawLayout> rawLayoutFromName(const std::filesystem::path& path);
 
 /// Reads a .raw file: by its header PATH.json if there is one, else by the layout in its name.
-/// @throws Error (bad_input), among others when the file's size is not the layout's
+/// @throws Error (bad_input), among others if the file's size does not match the layout
 DenseVolume readRaw(const std::filesystem::path& path);
 
 /// Reads a .raw file without a header. The floor is 0, the range that of the values.
@@ -35,7 +35,7 @@ DenseVolume readRaw(const std::filesystem::path& path, const RawLayout& layout);
 /// Reads a .dat file: three little-endian uint16 sizes, then uint16 voxels.
 DenseVolume readDat(const std::filesystem::path& path);
 
-/// What a file holds, without its values. @throws Error (bad_input)
+/// The volume without its values. @throws Error (bad_input)
 DenseVolume describeRaw(const std::filesystem::path& path);
 DenseVolume describeDat(const std::filesystem::path& path);
 

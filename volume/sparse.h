@@ -1,4 +1,4 @@
-/// When a sparse grid is too sparse to be made dense. Internal to the module.
+/// Limit of sparseness for conversion to a dense volume. Internal to the module.
 #pragma once
 
 #include "emscape/volume/dense_volume.h"
@@ -8,13 +8,13 @@ namespace emscape::volume {
 /// A file of another program may be so sparse that the box of its active voxels is huge. Beyond kAlwaysDense
 /// voxels the active ones must fill at least one in kSparsest, else the file is more likely damaged than
 /// sparse.
-/// @throws Error (bad_input) at `place`
-inline void checkSparseness(const Dims& dims, std::uint64_t active, const SourceLocation& place) {
+/// @throws Error (bad_input) at `location`
+inline void checkSparseness(const Dims& dims, std::uint64_t active, const SourceLocation& location) {
   constexpr long long kAlwaysDense = 1LL << 27;
   constexpr std::uint64_t kSparsest = 1000;
-  checkDims(dims, place);
+  checkDims(dims, location);
   if (dims.count() > kAlwaysDense && static_cast<std::uint64_t>(dims.count()) / kSparsest > active) {
-    throw Error(ErrorCode::bad_input, place,
+    throw Error(ErrorCode::bad_input, location,
                 "the box of the active voxels holds " + std::to_string(dims.count()) +
                     " voxels, of which only " + std::to_string(active) +
                     " are active: too sparse to be made dense");

@@ -1,4 +1,4 @@
-/// The voxels of a sparse volume as a GPU samples them. Plain data.
+/// The voxels of a sparse volume, for sampling on a GPU. Plain data.
 #pragma once
 
 #include "emscape/base/host_device.h"
@@ -6,7 +6,7 @@
 
 namespace emscape::volume {
 
-/// A block of 8 x 8 x 8 voxels: a leaf of a NanoVDB grid, or what the grid says of all of them.
+/// A block of 8 x 8 x 8 voxels: a leaf of a NanoVDB grid, or one value for all of them.
 struct alignas(16) SparseBlock {
   static constexpr int kEdgeBits = 3;
 
@@ -14,7 +14,8 @@ struct alignas(16) SparseBlock {
   float constant = 0;
 };
 
-/// All blocks of a volume, x fastest: each voxel is two steps away, where the grid's tree takes four.
+/// All blocks of a volume, x fastest: a voxel needs two memory accesses instead of the four of the grid's
+/// tree.
 class SparseVoxels {
  public:
   EMSCAPE_HD SparseVoxels(const SparseBlock* blocks, const Dims& dims)

@@ -13,9 +13,8 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Folds every layer of a volume by itself, in parallel, and then the layers in their order: the result
-/// cannot depend on the threads. visit(part, value, masked) is called for each voxel; part += other joins
-/// two.
+/// Reduces every layer of a volume in parallel, and then the layers in order, so that the result does not
+/// depend on the threads. Calls visit(part, value, masked) for each voxel; part += other joins two.
 template <class Part, class Visit>
 Part foldLayers(const DenseVolume& volume, const Part& start, const Visit& visit) {
   const Dims& dims = volume.grid.dims;

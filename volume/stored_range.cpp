@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Changes the JSON beside a volume file.
+/// Changes the JSON sidecar of a volume file.
 /// @param describe  finds the description of a quantity in the document; null if there is none
 template <class Describe>
 void setRangeInSidecar(const fs::path& path, const std::vector<StoredRange>& ranges,
@@ -72,7 +72,7 @@ void setVdbRange(const fs::path& path, const std::vector<StoredRange>& ranges) {
   const std::vector<std::uint8_t> bytes = readWhole(path);
   ByteReader reader(path.string(), bytes.data(), bytes.size());
   const VdbHeader header = readVdbHeader(reader);
-  if (!header.has_offsets) reader.fail("the file does not say where its grids lie");
+  if (!header.has_offsets) reader.fail("the file has no offsets of its grids");
   std::vector<FilePatch> patches;
   for (int grid = 0; grid < header.grid_count; ++grid) {
     const VdbDescriptor descriptor = readVdbDescriptor(reader, header);

@@ -10,7 +10,7 @@ void setNvdbRange(const std::filesystem::path& path, const std::vector<StoredRan
 void setVtiRange(const std::filesystem::path& path, const std::vector<StoredRange>& ranges);
 void setRawRange(const std::filesystem::path& path, const std::vector<StoredRange>& ranges);
 
-/// @throws Error (bad_input) for a quantity that a file does not hold
+/// @throws Error (bad_input) for a quantity that is not in the file
 [[noreturn]] void failNoSuchQuantity(const std::filesystem::path& path, const std::string& quantity);
 
 }  // namespace emscape::volume

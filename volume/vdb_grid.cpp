@@ -61,7 +61,7 @@ class GridFiller {
             std::min(kEdge, dims.z - origin.z())};
   }
 
-  /// Null where no voxel of the block is active.
+  /// Null if no voxel of the block is active.
   std::unique_ptr<Leaf> makeLeaf(const Block& block) const {
     std::unique_ptr<Leaf> leaf;
     for (int k = 0; k < block.nz; ++k) {
@@ -78,7 +78,7 @@ class GridFiller {
     return leaf;
   }
 
-  /// All active and of the same bits, so that a tile says as much.
+  /// True if all voxels are active with the same bits, so that a tile can replace the leaf.
   static bool isConstant(const Leaf& leaf) {
     if (!leaf.getValueMask().isOn()) return false;
     const Value* values = leaf.buffer().data();
@@ -92,8 +92,8 @@ class GridFiller {
 };
 
 openvdb::math::Transform::Ptr transformOf(const Grid& grid) {
-  // A transform made from a whole map is simplified, which costs the spacing its last bits; one that is put
-  // together is not.
+  // OpenVDB simplifies a transform made from one map, which changes the last bits of the spacing; it does not
+  // simplify one that is composed.
   auto transform = openvdb::math::Transform::createLinearTransform();
   transform->preScale(openvdb::Vec3d(grid.spacing_m.x, grid.spacing_m.y, grid.spacing_m.z));
   transform->postTranslate(
@@ -140,11 +140,11 @@ void initializeOpenVdb() {
   openvdb::initialize();
 }
 
-openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const SourceLocation& place) {
+openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const SourceLocation& location) {
   initializeOpenVdb();
   openvdb::GridBase::Ptr grid;
   if (volume.info.categorical) {
-    const std::vector<std::int32_t> indices = toIndices(volume, place);
+    const std::vector<std::int32_t> indices = toIndices(volume, location);
     grid =
         GridFiller<openvdb::Int32Grid>(volume, indices.data(), static_cast<std::int32_t>(volume.info.floor))
             .run();

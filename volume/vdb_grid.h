@@ -7,11 +7,11 @@
 
 namespace emscape::volume {
 
-/// Makes OpenVDB ready; may be called often.
+/// Initialises OpenVDB; may be called repeatedly.
 void initializeOpenVdb();
 
 /// A FloatGrid, or an Int32Grid for a categorical volume, with metadata as in vdb.h.
-/// @throws Error (bad_input) at `place` for categorical values that are no indices
-openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const SourceLocation& place);
+/// @throws Error (bad_input) at `location` for categorical values that are not indices
+openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const SourceLocation& location);
 
 }  // namespace emscape::volume

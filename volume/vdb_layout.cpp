@@ -14,8 +14,8 @@ constexpr char kHalfSuffix[] = "_HalfFloat";
 
 enum Compression : std::uint32_t { kZip = 1, kActiveMask = 2, kBlosc = 4 };
 
-/// How a node's inactive values are kept, as the byte before its values says: they are the background or its
-/// negative, other values that stand there, or by a mask the one or the other; or nothing is left out.
+/// Storage of a node's inactive values, from the byte before its values: the background or its negative,
+/// other given values, or one of two by a mask; or all values are stored.
 enum ValueKind : std::int8_t {
   kBackground = 0,
   kMinusBackground = 1,
@@ -93,7 +93,7 @@ class TreeWalk {
     for (std::uint64_t i = 0; i < children; ++i) internalNode(kLowerLog2);
   }
 
-  /// The values of a node, of which inactive ones may be left out.
+  /// The values of a node; inactive ones may be left out.
   void values(int log2, const std::uint8_t* value_mask) {
     const auto kind = reader_.value<std::int8_t>("kind of a node's values");
     if (kind < 0 || kind > kAllValues)
@@ -115,7 +115,7 @@ class TreeWalk {
       return;
     }
     const auto stored = reader_.value<std::int64_t>("size of voxels");
-    if (stored <= 0) {  // not worth compressing: as they are, the size negated
+    if (stored <= 0) {  // stored uncompressed, with the negated size
       if (static_cast<std::uint64_t>(-(stored + 1)) + 1 != bytes) {
         reader_.fail("a buffer of " + std::to_string(stored) + " bytes where " + std::to_string(bytes) +
                      " are needed");
@@ -127,7 +127,7 @@ class TreeWalk {
     if ((compression_ & kBlosc) != 0) checkBlosc(begin, static_cast<std::uint64_t>(stored), bytes);
   }
 
-  /// Blosc believes its own header, so it has to agree with what stands around it.
+  /// Blosc trusts its own header, so it must agree with the sizes around it.
   void checkBlosc(const std::uint8_t* begin, std::uint64_t stored, std::uint64_t bytes) {
     ByteReader header(reader_.file(), begin, stored);
     header.take(4, "compressed voxels");
@@ -220,7 +220,7 @@ VdbMetadata readVdbMetadata(ByteReader& reader) {
     const std::string key = reader.text("name of metadata");
     VdbMetaValue value;
     value.type = reader.text("type of metadata");
-    value.offset = reader.position() + sizeof(std::uint32_t);  // behind the length
+    value.offset = reader.position() + sizeof(std::uint32_t);  // after the length
     value.bytes = reader.text("metadata");
     metadata[key] = std::move(value);
   }

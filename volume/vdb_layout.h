@@ -1,6 +1,6 @@
-/// How a .vdb file lies on the disk, walked byte by byte before OpenVDB reads it: OpenVDB trusts the sizes in
-/// a file, so that a damaged one makes it write beyond its buffers or allocate without end. Internal to the
-/// module; free of OpenVDB.
+/// Check of a .vdb file's layout on the disk, byte by byte, before OpenVDB reads it: OpenVDB trusts the sizes
+/// in a file, so that a damaged one makes it write beyond its buffers or allocate without limit. Internal to
+/// the module; free of OpenVDB.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace emscape::volume {
 
-/// Where a file's identifier lies, a UUID as text.
+/// Position of a file's identifier, a UUID as text.
 constexpr int kVdbUuidOffset = 21, kVdbUuidBytes = 36;
 
 struct VdbHeader {
@@ -21,23 +21,23 @@ struct VdbHeader {
   int grid_count = 0;
 };
 
-/// Reads the header and the file's own metadata; what follows are the grids.
-/// @throws Error (bad_input) for what is no .vdb file, or one of a version before 222 (OpenVDB 1.0) or after
+/// Reads the header and the file's own metadata; the grids follow.
+/// @throws Error (bad_input) for a file that is not .vdb, or of a version before 222 (OpenVDB 1.0) or after
 /// 224
 VdbHeader readVdbHeader(ByteReader& reader);
 
 struct VdbDescriptor {
-  std::string unique_name;      ///< grids of one name differ in a suffix that people do not see
-  std::string name;             ///< as people see it: "density" or "density[1]"
+  std::string unique_name;      ///< with a hidden suffix that distinguishes grids of one name
+  std::string name;             ///< for display: "density" or "density[1]"
   std::string type;             ///< for example Tree_float_5_4_3
   std::string instance_parent;  ///< unique name of the grid whose tree this one shares; empty: it has its own
   bool half = false;            ///< floating-point values are stored in 16 bits
-  std::uint64_t end = 0;        ///< offset of what follows the grid; 0 where the file has no offsets
+  std::uint64_t end = 0;        ///< offset of the end of the grid; 0 if the file has no offsets
 };
 
 VdbDescriptor readVdbDescriptor(ByteReader& reader, const VdbHeader& header);
 
-/// One value of a grid's metadata as it lies in the file.
+/// Position of one value of a grid's metadata in the file.
 struct VdbMetaValue {
   std::string type;
   std::string bytes;

@@ -129,7 +129,7 @@ class VdbFile {
   std::vector<GridEntry> entries_;
 };
 
-/// What the metadata say; a file of another program leaves dims 0 and most else at its default.
+/// The metadata; a file of another program leaves dims 0 and most other values at their defaults.
 DenseVolume volumeOf(const GridEntry& entry) {
   const VdbMetadata& metadata = entry.metadata;
   const auto text = [&](const char* key) { return metaText(metadata, std::string("emscape:") + key); };
@@ -154,7 +154,7 @@ DenseVolume volumeOf(const GridEntry& entry) {
   if (const auto dims = metaInts(metadata, "emscape:dims")) {
     volume.grid.dims = {dims->x, dims->y, dims->z};
     checkDims(volume.grid.dims, {});
-    // Two statements that agree: a damaged one must not make us allocate for it.
+    // Both values must agree, so that a damaged one does not cause an allocation.
     if (number("voxel_count") != static_cast<double>(volume.grid.dims.count())) {
       throw Error(ErrorCode::bad_input, "emscape:voxel_count is not the product of emscape:dims");
     }
@@ -224,7 +224,7 @@ bool makeDense(const openvdb::GridBase& base, const GridEntry& entry, const VdbF
   if (isOurs(volume) && !active.empty() && !boxOf(volume.grid.dims).isInside(active)) {
     logWarning(
         who +
-        ": its active voxels lie outside the dims in its metadata, which another program must have kept; "
+        ": its active voxels are outside the dims in its metadata, which another program must have copied; "
         "it is read as that program's");
     volume = DenseVolume();
     volume.info.quantity = entry.descriptor.name;
@@ -247,13 +247,13 @@ bool makeDense(const openvdb::GridBase& base, const GridEntry& entry, const VdbF
   return true;
 }
 
-/// Names the file in whatever goes wrong inside, OpenVDB's exceptions and exhausted memory included.
+/// Adds the file's name to all errors, OpenVDB's exceptions and exhausted memory included.
 template <class Body>
 auto withFileNamed(const std::filesystem::path& path, const Body& body) {
   try {
     return body();
   } catch (const Error& error) {
-    if (!error.place().file.empty()) throw;
+    if (!error.location().file.empty()) throw;
     throw Error(error.code(), {path.string()}, error.message());
   } catch (const std::exception& error) {
     throw Error(ErrorCode::bad_input, {path.string()},

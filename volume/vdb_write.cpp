@@ -14,7 +14,7 @@ namespace emscape::volume {
 namespace {
 
 /// Writes to our own stream, which throws: OpenVDB's File does not notice a full disk. Unlike OpenVDB's
-/// Stream it says where each grid lies, so that readers need not load them all.
+/// Stream it writes the grids' offsets, so that readers need not load them all.
 class SeekableArchive : public openvdb::io::Archive {
  public:
   void writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids) const {
@@ -24,7 +24,7 @@ class SeekableArchive : public openvdb::io::Archive {
   }
 };
 
-/// Two FNV-1a sums with different beginnings, eight bytes at a time.
+/// Two FNV-1a sums with different offset bases, eight bytes at a time.
 class ContentHash {
  public:
   void add(const void* data, std::size_t bytes) {
@@ -37,7 +37,7 @@ class ContentHash {
     }
   }
 
-  /// A UUID of version 8, whose other bits its maker chooses (RFC 9562).
+  /// A UUID of version 8, whose other bits are free (RFC 9562).
   std::string uuid() const {
     char text[kVdbUuidBytes + 1];
     std::snprintf(text, sizeof text, "%08x-%04x-8%03x-%04x-%012llx", static_cast<unsigned>(sums_[0] >> 32),
@@ -51,8 +51,8 @@ class ContentHash {
   std::uint64_t sums_[2] = {14695981039346656037U, 0x9e3779b97f4a7c15U};
 };
 
-/// OpenVDB gives each file a random identifier; this one follows from the volumes, so that the same volumes
-/// are the same file. Their range does not enter it: setStoredRange() changes it later.
+/// OpenVDB gives each file a random identifier; this one is computed from the volumes, so that equal volumes
+/// give equal files. Their range is left out: setStoredRange() changes it later.
 std::string identifierOf(const std::vector<const DenseVolume*>& volumes) {
   ContentHash hash;
   for (const DenseVolume* volume : volumes) {

@@ -31,7 +31,7 @@ int checkedInt(const Json& json, long long greatest) {
       json.is_number_integer() && !(json.is_number_unsigned() && json.get<std::uint64_t>() > INT32_MAX);
   const long long value = whole ? json.get<long long>() : -1;
   if (value < 0 || value > greatest) {
-    throw Error(ErrorCode::bad_input, json.dump() + " is no whole number 0.." + std::to_string(greatest));
+    throw Error(ErrorCode::bad_input, json.dump() + " is not a whole number 0.." + std::to_string(greatest));
   }
   return static_cast<int>(value);
 }

@@ -1,4 +1,4 @@
-/// What a volume is, all but its values, as JSON: the header of raw files, the sidecar of .nvdb, field data
+/// A volume without its values as JSON: the header of raw files, the sidecar of .nvdb, field data
 /// of .vti. Internal to the module.
 #pragma once
 
@@ -10,19 +10,18 @@
 
 namespace emscape::volume {
 
-/// Grid and info; the mask as "first_valid_k" where `with_mask` and there is one.
+/// Grid and info; the mask as "first_valid_k" if `with_mask` and there is one.
 nlohmann::ordered_json toJson(const DenseVolume& volume, bool with_mask);
 
-/// A volume without values. Keys that are missing keep their defaults, all but dims. "voxels", if there, must
-/// agree with them: whoever allocates for dims that a damaged file states should not find that out
-/// afterwards.
+/// A volume without values. Missing keys have their defaults, except dims, which is required. "voxels", if
+/// present, must agree with dims, so that a damaged file is detected before memory is allocated.
 /// @throws Error (bad_input) that names file and key
 DenseVolume fromJson(const nlohmann::ordered_json& json, const std::string& file);
 
 /// @throws Error (bad_input) with line and column
 nlohmann::ordered_json parseJson(const std::string& text, const std::string& file);
 
-/// Numbers, and infinities and NaN, which JSON has not, as text.
+/// Numbers; infinities and NaN, which JSON does not have, as text.
 nlohmann::ordered_json numberToJson(double value);
 
 /// The member of a JSON object, which must be there and of the type; @throws Error (bad_input)
@@ -38,7 +37,7 @@ Value requiredFromJson(const nlohmann::ordered_json& json, const char* key, cons
 /// Indented text that ends in a newline; bytes that are not UTF-8 are replaced.
 std::string dumpJson(const nlohmann::ordered_json& json);
 
-/// NAME.raw.json beside NAME.raw, NAME.nvdb.json beside NAME.nvdb.
+/// The sidecar's name: NAME.raw.json for NAME.raw, NAME.nvdb.json for NAME.nvdb.
 std::filesystem::path sidecarOf(const std::filesystem::path& path);
 
 }  // namespace emscape::volume

@@ -11,7 +11,7 @@ namespace emscape::volume {
 
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// As in file names and headers, for example "uint8".
+/// Name in file names and headers, for example "uint8".
 const char* toString(VoxelType type);
 std::optional<VoxelType> voxelTypeFromName(const std::string& name);
 /// All names, with commas between them.

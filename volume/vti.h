@@ -1,9 +1,9 @@
 /// Volumes as VTK image data (.vti) and series of them (.pvd), for ParaView and the like.
 ///
-/// Point data at the voxels' centres: one array a quantity, named by it, Float32, or Int32 for categorical
-/// ones; appended raw, little endian. Masked voxels are 0 in a UInt8 array `valid`, which there is where a
-/// volume has a mask (`valid:NAME` for each quantity where their masks differ). Field data: TimeValue, and
-/// for each quantity a string `emscape:NAME` which holds as JSON what the volume is.
+/// Point data at the voxels' centres: one array per quantity, named by it, Float32, or Int32 for categorical
+/// ones; appended raw, little endian. Masked voxels are 0 in a UInt8 array `valid`, present if a volume has a
+/// mask (`valid:NAME` for each quantity if their masks differ). Field data: TimeValue, and for each quantity
+/// a string `emscape:NAME` with the description of the volume as JSON.
 #pragma once
 
 #include <filesystem>
@@ -17,14 +17,14 @@ namespace emscape::volume {
 /// Writes volumes of one grid. @throws Error
 void writeVti(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes);
 
-/// Reads an array: one that writeVti() wrote exactly; of another program the point data, or the cell data if
-/// there are none, of one component, in binary form (appended or inline, raw or base64, as it is or
+/// Reads an array: one that writeVti() wrote exactly; for another program the point data, or the cell data if
+/// there are none, of one component, in binary form (appended or inline, raw or base64, uncompressed or
 /// compressed with zlib).
 /// @param array_name  empty: the first
-/// @throws Error (bad_input), which lists the file's arrays where it has none of that name
+/// @throws Error (bad_input), which lists the file's arrays if none has that name
 DenseVolume readVti(const std::filesystem::path& path, const std::string& array_name = "");
 
-/// What each array holds, without values and mask.
+/// The arrays without values and mask.
 std::vector<DenseVolume> describeVti(const std::filesystem::path& path);
 
 /// A step of a series.
@@ -33,11 +33,11 @@ struct PvdEntry {
   std::filesystem::path file;
 };
 
-/// Writes the list of a series' files, whole or not at all: it may be written anew after each step. Files
-/// below the list's folder are named relative to it.
+/// Writes the list of a series' files, atomically: it may be rewritten after each step. Files below the
+/// list's folder are named relative to it.
 void writePvd(const std::filesystem::path& path, const std::vector<PvdEntry>& entries);
 
-/// The files of a series, found from the list's folder. @throws Error (bad_input)
+/// The files of a series, relative to the list's folder. @throws Error (bad_input)
 std::vector<PvdEntry> readPvd(const std::filesystem::path& path);
 
 }  // namespace emscape::volume

@@ -36,7 +36,7 @@ std::string extentText(const Dims& dims) {
          std::to_string(dims.z - 1);
 }
 
-/// VTK writes texts as the numbers of their characters, with a zero at the end.
+/// VTK writes texts as character codes, with a zero at the end.
 std::string characterNumbers(const std::string& text) {
   std::string numbers;
   for (const char character : text) numbers += std::to_string(static_cast<unsigned char>(character)) + " ";
@@ -63,13 +63,13 @@ void checkVolumes(const std::filesystem::path& path, const std::vector<const Den
     if (volume->grid != volumes.front()->grid) {
       throw Error(ErrorCode::bad_input, {path.string()},
                   "the volumes " + volumes.front()->info.quantity + " and " + volume->info.quantity +
-                      " lie on different grids; a .vti file has one");
+                      " are on different grids; a .vti file has one");
     }
   }
 }
 
-/// What a volume is, as its array in the field data says it. Blanks at the end make the length the same for
-/// every range, so that setVtiRange() can replace the text where it lies.
+/// Description of a volume for its array in the field data. Blanks at the end make the length independent of
+/// the range, so that setVtiRange() can replace the text in place.
 std::string descriptionText(const Json& description) {
   constexpr std::size_t kMaxRangeCharacters =
       4 * 2 * 24;  // two doubles, up to four characters for each of theirs

@@ -25,13 +25,14 @@ int digitOf(std::uint8_t character) {
   return -1;
 }
 
-/// Decodes from the first digit to what is none. VTK encodes a header and the data behind it by themselves,
-/// so that padding may stand in the middle; it ends a group of four like any other.
-/// @param most  stops when that many bytes are there
-std::vector<std::uint8_t> fromBase64(const std::uint8_t* begin, const std::uint8_t* end, std::uint64_t most) {
+/// Decodes up to the first character that is not a digit. VTK encodes a header and the data after it
+/// separately, so that padding may occur in the middle; it ends a group of four.
+/// @param max_bytes  stops when that many bytes are there
+std::vector<std::uint8_t> fromBase64(const std::uint8_t* begin, const std::uint8_t* end,
+                                     std::uint64_t max_bytes) {
   std::vector<std::uint8_t> bytes;
   const auto* at = std::find_if(begin, end, [](std::uint8_t character) { return digitOf(character) >= 0; });
-  for (; end - at >= 4 && bytes.size() < most; at += 4) {
+  for (; end - at >= 4 && bytes.size() < max_bytes; at += 4) {
     std::uint32_t group = 0;
     int digits = 0;
     while (digits < 4 && digitOf(at[digits]) >= 0)
@@ -122,16 +123,16 @@ std::vector<std::uint8_t> VtkXmlFile::inflate(ByteReader& reader, std::uint64_t 
   return bytes;
 }
 
-/// What stands for an array in the file, decoded from base64.
+/// The bytes of an array in the file, decoded from base64.
 std::vector<std::uint8_t> VtkXmlFile::storedBytes(const pugi::xml_node& array,
                                                   std::uint64_t expected_bytes) const {
   // Compression and its tables cannot make an array much longer.
-  const std::uint64_t most = expected_bytes + expected_bytes / 8 + (1 << 16);
+  const std::uint64_t max_bytes = expected_bytes + expected_bytes / 8 + (1 << 16);
   const std::string_view format = array.attribute("format").value();
   if (format == "binary") {
     const std::string_view text = array.child_value();
     const auto* begin = reinterpret_cast<const std::uint8_t*>(text.data());
-    return fromBase64(begin, begin + text.size(), most);
+    return fromBase64(begin, begin + text.size(), max_bytes);
   }
   if (format != "appended") {
     fail("array " + std::string(array.attribute("Name").value()) + " is stored as \"" + std::string(format) +
@@ -144,10 +145,10 @@ std::vector<std::uint8_t> VtkXmlFile::storedBytes(const pugi::xml_node& array,
   const std::uint8_t* begin = bytes_.data() + appended_ + offset;
   const std::uint8_t* end = bytes_.data() + bytes_.size();
   const std::string_view encoding = root_.child("AppendedData").attribute("encoding").value();
-  if (encoding == "base64") return fromBase64(begin, end, most);
+  if (encoding == "base64") return fromBase64(begin, end, max_bytes);
   if (encoding != "raw")
     fail("appended data in encoding \"" + std::string(encoding) + "\"; raw and base64 can be read");
-  return {begin, begin + std::min<std::uint64_t>(most, static_cast<std::uint64_t>(end - begin))};
+  return {begin, begin + std::min<std::uint64_t>(max_bytes, static_cast<std::uint64_t>(end - begin))};
 }
 
 std::vector<std::uint8_t> VtkXmlFile::arrayBytes(const pugi::xml_node& array,
@@ -156,7 +157,7 @@ std::vector<std::uint8_t> VtkXmlFile::arrayBytes(const pugi::xml_node& array,
   if (!compressor.empty() && compressor != "vtkZLibDataCompressor") {
     fail("compressed with " + compressor + "; vtkZLibDataCompressor can be read");
   }
-  // zlib shrinks a thousandfold at most, so a file cannot hold more.
+  // zlib compresses by a factor of about 1000 at most, so that the file cannot contain more.
   if (expected_bytes / 1100 > bytes_.size()) {
     fail("truncated: an array of " + std::to_string(expected_bytes) + " bytes in a file of " +
          std::to_string(bytes_.size()));

@@ -12,7 +12,8 @@ namespace emscape::volume {
 
 class VtkXmlFile {
  public:
-  /// @throws Error (bad_input) for what is no VTK XML file of the type (such as ImageData), or is not whole
+  /// @throws Error (bad_input) for a file that is not VTK XML of the type (such as ImageData), or is not
+  /// complete
   VtkXmlFile(const std::filesystem::path& path, const char* type);
 
   /// The element VTKFile.
@@ -23,9 +24,9 @@ class VtkXmlFile {
   /// @param expected_bytes  any other number is an Error, before anything is allocated for it
   std::vector<std::uint8_t> arrayBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
 
-  /// An array of the image's field data in text form; empty where there is none.
+  /// An array of the image's field data in text form; empty if there is none.
   std::string fieldText(const std::string& name) const;
-  /// Where a text of the head begins in the file. @throws Error (bad_input) unless it is there
+  /// Position of a text of the head in the file. @throws Error (bad_input) unless it is there
   std::uint64_t headOffsetOf(const std::string& text) const;
 
   [[noreturn]] void fail(const std::string& what) const;

@@ -1,11 +1,10 @@
-/// emscape bench: measures.
+/// emscape bench: benchmarks.
 #include "apps/emscape/bench.h"
 
 namespace emscape::app {
 
 void addBench(CLI::App& app, const GlobalOptions& global, Action& action) {
-  CLI::App* bench =
-      app.add_subcommand("bench", "Measure speed, and what interpolated pixels cost in accuracy");
+  CLI::App* bench = app.add_subcommand("bench", "Measure speed, and the error of interpolated pixels");
   bench->fallthrough();
   bench->require_subcommand(1);
   addBenchField(*bench, global, action);

@@ -30,7 +30,7 @@ struct BenchFieldOptions {
   std::vector<std::string> emitters;  ///< that move and turn; empty: all
 };
 
-/// Indices of the emitters that an option names. @throws Error (usage) for a name that the scenario lacks
+/// Indices of the emitters that an option names. @throws Error (usage) for an unknown name
 std::vector<std::size_t> chosenEmitters(const scenario::Scenario& scenario,
                                         const std::vector<std::string>& names) {
   std::vector<std::size_t> chosen;
@@ -64,13 +64,13 @@ Measured mediansOf(const std::vector<Measured>& runs) {
   };
   return {of([](const Measured& run) { return run.update_ms; }),
           {of([](const Measured& run) { return run.stages.fan_ms; }),
-           of([](const Measured& run) { return run.stages.plane_ms; }),
+           of([](const Measured& run) { return run.stages.excess_ms; }),
            of([](const Measured& run) { return run.stages.combine_ms; }),
            of([](const Measured& run) { return run.stages.product_ms; })}};
 }
 
 /// Moves an emitter north by more than the solver's tolerance, and back at the next call: it stays near its
-/// place.
+/// position.
 void move(scenario::EmitterState& emitter, double tolerance_m, int repeat) {
   constexpr double kMetresPerDegree = 111000;
   const double shift_deg = 2 * tolerance_m / kMetresPerDegree;
@@ -158,7 +158,7 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
                {"repeats", options.repeats},
                {"stages_ms",
                 {{"fan", moved.stages.fan_ms},
-                 {"plane", moved.stages.plane_ms},
+                 {"plane", moved.stages.excess_ms},
                  {"combine", moved.stages.combine_ms},
                  {"product", moved.stages.product_ms}}},
                {"update_ms",
@@ -176,8 +176,8 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
   print("device {} ({} threads), grid {} x {} x {}, {} emitters, medians of {}\n\n", device, threadCount(),
         dims.x, dims.y, dims.z, emitters, options.repeats);
   print("stages, all emitters moved (ms)\n");
-  print("  fan      {:10.2f}\n  plane    {:10.2f}\n  combine  {:10.2f}\n  product  {:10.2f}\n\n",
-        moved.stages.fan_ms, moved.stages.plane_ms, moved.stages.combine_ms, moved.stages.product_ms);
+  print("  fan      {:10.2f}\n  excess   {:10.2f}\n  combine  {:10.2f}\n  product  {:10.2f}\n\n",
+        moved.stages.fan_ms, moved.stages.excess_ms, moved.stages.combine_ms, moved.stages.product_ms);
   print("update (ms)\n");
   print("  all moved     {:10.2f}\n  one moved     {:10.2f}\n  beams turned  {:10.2f}\n\n", moved.update_ms,
         one_moved.update_ms, turned.update_ms);
@@ -196,9 +196,9 @@ void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action)
   CLI::App* command = bench.add_subcommand("field", "Time the stages of the field computation");
   command->fallthrough();
   command->footer(R"(
-all moved: every emitter is shifted a little more than the tolerance, so that its terrain fan and planes are computed anew;
-one moved: the first emitter alone; beams turned: only the beams change. --emitters: these alone move and turn, the others rest. Voxel-emitters per second: voxels times emitters over
-the time of the combine stage with all moved.
+all moved: every emitter is shifted by more than the tolerance, so that its terrain fan and excess are recomputed; one moved: only the
+first emitter; beams turned: only the beams change. --emitters: only these move and turn, the others are static. Voxel-emitters per
+second: voxels times emitters over the time of the combine stage with all moved.
 
 Example:
   emscape bench field scenarios/jacksboro.yaml --threads 2 --json
@@ -206,7 +206,7 @@ Example:
   auto options = std::make_shared<BenchFieldOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
-  command->add_option("--repeats", options->repeats, "Updates of each kind, of which the median is told")
+  command->add_option("--repeats", options->repeats, "Updates of each kind; the median is reported")
       ->check(CLI::Range(1, 1000));
   addListOption(*command, "--emitters", options->emitters,
                 "Names of the emitters that move and turn, with commas between them; default: all");

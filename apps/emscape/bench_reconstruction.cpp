@@ -1,4 +1,4 @@
-/// emscape bench reconstruction: what interpolated pixels save, and what they cost in accuracy.
+/// emscape bench reconstruction: time saved by interpolated pixels, and their error.
 #include <fmt/core.h>
 
 #include <array>
@@ -27,7 +27,7 @@ struct BenchReconstructionOptions {
   std::vector<std::string> rays;
   double tolerance_levels = render::kDefaultTolerance_levels;
   int frames = 20;
-  int repeats = 0;  ///< 0: as the processor wants it
+  int repeats = 0;  ///< 0: default of the processor
 };
 
 /// Differences of many pictures, as means over them.
@@ -45,7 +45,7 @@ class MeanDifference {
     square_sum_ += std::pow(10.0, -difference.psnr_db / 10);
   }
 
-  /// Of largest errors the mean over the pictures, cut to an integer.
+  /// Mean over the pictures of the largest errors, truncated to an integer.
   std::array<int, 4> max() const {
     std::array<int, 4> cut{};
     for (std::size_t c = 0; c < 4; ++c) cut[c] = max_sum_[c] / pictures_;
@@ -90,7 +90,7 @@ struct Measured {
   bool isFull() const { return plan.pattern == Pattern::full; }
 };
 
-/// Every pattern with every interpolation that it knows, the full one first.
+/// Every pattern with each of its interpolations, the full one first.
 std::vector<Measured> plansFor(const BenchReconstructionOptions& options) {
   std::vector<Pattern> patterns;
   for (const std::string& name : options.rays) patterns.push_back(render::parsePattern(name));
@@ -108,7 +108,7 @@ std::vector<Measured> plansFor(const BenchReconstructionOptions& options) {
 
 class ReconstructionBench {
  public:
-  /// @param repeats  so often each view is drawn in each way, of which the median counts
+  /// @param repeats  draws of each view in each way; the median is reported
   ReconstructionBench(BenchScene& scene, std::vector<Measured> plans, int repeats)
       : scene_(scene), plans_(std::move(plans)), repeats_(repeats) {}
 
@@ -116,7 +116,7 @@ class ReconstructionBench {
   double pixels() const { return pixels_; }
   double pixelsInBox() const { return pixels_in_box_; }
 
-  /// Adaptive rays need some frames until they keep to their share.
+  /// Adaptive rays need some frames to converge to their limit.
   void warmUp() {
     constexpr int kFrames = 6;
     render::FrameReport report;
@@ -126,7 +126,7 @@ class ReconstructionBench {
     }
   }
 
-  /// Draws one view in every way, in turn, so that what disturbs the machine disturbs all of them.
+  /// Draws one view in every way, in turn, so that other load of the machine affects all of them.
   void measureView(double angle_deg) {
     scene_.turnTo(angle_deg);
     const render::RayLoad all = scene_.loadOf(render::sourceLattices(Pattern::full, scene_.size()));
@@ -221,8 +221,8 @@ int benchReconstruction(const BenchReconstructionOptions& options, const GlobalO
   std::vector<Measured> plans = plansFor(options);
   const std::unique_ptr<BenchScene> opened = openBenchScene(options.scene, global);
   BenchScene& scene = *opened;
-  // Between frames that are compared a GPU sends pictures, and finds less of the volume in its cache than
-  // between frames that are shown.
+  // Between compared frames a GPU transfers pictures, and its cache then holds less of the volume than
+  // between displayed frames.
   const int repeats = options.repeats > 0 ? options.repeats : scene.onGpu() ? 3 : 1;
   ReconstructionBench bench(scene, std::move(plans), repeats);
   {
@@ -262,18 +262,17 @@ void addBenchReconstruction(CLI::App& bench, const GlobalOptions& global, Action
   command->footer(R"(
 The camera goes once around the volume in as many views as there are frames; each view is drawn in every way in turn. Ratios are
 medians over the views. Errors are those of 8-bit levels against the full picture of the same view: max, the mean over the views
-cut to an integer; mean, per erroneous pixel; err %, erroneous pixels to pixels that are not all zero. That restoring gives the
-full picture, bit by bit, is checked in every view (exit status 5).
+truncated to an integer; mean, per erroneous pixel; err %, erroneous pixels to pixels that are not all zero. Every view checks that
+restoring gives the full picture, bit by bit (exit status 5).
 
 Example:
   emscape bench reconstruction scenarios/eme_200.yaml --transfer scenarios/transfer/paper.json --frames 100 --mode mida)");
   auto options = std::make_shared<BenchReconstructionOptions>();
   addBenchSceneOptions(*command, options->scene);
   addListOption(*command, "--rays", options->rays,
-                "Patterns beside the full one, with commas between them; default: all");
+                "Patterns besides the full one, separated by commas; default: all");
   addToleranceOption(*command, options->tolerance_levels);
-  command->add_option("--frames", options->frames, "Views, after one to warm up")
-      ->check(CLI::Range(1, 100000));
+  command->add_option("--frames", options->frames, "Views, after a warm-up")->check(CLI::Range(1, 100000));
   command
       ->add_option(
           "--repeats", options->repeats,

@@ -1,4 +1,4 @@
-/// emscape bench render: how long one frame takes.
+/// emscape bench render: time of one frame.
 #include <fmt/core.h>
 
 #include <memory>
@@ -21,7 +21,7 @@ struct BenchRenderOptions {
   int frames = 20;
 };
 
-/// As it looks before black.
+/// Composited on black.
 render::Image8 onBlack(const render::Image& image) {
   render::Image8 picture = render::quantize(image);
   for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
@@ -80,7 +80,7 @@ void addBenchRender(CLI::App& bench, const GlobalOptions& global, Action& action
   CLI::App* command = bench.add_subcommand("render", "Time frames of a volume");
   command->fallthrough();
   command->footer(R"(
-One view, drawn again and again; nothing is kept from frame to frame but what belongs to the volume and the colours. Samples are
+One view, drawn repeatedly; only data of the volume and the colours are kept between frames. Samples are
 the positions on all rays of a full picture between the faces of the volume's box, whether they are taken or not; samples per
 second: those over the median time.
 
@@ -92,9 +92,9 @@ Example:
   command->add_option("--interpolate", options->interpolate,
                       "Precision of interpolated pixels: float or 8bit");
   addToleranceOption(*command, options->tolerance_levels);
-  command->add_option("--frames", options->frames, "Frames that are timed, after one to warm up")
+  command->add_option("--frames", options->frames, "Timed frames, after a warm-up")
       ->check(CLI::Range(1, 100000));
-  command->add_option("--picture", options->picture, "NAME.png: writes the frame, before black");
+  command->add_option("--picture", options->picture, "NAME.png: writes the frame, on black");
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchRender(*options, global); }; });
 }

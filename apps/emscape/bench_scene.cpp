@@ -34,7 +34,7 @@ render::TransferFunction functionFor(const volume::VolumeInfo& info, const std::
   return render::parseTransferFunction(kPaperTransfer, "scenarios/transfer/paper.json", info);
 }
 
-/// A camera carried clockwise, as seen from above, about the vertical through its target.
+/// A camera rotated clockwise, as seen from above, about the vertical through its target.
 render::CameraSpec turned(render::CameraSpec spec, double angle_deg) {
   if (spec.kind == render::CameraSpec::Kind::orbit) {
     spec.azimuth_deg = std::remainder(spec.azimuth_deg + angle_deg, 360.0);
@@ -63,7 +63,7 @@ Json triple(const Vec3d& v) {
   return {v.x, v.y, v.z};
 }
 
-/// Among drawn positions, as render::Camera has it.
+/// In drawn coordinates, as in render::Camera.
 Json cameraJson(const render::Camera& camera) {
   return {
       {"projection", camera.projection == render::Projection::perspective ? "perspective" : "orthographic"},
@@ -166,12 +166,12 @@ void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
       ->required();
   addSetOption(command, options.selection.edits);
   command.add_option("--size", options.size, "Picture size in pixels, WxH");
-  command.add_option("--mode", options.mode, "How samples become a pixel, as for render");
+  command.add_option("--mode", options.mode, "Compositing mode, as for render");
   command.add_option("--step", options.step_voxels, "Distance of samples, in voxels")
       ->check(CLI::Range(0.05, 10.0));
   command.add_option("--mida-gamma", options.mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
       ->check(CLI::Range(-1.0, 1.0));
-  command.add_flag("--exact", options.exact, "No early end of rays");
+  command.add_flag("--exact", options.exact, "No early termination of rays");
   command.add_flag("!--no-skip", options.skip_empty, "Sample empty bricks too");
   command.add_option("--camera", options.camera, "As for render");
   command.add_option("--transfer", options.transfer,

@@ -1,4 +1,4 @@
-/// What the benches of the renderer draw: one volume, alone, from views around it.
+/// Scene of the renderer's benchmarks: one volume, without ground, from views around it.
 #pragma once
 
 #include <memory>
@@ -30,11 +30,11 @@ struct BenchSceneOptions {
 void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options);
 void addToleranceOption(CLI::App& command, double& tolerance_levels);
 
-/// How long something took.
+/// A measured time.
 struct Duration {
-  double ms = 0;  ///< by the clock of the processor that cast: events of a GPU, on the CPU the wall's
+  double ms = 0;  ///< by events on a GPU, by wall clock on the CPU
   double wall_ms = 0;
-  double cpu_ms = 0;  ///< of all threads together; on busy cores the steadier of the two
+  double cpu_ms = 0;  ///< of all threads; on a loaded machine less noisy than ms
 };
 
 /// A scene that is ready to be drawn. No ground, no labels.
@@ -47,13 +47,13 @@ class BenchScene {
   bool onGpu() const { return target_.onGpu(); }
   const render::Renderer& renderer() const { return renderer_; }
 
-  /// Turns the camera about the vertical through its target, away from where the option put it. What was
-  /// computed for the view before is not used again, even if it is the same.
+  /// Turns the camera about the vertical through its target, relative to the option's camera. Results of the
+  /// previous view are not reused, even if it is the same.
   void turnTo(double angle_deg);
-  /// The picture stays where it was cast.
+  /// The picture stays in the memory of the processor.
   Duration draw(const render::FramePlan& plan, render::FrameReport& report);
   Duration restore();
-  /// What was drawn or restored last.
+  /// The last picture drawn or restored.
   render::Image image() {
     render::Image image;
     renderer_.fetch(image);
@@ -63,9 +63,9 @@ class BenchScene {
   /// Work of a set of pixels in this view.
   render::RayLoad loadOf(const std::vector<render::Lattice>& pixels) const;
 
-  /// What was drawn and how: device, threads, volume, size, mode, step_voxels, ...
+  /// Description of the scene: device, threads, volume, size, mode, step_voxels, ...
   Json json() const;
-  /// The same in a line.
+  /// The same on one line.
   std::string summary() const;
 
  private:
@@ -79,7 +79,7 @@ class BenchScene {
   render::Renderer renderer_;
 };
 
-/// Opened where --backend says. @throws Error (usage, bad_input, device)
+/// Opened on the processor of --backend. @throws Error (usage, bad_input, device)
 std::unique_ptr<BenchScene> openBenchScene(const BenchSceneOptions& options, const GlobalOptions& global);
 
 }  // namespace emscape::app

@@ -1,4 +1,4 @@
-/// emscape bench view: how fast the window answers.
+/// emscape bench view: response times of the window.
 #include <fmt/core.h>
 #include <unistd.h>
 
@@ -29,10 +29,10 @@ struct BenchViewOptions {
   std::string size = "1200x900";
   double idle_s = 10;
   bool share_gpu = false;
-  std::string log;  ///< kept there; empty: not kept
+  std::string log;  ///< file for the log; empty: not kept
 };
 
-/// A folder that is gone with the object.
+/// A temporary folder, removed with the object.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -70,7 +70,7 @@ double quantileOf(std::vector<double> values, double part) {
                          static_cast<std::size_t>(part * static_cast<double>(values.size())))];
 }
 
-/// Null where nothing was measured.
+/// Null if nothing was measured.
 Json medianJson(const std::vector<double>& values) {
   return values.empty() ? Json() : Json(medianOf(values));
 }
@@ -166,25 +166,25 @@ int benchView(const BenchViewOptions& options, const GlobalOptions& global) {
 }  // namespace
 
 void addBenchView(CLI::App& bench, const GlobalOptions& global, Action& action) {
-  CLI::App* command = bench.add_subcommand("view", "Measure how fast the window answers");
+  CLI::App* command = bench.add_subcommand("view", "Measure the window's response times");
   command->fallthrough();
   command->footer(R"(
-Opens the window on the display and drives it with a script of half a minute to some minutes: the camera turns, single inputs,
-inputs in the middle of a restoration, the power of the first emitter changed, seeking, nothing at all. All times are those of
-the window's log (--log): from the input to the frame that shows it. A frame of the user interface: its events, panels and drawing
-commands; "with the display": until the display, or the software renderer, has taken it.
+Opens the window on the display and runs a script of half a minute to some minutes: a turning camera, single inputs, inputs
+during a restoration, a change of the first emitter's power, seeking, an idle phase. All times are from the window's log (--log): from
+the input to the frame that shows it. A frame of the user interface: its events, panels and drawing commands; "with the display":
+until the display, or the software renderer, has finished.
 
 Example:
   emscape bench view scenarios/jacksboro.yaml)");
   auto options = std::make_shared<BenchViewOptions>();
   command->add_option("input", options->input, "Scenario or volumes")->required();
   addSetOption(*command, options->edits);
-  command->add_option("--size", options->size, "Of the window, WIDTHxHEIGHT")->capture_default_str();
-  command->add_option("--idle", options->idle_s, "Seconds in which nothing is done")
+  command->add_option("--size", options->size, "Size of the window, WIDTHxHEIGHT")->capture_default_str();
+  command->add_option("--idle", options->idle_s, "Seconds of the idle phase")
       ->check(CLI::Range(1.0, 600.0))
       ->capture_default_str();
   command->add_flag("--share-gpu", options->share_gpu, "As of 'emscape view'");
-  command->add_option("--log", options->log, "Keep the window's log in this file");
+  command->add_option("--log", options->log, "Write the window's log to this file");
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchView(*options, global); }; });
 }

@@ -104,8 +104,8 @@ void addCheck(CLI::App& app, const GlobalOptions& global, Action& action) {
       app.add_subcommand("check", "Compare the propagation models with a folder of reference figures");
   command->fallthrough();
   command->footer(R"(
-Every dataset in the folder that is known by name is run: its largest difference from the reference is shown beside what
-is allowed. Datasets that no model answers to, that are absent or that are unknown are named and passed over.
+Runs every known dataset of the folder and shows its largest difference from the reference and the tolerance. Datasets without a
+model, absent and unknown datasets are listed and skipped.
 
 Examples:
   emscape check reference
@@ -114,7 +114,7 @@ Examples:
 Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not or none was run, 3 for a file that
 is malformed.)");
   auto dir = std::make_shared<std::string>();
-  command->add_option("DIR", *dir, "Folder of datasets, one a folder")->required();
+  command->add_option("DIR", *dir, "Folder of datasets, one per folder")->required();
   command->callback([dir, &global, &action] { action = [dir, &global] { return check(*dir, global); }; });
 }
 

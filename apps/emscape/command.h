@@ -1,4 +1,4 @@
-/// What the subcommands share: the global options and how a subcommand joins the parser.
+/// Global options, and registration of the subcommands with the parser.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -20,15 +20,14 @@ struct GlobalOptions {
   bool quiet = false;
 };
 
-/// An option with several values, with commas between them: what follows a blank may be the subcommand's
+/// An option with several values, with commas between them: a word after a blank may be the subcommand's
 /// input.
 inline CLI::Option* addListOption(CLI::App& command, const std::string& name,
                                   std::vector<std::string>& values, const std::string& description) {
   return command.add_option(name, values, description)->delimiter(',')->allow_extra_args(false);
 }
 
-/// What the program offers its user after an error, in parentheses and with a blank before; empty for
-/// Hint::none.
+/// The option that a hint proposes, as " (...)"; empty for Hint::none.
 std::string optionText(Hint hint);
 
 /// --set PATH=VALUE, which may be given several times. @throws Error (usage) when it is parsed, for a text
@@ -38,7 +37,7 @@ void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits);
 /// --compare original|FILE. @param what  the command makes, for the help
 void addCompareOption(CLI::App& command, std::string& compare, const std::string& what);
 /// --plane, which may be given several times; replaces what `planes` holds. @throws Error (usage) when it is
-/// parsed, for a text that is no plane and for too many
+/// parsed, for a text that is not a plane and for too many
 void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes);
 
 /// Runs the subcommand that was chosen; returns the exit status.

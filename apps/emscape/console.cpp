@@ -24,7 +24,7 @@ constexpr std::chrono::seconds kProgressInterval(10);
 std::mutex console_mutex;
 std::string shown_line;  // the progress line on the screen; empty if there is none
 
-/// What erases the progress line.
+/// The text that erases the progress line.
 std::string clearLine() {
   return shown_line.empty() ? "" : "\r\033[K";
 }
@@ -53,7 +53,8 @@ void installLog(const GlobalOptions& global) {
 }
 
 void openStandardStreams() {
-  // Opened the wrong way round: whoever reads or writes is told, and the next open() takes another number.
+  // Opened for the opposite direction, so that reading or writing fails, and so that the next open() gets
+  // another number.
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
     static_cast<void>(::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
@@ -140,7 +141,7 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
   struct Kind {
     std::string form;  // the text with '#' for each number
     std::vector<std::string> emitters;
-    std::vector<std::vector<std::string>> numbers;  // by place in the text, one per emitter
+    std::vector<std::vector<std::string>> numbers;  // by position in the text, one per emitter
   };
   std::vector<Kind> kinds;
   for (const std::string& warning : warnings) {

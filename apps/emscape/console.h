@@ -18,8 +18,8 @@ using Json = nlohmann::ordered_json;
 /// Sends the libraries' messages to standard error: warnings always, the rest unless --quiet.
 void installLog(const GlobalOptions& global);
 
-/// Gives the program three usable standard streams, whatever it was started with: a closed one is opened so
-/// that no other file takes its number, and so that writing to it fails. To be called first.
+/// Opens standard streams that are closed at the start, so that no other file gets their numbers and writing
+/// to them fails. To be called first.
 void openStandardStreams();
 
 /// Writes text to standard output, which carries the result. @throws Error (other) if it cannot be written
@@ -33,16 +33,15 @@ void printJson(const Json& result);
 /// Flushes standard output. @throws Error (other) if any part of the result could not be written
 void finishResult();
 
-/// Writes text to standard error. A message that cannot be written is lost: the work goes on.
+/// Writes text to standard error. A message that cannot be written is dropped.
 void writeMessage(const std::string& text);
 template <class... Arguments>
 void printMessage(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   writeMessage(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-/// Tells on standard error what is being done, how far it is and how long it will take: on a terminal in a
-/// line that is rewritten, with log lines above it; elsewhere in a line every ten seconds. Not with --quiet.
-/// One thread uses it.
+/// Reports the work, its progress and the remaining time on standard error: on a terminal in a line that is
+/// rewritten, below the log; elsewhere in one line every ten seconds. Not with --quiet. One thread uses it.
 class Progress {
  public:
   Progress(const GlobalOptions& global, std::string task);
@@ -60,13 +59,14 @@ class Progress {
   const bool on_terminal_;
   const bool visible_;
   const Clock::time_point start_;
-  Clock::time_point told_;  // the last line that stays
+  Clock::time_point told_;  // of the last line that is not rewritten
 };
 
-/// A Progress for the work of a library: a new one for each step that it names. Kept by the sink.
+/// A progress sink for a library: a new Progress for each step. Owned by the sink.
 ProgressSink progressSink(const GlobalOptions& global);
 
-/// Logs warnings. Those that differ only in the emitter and in numbers become one that names all of them.
+/// Logs warnings. Warnings that differ only in the emitter and in numbers are merged into one that names all
+/// emitters.
 void logWarnings(const std::vector<std::string>& warnings);
 /// The lines of logWarnings().
 std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings);

@@ -1,4 +1,4 @@
-/// emscape info: what a file holds.
+/// emscape info: contents of a file.
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
@@ -133,7 +133,7 @@ Json describeElevation(const std::string& file) {
 }
 
 Json describeAntenna(const std::string& file) {
-  // A CSV grid holds a shape alone: its gain stands in the scenario.
+  // A CSV grid contains only a shape: its gain is in the scenario.
   const bool has_gain = file.size() < 4 || file.substr(file.size() - 4) != ".csv";
   const scenario::AntennaPtr antenna =
       scenario::readAntenna(file, has_gain ? std::numeric_limits<double>::quiet_NaN() : 0.0);
@@ -192,8 +192,7 @@ int info(const std::string& file, const GlobalOptions& global) {
 }  // namespace
 
 void addInfo(CLI::App& app, const GlobalOptions& global, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("info", "Say what a scenario, volume, elevation or antenna file holds");
+  CLI::App* command = app.add_subcommand("info", "Describe a scenario, volume, elevation or antenna file");
   command->fallthrough();
   command->footer(R"(
 Scenarios: .yaml .yml .json. Volumes: .vdb .nvdb .vti .raw .dat; series: .pvd or a folder (its first step is described).

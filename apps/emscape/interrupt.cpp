@@ -16,7 +16,7 @@ void onSignal(int signal) {
 
 void catchSignal(int signal) {
   struct sigaction before {};
-  // nohup and shells in the background ignore some for their children: these stay ignored.
+  // Signals that are ignored at the start (nohup, background jobs) stay ignored.
   if (sigaction(signal, nullptr, &before) != 0 || before.sa_handler == SIG_IGN) return;
   struct sigaction action {};
   action.sa_handler = onSignal;

@@ -6,7 +6,7 @@
 namespace emscape::app {
 
 /// Makes the first SIGINT, SIGTERM or SIGHUP set stopFlag(); a second one ends the program at once. A signal
-/// that the program was started to ignore stays ignored.
+/// that is ignored at the start stays ignored.
 void catchInterrupts();
 
 /// Set once the user wants the program to stop.

@@ -1,4 +1,4 @@
-/// Links over hills of many sizes, the same in every run: what the benchmarks of ITM compute.
+/// Links over synthetic hills, the same in every run, for the benchmarks of ITM.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace emscape::bench {
 
 struct ItmCases {
   int intervals = 0;
-  std::vector<float> heights_msl_m;  ///< `intervals` + 1 a case
+  std::vector<float> heights_msl_m;  ///< `intervals` + 1 per case
   std::vector<propagation::ItmLink<double>> links;
 
   const float* profile(std::size_t i) const {
@@ -35,7 +35,7 @@ inline ItmCases makeItmCases(int count, int intervals) {
       }
     }
     cases.heights_msl_m.insert(cases.heights_msl_m.end(), heights.begin(), heights.end());
-    // numbers that a float holds exactly, so that both kinds compute the same link
+    // values that are exact in float, so that float and double compute the same link
     propagation::ItmLink<double> link;
     link.height_agl_m[0] = static_cast<float>(5 + 100 * uniform(random));
     link.height_agl_m[1] = static_cast<float>(2 + 50 * uniform(random));

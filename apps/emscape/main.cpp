@@ -24,10 +24,10 @@ Examples:
   emscape info out/jacksboro_0001.vdb --json
 
 Exit status: 0 done, 1 another error, 2 usage, 3 bad input, 4 device, 5 a check failed,
-128 + N stopped by signal N (130 after Ctrl-C; finished files stay).)";
+128 + N stopped by signal N (130 after Ctrl-C; finished files are kept).)";
 
 void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
-  app.add_option("--backend", global.backend, "Where to compute: auto, cpu or cuda")
+  app.add_option("--backend", global.backend, "Processor: auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
       ->capture_default_str();
   app.add_option("--threads", global.threads, "Threads to use; 0: one per core")
@@ -62,7 +62,7 @@ int run(const Action& action) {
     finishResult();
     return status;
   } catch (const playback::Stopped&) {
-    printMessage("emscape: stopped by signal {}; finished files stay\n", caughtSignal());
+    printMessage("emscape: stopped by signal {}; finished files are kept\n", caughtSignal());
     return 128 + caughtSignal();
   } catch (const Error& error) {
     return fail(error.code(), error.what() + optionText(error.hint()));
@@ -88,7 +88,7 @@ int parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
-/// What this program is and what it can compute with.
+/// The program's version and devices.
 std::string versionText() {
   std::string text = std::string("emscape ") + kVersion;
   const std::string cuda = cudaOfBuild();
@@ -128,7 +128,7 @@ int emscapeMain(int argc, char** argv) {
   if (const int status = parse(app, argc, argv); status >= 0) return status;
   installLog(global);
   setThreadLimit(global.threads);
-  std::signal(SIGPIPE, SIG_IGN);  // a reader that went away is an error of the write, told like any other
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as an error of the write
   catchInterrupts();
   return run(action);
 }

@@ -25,14 +25,15 @@ constexpr double kEffectiveEarth_m = 6371000 * 4.0 / 3;
 constexpr double kProfileLength_m = 60e3;
 constexpr double kFrequencies_hz[] = {1e8, 1e9, 1e10};
 
-/// CPU time of the calling thread: other load on the machine does not count.
+/// CPU time of the calling thread, independent of other load on the machine.
 double cpuTime_s() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// CPU time (s) of the fastest run. The sum of the results is kept, so that the compiler cannot drop any.
+/// CPU time (s) of the fastest run. The results are summed, so that the compiler cannot remove the
+/// computation.
 template <class Run>
 double fastest_s(int repeats, Run run) {
   double fastest = HUGE_VAL;

@@ -1,4 +1,4 @@
-/// emscape profile: why there is, or is not, coverage at a point.
+/// emscape profile: explains the coverage at a point.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -71,8 +71,8 @@ int emitterNamed(const Scenario& scenario, const std::string& name) {
               fmt::format("--emitter: no emitter '{}' in {}; it has {}", name, scenario.file, known));
 }
 
-/// The scenario with a platform at the point, the last one: ground is read below it and its height is checked
-/// as any platform's.
+/// The scenario with a platform at the point, the last one: its ground is read and its height checked as for
+/// any platform.
 std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenario::SitePosition& point) {
   auto result = std::make_shared<Scenario>(scenario);
   scenario::Platform platform;
@@ -126,18 +126,18 @@ int profile(const ProfileOptions& options, const GlobalOptions& global) {
 
 void addProfile(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "profile", "Why is there no coverage here? The path from an emitter to a point, term by term");
+      "profile", "Explain the coverage at a point: the path from an emitter, term by term");
   command->fallthrough();
   command->footer(R"(
-Prints how the path lies, what of the terrain stands in its way, every term of the budget from the transmitter's power to
-what arrives, and a sentence that says what decides. HEIGHT is in metres above mean sea level (EGM96), with --agl above the ground.
+Prints the geometry of the path, the obstacles, every term of the budget from the transmitter's power to the power density at the
+point, and a sentence with the dominant cause. HEIGHT is in metres above mean sea level (EGM96), with --agl above the ground.
 
 Examples:
   emscape profile scenarios/jacksboro.yaml --emitter "search radar" --to 36.35,-84.25,900 --plot path.png
   emscape profile scenarios/jacksboro.yaml --emitter jammer --time 80 --to 36.249,-84.147,10 --agl --model diffraction,free_space
   emscape profile scenarios/jacksboro.yaml --emitter "search radar" --to 36.35,-84.25,900 --json
 
-Exit status: 0, whether there is coverage or not; 2 for an emitter or a point that is not one; 3 for a point below the ground
+Exit status: 0, whether there is coverage or not; 2 for an invalid emitter or point; 3 for a point below the ground
 or a path over missing terrain.)");
   auto options = std::make_shared<ProfileOptions>();
   std::vector<std::string> names;
@@ -148,7 +148,7 @@ or a path over missing terrain.)");
   command->add_option("--to", options->to, "The point: LAT,LON,HEIGHT (deg, deg, m)")->required();
   command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
   command->add_flag("--agl", options->above_ground, "HEIGHT is above the ground");
-  addListOption(*command, "--model", options->models, "Models to compare the emitter's own with")
+  addListOption(*command, "--model", options->models, "Models to compare with the emitter's model")
       ->check(CLI::IsMember(names));
   command->add_option("--plot", options->plot, "Draw the path into a file, .png or .svg")
       ->check([](const std::string& file) {

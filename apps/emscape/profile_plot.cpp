@@ -77,7 +77,7 @@ class ProfilePlot {
   double bulgeAt(double range_m) const {
     return range_m * (profile_.range_m - range_m) / (2 * profile_.effective_earth_radius_m);
   }
-  /// Of a height above mean sea level over a range.
+  /// Position in the plot of a height above mean sea level at a range.
   Point2 at(double range_m, double height_msl_m) const {
     return {frame_.x + frame_.width * range_m / profile_.range_m,
             frame_.y + frame_.height * (top_m_ - height_msl_m - bulgeAt(range_m)) / (top_m_ - bottom_m_)};
@@ -91,7 +91,7 @@ class ProfilePlot {
             {frame_.x, frame_.y + frame_.height}};
   }
 
-  /// What is shown: all of the ground, the zone and the masts, with room above for words.
+  /// Limits of the plot: ground, zone and masts, with room above for labels.
   void setScale() {
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
     for (int i = 0; i < profile_.count(); ++i) {
@@ -140,7 +140,7 @@ class ProfilePlot {
                  kText, Align::center, Weight::normal, -kPi / 2);
   }
 
-  /// A line of equal height, as far as it lies within the frame.
+  /// A line of equal height, clipped to the frame.
   void drawLevel(double height_msl_m, const Ink& ink, double width) {
     constexpr int kPieces = 100;
     std::vector<Point2> line;
@@ -159,7 +159,7 @@ class ProfilePlot {
     const double pixels_per_m = frame_.height / (top_m_ - bottom_m_);
     std::vector<Point2> rim;
     for (int i = -kPieces; i <= kPieces; ++i) {
-      // there above the ray, and back below it; closer together at the ends, where it is round
+      // forward above the ray, back below it; denser at the ends, where the curvature is large
       const double part = (1 - std::cos(kPi * (1 - std::abs(double(i)) / kPieces))) / 2;
       const double radius_m = std::sqrt(wavelength() * profile_.range_m * part * (1 - part));
       const Point2 on_ray = begin + (end - begin) * part;
@@ -199,7 +199,7 @@ class ProfilePlot {
                              end.height_msl_m - groundAt(post))});
   }
 
-  /// A title and a remark over whatever stands at their place.
+  /// A title and a remark, drawn over the plot.
   void label(double x, Align align, const Ink& ink, const std::array<std::string, 2>& words) {
     const double row = 20 * unit_, gap = 12 * unit_;
     const double width = std::max(canvas_.textBox(words[0], 15 * unit_, Weight::bold).width,
@@ -296,7 +296,7 @@ class ProfilePlot {
   double unit_;  ///< pixels of the picture in one of an 1200 x 800 one
   Rect frame_;
   double bottom_m_ = 0, top_m_ = 0;  ///< over the chord between the ends' sea levels
-  std::vector<Rect> labels_;         ///< places taken by words
+  std::vector<Rect> labels_;         ///< areas of labels
 };
 
 }  // namespace

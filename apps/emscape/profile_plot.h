@@ -11,8 +11,8 @@ namespace emscape::app {
 /// True for names that plotProfile can write: .png and .svg.
 bool isPlotFile(const std::string& file);
 
-/// Heights are drawn over the effective earth, so that the ray is straight and sea level curves. The file
-/// appears whole or not at all.
+/// Heights are drawn over the effective earth, so that the ray is straight and sea level curves. The file is
+/// written atomically.
 /// @throws Error (other) naming the file
 void plotProfile(const emfield::PathBudget& budget, render::ImageSize size, const std::string& file);
 

@@ -99,8 +99,8 @@ void printBudget(const PathBudget& budget) {
   print("\nBudget by '{}': {}\n", toString(budget.model), budget.excess.why);
   for (const BudgetTerm& term : budget.terms) {
     const bool is_sum = term.kind == BudgetTerm::Kind::sum;
-    print("{} {:<48} {:>9} {:<8} {}\n", is_sum ? " =" : "  ", term.label, valueText(term.value), term.unit,
-          term.note);
+    print("{} {:<48} {:>9} {:<8} {}\n", is_sum ? " =" : "  ", term.label, valueText(term.value),
+          std::isinf(term.value) ? "" : term.unit, term.note);
   }
 }
 

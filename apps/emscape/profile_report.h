@@ -1,4 +1,4 @@
-/// What `emscape profile` prints: a table for people, JSON for programs.
+/// Output of `emscape profile`: a table or JSON.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace emscape::app {
 
-/// The path by another model, or why that model has no answer.
+/// The path by another model, or the reason of its refusal.
 struct Comparison {
   propagation::PropagationModel model = propagation::PropagationModel::free_space;
   std::string refusal;  ///< empty: the budget holds

@@ -20,7 +20,7 @@ Json optionalJson(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// What the totals say, counted once.
+/// The totals.
 struct Totals {
   int busy = 0, late = 0;
   int restores_done = 0, restores_aborted = 0;

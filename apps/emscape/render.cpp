@@ -39,7 +39,7 @@ using playback::RealTimeLoop;
 using playback::RealTimeOptions;
 using playback::ViewState;
 
-/// Those that a view has, too, count only where they are given; viewOf() has their defaults.
+/// Options that are also in a view have an effect only if given; viewOf() has their defaults.
 struct RenderOptions {
   const CLI::App* command = nullptr;
   playback::FrameSelection selection;
@@ -77,8 +77,8 @@ struct RenderOptions {
   std::string device_volume = "float";
 };
 
-/// What is drawn: the view of --state, or the default one, with the options that are given. They are read
-/// here, so that wrong ones are told before anything is computed.
+/// The view to draw: that of --state, or the default one, with the given options. They are parsed here, so
+/// that errors are reported before anything is computed.
 ViewState viewOf(const RenderOptions& options) {
   ViewState view = options.state.empty() ? ViewState{} : playback::readViewState(options.state);
   const auto isGiven = [&options](const char* name) { return options.command->count(name) > 0; };
@@ -147,12 +147,12 @@ Sinks openSinks(const RenderOptions& options, const PictureStyle& style, const F
   return sinks;
 }
 
-/// What is drawn, and who draws it; the first frame is set.
+/// The source and the painter; the first frame is set.
 struct Stage {
   ComputeTarget target;
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<Painter> painter;
-  std::optional<playback::ValueRange> range;  ///< of the series, as far as it was looked at
+  std::optional<playback::ValueRange> range;  ///< of the searched steps of the series
 };
 
 Stage openStage(const playback::FrameSelection& selection, const RenderOptions& options,
@@ -169,7 +169,7 @@ Stage openStage(const playback::FrameSelection& selection, const RenderOptions& 
   });
 }
 
-/// Writes what --save-state asks for: the view, with the colours that were fitted to the first frame.
+/// Writes the file of --save-state: the view, with the colours that were fitted to the first frame.
 void saveState(const RenderOptions& options, ViewState view, const Stage& stage) {
   if (options.save_state.empty()) return;
   view.time_s = stage.source->time_s(0);
@@ -188,7 +188,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   const ViewState view = viewOf(options);
   const PictureStyle style = styleOf(view, options);
   const std::string mode = render::toString(view.settings.mode);
-  // Files are not in a hurry: `auto` casts every pixel.
+  // For files `auto` casts every pixel.
   const render::FramePlan plan{
       options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays),
       render::parseInterpolation(options.interpolate)};
@@ -230,7 +230,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
 
 RealTimeOptions realTimeOptionsOf(const RenderOptions& options) {
   RealTimeOptions loop;
-  constexpr double kBudget_ms = 40;  // the paper's bound of real time
+  constexpr double kBudget_ms = 40;  // the paper's limit for real time
   loop.frames_per_s = options.frames_per_s.value_or(1000 / options.budget_ms.value_or(kBudget_ms));
   loop.speed = options.speed;
   loop.duration_s = options.duration_s;
@@ -256,7 +256,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   constexpr int kSeveral = 2;
   const Sinks sinks = openSinks(options, style, *source, kSeveral, loop_options.frames_per_s);
 
-  // Long enough for the moments when packing lags behind.
+  // Long enough for delays of the encoder.
   constexpr long long kWaitingBytes = 256LL << 20;
   BackgroundWriter writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * style.size.count()))));
   int number = 0;
@@ -302,15 +302,15 @@ void addRealTimeOptions(CLI::App& command, RenderOptions& options) {
   const auto add = [&](const char* name, auto& value, const char* help) {
     return command.add_option(name, value, help)->needs(realtime);
   };
-  add("--speed", options.speed, "Scenario seconds in a second")->check(CLI::Range(1e-3, 1e3));
+  add("--speed", options.speed, "Scenario seconds per second")->check(CLI::Range(1e-3, 1e3));
   add("--duration", options.duration_s, "Seconds of playing; default: the whole series")
       ->check(CLI::Range(0.0, 1e6));
-  add("--budget", options.budget_ms, "Milliseconds between two pictures; default: as --fps says, else 40")
+  add("--budget", options.budget_ms, "Milliseconds between two pictures; default: from --fps, else 40")
       ->check(CLI::Range(1.0, 1e5));
   add("--epsilon", options.epsilon_ms,
       "Milliseconds without a change before the picture is made exact; default: measured")
       ->check(CLI::Range(0.0, 1e6));
-  add("--orbit-rate", options.orbit_rate_deg_s, "Degrees a second that the camera goes round")
+  add("--orbit-rate", options.orbit_rate_deg_s, "Rotation of the camera (degrees per second)")
       ->check(CLI::Range(-360.0, 360.0));
   command
       .add_flag("--verify", options.verify,
@@ -324,8 +324,8 @@ void addRender(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand("render", "Draw a scenario or volumes: pictures, video");
   command->fallthrough();
   command->footer(R"(
-A scenario is computed and drawn without files between. Volumes are drawn as they are; --scenario adds the ground and the
-emitters of the scenario that they came from.
+A scenario is computed and drawn without intermediate files. For volumes, --scenario adds the ground and the emitters of their
+scenario.
 
 Examples:
   emscape render scenarios/jacksboro.yaml -o now.png --times 30
@@ -347,11 +347,11 @@ Examples:
       "--state", options->state,
       "View file: camera, colours, time, edits and the rest; options that are given count more");
   command->add_option("--save-state", options->save_state,
-                      "Write what is drawn as a view file; --output may then be left out");
+                      "Write the view as a view file; --output may then be omitted");
   command->add_option("-o,--output", options->outputs,
                       "NAME.png, NAME.mp4 or a folder for frames; may be given several times");
   command->add_option("--size", options->size, "Picture size in pixels, WxH; default: 1280x720");
-  command->add_option("--mode", options->mode, "How samples become a pixel; default: dvr")
+  command->add_option("--mode", options->mode, "Compositing mode; default: dvr")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
   command->add_option("--rays", options->rays, "Pixels that are cast, the rest interpolated; auto: all")
       ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter", "adaptive"}));
@@ -368,7 +368,7 @@ Examples:
   command->add_option("--quantity", options->quantity, "Quantity or channel to draw; default: the first");
   command->add_option("--range", options->range, "MIN:MAX of the colours; default: the range of the series");
   command->add_option("--scenario", options->selection.scenario,
-                      "Scenario whose ground and emitters are drawn with volumes");
+                      "Scenario of the ground and emitters to draw with volumes");
   command
       ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
       ->check(CLI::Range(0.0, 100.0));
@@ -381,14 +381,14 @@ Examples:
                       "Value of the isosurface, in the quantity's unit; default: the middle of the colours");
   command->add_option("--iso-opacity", options->iso_opacity, "Opacity of the isosurface")
       ->check(CLI::Range(0.0, 1.0));
-  command->add_flag("--shading", options->shading, "Light on the fog of dvr and mida; iso always has it");
+  command->add_flag("--shading", options->shading, "Shading of dvr and mida; iso is always shaded");
   command->add_option("--theme", options->theme, "Background and labels; default: dark")
       ->check(CLI::IsMember({"dark", "light"}));
   command
       ->add_option("--fps", options->frames_per_s,
-                   "Frames a second of a video (default 10); with --realtime: at most so many are shown")
+                   "Frames per second of a video (default 10); with --realtime: the maximum")
       ->check(CLI::Range(0.1, 240.0));
-  command->add_flag("--exact", options->exact, "No early end of rays");
+  command->add_flag("--exact", options->exact, "No early termination of rays");
   command->add_option("--terrain", options->show_terrain, "Draw the ground: on or off");
   command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off");
   command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,

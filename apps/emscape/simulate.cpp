@@ -44,14 +44,13 @@ playback::SeriesOptions seriesOptionsOf(const SimulateOptions& options) {
   return series;
 }
 
-/// @throws Error (usage) if the folder holds a series and no option says what is to become of it
+/// @throws Error (usage) if the folder has a series and neither --resume nor --overwrite is given
 void checkFolderIsFree(const SimulateOptions& options) {
   if (options.resume || options.force) return;
   if (const std::optional<playback::SeriesStatus> found = playback::findSeries(options.folder)) {
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("{} holds a series ({} of {} steps); --resume goes on with it, --force begins anew",
-                    options.folder, found->finished_steps, found->steps));
+    throw Error(ErrorCode::usage,
+                fmt::format("{} holds a series ({} of {} steps); --resume continues it, --force replaces it",
+                            options.folder, found->finished_steps, found->steps));
   }
 }
 
@@ -64,7 +63,7 @@ Json rangesToJson(const playback::SeriesResult& result) {
   return ranges;
 }
 
-/// Makes the series one of differences.
+/// Changes the series to differences.
 void compare(playback::FieldSeries& series, const SimulateOptions& options) {
   const bool with_original = options.compare == playback::kOriginal;
   const std::string& file = with_original ? options.scenario : options.compare;
@@ -120,8 +119,8 @@ void addSimulate(CLI::App& app, const GlobalOptions& global, Action& action) {
       app.add_subcommand("simulate", "Compute a scenario's field over time and write it as volumes");
   command->fallthrough();
   command->footer(R"(
-Every volume states the value range of the whole series. Each step is computed once; while the work goes on, files state the
-range so far. The folder also holds series.json, what was asked for, and series.steps, which steps are done.
+Every volume has the value range of the whole series. Each step is computed once; until the end, files have the range so far. The
+folder also contains series.json, the description of the series, and series.steps, the finished steps.
 
 Examples:
   emscape simulate scenarios/jacksboro.yaml -o out
@@ -132,7 +131,8 @@ Examples:
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
   addCompareOption(*command, options->compare, "Write");
-  command->add_option("-o,--output", options->folder, "Folder of the series; made if need be")->required();
+  command->add_option("-o,--output", options->folder, "Folder of the series; created if necessary")
+      ->required();
   addListOption(*command, "--format", options->formats,
                 "File formats, with commas between them: vdb, nvdb, vti, raw")
       ->check(CLI::IsMember(playback::writableFormats()));
@@ -143,11 +143,10 @@ Examples:
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
   command->add_option("--range", options->range,
                       "MIN:MAX of the series if it is known: files state it from the beginning");
-  command->add_flag("--resume", options->resume, "Go on with the series that the folder holds");
-  command->add_flag("--force", options->force, "Begin anew in a folder that holds a series")
-      ->excludes("--resume");
+  command->add_flag("--resume", options->resume, "Continue the series of the folder");
+  command->add_flag("--force", options->force, "Replace the series in the folder")->excludes("--resume");
   command->add_flag("--allow-missing-terrain", options->allow_missing_terrain,
-                    "Compute although elevation data is missing; what lies over holes is masked");
+                    "Compute although elevation data is missing; voxels over holes are masked");
   command->add_option("--cache-mib", options->cache_mib, "Bound on the per-emitter caches in MiB; 0: none")
       ->check(CLI::Range(0.0, 1e6));
   command->callback(

@@ -13,7 +13,7 @@ void addDeviceVolumeOption(CLI::App& command, std::string& device_volume) {
       .add_option(
           "--device-volume", device_volume,
           "How a GPU keeps the volume: in 32 bit; in 16 bit, half the memory and 11 significant bits; or "
-          "sparse, as a NanoVDB grid without what is at the floor")
+          "sparse, a NanoVDB grid without voxels at the floor")
       ->check(CLI::IsMember({"float", "half", "sparse"}));
 }
 

@@ -1,4 +1,4 @@
-/// Where a subcommand computes and draws.
+/// The processor on which a subcommand computes and draws.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ void addDeviceVolumeOption(CLI::App& command, std::string& device_volume);
 /// The value of that option.
 volume::VoxelPrecision precisionOf(const std::string& device_volume);
 
-/// Opens what works where --backend says, and tells where that is; see withBackendFallback().
-/// @param open  (ComputeTarget) -> what is to be returned
+/// Calls open() for the backend of --backend, and logs the choice; see withBackendFallback().
+/// @param open  (ComputeTarget) -> the result
 template <class Open>
 auto openOnTarget(const GlobalOptions& global, const std::string& device_volume, const Open& open) {
   return withBackendFallback(

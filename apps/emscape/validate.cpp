@@ -1,4 +1,4 @@
-/// emscape validate: all that is wrong with a scenario and the files it names.
+/// emscape validate: reports all faults of a scenario and of the files it names.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -19,11 +19,11 @@ namespace {
 using scenario::Problem;
 using scenario::Severity;
 
-/// Where a problem without a place of its own is put: at the top of the scenario.
+/// Converts an error to a problem; without a location it is that of the scenario file.
 Problem problemOf(const Error& error, const std::string& scenario_file) {
-  const SourceLocation place =
-      error.place().file.empty() ? SourceLocation{scenario_file, 0, 0} : error.place();
-  return {place, Severity::error, error.message() + optionText(error.hint())};
+  const SourceLocation location =
+      error.location().file.empty() ? SourceLocation{scenario_file, 0, 0} : error.location();
+  return {location, Severity::error, error.message() + optionText(error.hint())};
 }
 
 /// Columns of the region whose centre has no known ground.
@@ -35,23 +35,23 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
   GeodeticPosition first;
   for (int j = 0; j < grid.dims.y; ++j) {
     for (int i = 0; i < grid.dims.x; ++i) {
-      const GeodeticPosition place = frame.toGeodetic(grid.center_m(i, j, 0));
-      if (!std::isnan(terrain.heightMsl_m(place.latitude_deg, place.longitude_deg))) continue;
-      if (missing++ == 0) first = place;
+      const GeodeticPosition position = frame.toGeodetic(grid.center_m(i, j, 0));
+      if (!std::isnan(terrain.heightMsl_m(position.latitude_deg, position.longitude_deg))) continue;
+      if (missing++ == 0) first = position;
     }
   }
   if (missing == 0) return;
-  const SourceLocation place = scenario.terrain->places.empty() ? SourceLocation{scenario.file, 0, 0}
-                                                                : scenario.terrain->places.front();
+  const SourceLocation location = scenario.terrain->locations.empty() ? SourceLocation{scenario.file, 0, 0}
+                                                                      : scenario.terrain->locations.front();
   problems.push_back(
-      {place, Severity::error,
+      {location, Severity::error,
        fmt::format("the elevation files leave {} of the region's {} columns without a height, the first at "
                    "latitude {:.5f}, longitude {:.5f} deg; allowed only with --allow-missing-terrain",
                    missing, static_cast<long long>(grid.dims.x) * grid.dims.y, first.latitude_deg,
                    first.longitude_deg)});
 }
 
-/// Every step of the clock can be laid out: no platform below the ground or over a hole.
+/// Checks every step of the clock: no platform is below the ground or over missing terrain.
 void checkSteps(const std::shared_ptr<const scenario::Scenario>& scenario, const scenario::Terrain* terrain,
                 std::vector<Problem>& problems) {
   const std::vector<double> times = scenario::timesOf(scenario->clock);
@@ -68,18 +68,18 @@ void checkSteps(const std::shared_ptr<const scenario::Scenario>& scenario, const
     problems.back().message += fmt::format(" (and {} of {} steps like it)", failed, times.size());
 }
 
-/// What can be said only once the scenario is read: the ground, the quantities, the models, every step.
+/// Checks that need the whole scenario: the ground, the quantities, the models, every step.
 void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std::vector<Problem>& problems) {
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
     if (terrain) checkCoverage(*scenario, *terrain, problems);
     checkSteps(scenario, terrain.get(), problems);
     emfield::FieldOptions options;
-    options.allow_missing_terrain = true;  // told above
+    options.allow_missing_terrain = true;  // reported above
     const emfield::FieldSolver solver(scenario, terrain, options);
     for (const std::string& warning : solver.warnings()) {
       Problem problem;
-      problem.place.file = scenario->file;
+      problem.location.file = scenario->file;
       problem.severity = Severity::warning;
       problem.message = warning;
       problems.push_back(problem);
@@ -102,16 +102,16 @@ int validate(const std::string& file, const std::vector<scenario::Edit>& edits, 
   if (global.json) {
     Json problems = Json::array();
     for (const Problem& problem : result.problems) {
-      problems.push_back({{"file", problem.place.file},
-                          {"line", problem.place.line},
-                          {"column", problem.place.column},
+      problems.push_back({{"file", problem.location.file},
+                          {"line", problem.location.line},
+                          {"column", problem.location.column},
                           {"severity", toString(problem.severity)},
                           {"message", problem.message}});
     }
     printJson({{"ok", ok}, {"problems", problems}});
   } else {
     for (const Problem& problem : result.problems) {
-      print("{}: {}: {}\n", emscape::toString(problem.place), toString(problem.severity), problem.message);
+      print("{}: {}: {}\n", emscape::toString(problem.location), toString(problem.severity), problem.message);
     }
     if (ok && !global.quiet) print("{}: ok\n", file);
   }
@@ -124,15 +124,15 @@ void addValidate(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand("validate", "Check a scenario and every file it names");
   command->fallthrough();
   command->footer(R"(
-All faults are told at once, each as file:line:column: error: message. Besides the files themselves it is checked that the
-elevation files cover the region and that no platform is below the ground at any step.
+Reports all faults at once, each as file:line:column: error: message. Also checks that the elevation files cover the region and that
+no platform is below the ground at any step.
 
 Examples:
   emscape validate scenarios/jacksboro.yaml
   emscape validate mine.yaml --set "emitters.search radar.power_w=500"
   emscape validate mine.yaml --json        {"ok", "problems": [{"file", "line", "column", "severity", "message"}]}
 
-Exit status: 0 without errors (warnings do not count), 3 otherwise.)");
+Exit status: 0 without errors (warnings are ignored), 3 otherwise.)");
   auto file = std::make_shared<std::string>();
   command->add_option("SCENARIO", *file, "Scenario (YAML or JSON)")->required();
   auto edits = std::make_shared<std::vector<scenario::Edit>>();

@@ -1,4 +1,4 @@
-/// emscape view: starts the window, a program of its own, so that this one needs no OpenGL.
+/// emscape view: starts emscape-view, a separate program, so that this one needs no OpenGL.
 #include "apps/emscape/command.h"
 #include "apps/emscape/window_program.h"
 

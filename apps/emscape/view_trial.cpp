@@ -100,7 +100,7 @@ bool isMark(const Json& line, const char* text) {
   return line["event"] == "mark" && line["text"] == text;
 }
 
-/// Index of the first line from `from` on that is one; the number of lines if there is none.
+/// Index of the first matching line from `from` on; the number of lines if there is none.
 template <class Test>
 std::size_t find(const Lines& lines, std::size_t from, const Test& test) {
   while (from < lines.size() && !test(lines[from])) ++from;
@@ -115,7 +115,7 @@ bool isFrame(const Json& line) {
   return line["event"] == "frame";
 }
 
-/// Calls for each mark with the index of its line.
+/// Calls a function for each mark with the index of its line.
 template <class Call>
 void forMarks(const Lines& lines, const char* text, const Call& call) {
   for (std::size_t n = 0; n < lines.size(); ++n) {
@@ -237,7 +237,7 @@ std::string trialScript(const ViewTrial& trial) {
   addCameraTrial(script);
   if (trial.edit) addEditTrial(script, trial);
   if (trial.times_s.size() > 1) addSeekTrial(script, trial.times_s);
-  script.wait(2);  // steps in advance are computed
+  script.wait(2);  // for the steps that are computed ahead
   script.mark("idle");
   script.wait(trial.idle_s);
   script.mark("idle ends");
@@ -251,7 +251,7 @@ ViewTimes trialTimes(const std::string& log) {
   for (std::string line; std::getline(text, line);) {
     lines.push_back(Json::parse(line, nullptr, false));
     if (lines.back().is_discarded() || !lines.back().contains("event"))
-      throw Error(ErrorCode::other, "the window's log has a line that is none: " + line);
+      throw Error(ErrorCode::other, "the window's log has an invalid line: " + line);
   }
   ViewTimes times;
   readFrames(lines, times);

@@ -1,4 +1,4 @@
-/// A fixed script that drives the window through everything that is timed, and what its log says.
+/// A fixed script for the window that covers everything that is timed, and the evaluation of its log.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 
 namespace emscape::app {
 
-/// What the script does with an input.
+/// Parameters of the script.
 struct ViewTrial {
   std::vector<double> times_s;  ///< of the steps; fewer than two: no seeking
   std::optional<scenario::Edit>
       edit;               ///< a value of the scenario, doubled and set back again; none: no edits
-  double edit_value = 0;  ///< that value as it is
-  double idle_s = 10;     ///< how long nothing is done
+  double edit_value = 0;  ///< the present value
+  double idle_s = 10;     ///< duration of the idle phase
 };
 
-/// The script, as emscape-view reads it.
+/// The script for emscape-view.
 std::string trialScript(const ViewTrial& trial);
 
 /// Times in ms; empty: not measured.
@@ -30,8 +30,8 @@ struct ViewTimes {
   double first_picture_ms = 0, first_exact_ms = 0;
   std::vector<double> ui;                      ///< frames of the window: events, panels, drawing commands
   std::vector<double> ui_computing;            ///< of those, while a field was computed
-  std::vector<double> frame, frame_computing;  ///< the same until the display has taken them
-  double orbit_fps = 0;                        ///< pictures in a second while the camera turns
+  std::vector<double> frame, frame_computing;  ///< the same, until the display has them
+  double orbit_fps = 0;                        ///< pictures per second while the camera turns
   std::vector<double> input_to_picture, input_to_exact, abort;
   std::vector<double> edit_to_picture, edit_to_exact;
   std::vector<double> seek, seek_field, seek_cached;  ///< seek_field: the field's part of seek

@@ -1,4 +1,4 @@
-/// emscape-view, the program of the window, as this program starts it.
+/// Start of emscape-view, the program of the window.
 #pragma once
 
 #include <string>
@@ -8,15 +8,16 @@
 
 namespace emscape::app {
 
-/// Its command line: beside this program, with the global options. @param arguments  what follows
+/// Its command line: the program in the folder of this one, with the global options. @param arguments
+/// appended
 std::vector<std::string> windowCommand(const GlobalOptions& global,
                                        const std::vector<std::string>& arguments);
 
-/// Becomes it. @throws Error (device) if it is not there
+/// Replaces this process by it. @throws Error (device) if it is not installed
 [[noreturn]] void becomeWindow(const GlobalOptions& global, const std::vector<std::string>& arguments);
 
-/// Runs it to its end; its messages go to standard error.
-/// @throws Error with the code that it ended with, (device) if it is not there
+/// Runs it and waits for its end; its messages go to standard error. @throws Error with its exit status,
+/// (device) if it is not installed
 void runWindow(const GlobalOptions& global, const std::vector<std::string>& arguments);
 
 }  // namespace emscape::app

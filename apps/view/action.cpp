@@ -13,7 +13,7 @@ const std::vector<Action>& actions() {
   static const std::vector<Action> all{
       {"File", "Open", "Ctrl+O", R"({"do":"open"})", "emscape view INPUT"},
       {"File", "Open the input before this", "Ctrl+Shift+O", R"({"do":"open_recent"})", "emscape view INPUT"},
-      {"File", "Reload", "F5 Ctrl+R", R"({"do":"reload"})", "each command reads its input anew"},
+      {"File", "Reload", "F5 Ctrl+R", R"({"do":"reload"})", "each command reads its input again"},
       {"File", "Save the changed scenario", "Ctrl+S", R"({"do":"save"})",
        "--set PATH=VALUE with any subcommand"},
       {"File", "Save the view", "Ctrl+Shift+S", R"({"do":"save_state"})",

@@ -1,5 +1,5 @@
 /// The actions of menus and keys: one table, from which the menus, the key handling, the help panel and
-/// docs/viewer.md are made.
+/// docs/viewer.md are generated.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ struct Action {
   const char* menu;  ///< File, Edit, Time, Camera, View or Panels
   const char* name;
   const char* keys;          ///< chords with blanks between them: "Right .", "Ctrl+Shift+Z"
-  const char* command;       ///< what it does, as a script line
-  const char* command_line;  ///< how the command line does the same
+  const char* command;       ///< the same as a script line
+  const char* command_line;  ///< the same on the command line
 };
 
 const std::vector<Action>& actions();
@@ -37,7 +37,7 @@ const Action* actionOf(const KeyChord& chord);
 /// The tables of keys, of mouse gestures and of script verbs, as Markdown.
 std::string manualTables();
 
-/// What the mouse does, for help and manual.
+/// The mouse gestures, for help and manual.
 struct Gesture {
   const char* gesture;
   const char* does;

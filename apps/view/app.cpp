@@ -21,8 +21,8 @@ namespace emscape::view {
 namespace {
 
 constexpr int kFramesAfterEvent = 3;
-/// While fields and pictures are computed, the window is drawn at new pictures and so often between them: a
-/// software renderer takes the processor that they need.
+/// While fields and pictures are computed, the window is drawn at new pictures and at this interval: a
+/// software renderer competes for the processor.
 constexpr double kBusyInterval_s = 1.0 / 25;
 constexpr double kIdleWait_s = 1;  // signals set no event
 constexpr double kCursorBlink_s = 0.4;
@@ -71,7 +71,7 @@ std::unique_ptr<Session> App::makeSession(const ViewOptions& options) {
   return session;
 }
 
-// --- what commands ask for ---
+// --- requests of commands ---
 
 void App::resize(int width, int height) {
   window_.resize(width, height);
@@ -136,10 +136,10 @@ void App::showTitle() {
   window_.setTitle(titleOf(session_->options()));
 }
 
-/// Gives the window the size with which the picture has that of the first view. Panels take shares of the
-/// window, so that the size is searched; they change until the input is open.
+/// Gives the window the size at which the picture has the size of the first view. The size of the panels
+/// depends on that of the window, so that it is found by search; they change until the input is open.
 void App::fitWindowToPicture() {
-  constexpr int kIterations = 60;  // each leaves less than half of the difference
+  constexpr int kIterations = 60;  // each at least halves the difference
   const render::ImageSize wanted = session_->options().view.size;
   const render::ImageSize size = window_.framebufferSize();
   auto width = static_cast<float>(size.width), height = static_cast<float>(size.height);
@@ -178,7 +178,7 @@ bool App::panelsChanged() {
 void App::run() {
   session_->shown("");
   if (!session_->hasInput()) session_->perform({"open"});
-  // What is being written is finished, and its faults are told, before the window goes.
+  // Files that are being written are finished, and their errors reported, before the window closes.
   while (!quits_ || session_->writing()) {
     window_.waitEvents(waitTime_s());
     if (window_.takeDirty()) frames_left_ = kFramesAfterEvent;
@@ -187,7 +187,7 @@ void App::run() {
     failIfNothingOpens();
     if (ImGui::GetIO().WantTextInput) frames_left_ = std::max(frames_left_, 1);
     if (!quits_ && !script_.finished()) script_.run(*session_, *this, log_.now_s());
-    if (panelsChanged()) frames_left_ = kFramesAfterEvent;  // laid out in more than one frame
+    if (panelsChanged()) frames_left_ = kFramesAfterEvent;  // the layout needs more than one frame
     const bool script_waits_for_frames = script_.nextRun_s(log_.now_s()) == 0.0;
     if (!window_.input().empty() || screenshot_ || script_waits_for_frames || flies_) {
       frames_left_ = std::max(frames_left_, 1);
@@ -243,7 +243,7 @@ void App::draw(const Layout& layout) {
   const ImVec4 bar = ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg);
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glViewport(0, 0, size.width, size.height);
-  // Cleared rather than drawn by Dear ImGui: much faster with a software renderer.
+  // Cleared instead of drawn by Dear ImGui, which is much slower with a software renderer.
   glEnable(GL_SCISSOR_TEST);
   const auto fill = [&](const Area& area, const ImVec4& color) {
     const int left = static_cast<int>(area.x), top = static_cast<int>(area.y);
@@ -321,7 +321,7 @@ void App::updateTexture() {
   shown_picture_ = picture->status.frame;
 }
 
-/// Where the driver cannot, as in a remote session, the next pictures come through the host's memory.
+/// If the driver cannot do it, as in a remote session, pictures are transferred through host memory.
 void App::showFromDevice(const render::DevicePicture& picture) {
   try {
     texture_.set(picture);

@@ -20,8 +20,8 @@ class App : private WindowControl {
   /// (bad_input) for the script; (other) for the log
   explicit App(const ViewOptions& options);
 
-  /// Until the user, the script or a signal ends it.
-  /// @throws Error as the input's that cannot be opened, (check_failed) by the script
+  /// Runs until the user, the script or a signal ends it.
+  /// @throws Error if the input cannot be opened, (check_failed) by the script
   void run();
 
  private:
@@ -46,7 +46,7 @@ class App : private WindowControl {
   void takeScreenshot();
   double waitTime_s() const;
   void failIfNothingOpens() const;
-  /// On the GPU or, where that fails and the options leave the choice, on the CPU.
+  /// On the GPU or, if that fails and the backend is automatic, on the CPU.
   std::unique_ptr<Session> makeFirstSession(const ViewOptions& options);
   std::unique_ptr<Session> makeSession(const ViewOptions& options);
   void handleRequests();
@@ -67,7 +67,7 @@ class App : private WindowControl {
 
   bool quits_ = false;
   bool flies_ = false;
-  int frames_left_ = 3;  // after an event, so that what ImGui lays out in two frames is right
+  int frames_left_ = 3;  // after an event, since ImGui needs two frames for a layout
   long long frame_ = 0;
   double last_frame_s_ = 0;
   double drawn_at_s_ = 0;
@@ -75,7 +75,7 @@ class App : private WindowControl {
   long long shown_picture_ = 0;  // number of the picture in texture_; 0: none
   std::optional<std::string> screenshot_;
   std::string open_panels_;
-  int window_fits_;  // tries that are left to give the picture the size of the first view
+  int window_fits_;  // remaining attempts to give the picture the size of the first view
 };
 
 }  // namespace emscape::view

@@ -1,4 +1,4 @@
-/// Files and counts beside the thread of the window, which never waits for them.
+/// Jobs such as file access in the background of the window's thread.
 #pragma once
 
 #include <condition_variable>
@@ -9,24 +9,23 @@
 
 namespace emscape::view {
 
-/// Runs jobs one after another on a thread of its own. What is to come of a job is done by the thread that
-/// owns this object.
+/// Runs jobs one after another on its own thread. The owner's thread handles their results in finish().
 class BackgroundJobs {
  public:
-  /// What the owner's thread does with the result.
+  /// Handler of the result, called on the owner's thread.
   using Finish = std::function<void()>;
   using Job = std::function<Finish()>;
 
   /// @param wake  called on the thread of the jobs after each
   explicit BackgroundJobs(std::function<void()> wake);
-  /// Waits for the end of all jobs: a file that is being saved is saved. Nothing is finished any more.
+  /// Waits for the end of all jobs: a file that is being saved is completed. Handlers are not called.
   ~BackgroundJobs();
   BackgroundJobs(const BackgroundJobs&) = delete;
   BackgroundJobs& operator=(const BackgroundJobs&) = delete;
 
-  /// Does not wait. @param job  what it throws is thrown by finish()
+  /// Does not wait. @param job  its exceptions are rethrown by finish()
   void run(Job job);
-  /// Whether a job waits, runs, or is not finished.
+  /// True if a job waits, runs, or is not finished.
   bool busy() const;
   /// Finishes the oldest job that is done. @return whether there was one
   bool finish();

@@ -1,11 +1,11 @@
-/// A camera moved by hand: orbit, pan, dolly, look around, fly. No window, no OpenGL.
+/// Interactive camera: orbit, pan, dolly, look around, fly. No window, no OpenGL.
 #pragma once
 
 #include "emscape/render/camera.h"
 
 namespace emscape::view {
 
-/// What a picture was drawn for: a movement in pixels means something only together with it.
+/// Geometry of a picture, needed to interpret a movement in pixels.
 struct Viewport {
   render::SceneBox box;
   render::ImageSize size;
@@ -26,10 +26,9 @@ class CameraControl {
   /// @param azimuth_deg  clockwise as seen from above
   void orbit(double azimuth_deg, double elevation_deg, const Viewport& viewport);
   /// Moves the scene with the cursor, parallel to the picture.
-  /// @param right_px, down_px  how far the cursor moved
+  /// @param right_px, down_px  movement of the cursor
   void pan(double right_px, double down_px, const Viewport& viewport);
-  /// Moves towards the target, which itself moves such that what lies in its plane under the cursor stays
-  /// there.
+  /// Moves towards the target, which itself moves such that the point in its plane under the cursor is fixed.
   /// @param factor  of the distance, > 0: 0.5 halves it
   /// @param x, y    cursor in pixels of the picture
   void dolly(double factor, double x, double y, const Viewport& viewport);

@@ -60,7 +60,7 @@ const std::vector<Verb>& verbs() {
         {"wait_state",
          {{"state", kText}, {"timeout_s", kNumber, false}, {"must", kBoolean, false}},
          "The script waits until the picture is BUSY, RESTORE, IDLE or exact, or a recording is `recorded`; "
-         "default: at most 60 s. `must` false: it goes on if that takes longer"},
+         "default: at most 60 s. `must` false: continues if that takes longer"},
         {"wait_frame", {{"timeout_s", kNumber, false}}, "The script waits for the first picture"},
         {"mark",
          {{"text", kText}},

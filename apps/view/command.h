@@ -1,5 +1,4 @@
-/// What the window can be told to do: verbs with arguments, as scripts write them and as keys and menus send
-/// them.
+/// The window's commands: verbs with arguments, used by scripts, keys and menus.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -24,16 +23,16 @@ inline constexpr ArgumentType kBoolean = ArgumentType::boolean;
 class Session;
 struct Command;
 
-/// One verb: how a script calls it and what it does.
+/// One verb: its syntax and its function.
 struct Verb {
   const char* name;
   std::vector<Argument> arguments;
   const char* help;
-  /// Throws Error for what cannot be done; null: a verb of scripts alone, such as waiting.
+  /// Throws Error if it cannot be done; null: a verb only for scripts, such as waiting.
   void (*run)(Session& session, const Command& command) = nullptr;
 };
 
-/// Every verb, in the order in which the manual lists them.
+/// All verbs, in the order of the manual.
 const std::vector<Verb>& verbs();
 /// @throws Error (bad_input) that lists the verbs
 const Verb& verbNamed(const std::string& name);
@@ -49,7 +48,7 @@ struct Command {
   std::string text(const char* name) const { return arguments.value(name, std::string()); }
 };
 
-/// Reads a command from the object that a script line holds; "at_s" is left out.
+/// Reads a command from the object of a script line; "at_s" is ignored.
 /// @throws Error (bad_input) that names the verb or argument that is unknown, missing or of another type
 Command parseCommand(const Json& object);
 /// The same from a text.

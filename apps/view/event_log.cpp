@@ -19,7 +19,7 @@ SteadyClock::duration processAge() {
   constexpr int kStartTime = 22;  // field of /proc/self/stat, in ticks since the system's start
   std::ifstream stat("/proc/self/stat");
   std::string field;
-  std::getline(stat, field, ')');  // the program's name may hold blanks
+  std::getline(stat, field, ')');  // the program's name may contain blanks
   for (int n = 3; n <= kStartTime; ++n) stat >> field;
   timespec now{};
   if (!stat || clock_gettime(CLOCK_BOOTTIME, &now) != 0) return {};

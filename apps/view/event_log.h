@@ -1,4 +1,4 @@
-/// What happened in the window, as JSON lines.
+/// Log of the window's events, as JSON lines.
 #pragma once
 
 #include <chrono>
@@ -19,7 +19,7 @@ class EventLog {
   bool open() const { return out_.is_open(); }
   /// Seconds since the program started.
   double now_s() const;
-  /// Writes {"t_s", "event", ...}; nothing where no file is open.
+  /// Writes {"t_s", "event", ...}; no effect if no file is open.
   void write(const char* event, const Json& fields = Json::object());
 
  private:
@@ -29,7 +29,7 @@ class EventLog {
 
 /// Resident memory of this process (MiB).
 double residentMemory_mib();
-/// What this process has taken of the processors (s).
+/// CPU time of this process (s).
 double processorTime_s();
 
 }  // namespace emscape::view

@@ -1,4 +1,4 @@
-/// Model of a file browser: a folder's content, what is selected, and what was typed. No drawing.
+/// Model of a file browser: a folder's content, the selection, and the typed path. No drawing.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace emscape::view {
 
-/// What the window can open, by the ending of its name.
+/// Files that the window can open, by their extension.
 enum class FileKind { folder, scenario, volume, view, other };
 FileKind fileKindOf(const std::filesystem::path& file, bool is_folder);
 
@@ -24,11 +24,11 @@ struct FolderEntry {
 /// @throws Error (other) that names the folder and the cause
 std::vector<FolderEntry> listFolder(const std::filesystem::path& folder);
 
-/// A folder is read on a thread of its own: it may lie on a disk that sleeps. The thread of the window uses
+/// A folder is read on a separate thread, because the disk may be slow. The thread of the window uses
 /// the object.
 class FileBrowser {
  public:
-  /// What may be chosen besides folders.
+  /// Kinds of files that may be chosen.
   enum class Purpose { input, view };
 
   /// Reads the folder of the last visit (at first the given one) again.
@@ -36,14 +36,14 @@ class FileBrowser {
   Purpose purpose() const { return purpose_; }
   void enter(const std::filesystem::path& folder);
   void goUp() { enter(folder_.parent_path()); }
-  /// Takes what was read. @return whether something changed
+  /// Takes the result of the read. @return true if something changed
   bool update();
 
   const std::filesystem::path& folder() const { return folder_; }
   bool reading() const { return task_.active(); }
-  /// Those that the purpose allows.
+  /// The entries that may be chosen.
   const std::vector<FolderEntry>& entries() const { return entries_; }
-  /// Why the folder cannot be read; empty if it can.
+  /// Error of reading the folder; empty if there is none.
   const std::string& error() const { return error_; }
 
   int selected() const { return selected_; }
@@ -69,7 +69,7 @@ class FileBrowser {
   std::vector<FolderEntry> entries_;
   std::string error_;
   int selected_ = 0;
-  bool again_ = false;  // another folder was asked for meanwhile
+  bool again_ = false;  // another folder was requested meanwhile
   playback::Event event_;
   playback::AsyncTask<Listing> task_{event_};
 };

@@ -43,9 +43,9 @@ std::vector<std::string> FileWatch::takeChanged() {
   return {changed.begin(), changed.end()};
 }
 
-/// @return whether there is a change to be told
+/// @return true if there is a change to report
 bool FileWatch::look(const std::vector<std::string>& files) {
-  std::map<std::string, Stamp> stamps;  // the files are asked without the lock
+  std::map<std::string, Stamp> stamps;  // the files are queried without the lock
   for (const std::string& file : files) stamps[file] = stampOf(file);
   const std::lock_guard<std::mutex> lock(mutex_);
   bool has_changed = false;

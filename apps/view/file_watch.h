@@ -1,4 +1,4 @@
-/// Tells which files have changed on the disk.
+/// Detects files that have changed on the disk.
 #pragma once
 
 #include <condition_variable>
@@ -13,8 +13,8 @@
 
 namespace emscape::view {
 
-/// Looks at files every two seconds, on a thread of its own: they may lie on a disk that sleeps, or on
-/// another machine, whose changes no event tells. The object belongs to one thread.
+/// Polls files every two seconds, on a separate thread: the disk may be slow, or on another machine without
+/// change events. The object belongs to one thread.
 class FileWatch {
  public:
   static constexpr double kInterval_s = 2;
@@ -25,15 +25,15 @@ class FileWatch {
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
 
-  /// Looks at these files, and no others any more. Changes from now on count; of those that are looked at
-  /// already, those since they were. Folders change when files come or go.
+  /// Sets the files to watch. Changes are reported from now on; for files that are watched already, since
+  /// they were first watched. Folders change when files are added or removed.
   void watch(const std::vector<std::string>& files);
-  /// Files that were written or replaced since they were told last, in their order. A file that still changes
-  /// from look to look, or that is gone, is not told.
+  /// Files that were written or replaced since they were last reported, in order. A file that is still
+  /// changing, or that is missing, is not reported.
   std::vector<std::string> takeChanged();
 
  private:
-  /// What tells a file from what it was before.
+  /// Time stamp and size of a file.
   struct Stamp {
     std::int64_t written_ns = 0, bytes = -1;  ///< bytes -1: there is no such file
     std::uint64_t inode = 0;
@@ -42,7 +42,7 @@ class FileWatch {
     }
   };
   struct Watched {
-    Stamp known, seen;  ///< told or first; at the last look
+    Stamp known, seen;  ///< last reported or first; at the last poll
   };
   static Stamp stampOf(const std::string& file);
   void run();

@@ -1,4 +1,4 @@
-/// What the sessions of a window share: files that are opened one after another, and the recording.
+/// State that the sessions of a window share: the files to open and the recording.
 #pragma once
 
 #include <memory>
@@ -13,13 +13,13 @@
 
 namespace emscape::view {
 
-/// Asks the window to show something else.
+/// A request to show something else.
 struct OpenRequest {
   std::string file;      ///< input, view file or transfer function
-  std::string scenario;  ///< beside volumes; may be empty
-  /// How an input is shown; none: as at the start. Edits that do not apply to it any more are left out.
+  std::string scenario;  ///< for volumes; may be empty
+  /// View of an input; none: that of the start. Edits that do not apply any more are left out.
   std::optional<playback::ViewState> view;
-  bool unsaved_edits = false;  ///< those of `view` are in no file
+  bool unsaved_edits = false;  ///< the edits of `view` are not saved
 };
 
 /// The thread of the window uses it.
@@ -27,10 +27,10 @@ struct Files {
   std::vector<std::string> recent;  ///< the newest first
   FileBrowser browser;
   Recorder recorder;
-  /// Of this program; kept by jobs that run.
+  /// Of this program; shared with running jobs.
   std::shared_ptr<playback::Autosaves> autosaves = std::make_shared<playback::Autosaves>();
-  std::optional<OpenRequest> request;  ///< for the window, which takes it
-  bool is_opening = false;             ///< something was asked for that is not on screen yet
+  std::optional<OpenRequest> request;  ///< pending, for the window
+  bool is_opening = false;             ///< a request is not on screen yet
 };
 
 }  // namespace emscape::view

@@ -1,4 +1,4 @@
-/// Events of keyboard and mouse in the order in which they came, dealt out to frames.
+/// Keyboard and mouse events in order, distributed to frames.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 namespace emscape::view {
 
 /// A GUI that reads the state of keys once per frame misses a key that is pressed and released within one,
-/// and does not know where the cursor was when a button changed. So a frame takes events only until a key or
-/// button would change for the second time, and holds either movements of the cursor or changes of buttons;
-/// the others wait for the next frame.
+/// and does not know where the cursor was when a button changed. Therefore a frame takes events only until a
+/// key or button would change for the second time, and contains either movements of the cursor or changes of
+/// buttons; the others wait for the next frame.
 class InputQueue {
  public:
   void push(const InputEvent& event) { events_.push_back(event); }
@@ -25,7 +25,7 @@ class InputQueue {
   std::deque<InputEvent> events_;
 };
 
-/// The chord of a key event, as the table of actions writes it; an empty key where it has none.
+/// The chord of a key event, in the form of the table of actions; an empty key if it has none.
 KeyChord chordOf(const InputEvent& event);
 /// Press and release of a chord. @throws Error (bad_input) for an unknown key
 std::array<InputEvent, 2> eventsOf(const KeyChord& chord);

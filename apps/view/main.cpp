@@ -25,8 +25,8 @@ void show(const ViewOptions& options) {
       std::fprintf(stderr, "%s\n", line.c_str());
   });
   setThreadLimit(options.threads);
-  std::signal(SIGPIPE, SIG_IGN);  // ffmpeg that went away is an error of the write
-  // A wrong name, and all faults of a scenario, are told before a window appears.
+  std::signal(SIGPIPE, SIG_IGN);  // if ffmpeg has ended, the write fails
+  // A wrong name, and all faults of a scenario, are reported before a window appears.
   if (!options.input.empty() && playback::inputKindOf(options.input) == playback::InputKind::scenario &&
       !scenario::parseScenario(options.input, options.view.edits).scenario) {
     scenario::loadScenario(options.input, options.view.edits);

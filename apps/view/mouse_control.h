@@ -11,7 +11,7 @@
 
 namespace emscape::view {
 
-/// Turns events over the picture into movements of the session's camera, of platforms and of the probe.
+/// Converts events over the picture to movements of the session's camera, platforms and probe.
 class MouseControl {
  public:
   /// @param panels_want_mouse  the cursor is over a panel, or drags something of one
@@ -37,7 +37,7 @@ class MouseControl {
   std::optional<PlatformDrag> platform_;
   double pressed_x_ = 0, pressed_y_ = 0;
   bool is_platform_moved_ = false;
-  std::string platform_text_;  // name and place
+  std::string platform_text_;  // name and position
 };
 
 }  // namespace emscape::view

@@ -1,24 +1,24 @@
-/// Which panels of the window are open, and their names.
+/// The open panels of the window, and their names.
 #pragma once
 
 #include <vector>
 
 namespace emscape::view {
 
-/// Which panels are open.
+/// The open panels.
 struct Panels {
   bool scenario = true, colors = false, timeline = true, help = false, time = false, probe = false;
   bool planes = false;
-  bool open = false, record = false;      ///< the file browser; what is to be recorded
+  bool open = false, record = false;      ///< the file browser; the dialog of recording
   bool restore = false, unsaved = false;  ///< questions
   bool changed = false;                   ///< files of the input have changed on the disk
-  bool hidden = false;                    ///< all of them, for a moment
+  bool hidden = false;                    ///< all of them, temporarily
 };
 /// The panels by the names that scripts and view files use, but for `hidden`.
 struct PanelName {
   const char* name;
   bool Panels::*open;
-  bool stays;  ///< a view keeps it; the others are open for a moment
+  bool stays;  ///< true: stored in a view; the others are temporary
 };
 const std::vector<PanelName>& panelNames();
 

@@ -19,7 +19,7 @@ enum class Content { input, view, colors };
 
 constexpr std::uintmax_t kMaxJsonBytes = 16 << 20;
 
-/// View files and transfer functions are JSON, as scenarios may be: their keys tell.
+/// Distinguishes view files, transfer functions and scenarios in JSON by their keys.
 Content contentOf(const std::string& file) {
   if (fileKindOf(file, false) == FileKind::view) return Content::view;
   const std::size_t point = file.rfind('.');
@@ -34,10 +34,10 @@ bool applies(const std::string& file, const std::vector<Edit>& edits) {
   return scenario::parseScenario(file, edits).scenario != nullptr;
 }
 
-/// Leaves out the edits that the scenario does not take any more.
+/// Removes the edits that do not apply to the scenario any more.
 void checkScenario(const std::string& file, std::vector<Edit>& edits, std::string& left_out) {
   if (applies(file, edits)) return;
-  scenario::loadScenario(file);  // tells its faults
+  scenario::loadScenario(file);  // throws its faults
   std::vector<Edit> kept;
   for (const Edit& edit : edits) {
     kept.push_back(edit);
@@ -68,7 +68,7 @@ void checkInput(const ViewOptions& options, Opening& opening) {
 }  // namespace
 
 Opening prepareOpening(const OpenRequest& request, const ViewOptions& present) {
-  playback::inputKindOf(request.file);  // tells that there is no such file
+  playback::inputKindOf(request.file);  // throws if there is no such file
   Opening opening;
   opening.options = present;
   ViewOptions& options = opening.options;

@@ -1,4 +1,4 @@
-/// What a window is asked to open: what kind of file it is, and how it is shown.
+/// Preparation of a file to open: its kind, and the view with which it is shown.
 #pragma once
 
 #include <string>
@@ -8,17 +8,17 @@
 
 namespace emscape::view {
 
-/// What a request comes to.
+/// Result of a request.
 struct Opening {
-  ViewOptions options;  ///< of the session that shows it
-  std::string colors;   ///< a transfer function for what is shown already; else empty
+  ViewOptions options;  ///< of the new session
+  std::string colors;   ///< a transfer function for the present session; else empty
   /// The edits that do not apply any more, each with the reason; empty if all do.
   std::string left_out;
 };
 
-/// Looks at the file: its kind by name and content, the faults of a scenario, the edits that still apply.
-/// Reads files: to be called beside the window.
-/// @param present  what is on screen; `view` is what new inputs are shown with
+/// Examines the file: its kind by name and content, the faults of a scenario, the edits that still apply.
+/// Reads files: to be called on a background thread.
+/// @param present  options of the present session; new inputs are shown with its `view`
 /// @throws Error (bad_input) that lists the faults
 Opening prepareOpening(const OpenRequest& request, const ViewOptions& present);
 

@@ -59,8 +59,8 @@ bool isEnabled(const Session& session, const std::string& name) {
   return true;
 }
 
-/// What the picture is, how it was made and how long that took; the last parts are left out where the room
-/// (pixels) does not suffice.
+/// Description of the picture, its pattern and its times; the last parts are left out if the width (pixels)
+/// does not suffice.
 std::string statusText(const Session& session, float room) {
   const playback::LiveStatus& status = session.status();
   std::vector<std::string> parts;
@@ -156,7 +156,7 @@ void drawSidePanel(PanelContext& context, const Area& area) {
     if (panels.scenario) ImGui::Separator();
   }
   if (panels.scenario) {
-    // The panel scrolls where the others leave too little.
+    // The panel scrolls if the others leave too little room.
     ImGui::BeginChild("scenario", {0, std::max(ImGui::GetContentRegionAvail().y, 200 * context.scale)});
     drawScenarioPanel(context);
     ImGui::EndChild();

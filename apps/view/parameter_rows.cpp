@@ -17,7 +17,7 @@ namespace {
 using scenario::Parameter;
 using scenario::ParameterGroup;
 
-/// The part of what the format allows that a slider spans; Ctrl + click types what lies beyond it.
+/// The part of the allowed range that a slider spans; other values are typed after Ctrl + click.
 struct SliderRange {
   const char* key;
   double min, max;
@@ -60,15 +60,15 @@ constexpr std::array<SliderRange, 33> kSliderRanges{{
 }};
 /// Significant digits of numbers that are typed, and of those that a slider gives.
 constexpr int kTypedDigits = 10, kDraggedDigits = 5;
-/// Wider ranges than this are typed, and what means a place.
-constexpr double kWidestSlider = 1000;
+/// Values with wider ranges than this are typed, and coordinates.
+constexpr double kMaxSliderWidth = 1000;
 
 std::optional<SliderRange> sliderRangeOf(const Parameter& parameter) {
   for (const SliderRange& range : kSliderRanges) {
     if (parameter.key == range.key) return range;
   }
   const bool is_place = parameter.key == "latitude_deg" || parameter.key == "longitude_deg";
-  if (is_place || parameter.unit == "Hz" || !(parameter.maximum - parameter.minimum <= kWidestSlider))
+  if (is_place || parameter.unit == "Hz" || !(parameter.maximum - parameter.minimum <= kMaxSliderWidth))
     return std::nullopt;
   return SliderRange{"", parameter.minimum, parameter.maximum};
 }
@@ -185,13 +185,13 @@ void ParameterRows::drawNumber(const Parameter& parameter) {
   const std::optional<SliderRange> range = sliderRangeOf(parameter);
   if (!range || parameter.value.empty()) return drawTypedNumber(parameter);
   const double given = std::strtod(parameter.value.c_str(), nullptr);
-  // What is shown, and typed after Ctrl + click, is in the unit with its prefix.
+  // Values are shown, and typed after Ctrl + click, in the unit with its prefix.
   const PrefixedUnit unit = prefixedUnit(given, parameter.unit);
   double value = given / unit.factor;
   const double low = std::min(range->min, given) / unit.factor,
                high = std::max(range->max, given) / unit.factor;
   const bool is_integer = parameter.type == Parameter::Type::integer;
-  // Dear ImGui takes the precision for the smallest number of a logarithmic slider.
+  // Dear ImGui derives the smallest value of a logarithmic slider from the precision.
   const char* number = is_integer ? "%.0f" : range->is_logarithmic ? "%.12g" : "%.6g";
   const std::string format = number + (unit.unit.empty() ? "" : " " + unit.unit);
   if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format.c_str(),
@@ -219,7 +219,7 @@ std::optional<std::string> ParameterRows::drawField(const Parameter& parameter, 
   std::strncpy(text.data(), shown.c_str(), text.size() - 1);
   ImGui::InputTextWithHint("##value", hint, text.data(), text.size());
   if (ImGui::IsItemActive()) typing_ = {parameter.path, text.data()};
-  // A field that another control was chosen after does not give its text any more.
+  // A field that has lost the focus does not return its text any more.
   if (!ImGui::IsItemDeactivatedAfterEdit() || typing_.path != parameter.path) return std::nullopt;
   const bool is_taken_back = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
   if (is_taken_back || typing_.text == shown) return std::nullopt;
@@ -242,7 +242,7 @@ void ParameterRows::drawTypedNumber(const Parameter& parameter) {
   if (!typed) return;
   const std::optional<double> number =
       parseQuantity(*typed, parameter.unit, prefixedUnit(value, parameter.unit, kTypedDigits).factor);
-  // The check of the scenario says what is wrong with another text.
+  // The check of the scenario reports the fault of any other text.
   set(parameter.path, typed->empty() ? "null" : number ? numberText(*number) : *typed);
 }
 
@@ -250,10 +250,10 @@ void ParameterRows::drawRejection(const std::string& path) {
   const std::optional<Rejection>& rejection = context_.session.rejection();
   if (!rejection || rejection->edits.empty() || rejection->edits.front().path != path) return;
   ImGui::PushStyleColor(ImGuiCol_Text, errorColor(context_.session.theme()));
-  // The row says already what it is about.
-  const std::string place = scenario::toString(rejection->edits.front()) + ": ";
-  const bool has_place = rejection->message.compare(0, place.size(), place) == 0;
-  ImGui::TextWrapped("%s", rejection->message.c_str() + (has_place ? place.size() : 0));
+  // The row already names the value.
+  const std::string location = scenario::toString(rejection->edits.front()) + ": ";
+  const bool has_location = rejection->message.compare(0, location.size(), location) == 0;
+  ImGui::TextWrapped("%s", rejection->message.c_str() + (has_location ? location.size() : 0));
   ImGui::PopStyleColor();
 }
 

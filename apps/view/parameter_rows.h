@@ -10,12 +10,12 @@
 
 namespace emscape::view {
 
-/// The text in a field that the user types in.
+/// The text of the field that is being edited.
 struct Typing {
   std::string path, text;
 };
 
-/// Draws the rows of groups; what was refused stands below its row. Lives for one frame.
+/// Draws the rows of groups; a refused edit is shown below its row. Lives for one frame.
 class ParameterRows {
  public:
   /// @param edited  paths that differ from the scenario's file
@@ -23,9 +23,9 @@ class ParameterRows {
   ParameterRows(PanelContext& context, const std::set<std::string>& edited, Typing& typing)
       : context_(context), edited_(edited), typing_(typing) {}
 
-  /// A table of the group's values, and of the groups in it below headings that fold.
+  /// A table of the group's values, and of its subgroups below collapsible headings.
   void draw(const scenario::ParameterGroup& group);
-  /// One more row of such a table: whether it is drawn. Call end() after the control if so.
+  /// One more row of such a table. @return true if it is drawn: then call end() after the control
   bool begin(const char* id);
   static void end();
   /// Begins a row; its control is drawn next.
@@ -39,7 +39,7 @@ class ParameterRows {
   void drawChoice(const scenario::Parameter& parameter);
   void drawText(const scenario::Parameter& parameter);
   void drawTypedNumber(const scenario::Parameter& parameter);
-  /// A text that is typed. @return it, when Enter is pressed or another control chosen
+  /// A text field. @return the text when Enter is pressed or the focus is lost
   std::optional<std::string> drawField(const scenario::Parameter& parameter, const std::string& shown,
                                        const char* hint);
   void drawRejection(const std::string& path);

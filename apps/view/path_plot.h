@@ -1,4 +1,4 @@
-/// The profile of a path as a small plot, as `emscape profile --plot` draws it.
+/// A small plot of a path's profile, like that of `emscape profile --plot`.
 #pragma once
 
 #include <imgui.h>
@@ -8,8 +8,8 @@
 
 namespace emscape::view {
 
-/// Ground on the effective earth, the ray over it, its first Fresnel zone, obstacles. Takes `size` of the
-/// window at its cursor.
+/// Ground on the effective earth, the ray over it, its first Fresnel zone, obstacles. Occupies `size` at the
+/// cursor.
 void drawPathPlot(const emfield::PathBudget& budget, const ImVec2& size, render::Theme theme, float scale);
 
 }  // namespace emscape::view

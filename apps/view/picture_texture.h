@@ -8,8 +8,8 @@
 
 namespace emscape::view {
 
-/// A picture of 8 bits a channel, drawn pixel by pixel: nothing is filtered, blended or converted. A context
-/// of OpenGL 3.3 must be current from construction to destruction.
+/// A picture of 8 bits per channel, drawn without filtering, blending or conversion. An OpenGL 3.3 context
+/// must be current from construction to destruction.
 class PictureTexture {
  public:
   PictureTexture();
@@ -18,11 +18,10 @@ class PictureTexture {
   PictureTexture& operator=(const PictureTexture&) = delete;
 
   void set(const render::Image8& image);
-  /// From the memory of the GPU that OpenGL draws with too. @throws Error (device); what was shown before
-  /// stays
+  /// From the memory of the GPU that also runs OpenGL. @throws Error (device); the previous picture stays
   void set(const render::DevicePicture& picture);
   bool isSet() const { return size_.count() > 0; }
-  /// Draws the picture into the bound framebuffer, stretched to the nearest pixels where the sizes differ.
+  /// Draws the picture into the bound framebuffer, scaled with nearest-pixel sampling if the sizes differ.
   /// @param left, bottom, width, height  in pixels of the framebuffer
   void draw(int left, int bottom, int width, int height) const;
 
@@ -31,7 +30,7 @@ class PictureTexture {
   void setPixels(render::ImageSize size, const void* pixels);
 
   unsigned texture_ = 0;
-  unsigned framebuffer_ = 0;  // whose colours are the texture
+  unsigned framebuffer_ = 0;  // with the texture as colour attachment
   render::ImageSize size_;
   unsigned buffer_ = 0;  // between CUDA and the texture
   render::ImageSize buffer_size_;

@@ -1,4 +1,4 @@
-/// Cutting planes: where they lie and what they keep.
+/// Cutting planes: position and kept side.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ bool slide(const char* id, double& value, double min, double max, const char* fo
   return ImGui::SliderScalar(id, ImGuiDataType_Double, &value, &low, &high, format);
 }
 
-/// @return whether the plane was changed
+/// @return true if the plane was changed
 bool drawHorizontal(CutPlane& plane, const render::SceneBox& box) {
   return slide("##altitude", plane.altitude_m, box.lower_m.z, box.upper_m.z, "altitude %.0f m");
 }

@@ -31,7 +31,7 @@ PlatformDrag::PlatformDrag(const playback::LivePicture& picture, std::size_t emi
   const auto index = static_cast<std::size_t>(scenario.emitters[emitter].platform);
   const scenario::Platform& platform = scenario.platforms[index];
   platform_ = platform.name;
-  movesOf(scenario, platform_, 0, 0);  // refuses what moves by itself
+  movesOf(scenario, platform_, 0, 0);  // throws for a platform with a track
   const render::Marker& marker = picture.annotations.markers[emitter];
   grip_m_ = marker.position_m;
   follows_ground_ = platform.track.front().position.height_agl_m && picture.ground && marker.ground_m;

@@ -1,4 +1,4 @@
-/// A platform that is moved by hand in the picture.
+/// Dragging of a platform in the picture.
 #pragma once
 
 #include <cstddef>
@@ -11,11 +11,11 @@
 
 namespace emscape::view {
 
-/// Index of the marker under a pixel, which is that of the emitter; none if none is near.
+/// Index of the marker under a pixel, which is that of the emitter; none if there is no marker nearby.
 std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double x, double y);
 
-/// From the press of the button on. A platform whose height is given above the ground goes where the ground
-/// is under the cursor, any other one stays at its height. The cursor keeps its distance from the marker.
+/// Starts a drag. A platform whose height is given above the ground follows the ground under the cursor, any
+/// other one keeps its height. The cursor keeps its distance from the marker.
 class PlatformDrag {
  public:
   /// @param emitter  index of its marker
@@ -23,7 +23,7 @@ class PlatformDrag {
   PlatformDrag(const playback::LivePicture& picture, std::size_t emitter, double x, double y);
 
   const std::string& platform() const { return platform_; }
-  /// The edits that move the platform to the cursor; none where there is nothing under it.
+  /// The edits that move the platform to the cursor; none if there is no position under it.
   std::optional<std::vector<scenario::Edit>> moveTo(const playback::LivePicture& picture, double x,
                                                     double y) const;
 

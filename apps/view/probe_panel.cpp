@@ -1,4 +1,4 @@
-/// The probe: what is at a point and why.
+/// The probe: the values at a point and their explanation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -200,7 +200,7 @@ void drawProbe(PanelContext& context, const Area& picture) {
       ImGui::TextWrapped("%s", result->error.c_str());
       ImGui::PopStyleColor();
     } else if (!result->reading) {
-      ImGui::TextDisabled("beside the volume");
+      ImGui::TextDisabled("outside the volume");
     } else {
       drawReading(context, *result);
     }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kAboveGround_m = 10;  // where the cursor is on the ground
 
-/// Whether a point that is held must be read again.
+/// True if a point that is held must be read again.
 bool isOtherField(const playback::LivePicture& a, const playback::LivePicture& b) {
   return a.volume.dense() != b.volume.dense() || a.volume.device() != b.volume.device() ||
          a.volume.info().time_s != b.volume.info().time_s || a.scenario != b.scenario;
@@ -25,7 +25,7 @@ bool isOtherField(const playback::LivePicture& a, const playback::LivePicture& b
 
 }  // namespace
 
-/// The work; keeps the volume that it read last in the host's memory.
+/// Reads a probe; keeps the last volume in host memory.
 class Prober::Reader {
  public:
   Answer operator()(const Question& question) {
@@ -79,7 +79,7 @@ void Prober::turnOn(bool on) {
 }
 
 void Prober::hover(std::optional<render::Projected> pixel) {
-  if (is_locked_ && !locked_m_) return;  // the pixel that is to be held is still being read
+  if (is_locked_ && !locked_m_) return;  // the pixel to lock is still being read
   std::optional<Pixel> at;
   if (pixel) at = Pixel{pixel->x, pixel->y};
   const bool is_same =
@@ -177,7 +177,7 @@ std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading,
 
 std::string profileCommand(const ProbeResult& result, const std::string& emitter) {
   if (!result.scenario || !result.reading || !result.reading->position) {
-    throw Error(ErrorCode::bad_input, "there is no path to explain: the probe holds no point of a scenario");
+    throw Error(ErrorCode::bad_input, "there is no path to explain: the probe has no point of a scenario");
   }
   const GeodeticPosition& position = *result.reading->position;
   return fmt::format("{} --emitter {} --to={:.7f},{:.7f},{:.2f} --time {:g}",

@@ -1,4 +1,4 @@
-/// What is under the cursor, or at a point that is held, read beside the window's thread.
+/// Probe readings under the cursor, or at a locked point, on a background thread.
 #pragma once
 
 #include <cstddef>
@@ -14,32 +14,33 @@
 
 namespace emscape::view {
 
-/// What one emitter contributes to a reading.
+/// Contribution of one emitter to a reading.
 struct Contribution {
   std::size_t emitter = 0;  ///< index into ProbeReading::emitters
   double value = 0;         ///< -infinity without a field
-  std::string text;         ///< value with unit, or why there is none
+  std::string text;         ///< value with unit, or the reason why there is none
 };
-/// The strongest first. @param quantity  that is meant; power density where an emitter has no such term
+/// The contributions, the strongest first. @param quantity to list; power density for emitters without such a
+/// term
 std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading, const std::string& quantity);
 
-/// One reading with what it was read from.
+/// One reading and its source.
 struct ProbeResult {
   std::optional<playback::ProbeReading> reading;  ///< none: there is nothing under the cursor
   std::vector<Contribution> contributions;
-  std::string error;  ///< why nothing could be read
+  std::string error;  ///< reason why nothing could be read
   std::shared_ptr<const scenario::Scenario> scenario;
   std::string quantity;  ///< of the volume
   double time_s = 0;
 };
 
-/// Reads the picture that is shown: under the cursor, or at a locked point again and again as the field
-/// changes. The latest question counts. The window's thread uses it.
+/// Reads the picture on screen under the cursor, or at a locked point whenever the field changes. Only the
+/// latest request is served. The window's thread uses it.
 class Prober {
  public:
   using PicturePtr = std::shared_ptr<const playback::LivePicture>;
 
-  /// @param wake  called on another thread when update() has something to take
+  /// @param wake  called on another thread when update() has a result
   explicit Prober(std::function<void()> wake);
 
   /// Nothing is read while it is off.
@@ -47,22 +48,22 @@ class Prober {
   bool isOn() const { return is_on_; }
   /// The cursor is over a pixel of the picture; none: elsewhere.
   void hover(std::optional<render::Projected> pixel);
-  /// Holds what is under a pixel.
+  /// Locks the position under a pixel.
   void lockAtPixel(double x, double y);
-  /// Holds a position. @param position_m  frame metres
+  /// Locks a position. @param position_m  frame metres
   void lockAt(const Vec3d& position_m);
-  /// Holds what was read last, or lets go.
+  /// Locks the last reading, or unlocks.
   void toggleLock();
   void unlock();
   bool isLocked() const { return is_locked_; }
   /// Of the locked point; none before it has been found.
   const std::optional<Vec3d>& locked_m() const { return locked_m_; }
 
-  /// Asks for what the picture makes necessary, takes what has been read. @return whether there is a new one
+  /// Requests readings that a new picture needs, takes results. @return true if there is a new one
   bool update(const PicturePtr& picture);
   /// Null before the first.
   const ProbeResult* result() const { return result_ ? &*result_ : nullptr; }
-  /// Whether a reading is under way.
+  /// True if a reading is under way.
   bool isBusy() const { return is_on_ && (is_due_ || worker_.isBusy()); }
 
  private:
@@ -84,19 +85,19 @@ class Prober {
   void ask(const PicturePtr& picture);
 
   bool is_on_ = false;
-  bool is_due_ = false;  // something else is to be read than was asked for last
+  bool is_due_ = false;  // another reading than the last request is needed
   std::optional<Pixel> pixel_;
   bool is_locked_ = false;
-  long long lock_ = 0;  // counts locks: an answer to a question before the last one is none
+  long long lock_ = 0;  // counts locks: results of requests before the last lock are dropped
   std::optional<Vec3d> locked_m_;
-  // What was asked for last
+  // The last request
   PicturePtr asked_picture_;
   std::optional<ProbeResult> result_;
   playback::LatestWorker<Question, Answer> worker_;
 };
 
 /// The command that explains the path of an emitter to the reading's position.
-/// @throws Error (bad_input) where there is no scenario
+/// @throws Error (bad_input) if there is no scenario
 std::string profileCommand(const ProbeResult& result, const std::string& emitter);
 
 }  // namespace emscape::view

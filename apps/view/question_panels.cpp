@@ -1,5 +1,4 @@
-/// Questions that wait for an answer: edits of an earlier run, edits that are not saved, files that have
-/// changed.
+/// Dialogs: restore edits of an earlier run, unsaved edits, changed files.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -36,7 +35,7 @@ void drawEdits(const std::vector<scenario::Edit>& edits, render::Theme theme) {
   ImGui::PopStyleColor();
 }
 
-/// The button that Enter presses, too.
+/// The default button, also pressed by Enter.
 bool firstButton(const char* text) {
   const bool pressed = ImGui::Button((std::string(text) + " (Enter)").c_str());
   ImGui::SameLine();

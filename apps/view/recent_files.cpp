@@ -38,7 +38,7 @@ std::vector<std::string> addRecentFile(const std::string& input) {
   files.erase(std::remove(files.begin(), files.end(), path), files.end());
   if (path.find('\n') == std::string::npos) files.insert(files.begin(), path);
   files.resize(std::min(files.size(), kMaxRecentFiles));
-  std::error_code ignored;  // writing tells
+  std::error_code ignored;  // the write reports it
   fs::create_directories(recentFilesFile().parent_path(), ignored);
   writeWhole(recentFilesFile(), [&files](std::ostream& out) {
     for (const std::string& file : files) out << file << '\n';

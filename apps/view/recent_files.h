@@ -11,9 +11,9 @@ inline constexpr std::size_t kMaxRecentFiles = 10;
 
 /// $XDG_STATE_HOME/emscape/recent. @throws Error (other) as playback::stateFolder()
 std::filesystem::path recentFilesFile();
-/// Absolute paths, the newest first; empty where nothing was opened yet or the file cannot be read.
+/// Absolute paths, the newest first; empty if nothing was opened yet or the file cannot be read.
 std::vector<std::string> readRecentFiles();
-/// Puts an input in front; the file appears whole or not at all. @return all of them
+/// Adds an input in front; the file is written atomically. @return all of them
 /// @throws Error (other) if it cannot be written
 std::vector<std::string> addRecentFile(const std::string& input);
 

@@ -1,4 +1,4 @@
-/// What is to be recorded, and how far a recording is.
+/// The dialog of recording, and the progress of a recording.
 #include <fmt/format.h>
 
 #include <cstring>
@@ -34,13 +34,13 @@ void drawProgress(PanelContext& context, const Area& picture) {
   ImGui::PopStyleVar();
 }
 
-/// What was typed.
+/// The text of the fields.
 struct Typed {
   char file[1024] = "";
   double begin_s = 0, end_s = 0, step_s = 0, frames_per_s = 10;
 };
 
-/// The whole series into a video beside the input.
+/// The whole series into a video in the input's folder.
 void fillIn(Typed& typed, const Session& session) {
   const std::vector<double>& times_s = session.timeline().times_s();
   if (times_s.empty()) return;

@@ -1,4 +1,4 @@
-/// Records a view over a range of times: pictures or a video, beside the window.
+/// Records a view over a range of times, as pictures or a video, in the background.
 #pragma once
 
 #include <atomic>
@@ -14,14 +14,14 @@
 
 namespace emscape::view {
 
-/// Which times; all fields empty: every step of the series.
+/// The times; all fields empty: every step of the series.
 struct RecordRange {
   std::optional<double> begin_s, end_s;
   std::optional<double> step_s;  ///< none: that of the series
   double frames_per_s = 10;      ///< of a video, 0.1..240
 };
 
-/// What is drawn, and where to.
+/// The view to draw, and the output.
 struct RecordJob {
   playback::FrameSelection selection;
   playback::PictureStyle style;
@@ -30,18 +30,18 @@ struct RecordJob {
   std::string output;  ///< NAME.mp4, NAME.png (one time) or a folder
 };
 
-/// One recording at a time, on a thread and from a source of its own, as `emscape render` does it. The thread
+/// One recording at a time, on its own thread and from its own source, as by `emscape render`. The thread
 /// of the window uses it.
 class Recorder {
  public:
   Recorder() = default;
-  /// Cancels what is recorded.
+  /// Cancels the recording.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
   /// @param wake  called from the thread of the recording after each picture and at its end
-  /// @throws Error (usage) if a recording is under way
+  /// @throws Error (usage) if a recording is running
   void start(const RecordJob& job, std::function<void()> wake);
   /// Returns at once; the recording ends within a picture.
   void cancel() { stop_ = true; }
@@ -54,12 +54,12 @@ class Recorder {
   };
   Progress progress() const;
 
-  /// How a recording ended.
+  /// Result of a recording.
   struct Outcome {
     std::string text;
     bool is_error = false;
   };
-  /// That of a recording that has ended; once.
+  /// The result of a recording that has ended; once.
   std::optional<Outcome> takeOutcome();
 
  private:

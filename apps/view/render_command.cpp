@@ -21,7 +21,7 @@ std::string beginOf(const ViewOptions& options) {
   return text;
 }
 
-/// The colours that `render` fits where no transfer function is given.
+/// The colours that `render` fits without a transfer function.
 render::TransferFunction fittedColors(const playback::ViewState& view, const volume::Volume& shown) {
   if (!view.range) return render::defaultTransferFunction(*shown.host());
   volume::VolumeInfo info = shown.info();
@@ -34,7 +34,7 @@ render::TransferFunction fittedColors(const playback::ViewState& view, const vol
 std::string writeColors(const render::TransferFunction& function, const std::string& text) {
   namespace fs = std::filesystem;
   const fs::path folder = playback::stateFolder() / "copied";
-  std::error_code ignored;  // writing tells
+  std::error_code ignored;  // the write reports it
   fs::create_directories(folder, ignored);
   const fs::path file = folder / fmt::format("colors-{:016x}.json", std::hash<std::string>()(text));
   render::writeTransferFunction(file.string(), function);

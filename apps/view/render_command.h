@@ -12,7 +12,7 @@ namespace emscape::view {
 std::string renderCommand(const ViewOptions& options, const std::string& state_file);
 
 /// The same with the options that describe the view, and --set for its edits. Colours that `render` would not
-/// fit by itself go to a file, which is written into stateFolder()/copied.
+/// fit itself are written to a file in stateFolder()/copied.
 /// @param shown  the volume on screen
 /// @throws Error (other) if that file cannot be written
 std::string renderCommand(const ViewOptions& options, const playback::ViewState& view,

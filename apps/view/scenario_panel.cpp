@@ -1,4 +1,4 @@
-/// What if: values of the scenario, changed by the same edits as --set makes.
+/// Editor of the scenario's values, by the same edits as --set.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,16 +16,16 @@ namespace {
 
 using scenario::ParameterGroup;
 
-constexpr std::size_t kSearchFrom = 8;  // emitters: more than these get a field to search them
+constexpr std::size_t kSearchFrom = 8;  // emitters: with more than these, there is a search field
 
-/// A part of the scenario with a heading that folds.
+/// A section of the scenario with a collapsible heading.
 struct Section {
   std::string name;
   std::string path;
   std::optional<scenario::EmitterKind> kind;  ///< of an emitter
 };
 
-/// What the panel keeps from frame to frame.
+/// State of the panel between frames.
 struct PanelState {
   playback::ScenarioPtr scenario;  // of what follows
   std::vector<Section> emitters, platforms, others;
@@ -74,7 +74,7 @@ bool transmitsAtAll(const scenario::Emitter& emitter, double duration_s) {
                      [&](const scenario::TimeInterval& interval) { return interval.begin_s <= duration_s; });
 }
 
-/// A switch of the emitter: off is a second that no step reaches.
+/// A switch of the emitter; off sets an active interval beyond the last step.
 void drawSwitch(PanelContext& context, ParameterRows& rows, const PanelState& state, const Section& section) {
   const std::vector<scenario::Emitter>& emitters = state.scenario->emitters;
   const auto emitter = std::find_if(emitters.begin(), emitters.end(),
@@ -95,7 +95,7 @@ void drawSwitch(PanelContext& context, ParameterRows& rows, const PanelState& st
   ParameterRows::end();
 }
 
-/// Names that the verb `quantity` takes: with several channels for each quantity, those.
+/// Names for the verb `quantity`: channels if a quantity has several.
 std::vector<std::string> quantitiesOf(const scenario::Scenario& scenario) {
   std::vector<std::string> parts{""};
   if (scenario.output.combine == scenario::CombineMode::per_emitter) {
@@ -146,7 +146,7 @@ void drawBody(PanelContext& context, PanelState& state, const Section& section) 
   ImGui::PopID();
 }
 
-/// A heading that folds, with a dot of the kind's colour.
+/// A collapsible heading, with a dot in the kind's colour.
 void drawHeading(PanelState& state, const Section& section, render::Theme theme, float scale) {
   ImGui::PushID(section.path.c_str());
   ImGui::SetNextItemOpen(state.open.count(section.path) > 0);

@@ -73,18 +73,18 @@ Script::Script(const std::string& file) {
     ++number;
     const std::size_t begin = line.find_first_not_of(" \t\r");
     if (begin == std::string::npos || line[begin] == '#') continue;
-    const SourceLocation place{file, number, 0};
+    const SourceLocation location{file, number, 0};
     const Json object = Json::parse(line, nullptr, false);
-    if (object.is_discarded()) throw Error(ErrorCode::bad_input, place, "not JSON");
+    if (object.is_discarded()) throw Error(ErrorCode::bad_input, location, "not JSON");
     try {
-      lines_.push_back({place, parseCommand(object), std::nullopt});
+      lines_.push_back({location, parseCommand(object), std::nullopt});
       if (object.contains("at_s")) {
         if (!object["at_s"].is_number()) throw Error(ErrorCode::bad_input, "at_s: expected a number");
         lines_.back().at_s = object["at_s"].get<double>();
       }
       if (lines_.back().command.verb == "key") parseChord(lines_.back().command.text("key"));
     } catch (const Error& error) {
-      throw Error(ErrorCode::bad_input, place, error.message());
+      throw Error(ErrorCode::bad_input, location, error.message());
     }
   }
 }
@@ -93,7 +93,7 @@ bool Script::waitIsOver(const Line& line, const Session& session, double now_s) 
   const Command& command = line.command;
   if (!waits_since_s_) {
     waits_since_s_ = now_s;
-    return false;  // at least one frame: what was asked for before has reached the workers
+    return false;  // waits at least one frame, so that earlier requests have reached the workers
   }
   const double waited_s = now_s - *waits_since_s_;
   if (command.verb == "wait_s") return waited_s >= command.number("seconds");
@@ -111,7 +111,7 @@ bool Script::waitIsOver(const Line& line, const Session& session, double now_s) 
   const double limit_s = command.number("timeout_s", kWaitLimit_s);
   if (!over && waited_s > limit_s) {
     if (!command.boolean("must", true)) return true;
-    throw Error(ErrorCode::check_failed, line.place,
+    throw Error(ErrorCode::check_failed, line.location,
                 fmt::format("{} {}: not within {:g} s; the state is {}", command.verb, state, limit_s,
                             session.report().dump()));
   }
@@ -122,11 +122,11 @@ void Script::expect(const Line& line, const Session& session) const {
   const Json report = session.report();
   const std::string key = line.command.text("key"), op = line.command.text("op");
   if (!report.contains(key)) {
-    throw Error(ErrorCode::bad_input, line.place, fmt::format("expect: there is no key '{}'", key));
+    throw Error(ErrorCode::bad_input, line.location, fmt::format("expect: there is no key '{}'", key));
   }
   const Json& value = line.command.arguments["value"];
   if (!holds(report[key], op, value)) {
-    throw Error(ErrorCode::check_failed, line.place,
+    throw Error(ErrorCode::check_failed, line.location,
                 fmt::format("expected {} {} {}, but it is {}", key, op, value.dump(), report[key].dump()));
   }
 }

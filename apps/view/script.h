@@ -9,16 +9,16 @@
 
 namespace emscape::view {
 
-/// Lines run in order. {"at_s": T} holds a line back until T seconds after the start; wait_s, wait_frame and
-/// wait_state hold what follows back. Empty lines and lines that begin with # say nothing.
+/// Lines run in order. {"at_s": T} delays a line until T seconds after the start; wait_s, wait_frame and
+/// wait_state delay the following lines. Empty lines and lines that begin with # are skipped.
 class Script {
  public:
   Script() = default;
-  /// @throws Error (bad_input) with file:line for a line that is no command
+  /// @throws Error (bad_input) with file:line for a line that is not a command
   explicit Script(const std::string& file);
 
   bool finished() const { return next_ >= lines_.size(); }
-  /// Runs what is due. Called once per frame.
+  /// Runs the lines that are due. Called once per frame.
   /// @throws Error (check_failed) with file:line for an expectation that is not met, or a wait that took too
   /// long
   void run(Session& session, WindowControl& window, double now_s);
@@ -27,7 +27,7 @@ class Script {
 
  private:
   struct Line {
-    SourceLocation place;
+    SourceLocation location;
     Command command;
     std::optional<double> at_s;
   };
@@ -38,7 +38,7 @@ class Script {
   std::vector<Line> lines_;
   std::size_t next_ = 0;
   std::optional<double> waits_since_s_;  // for the line next_
-  int frames_to_wait_ = 0;               // until the window has seen what was injected
+  int frames_to_wait_ = 0;               // until the window has processed the injected events
 };
 
 }  // namespace emscape::view

@@ -12,7 +12,7 @@ namespace {
 
 playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::ComputeTarget& target) {
   constexpr std::size_t kCacheBytes = std::size_t{512} << 20;
-  constexpr int kNiceness = 5;  // the window answers first
+  constexpr int kNiceness = 5;  // the window has priority
   playback::LiveOptions live;
   live.target = target;
   live.controller = options.controller;
@@ -26,7 +26,7 @@ playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::
   return live;
 }
 
-/// Nothing is drawn before the window says how large the picture is.
+/// Nothing is drawn before the window has set the picture's size.
 playback::PictureStyle styleOf(const ViewOptions& options) {
   playback::PictureStyle style = playback::pictureStyleOf(options.view);
   style.transfer = options.transfer;
@@ -151,7 +151,7 @@ bool Session::update() {
   countValues();
   if (fit_) fitColors();
   finishJobs();
-  if (touched_) status_ = live_.status();  // what was just asked for is not shown yet
+  if (touched_) status_ = live_.status();  // a pending request is not shown yet
   for (const playback::StateChange& change : live_.takeStateChanges()) {
     log_.write("state", {{"from", render::toString(logged_state_)}, {"to", render::toString(change.to)}});
     logged_state_ = change.to;
@@ -208,7 +208,7 @@ std::optional<Viewport> Session::viewport() const {
                   render::overlayMargins(picture_->size, picture_->annotations)};
 }
 
-// --- what is asked for ---
+// --- requests ---
 
 void Session::cameraMoved() {
   live_.setCamera(camera_.spec());

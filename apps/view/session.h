@@ -1,4 +1,4 @@
-/// What is looked at and how: everything behind the window but drawing and input. No OpenGL, no ImGui.
+/// The state and commands of the window, without drawing and input. No OpenGL, no ImGui.
 #pragma once
 
 #include <functional>
@@ -28,27 +28,27 @@
 
 namespace emscape::view {
 
-/// A line that tells the user what came of a command.
+/// A line that reports the result of a command to the user.
 struct Notice {
   std::string text;
   bool is_error = false;
   double since_s = 0;
 };
 
-/// Edits that were refused, for whoever asked for them.
+/// Edits that were refused.
 struct Rejection {
   std::vector<scenario::Edit> edits;
   std::string message;
 };
 
-/// emscape-NNNN.png that does not exist.
+/// The first emscape-NNNN.png that does not exist.
 std::string newPictureName();
 
-/// Runs commands on a LiveView and keeps what is asked for. The thread of the window uses it.
+/// Runs commands on a LiveView and holds the requested state. The thread of the window uses it.
 class Session {
  public:
-  /// @param wake   called from any thread when there is something new to see
-  /// @param files  shared by the sessions of a window; null: of its own
+  /// @param wake   called from any thread when there is something new to show
+  /// @param files  shared by the sessions of a window; null: not shared
   Session(const ViewOptions& options, const playback::ComputeTarget& target, WindowControl& window,
           EventLog& log, std::function<void()> wake, std::shared_ptr<Files> files = nullptr);
   /// Waits until the files are written.
@@ -56,68 +56,67 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// What perform() can do: one table per topic, session_TOPIC.cpp.
+  /// The verbs of perform(): one table per topic, session_TOPIC.cpp.
   static std::vector<Verb> verbs();
-  /// Carries a command out. Faults become the notice. Waiting, keys, mouse and expect are the script's.
+  /// Executes a command. Errors become the notice. Waiting, keys, mouse and expect belong to the script.
   void perform(const Command& command);
-  /// The same with new values in the scenario while a control or a platform is dragged: one step to be
-  /// undone.
+  /// Changes values of the scenario while a control or a platform is dragged: one undo step.
   void drag(const std::vector<scenario::Edit>& edits);
   void dragValue(const std::string& path, const std::string& value) { drag({{path, value}}); }
-  /// Changes colours and opacities while a control is dragged: one step to be undone.
+  /// Changes colours and opacities while a control is dragged: one undo step.
   void dragTransfer(const std::function<void(playback::TransferEditor&)>& change);
-  /// The same as a step of its own.
+  /// The same as a separate step.
   void changeTransfer(const std::function<void(playback::TransferEditor&)>& change);
-  /// Of either kind.
+  /// Ends a drag of either kind.
   void endDrag();
-  /// Back to the values before the drag.
+  /// Restores the values before the drag.
   void cancelDrag();
   bool isDragging() const { return edit_queue_.isDragging(); }
 
-  /// Lets time pass and takes what is new. @return whether the window is to be drawn
+  /// Advances time and takes new results. @return true if the window must be drawn
   bool update();
-  /// Seconds until update() has something to do by itself; none: not before an event.
+  /// Seconds until update() must be called again; none: not before an event.
   std::optional<double> nextUpdate_s() const;
   /// The part of the window that the picture fills.
   void setPictureSize(render::ImageSize size);
   render::ImageSize pictureSize() const { return picture_size_; }
-  /// Whether busy pictures that a GPU casts are left there; see LivePicture::on_device.
+  /// True if busy pictures that a GPU casts are left there; see LivePicture::on_device.
   void keepOnDevice(bool keep) { live_.keepOnDevice(keep); }
 
-  // --- what is shown ---
+  // --- state on screen ---
   const playback::LivePicture* picture() const { return picture_.get(); }
   const playback::LiveStatus& status() const { return status_; }
   bool exact() const;
-  /// Whether edits or readings that were asked for are still to come: scripts wait for them.
+  /// True if requested edits or readings are pending: scripts wait for them.
   bool isAnswering() const { return edit_queue_.isBusy() || prober_.isBusy(); }
-  /// Exact, and nothing that was asked for is missing.
+  /// True if the picture is exact and no request is pending.
   bool settled() const;
-  /// Files are being read or written for it, or wait until it is settled; or another one is being opened.
+  /// True if its files are being read or written, or will be when it is settled, or another session is being
+  /// opened.
   bool working() const;
-  /// Files are being read or written.
+  /// True if files are being read or written.
   bool writing() const { return jobs_.busy(); }
   /// For mouse movements; none before the first picture.
   std::optional<Viewport> viewport() const;
-  /// What the log says of a frame and what scripts compare.
+  /// Report of a frame, for the log and for script comparisons.
   Json report() const;
 
   // --- files: session_state.cpp, session_files.cpp ---
   const ViewOptions& options() const { return options_; }
-  /// Something is open, or being opened first; else the window asks for it.
+  /// True if an input is open or is being opened; else the window offers the start panel.
   bool hasInput() const { return !options_.input.empty(); }
   Files& files() { return *files_; }
   const Files& files() const { return *files_; }
-  /// All that is asked for: the view that a file keeps.
+  /// The requested state, as a view for a file.
   playback::ViewState viewState() const;
   bool hasUnsavedEdits() const;
-  /// What an earlier run left when it ended before its time.
+  /// The autosave of an earlier run that did not end regularly.
   const std::optional<playback::AutosavedView>& keptView() const { return kept_view_; }
   /// Files of the input that have changed on the disk since they were read.
   const std::vector<std::string>& changedFiles() const { return changed_files_; }
-  /// The session gives way to another one. @param keeps_edits  unsaved edits are offered when the input is
-  /// opened again
+  /// Ends this session. @param keeps_edits  true: unsaved edits are offered when the input is opened again
   void leave(bool keeps_edits);
-  /// The session has come on screen. @param left_out  edits that did not apply; may be empty
+  /// Called when the session comes on screen. @param left_out  edits that did not apply; may be empty
   void shown(const std::string& left_out);
   void record(const RecordRange& range, const std::string& output);
 
@@ -130,12 +129,12 @@ class Session {
   render::CutPlane newPlane(render::CutPlane::Kind kind) const;
   /// @throws Error (bad_input) for too many, or values out of their range
   void setPlanes(const std::vector<render::CutPlane>& planes);
-  /// The difference to the reference is asked for instead of the field.
+  /// True if the difference to the reference is requested instead of the field.
   bool compares() const { return compares_; }
-  /// Colours and opacities; null before the first picture, and of categories, which have their own.
+  /// Colours and opacities; null before the first picture, and for categories, which have fixed colours.
   const playback::TransferEditor* transfer() const { return transfer_ ? &*transfer_ : nullptr; }
-  /// The values of the picture's volume, or of the one before it while they are counted; null before the
-  /// first are. They are counted while the panel of the colours is open.
+  /// Statistics of the values of the picture's volume, or of the previous one while they are computed; null
+  /// before the first. Computed while the colour panel is open.
   const ValueSummary* values() const { return values_.get(); }
   render::Theme theme() const { return theme_; }
   const std::string& quantity() const { return quantity_; }
@@ -148,7 +147,7 @@ class Session {
   const std::optional<Rejection>& rejection() const { return rejection_; }
   Prober& prober() { return prober_; }
   const Prober& prober() const { return prober_; }
-  /// A change of the scenario or of the colours.
+  /// True if there is a change of the scenario or of the colours.
   bool canUndo() const { return undo_order_.canUndo() || dragging_ || isDragging(); }
   bool canRedo() const { return undo_order_.canRedo() && !dragging_ && !isDragging(); }
   const std::vector<std::optional<playback::Bookmark>>& bookmarks() const { return bookmarks_; }
@@ -201,10 +200,10 @@ class Session {
   void takeEdits();
   void focusEmitter(const std::optional<std::string>& name);
   void focusGround(double x, double y);
-  /// What the log says of the probe.
+  /// Report of the probe for the log.
   Json probeReport() const;
   void tellRate();
-  /// After the edits that were asked for before.
+  /// Runs after the edits that were requested before.
   void askUndo(bool undo);
   void undoOrRedo(bool undo);
   void noteSteps();
@@ -214,7 +213,7 @@ class Session {
   void takeColors();
   void countValues();
   void fitColors();
-  /// @throws Error (bad_input) where there are no colours to change
+  /// @throws Error (bad_input) if there are no editable colours
   playback::TransferEditor& requireTransfer();
   void readTransfer(const std::string& file);
   void saveTransfer(std::string file);
@@ -237,12 +236,12 @@ class Session {
   double advanced_at_s_ = 0;
   render::ImageSize picture_size_;
   render::RenderSettings settings_;
-  render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // that I goes back to
+  render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // that the key I returns to
   std::optional<playback::TransferEditor> transfer_;
-  bool takes_colors_ = true;  // from the next pictures, which are fitted anew
+  bool takes_colors_ = true;  // from the next pictures, whose colours are fitted again
   std::shared_ptr<const ValueSummary> values_;
   bool counting_ = false;
-  std::optional<Fit> fit_;  // asked for, and what it needs is not known yet
+  std::optional<Fit> fit_;  // requested, but its data are not known yet
   render::Theme theme_;
   std::string quantity_;
   std::optional<render::Pattern> pattern_;
@@ -253,7 +252,7 @@ class Session {
 
   std::optional<playback::EditHistory> edits_;
   playback::EditQueue edit_queue_;
-  playback::ScenarioPtr shown_scenario_;  // that the live view was given
+  playback::ScenarioPtr shown_scenario_;  // the scenario of the live view
   std::string shown_quantity_;            // the same
   std::optional<Rejection> rejection_;
   Prober prober_;
@@ -264,19 +263,19 @@ class Session {
   std::string saved_file_;    // view file that ...
   std::string saved_text_;    // ... holds this view
   std::string copied_;        // the command that was copied last
-  std::string picture_file_;  // to be written as soon as the picture is settled
-  bool opened_unsaved_;       // with edits that no file holds
-  std::string kept_hash_;     // of the scenario that the autosave holds, or needs not hold
+  std::string picture_file_;  // to be written when the picture is settled
+  bool opened_unsaved_;       // with unsaved edits
+  std::string kept_hash_;     // of the scenario in the autosave, or of one that needs none
   std::optional<double> keep_at_s_;
-  bool has_kept_;  // an autosave, which a regular end removes
+  bool has_kept_;  // true: there is an autosave, which a regular end removes
   std::optional<playback::AutosavedView> kept_view_;
   FileWatch file_watch_;
   std::vector<std::string> changed_files_;
   Notice notice_;
-  BackgroundJobs jobs_;  // the first to go
+  BackgroundJobs jobs_;  // destroyed first
 };
 
-/// The edits that put a platform elsewhere.
+/// The edits that move a platform.
 /// @throws Error (bad_input) if there is no such platform, or it moves along a track
 std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const std::string& platform,
                                     double latitude_deg, double longitude_deg);

@@ -10,7 +10,7 @@
 namespace emscape::view {
 namespace {
 
-constexpr double kFocus_diagonals = 0.45;  // distance of what is looked at
+constexpr double kFocus_diagonals = 0.45;  // distance of the target
 
 }  // namespace
 

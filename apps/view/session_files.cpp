@@ -101,7 +101,7 @@ void Session::saveScenario(const std::string& given_file, bool then_quits) {
         edits_->markSaved();
         opened_unsaved_ = false;
       }
-      keep_at_s_ = log_.now_s();  // the autosave is not needed any more
+      keep_at_s_ = log_.now_s();  // the autosave is obsolete
       tell("written: " + file);
       if (then_quits) window_.quit();
     };
@@ -118,7 +118,7 @@ void Session::lookForKeptView() {
   });
 }
 
-/// Keeps the view a moment after the last edit, and drops it when the edits are saved or undone.
+/// Writes the autosave shortly after the last edit, and removes it when the edits are saved or undone.
 void Session::keepEdits(double now_s) {
   if (!edits_ || dragging_ || isDragging()) return;
   if (edits_->scenario()->hash != kept_hash_) {
@@ -166,7 +166,7 @@ std::vector<Verb> Session::fileVerbs() {
   return {
       {"open",
        {{"file", kText, false}, {"scenario", kText, false}},
-       "Opens a scenario or volumes, beside which `scenario` may stand; shows a view file; takes colours "
+       "Opens a scenario, or volumes with an optional `scenario`; shows a view file; takes colours "
        "from "
        "a transfer function; without a file: asks for it",
        [](Session& session, const Command& command) {
@@ -197,7 +197,7 @@ std::vector<Verb> Session::fileVerbs() {
        }},
       {"save",
        {{"file", kText, false}},
-       "Writes the changed scenario; default: NAME.edited.yaml beside the input",
+       "Writes the changed scenario; default: NAME.edited.yaml next to the input",
        [](Session& session, const Command& command) { session.saveScenario(command.text("file"), false); }},
       {"restore",
        {},

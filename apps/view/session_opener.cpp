@@ -9,10 +9,10 @@ namespace emscape::view {
 bool SessionOpener::update(std::unique_ptr<Session>& session) {
   if (files_->request && !task_.active()) {
     OpenRequest request = *std::exchange(files_->request, std::nullopt);
-    endBeside(std::move(next_));  // something else is wanted by now
+    endBeside(std::move(next_));  // there is a newer request
     ViewOptions present = session->options();
     present.view = session->viewState();
-    // What is opened anew is shown as at the start, but with the window as it is.
+    // A new input is shown with the options of the start, but with the present window.
     playback::ViewState fresh;
     fresh.theme = present.view.theme;
     fresh.open_panels = present.view.open_panels;
@@ -34,7 +34,7 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
 void SessionOpener::take(Session& session) {
   try {
     opening_ = task_.take();
-    if (files_->request) return;  // something else is wanted by now
+    if (files_->request) return;  // there is a newer request
     if (!opening_.colors.empty()) {
       files_->is_opening = false;
       session.perform({"transfer", {{"file", opening_.colors}}});
@@ -62,7 +62,7 @@ void SessionOpener::giveUp(Session& session, const std::string& why) {
   session.tell(why, true);
 }
 
-/// A session ends when the field that it computes is done.
+/// Destroys a session on a background thread, since it waits for its running field.
 void SessionOpener::endBeside(std::unique_ptr<Session> session) {
   if (!session) return;
   old_sessions_.push([old = std::shared_ptr<Session>(std::move(session))]() mutable { old.reset(); });

@@ -1,4 +1,4 @@
-/// Puts another session in the place of the one on screen, without stopping the window.
+/// Replaces the session on screen by another one, without blocking the window.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,9 @@
 
 namespace emscape::view {
 
-/// Serves the request of Files: looks at the file and opens it, both beside the window; once the first
-/// picture is there, the new session takes the place of the old one. What cannot be opened is told, and the
-/// old session stays. The thread of the window uses it.
+/// Serves the request of Files: examines the file and opens it, both in the background; when the first
+/// picture is ready, the new session replaces the old one. If it cannot be opened, the error is reported and
+/// the old session stays. The thread of the window uses it.
 class SessionOpener {
  public:
   using Make = std::function<std::unique_ptr<Session>(const ViewOptions&)>;
@@ -21,10 +21,10 @@ class SessionOpener {
   /// @param make  a session that shares `files`
   SessionOpener(std::shared_ptr<Files> files, Make make) : files_(std::move(files)), make_(std::move(make)) {}
 
-  /// @param session  replaced when the time has come
-  /// @return whether it was
+  /// @param session  replaced when the new one is ready
+  /// @return true if it was
   bool update(std::unique_ptr<Session>& session);
-  /// Whether update() is to be called often.
+  /// True if update() is to be called often.
   bool active() const { return task_.active() || files_->request || next_; }
 
  private:

@@ -1,4 +1,4 @@
-/// Verbs of what is compared and cut open.
+/// Verbs of comparison and cutting planes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,8 @@ void requireRoom(const std::vector<CutPlane>& planes) {
 
 /// The plane that a command names: by its number, else the last one.
 std::size_t indexOf(const Command& command, const std::vector<CutPlane>& planes) {
-  if (planes.empty()) throw Error(ErrorCode::bad_input, "plane: there is none; `spec` or `kind` adds one");
+  if (planes.empty())
+    throw Error(ErrorCode::bad_input, "plane: there is no plane; `spec` or `kind` adds one");
   const double number = command.number("index", static_cast<double>(planes.size()));
   for (std::size_t i = 0; i < planes.size(); ++i) {
     if (number == static_cast<double>(i + 1)) return i;
@@ -35,7 +36,7 @@ std::size_t indexOf(const Command& command, const std::vector<CutPlane>& planes)
   throw Error(ErrorCode::bad_input, fmt::format("plane: index {:g}: expected 1..{}", number, planes.size()));
 }
 
-/// Takes the values that a command gives a plane.
+/// Applies the values of a command to a plane.
 void change(CutPlane& plane, const Command& command) {
   const bool horizontal = plane.kind == CutPlane::Kind::horizontal;
   const std::vector<const char*> of_the_other = horizontal

@@ -13,7 +13,7 @@ namespace {
 /// The position in the picture's frame that a command names by latitude, longitude and a height.
 Vec3d positionOf(const Command& command, const playback::LivePicture& picture) {
   if (!picture.volume.grid().georeferenced) {
-    throw Error(ErrorCode::bad_input, "probe: the volume does not lie on the earth; give x and y");
+    throw Error(ErrorCode::bad_input, "probe: the volume has no position on the earth; give x and y");
   }
   const double latitude_deg = command.number("latitude_deg"), longitude_deg = command.number("longitude_deg");
   if (!(std::abs(latitude_deg) <= 90) || !(std::abs(longitude_deg) <= 180)) {

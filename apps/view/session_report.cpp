@@ -1,4 +1,4 @@
-/// What the log says of a frame and what scripts compare.
+/// Report of a frame, for the log and for script comparisons.
 #include <algorithm>
 #include <cmath>
 

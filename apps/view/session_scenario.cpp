@@ -141,7 +141,7 @@ std::vector<Verb> Session::scenarioVerbs() {
        }},
       {"move",
        {{"platform", kText}, {"latitude_deg"}, {"longitude_deg"}},
-       "Puts a platform elsewhere; its height stays as it is given",
+       "Moves a platform; its height is kept",
        [](Session& session, const Command& command) {
          if (!session.edits_) throw Error(ErrorCode::bad_input, "there is no scenario to change");
          session.changeScenario(movesOf(*session.scenario(), command.text("platform"),

@@ -1,4 +1,4 @@
-/// The view as a whole: what a file keeps of it, the picture alone, the command that draws it.
+/// The view as a whole: its file, the picture alone, the command that draws it.
 #include <filesystem>
 #include <utility>
 
@@ -9,7 +9,7 @@
 namespace emscape::view {
 namespace {
 
-/// Of the picture alone: what does not change it is left out.
+/// The view of the picture alone: without values that do not change it.
 std::string pictureText(playback::ViewState view) {
   view.bookmarks.clear();
   view.open_panels.clear();
@@ -28,7 +28,7 @@ std::string besideInput(const std::string& input, const std::string& ending) {
 
 }  // namespace
 
-/// None: those of categories, or those that are fitted to a quantity that is not on screen yet.
+/// None: for categories, or if they will be fitted to a quantity that is not on screen yet.
 std::optional<render::TransferFunction> Session::colorsInUse() const {
   if (!picture_) return options_.view.transfer;
   if (!transfer_ || takes_colors_) return std::nullopt;
@@ -64,7 +64,7 @@ playback::ViewState Session::viewState() const {
   return view;
 }
 
-/// What of a view the session keeps itself; the live view has the same from its options.
+/// Applies the parts of a view that the session holds; the live view gets its parts from the options.
 void Session::showView(const playback::ViewState& view) {
   camera_.set(view.camera);
   std::size_t next = 0;
@@ -86,7 +86,7 @@ void Session::showView(const playback::ViewState& view) {
   show_terrain_ = view.show_terrain;
   show_emitters_ = view.show_emitters;
   compares_ = !view.compare.empty();
-  if (view.open_panels.empty()) return;  // the view of a picture says nothing of panels
+  if (view.open_panels.empty()) return;  // a picture's view has no panels
   panels = Panels{};
   for (const PanelName& panel : panelNames()) panels.*panel.open = false;
   for (const std::string& name : view.open_panels) {
@@ -146,7 +146,8 @@ std::vector<Verb> Session::stateVerbs() {
   return {
       {"save_state",
        {{"file", kText, false}},
-       "Writes the view: camera, colours, time, edits and the rest; default: NAME.view.json beside the input",
+       "Writes the view: camera, colours, time, edits and the rest; default: NAME.view.json next to the "
+       "input",
        [](Session& session, const Command& command) { session.saveView(command.text("file")); }},
       {"load_state",
        {{"file", kText, false}},

@@ -61,7 +61,7 @@ std::vector<Verb> Session::timeVerbs() {
        }},
       {"rate",
        {{"value", kNumber, false}, {"change", kNumber, false}},
-       "Scenario seconds in a second, backwards if negative; or `change`, 1 or -1: the next usual rate above "
+       "Scenario seconds per second, backwards if negative; or `change`, 1 or -1: the next usual rate above "
        "or below, below the slowest backwards",
        [](Session& session, const Command& command) {
          constexpr double kLimit = 1e4;
@@ -86,7 +86,7 @@ std::vector<Verb> Session::timeVerbs() {
        }},
       {"loop",
        {{"on", kBoolean, false}},
-       "Playing goes on from the other end of the playing range",
+       "Playing continues at the other end of the playing range",
        [](Session& session, const Command& command) {
          session.timeline_.setLoop(command.boolean("on", !session.timeline_.loop()));
        }},

@@ -1,4 +1,4 @@
-/// Verbs of colours and opacities, and where these come from.
+/// Verbs of colours and opacities, and their source.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ double opacityOf(const Command& command) {
               fmt::format("{}: opacity {:g}: expected a number 0..1", command.verb, opacity));
 }
 
-/// Selects the point that a command names; without a name the one that is selected is meant.
+/// Selects the point that a command names; without a name the selection is kept.
 void selectPoint(playback::TransferEditor& editor, const Command& command) {
   if (!command.has("index")) return;
   const auto count = static_cast<double>(editor.function().opacities.size());
@@ -54,10 +54,10 @@ void setPoint(playback::TransferEditor& editor, const Command& command) {
 
 }  // namespace
 
-// --- where colours come from ---
+// --- source of the colours ---
 
 void Session::takeColors() {
-  takes_colors_ = picture_->status.computing;  // a picture of what was asked for before
+  takes_colors_ = picture_->status.computing;  // the picture is of an earlier request
   const playback::OpacityAxis axis = transfer_ ? transfer_->axis : playback::OpacityAxis{};
   undo_order_.forget(History::transfer);
   transfer_.reset();
@@ -193,7 +193,7 @@ std::vector<Verb> Session::transferVerbs() {
        [](Session& session, const Command& command) { session.saveTransfer(command.text("file")); }},
       {"reset_transfer",
        {},
-       "Colours and opacities fitted anew to how frequent the values of the step on screen are",
+       "Fits colours and opacities to the histogram of the step on screen",
        [](Session& session, const Command&) {
          session.requireTransfer();
          session.fit_ = Fit::anew;
@@ -216,7 +216,7 @@ std::vector<Verb> Session::transferVerbs() {
        }},
       {"opacity_preset",
        {{"name", kText}, {"value", kNumber, false}},
-       "Opacity curve by name: ramp, late ramp, threshold, shell, bands, opaque; a threshold or shell lies "
+       "Opacity curve by name: ramp, late ramp, threshold, shell, bands, opaque; a threshold or shell is "
        "at "
        "`value`, else in the middle",
        [](Session& session, const Command& command) {

@@ -1,4 +1,4 @@
-/// What is shown as long as nothing is open.
+/// The panel that is shown while nothing is open.
 #include <algorithm>
 #include <filesystem>
 
@@ -7,10 +7,10 @@
 
 namespace emscape::view {
 
-void drawRecentFiles(PanelContext& context, std::size_t most) {
+void drawRecentFiles(PanelContext& context, std::size_t max_count) {
   Session& session = context.session;
   const std::vector<std::string> recent = session.files().recent;
-  for (std::size_t i = 0; i < std::min(most, recent.size()); ++i) {
+  for (std::size_t i = 0; i < std::min(max_count, recent.size()); ++i) {
     const std::filesystem::path file(recent[i]);
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::Selectable("##recent")) session.perform({"open_recent", {{"number", i + 1}}});
@@ -37,7 +37,8 @@ void drawStart(PanelContext& context, const Area& picture) {
   ImGui::TextColored(accentColor(session.theme()), "Nothing is open");
   ImGui::PushTextWrapPos(0);
   ImGui::TextUnformatted(
-      "Open a scenario (.yaml, .json), whose field is computed, or volumes that are computed already: a file "
+      "Open a scenario (.yaml, .json), whose field is computed, or volumes from an earlier computation: a "
+      "file "
       "(.vdb .nvdb .vti .raw .dat), a series (.pvd) or a folder.");
   ImGui::PopTextWrapPos();
   if (ImGui::Button("Open (Ctrl+O)")) perform(context, R"({"do":"open"})");

@@ -1,4 +1,4 @@
-/// How panels look, dark and light.
+/// Style of the panels, dark and light.
 #pragma once
 
 #include <imgui.h>
@@ -12,10 +12,10 @@ namespace emscape::view {
 
 /// @param scale  of all lengths
 ImGuiStyle styleOf(render::Theme theme, float scale);
-/// Amber while it changes, blue while it is being made exact, green when it stands: told apart by brightness
+/// Amber while it changes, blue while it is being restored, green when it is settled; the brightness differs
 /// too.
 ImVec4 stateColor(render::ControllerState state);
-/// As the overlay of the picture has them; darker on light ground.
+/// The colours of the picture's overlay; darker on a light background.
 ImVec4 emitterColor(scenario::EmitterKind kind, render::Theme theme);
 ImVec4 accentColor(render::Theme theme);
 ImVec4 mutedColor(render::Theme theme);

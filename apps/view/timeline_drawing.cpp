@@ -11,7 +11,7 @@ ImU32 colorOf(const ImVec4& color, float alpha = 1) {
   return ImGui::ColorConvertFloat4ToU32({color.x, color.y, color.z, alpha});
 }
 
-/// Where the hand is: while it plays between the steps.
+/// Time of the hand; between the steps while playing.
 double handTime_s(const Session& session) {
   return session.timeline().playing() ? session.timeline().time_s() : session.timeline().step_s();
 }
@@ -87,7 +87,7 @@ void drawRows(ImDrawList& list, const TimeAxis& axis, const Session& session, fl
   const std::vector<playback::ActivityBar>& bars = session.timeline().bars();
   const float row = kTimelineRow * scale;
   const auto visible_from = static_cast<std::size_t>(std::max(0.0F, ImGui::GetScrollY() / row));
-  const std::size_t visible_to = std::min(bars.size(), visible_from + kMostTimelineRows + 1);
+  const std::size_t visible_to = std::min(bars.size(), visible_from + kMaxTimelineRows + 1);
   for (std::size_t i = visible_from; i < visible_to; ++i) {
     const float y = at.y + row * static_cast<float>(i);
     list.PushClipRect({names_left, y}, {axis.left - 6 * scale, y + row}, true);

@@ -8,11 +8,11 @@
 
 namespace emscape::view {
 
-constexpr int kMostTimelineRows = 5;  ///< of emitters; more are scrolled
+constexpr int kMaxTimelineRows = 5;  ///< of emitters; more are scrolled
 /// Heights in pixels at scale 1: a row of an emitter, the row of marks, the strip of computed steps.
 constexpr float kTimelineRow = 17, kTimelineMarks = 16, kTimelineCached = 5;
 
-/// Where times lie on the screen.
+/// Mapping of times to the screen.
 struct TimeAxis {
   double begin_s, end_s;
   float left, width;
@@ -20,7 +20,7 @@ struct TimeAxis {
   float right() const { return left + width; }
   double perPixel_s() const { return (end_s - begin_s) / static_cast<double>(width); }
   float x(double time_s) const { return left + static_cast<float>((time_s - begin_s) / perPixel_s()); }
-  /// Held within the axis.
+  /// Clamped to the axis.
   float clampedX(double time_s) const { return x(std::clamp(time_s, begin_s, end_s)); }
   double time_s(float at) const { return begin_s + static_cast<double>(at - left) * perPixel_s(); }
   bool shows(double time_s) const { return time_s >= begin_s && time_s <= end_s; }
@@ -35,9 +35,9 @@ void drawCached(ImDrawList& list, const TimeAxis& axis, const Session& session, 
 /// Names and bars of the emitters, in a child of the window that scrolls.
 void drawRows(ImDrawList& list, const TimeAxis& axis, const Session& session, float names_left, float scale);
 void drawHandGrip(ImDrawList& list, const TimeAxis& axis, const Session& session, float top, float scale);
-/// What playing leaves out.
+/// The time outside the playing range.
 void drawShade(ImDrawList& list, const TimeAxis& axis, const Session& session, float top, float bottom);
-/// The picture's time, and the one that is asked for.
+/// The picture's time, and the requested one.
 void drawHands(ImDrawList& list, const TimeAxis& axis, const Session& session, float top, float bottom,
                float scale);
 

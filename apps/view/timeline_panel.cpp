@@ -1,4 +1,4 @@
-/// The time line: its layout, and what the mouse does there.
+/// The time line: its layout and mouse handling.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,13 +13,13 @@ namespace {
 constexpr float kGap = 6, kTransport = 34, kPadding = 10, kReach = 6;
 
 int rowsOf(const Session& session) {
-  return std::min(kMostTimelineRows, static_cast<int>(session.timeline().bars().size()));
+  return std::min(kMaxTimelineRows, static_cast<int>(session.timeline().bars().size()));
 }
 
-/// What the mouse holds.
+/// The item that the mouse drags.
 enum class Grip : int { nothing, hand, begin, end, pan };
 
-/// The bookmark whose mark is at a place of the row of marks, as its number; 0: none.
+/// Number of the bookmark at a position in the row of marks; 0: none.
 int bookmarkAt(const Session& session, const TimeAxis& axis, float x, float reach) {
   const auto& bookmarks = session.bookmarks();
   for (std::size_t i = 0; i < bookmarks.size(); ++i) {
@@ -136,7 +136,7 @@ void drawTracks(PanelContext& context) {
   drawTicks(list, axis, session, marks_bottom, rows_bottom, s);
   drawHands(list, axis, session, at.y, rows_top, s);
   drawHandGrip(list, axis, session, at.y, s);
-  // Below the axis it can be held as well.
+  // It can also be grabbed below the axis.
   ImGui::SetCursorScreenPos({axis.left, rows_bottom});
   ImGui::InvisibleButton("ticks", {axis.width, 2 * ImGui::GetTextLineHeight() + 2 * s}, kButtons);
   handleMouse(context, axis, false);

@@ -1,4 +1,4 @@
-/// Colours, opacities, and how samples become a pixel.
+/// Colours, opacities and compositing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ float half(float scale) {
   return 0.5F * (ImGui::GetContentRegionAvail().x - 8 * scale);
 }
 
-/// A number that is typed. @return whether it was
+/// A number field. @return true if a number was entered
 bool typed(const char* id, double& value, const char* format, float width) {
   ImGui::SetNextItemWidth(width);
   ImGui::InputDouble(id, &value, 0, 0, format, ImGuiInputTextFlags_AutoSelectAll);

@@ -13,7 +13,7 @@ namespace {
 
 // In pixels at scale 1
 constexpr float kHeight = 132, kBar = 14, kGrip = 9, kReach = 9, kPoint = 4, kSelectedPoint = 6.5F;
-/// Beyond the interval the plot shows this part of it, so that its ends can be dragged outwards.
+/// The plot extends beyond the interval by this fraction, so that its ends can be dragged outwards.
 constexpr double kBeyond = 0.1;
 
 ImU32 inkOf(const render::Rgb& color, float alpha = 1) {
@@ -24,10 +24,10 @@ ImU32 inkOf(const ImVec4& color, float alpha = 1) {
   return ImGui::ColorConvertFloat4ToU32({color.x, color.y, color.z, alpha});
 }
 
-/// What the mouse holds.
+/// The item that the mouse drags.
 enum class Grip : int { nothing, point, lowest, highest };
 
-/// Where values and opacities lie on the screen.
+/// Mapping of values and opacities to the screen.
 struct Plot {
   double lowest, highest;  // at the left and right edge
   playback::OpacityAxis axis;
@@ -45,7 +45,7 @@ struct Plot {
   double position(float at) const { return static_cast<double>((bottom() - at) / height); }
 };
 
-/// The interval with its margins. While an end is dragged it stays as it was when the drag began.
+/// The interval with its margins. While an end is dragged it is that of the begin of the drag.
 Plot plotOf(const playback::TransferEditor& editor, bool held, ImVec2 at, float width, float scale) {
   ImGuiStorage& storage = *ImGui::GetStateStorage();
   const ImGuiID from = ImGui::GetID("from"), to = ImGui::GetID("to");
@@ -65,7 +65,7 @@ Plot plotOf(const playback::TransferEditor& editor, bool held, ImVec2 at, float 
 
 // --- drawing ---
 
-/// Counts on a logarithmic axis: fields have most values where they are weak.
+/// Counts on a logarithmic axis: most values of a field are weak.
 void drawHistogram(ImDrawList& list, const Plot& plot, const volume::Histogram& histogram, ImU32 ink) {
   if (histogram.counts.empty()) return;
   const auto bins = static_cast<double>(histogram.counts.size());
@@ -195,7 +195,7 @@ std::optional<int> pointUnder(const playback::TransferEditor& editor, const Plot
                           static_cast<double>(kReach * scale) / height);
 }
 
-/// Begins what a press of the left button means: an end, a point, or a new point.
+/// Starts the drag of a left press: an end, a point, or a new point.
 Grip press(Session& session, const Plot& plot, ImVec2 mouse, float scale) {
   const playback::TransferEditor& editor = *session.transfer();
   const auto point = pointUnder(editor, plot, mouse, scale);

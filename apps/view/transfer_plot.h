@@ -5,7 +5,7 @@
 
 namespace emscape::view {
 
-/// Draws it over the width that is left and lets the mouse edit. The session has colours to edit.
+/// Draws it over the remaining width and handles the mouse. @pre the session has editable colours
 void drawTransferPlot(PanelContext& context);
 
 }  // namespace emscape::view

@@ -1,4 +1,4 @@
-/// Buttons of playing, rate, and the time that is asked for.
+/// Buttons of playing, rate, and the requested time.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 enum class Symbol { first, back, play, pause, forward, last };
 
-/// A button with a drawn symbol: fonts differ in which of them they have.
+/// A button with a drawn symbol: not all fonts have them.
 bool symbolButton(const char* id, Symbol symbol, const char* tip, float scale) {
   const float side = ImGui::GetFrameHeight();
   const bool pressed = ImGui::Button(id, {1.35F * side, side});
@@ -73,7 +73,7 @@ void drawButtons(PanelContext& context) {
   if (symbolButton("##last", Symbol::last, "Last step (End)", s)) perform(context, R"({"do":"last"})");
 }
 
-/// Any rate is typed; the arrow beside it lists the usual ones.
+/// Any rate can be typed; the arrow next to it lists the usual ones.
 void drawRate(PanelContext& context) {
   Session& session = context.session;
   const float s = context.scale;
@@ -83,7 +83,7 @@ void drawRate(PanelContext& context) {
   ImGui::InputDouble("##rate", &typed, 0, 0, "× %.4g", ImGuiInputTextFlags_AutoSelectAll);
   if (ImGui::IsItemDeactivatedAfterEdit()) session.perform({"rate", {{"value", typed}}});
   if (ImGui::IsItemHovered()) {
-    ImGui::SetTooltip("Scenario seconds in a second, negative: backwards (J lower, L higher)");
+    ImGui::SetTooltip("Scenario seconds per second, negative: backwards (J lower, L higher)");
   }
   ImGui::SameLine(0, 2 * s);
   if (ImGui::BeginCombo("##rates", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_HeightLargest)) {
@@ -102,7 +102,7 @@ void drawRate(PanelContext& context) {
   if (ImGui::Checkbox("loop", &loop)) session.perform({"loop", {{"on", loop}}});
 }
 
-/// The time that is asked for, and the one on screen as long as it is another; what there is room for.
+/// The requested time, and the one on screen while it differs; as far as there is room.
 void drawTimes(const PanelContext& context) {
   const Session& session = context.session;
   const playback::Timeline& timeline = session.timeline();

@@ -10,10 +10,10 @@ namespace emscape::view {
 
 enum class History { scenario, transfer };
 
-/// Keeps the order in which histories made their steps; the steps are theirs.
+/// Keeps the order of the steps of several histories.
 class UndoOrder {
  public:
-  /// @param steps_made  by this history so far; those that are new are the latest of all
+  /// @param steps_made  number of steps of this history so far; new ones are the latest of all
   void note(History history, long long steps_made) {
     long long& noted = noted_[static_cast<std::size_t>(history)];
     for (; noted < steps_made; ++noted) {
@@ -21,7 +21,7 @@ class UndoOrder {
       undone_.clear();
     }
   }
-  /// A history begins anew: none of its steps can be undone or redone.
+  /// A history was reset: none of its steps can be undone or redone.
   void forget(History history) {
     noted_[static_cast<std::size_t>(history)] = 0;
     for (auto* list : {&done_, &undone_}) {

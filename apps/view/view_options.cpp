@@ -24,7 +24,7 @@ Examples:
 
 Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectation of the script was not met.)";
 
-/// Options as they are typed. Those that a view has, too, count only where they are given.
+/// Parsed options. Those that are also in a view have an effect only if given.
 struct Typed {
   std::string state, size, mode, rays = "auto", camera, range, theme, quantity;
   double time_s = 0, exaggeration = 0, step_voxels = 0, budget_ms = 40;
@@ -39,7 +39,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
       "INPUT", options.input,
       "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes; without it the window "
       "asks for one");
-  app.add_option("--scenario", options.scenario, "Scenario whose ground and emitters are drawn with volumes");
+  app.add_option("--scenario", options.scenario, "Scenario of the ground and emitters to draw with volumes");
   app.add_option("--state", typed.state,
                  "View file: camera, colours, time, edits and the rest; options that are given count more");
   app::addSetOption(app, typed.edits);
@@ -48,9 +48,9 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
                  "Window size in pixels, WxH; default: 1200x900, with --state as large as its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
       ->check(CLI::Range(0.5, 4.0));
-  app.add_option("--time", typed.time_s, "Shown first, in seconds; default: 0");
+  app.add_option("--time", typed.time_s, "First instant, in seconds; default: 0");
   app.add_option("--quantity", typed.quantity, "Quantity or channel to draw; default: the first");
-  app.add_option("--mode", typed.mode, "How samples become a pixel; default: dvr")
+  app.add_option("--mode", typed.mode, "Compositing mode; default: dvr")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
   app.add_option("--camera", typed.camera, "orbit:azimuth_deg=..,.. or lookat:eye_x_m=..,..; default: orbit");
   app.add_option("--range", typed.range, "MIN:MAX of the colours; default: fitted to the first step");
@@ -70,18 +70,18 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_flag("--shading", typed.shading, "Light on the fog");
   app.add_flag("--allow-missing-terrain", options.allow_missing_terrain,
                "Compute although elevation data is missing; the holes are drawn as such");
-  app.add_option("--script", options.script, "JSON lines: what to do and when (docs/viewer.md)");
-  app.add_option("--log", options.log, "Writes what happens, as JSON lines");
+  app.add_option("--script", options.script, "Script: JSON lines (docs/viewer.md)");
+  app.add_option("--log", options.log, "Writes the window's log, as JSON lines");
   app.add_flag("--share-gpu", options.share_gpu,
                "Hand pictures from CUDA to OpenGL on the GPU while they change, where both are on one; "
                "experimental");
-  app.add_option("--backend", options.backend, "Where to compute: auto, cpu or cuda")
+  app.add_option("--backend", options.backend, "Processor: auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   app.add_option("--threads", options.threads, "Threads to use; 0: one per core")->check(CLI::Range(0, 4096));
   app.add_flag("--quiet,-q", options.quiet, "Only warnings and errors on standard error");
 }
 
-/// Without INPUT there is nothing that these would apply to: what is opened later is shown as at the start.
+/// Without INPUT these have nothing to apply to.
 void refuseOptionsOfInput(const CLI::App& app) {
   for (const char* name :
        {"--scenario", "--state", "--set", "--compare", "--time", "--quantity", "--mode", "--camera",
@@ -91,7 +91,7 @@ void refuseOptionsOfInput(const CLI::App& app) {
   }
 }
 
-/// What is shown first: the view of --state, or the default one, with the options that are given.
+/// The first view: that of --state, or the default one, with the given options.
 void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
   playback::ViewState& view = options.view;
   if (!typed.state.empty()) {
@@ -103,7 +103,7 @@ void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
   const auto take = [&](const char* name, const auto& change) {
     if (app.count(name) == 0) return;
     change();
-    options.state.clear();  // the view is not the file's any more
+    options.state.clear();  // the view differs from the file
   };
   take("--camera", [&] { view.camera = render::parseCamera(typed.camera); });
   take("--theme", [&] { view.theme = render::parseTheme(typed.theme); });

@@ -1,4 +1,4 @@
-/// What emscape-view was started with.
+/// Options of emscape-view.
 #pragma once
 
 #include <optional>
@@ -11,13 +11,13 @@ namespace emscape::view {
 
 struct ViewOptions {
   std::string input;             ///< empty: none yet, the window asks for one
-  std::string scenario;          ///< beside volumes; may be empty
+  std::string scenario;          ///< for volumes; may be empty
   playback::ViewState view;      ///< shown first; its size is that of the picture
   std::string state;             ///< file that `view` was read from; empty: none, or options changed it
   std::string transfer;          ///< file of the transfer function; may be empty
-  bool unsaved_edits = false;    ///< those of `view` are in no file: an autosave brought them back
+  bool unsaved_edits = false;    ///< the edits of `view` are not saved: they are from an autosave
   bool offers_kept_view = true;  ///< asks whether the autosave of the input is to be restored
-  /// None: as large as the view's picture needs it.
+  /// None: as large as the view's picture requires.
   std::optional<render::ImageSize> window_size = render::ImageSize{1200, 900};
   double scale = 0;  ///< of texts and controls; 0: that of the screen
   render::ControllerOptions controller;

@@ -34,7 +34,7 @@ void keepError(int, const char* text) {
 }
 
 [[noreturn]] void refuse(const std::string& what) {
-  // GLFW ends the sentence with the display's name, which may be empty.
+  // GLFW appends the display's name, which may be empty.
   last_error.erase(last_error.find_last_not_of(' ') + 1);
   throw Error(ErrorCode::device, what + (last_error.empty() ? "" : ": " + last_error) +
                                      "; 'emscape render' draws pictures and videos without a window");
@@ -214,7 +214,7 @@ void Window::forward(const InputEvent& event) {
     case InputEvent::Kind::key:
       if (event.code >= 0 && event.code < 512) keys_[event.code] = event.action != GLFW_RELEASE;
       ImGui_ImplGlfw_KeyCallback(window_, event.code, event.scancode, event.action, event.modifiers);
-      // The backend asks GLFW for modifiers, which knows nothing of keys that a script presses.
+      // The backend queries GLFW for modifiers, which does not include keys that a script presses.
       ImGui::GetIO().KeyCtrl = (event.modifiers & GLFW_MOD_CONTROL) != 0;
       ImGui::GetIO().KeyShift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
       break;
@@ -242,7 +242,7 @@ std::vector<InputEvent> Window::beginFrame() {
   for (const InputEvent& event : events) forward(event);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // The backend's own view of the mouse is that of the moment; this one is that of the events.
+  // The backend has the present state of the mouse; this is that of the events.
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(cursor_x_), static_cast<float>(cursor_y_)};
   for (int i = 0; i < 5; ++i) io.MouseDown[i] = buttons_[i];

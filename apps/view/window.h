@@ -12,11 +12,11 @@ struct GLFWwindow;
 
 namespace emscape::view {
 
-/// One at a time. The thread that makes it uses it, but for wake().
+/// One at a time. Only the thread that constructs it uses it, except for wake().
 class Window {
  public:
   /// @param scale  of texts and controls; 0: that of the screen
-  /// @throws Error (device) that says why there is no window
+  /// @throws Error (device) with the reason
   Window(const std::string& title, render::ImageSize size, double scale);
   ~Window();
   Window(const Window&) = delete;
@@ -26,10 +26,10 @@ class Window {
   static void wake();
   /// Waits for an event, at most so long. @param timeout_s  0: does not wait; < 0: without end
   void waitEvents(double timeout_s);
-  /// Whether the user or the display asked for a new frame since the last call.
+  /// True if the user or the display asked for a new frame since the last call.
   bool takeDirty();
   void markDirty() { dirty_ = true; }
-  /// Whether the user wants to close the window, since the last call.
+  /// True if the user wants to close the window, since the last call.
   bool takeCloseRequest();
   /// Files that were dropped on the window since the last call.
   std::vector<std::string> takeDropped();
@@ -49,12 +49,12 @@ class Window {
   void drop(std::vector<std::string> files) { dropped_ = std::move(files); }
   /// Begins a frame of Dear ImGui with the events that are due; returns them.
   std::vector<InputEvent> beginFrame();
-  /// Draws what Dear ImGui was told.
+  /// Draws the commands of Dear ImGui.
   void endFrame();
   /// Ends a frame that is not drawn.
   void dropFrame();
   void swap();
-  /// What was drawn since the last swap().
+  /// The pixels drawn since the last swap().
   render::Image8 readPixels() const;
   /// Name of the OpenGL renderer.
   std::string renderer() const;

@@ -1,4 +1,4 @@
-/// What a command can ask of the window that runs it.
+/// Operations of the window that commands use.
 #pragma once
 
 #include <string>
@@ -29,7 +29,7 @@ class WindowControl {
   virtual void screenshot(const std::string& file) = 0;
   virtual void setClipboard(const std::string& text) = 0;
   virtual void quit() = 0;
-  /// As if it came from the user.
+  /// Injects an event as if from the user.
   virtual void press(const KeyChord& chord) = 0;
   virtual void inject(const InputEvent& event) = 0;
 };

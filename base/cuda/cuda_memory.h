@@ -13,7 +13,7 @@
 
 namespace emscape::cuda {
 
-/// The kernel that this thread launched last: what fails inside a kernel is told by a later call.
+/// The kernel that this thread launched last: a failure inside a kernel is reported by a later call.
 inline thread_local const char* last_kernel = nullptr;
 
 /// @throws Error (device) that names the call, and the kernel launched before it, unless it succeeded
@@ -46,7 +46,8 @@ class Buffer {
   Buffer& operator=(const Buffer&) = delete;
   ~Buffer() { cudaFree(data_); }
 
-  /// What was held is lost unless the size stays. @throws Error (device) with the size that was asked for
+  /// The contents are lost unless the size stays the same. @throws Error (device) with the size that was
+  /// asked for
   void resize(std::size_t count) {
     if (count == count_) return;
     cudaFree(std::exchange(data_, nullptr));
@@ -57,7 +58,7 @@ class Buffer {
     count_ = count;
   }
 
-  /// Copies `count` elements from host memory. Without a stream the call returns when they are there.
+  /// Copies `count` elements from host memory. Without a stream the call returns when the copy is complete.
   void upload(const T* from, std::size_t count, cudaStream_t stream = nullptr) {
     resize(count);
     if (count > 0) {
@@ -105,7 +106,7 @@ class Stream {
   cudaStream_t stream_ = nullptr;
 };
 
-/// A point of a stream that can be waited for.
+/// A point of a stream to wait for; a wrapper of cudaEvent_t.
 class Event {
  public:
   Event() { check(cudaEventCreateWithFlags(&event_, cudaEventDisableTiming), "cudaEventCreate"); }
@@ -116,17 +117,17 @@ class Event {
   void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "cudaEventRecord"); }
   /// Returns at once if nothing was recorded.
   void wait() const { check(cudaEventSynchronize(event_), "cudaEventSynchronize"); }
-  /// Whether the stream has come here; does not wait.
+  /// True if the stream has reached the event; does not wait.
   bool isReached() const {
     const cudaError_t status = cudaEventQuery(event_);
     if (status == cudaErrorNotReady) {
-      cudaGetLastError();  // takes it back: it is none
+      cudaGetLastError();  // clears the sticky error: cudaErrorNotReady is not a failure
       return false;
     }
     check(status, "cudaEventQuery");
     return true;
   }
-  /// What is put on a stream after this waits for the event.
+  /// Work put on the stream after this call waits for the event.
   void holdBack(cudaStream_t stream) const {
     check(cudaStreamWaitEvent(stream, event_, 0), "cudaStreamWaitEvent");
   }
@@ -135,7 +136,7 @@ class Event {
   cudaEvent_t event_ = nullptr;
 };
 
-/// Brings a value from the GPU while the host goes on.
+/// Asynchronous read of one value from the device.
 template <class T>
 class Readback {
  public:
@@ -144,7 +145,7 @@ class Readback {
   Readback(const Readback&) = delete;
   Readback& operator=(const Readback&) = delete;
 
-  /// The value as what is on the stream so far leaves it. What was asked for before is forgotten.
+  /// Starts a read of the value after the work that is on the stream so far. An earlier read is discarded.
   void request(const T* from, cudaStream_t stream) {
     check(cudaMemcpyAsync(value_, from, sizeof(T), cudaMemcpyDeviceToHost, stream),
           "cudaMemcpyAsync from the GPU");
@@ -152,7 +153,7 @@ class Readback {
     is_awaited_ = true;
     has_value_ = false;
   }
-  /// @return null: nothing was asked for, or it is still to come
+  /// @return null if no read was started or it is not complete
   const T* arrived() {
     if (is_awaited_ && arrives_.isReached()) {
       is_awaited_ = false;
@@ -167,7 +168,7 @@ class Readback {
   bool is_awaited_ = false, has_value_ = false;
 };
 
-/// A point of a stream whose time is taken.
+/// A point of a stream with a time stamp.
 class TimeMark {
  public:
   TimeMark() { check(cudaEventCreate(&event_), "cudaEventCreate"); }
@@ -176,7 +177,7 @@ class TimeMark {
   TimeMark& operator=(const TimeMark&) = delete;
 
   void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "cudaEventRecord"); }
-  /// Waits until the stream has come here. @param earlier  was recorded before, on the same stream
+  /// Waits until the stream has reached it. @param earlier  was recorded before, on the same stream
   double since_ms(const TimeMark& earlier) const {
     float ms = 0;
     check(cudaEventSynchronize(event_), "cudaEventSynchronize");
@@ -193,7 +194,7 @@ class Timer {
  public:
   void begin(cudaStream_t stream) { begin_.record(stream); }
   void end(cudaStream_t stream) { end_.record(stream); }
-  /// Waits for the end.
+  /// Waits for the second point.
   double elapsed_ms() const { return end_.since_ms(begin_); }
 
  private:

@@ -5,7 +5,7 @@
 namespace emscape {
 namespace {
 
-/// A GPU that can take this one can take the others: all are compiled for the same architectures.
+/// A GPU that can run this kernel can run the others: all are compiled for the same architectures.
 __global__ void answer() {}
 
 std::string whyNot(cudaError_t status) {
@@ -36,7 +36,7 @@ Device findDevice() {
   if (status == cudaSuccess) status = cudaMemGetInfo(&device.free_bytes, &device.total_bytes);
   if (status != cudaSuccess) {
     device.why_not = whyNot(status);
-    cudaGetLastError();  // takes the error back
+    cudaGetLastError();  // clears the sticky error
     return device;
   }
   device.usable = true;

@@ -20,7 +20,7 @@ DatasetCheck checkSpecificGasAttenuation(const std::filesystem::path& folder) {
     const GasAttenuation gamma =
         gasAttenuation(cases.number(i, "f_ghz") * 1e9, cases.number(i, "pressure_hpa"),
                        cases.number(i, "temperature_k"), cases.number(i, "vapour_g_m3"));
-    const int line = cases.place(i).line;
+    const int line = cases.location(i).line;
     total.compareRelative(gamma.total_db_per_km(), cases.number(i, "gamma_db_km"), line);
     oxygen.compareRelative(gamma.oxygen_db_per_km, cases.number(i, "gamma_oxygen_db_km"), line);
     vapour.compareRelative(gamma.vapour_db_per_km, cases.number(i, "gamma_water_db_km"), line);
@@ -40,7 +40,7 @@ DatasetCheck checkSlantGasAttenuation(const std::filesystem::path& folder) {
         cases.number(i, "pressure_hpa") + surface.vapourPressure_hpa();  // given: dry air's
     attenuation.compare(slantGasAttenuationDb(cases.number(i, "f_ghz") * 1e9,
                                               degToRad(cases.number(i, "elevation_deg")), surface),
-                        cases.number(i, "attenuation_db"), cases.place(i).line);
+                        cases.number(i, "attenuation_db"), cases.location(i).line);
   }
   return {cases.rows(), {attenuation}};
 }
@@ -54,7 +54,7 @@ DatasetCheck checkRain(const std::filesystem::path& folder) {
     const RainCoefficients<double> rain =
         rainCoefficients(cases.number(i, "f_ghz") * 1e9, degToRad(cases.number(i, "elevation_deg")),
                          degToRad(cases.number(i, "tilt_deg")));
-    const int line = cases.place(i).line;
+    const int line = cases.location(i).line;
     gamma.compareRelative(rain.specificAttenuation_db_per_km(cases.number(i, "rain_mm_h")),
                           cases.number(i, "gamma_db_km"), line);
     k.compareRelative(rain.k, cases.number(i, "k"), line);

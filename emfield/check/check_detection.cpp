@@ -30,7 +30,7 @@ DatasetCheck checkSwerling(const std::filesystem::path& file) {
   for (int i = 0; i < cases.rows(); ++i) {
     const Detector detector = detectorOf(cases, i, "swerling_case");
     const double pd = cases.number(i, "pd");
-    const int line = cases.place(i).line;
+    const int line = cases.location(i).line;
     exact.compare(requiredSnrDb(detector, pd), cases.number(i, "snr_required_exact_dB"), line);
     threshold.compare(detectionThreshold(detector), cases.number(i, "threshold_T"), line);
     shnidman.compare(shnidmanSnrDb(detector, pd), cases.number(i, "snr_shnidman_dB"), line);
@@ -48,7 +48,7 @@ DatasetCheck checkDetectionProbability(const std::filesystem::path& file) {
     const Detector detector = detectorOf(cases, i, "swerling_case");
     probability.compare(
         detectionProbability(detector, detectionThreshold(detector), dbToRatio(cases.number(i, "snr_dB"))),
-        cases.number(i, "pd_exact_derived"), cases.place(i).line);
+        cases.number(i, "pd_exact_derived"), cases.location(i).line);
   }
   return {cases.rows(), {probability}};
 }
@@ -75,10 +75,10 @@ DatasetCheck checkRadarEquation(const std::filesystem::path& file) {
     } else if (function == "peak power") {
       computed = dbToRatio(snr_db - radarSnrDb(radar, rcs_m2, cases.number(i, "R_m")));
     } else {
-      throw Error(ErrorCode::bad_input, cases.place(i),
+      throw Error(ErrorCode::bad_input, cases.location(i),
                   "function: '" + function + "' is not one of: max range, peak power");
     }
-    expected.compareRelative(computed, cases.number(i, "expected"), cases.place(i).line);
+    expected.compareRelative(computed, cases.number(i, "expected"), cases.location(i).line);
   }
   return {cases.rows(), {expected}};
 }
@@ -91,7 +91,7 @@ DatasetCheck checkFreeSpaceConversions(const std::filesystem::path& file) {
   for (int i = 0; i < cases.rows(); ++i) {
     const double distance_m = cases.number(i, "d_km") * 1000;
     const double eirp_dbw = cases.number(i, "EIRP_dBW");
-    const int line = cases.place(i).line;
+    const int line = cases.location(i).line;
     // P.525 eq. (3): loss between isotropic antennas
     const double loss_db = 2 * ratioToDb(4 * kPi * distance_m / wavelength_m(cases.number(i, "f_MHz") * 1e6));
     const double density_dbwm2 = eirp_dbw - ratioToDb(4 * kPi * distance_m * distance_m);

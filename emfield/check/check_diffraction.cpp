@@ -47,7 +47,7 @@ DatasetCheck checkDeltaBullington(const std::filesystem::path& folder) {
     const DeltaBullington<double> result =
         deltaBullington(model, terrain.profile(), terrain.height_msl_m.front() + cases.number(i, "htg_m"),
                         terrain.height_msl_m.back() + cases.number(i, "hrg_m"));
-    const int line = cases.place(i).line;
+    const int line = cases.location(i).line;
     loss.compare(result.loss_db, cases.number(i, "L_d_dB"), line);
     terrain_loss.compare(result.terrain_db, cases.number(i, "L_bulla_dB"), line);
     if (result.spherical_db > 0) smooth.compare(result.smooth_db, cases.number(i, "L_bulls_dB"), line);
@@ -63,7 +63,7 @@ DatasetCheck checkKnifeEdge(const std::filesystem::path& file) {
   FigureCheck exact{"J_exact_fresnel_dB", 1e-4, "dB"}, approximate{"J_P526_approx_dB", 1e-4, "dB"};
   for (int i = 0; i < cases.rows(); ++i) {
     const double nu = cases.number(i, "nu");
-    const int line = cases.place(i).line;
+    const int line = cases.location(i).line;
     exact.compare(knifeEdgeExactDb(nu), cases.number(i, "J_exact_fresnel_dB"), line);
     approximate.compare(knifeEdgeDb(nu), cases.number(i, "J_P526_approx_dB"), line);
   }

@@ -10,7 +10,7 @@ DatasetCheck checkGeoid(const std::filesystem::path& folder) {
   FigureCheck undulation{"N_m", 0.02, "m"};
   for (int i = 0; i < cases.rows(); ++i) {
     undulation.compare(geoidUndulation_m(cases.number(i, "lat_deg"), cases.number(i, "lon_deg_east")),
-                       cases.number(i, "N_m"), cases.place(i).line);
+                       cases.number(i, "N_m"), cases.location(i).line);
   }
   return {cases.rows(), {undulation}};
 }

@@ -66,7 +66,7 @@ DatasetCheck checkItmPointToPoint(const std::filesystem::path& folder) {
   FigureCheck mode{"mode", 0, ""};
   for (int i = 0; i < cases.rows(); ++i) {
     const ItmResult<double> result = computed.result(i);
-    const int line = cases.place(i).line;
+    const int line = cases.location(i).line;
     loss.compare(result.loss_db, cases.number(i, "A_db"), line);
     status.compare(static_cast<int>(result.status), cases.integer(i, "return_code"), line);
     warnings.compare(result.warnings, cases.integer(i, "warnings"), line);
@@ -90,7 +90,8 @@ DatasetCheck checkItmPublished(const std::filesystem::path& folder) {
   const PointToPoint computed(folder);
   FigureCheck loss{"A_db", 0.006, "dB"};
   for (int i = 0; i < computed.cases.rows(); ++i) {
-    loss.compare(computed.result(i).loss_db, computed.cases.number(i, "A_db"), computed.cases.place(i).line);
+    loss.compare(computed.result(i).loss_db, computed.cases.number(i, "A_db"),
+                 computed.cases.location(i).line);
   }
   return {computed.cases.rows(), {loss}};
 }
@@ -105,7 +106,7 @@ DatasetCheck checkItmArea(const std::filesystem::path& folder) {
                                {static_cast<ItmSiting>(cases.integer(i, "tx_siting_criteria")),
                                 static_cast<ItmSiting>(cases.integer(i, "rx_siting_criteria"))}};
     loss.compare(itmAreaMode(area, linkOf(cases, i), quantilesOf(cases, i)).loss_db, cases.number(i, "A_db"),
-                 cases.place(i).line);
+                 cases.location(i).line);
   }
   return {cases.rows(), {loss}};
 }

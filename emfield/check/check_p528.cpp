@@ -33,8 +33,8 @@ DatasetCheck checkP528(const std::filesystem::path& folder) {
         curve->second.at(cases.number(i, "d_km") * 1000, cases.number(i, "time_pct")).loss_db;
     const double expected_db = cases.number(i, "loss_db");
     rounded.compare((std::round(computed_db * 10) - std::round(expected_db * 10)) / 10, 0,
-                    cases.place(i).line);
-    exact.compare(computed_db, expected_db, cases.place(i).line);
+                    cases.location(i).line);
+    exact.compare(computed_db, expected_db, cases.location(i).line);
   }
   return {cases.rows(), {rounded, exact}};
 }

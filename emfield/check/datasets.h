@@ -1,4 +1,4 @@
-/// The datasets' functions, one file a family; the table in reference_check.cpp names them.
+/// The datasets' functions, one file per family; the table in reference_check.cpp lists them.
 #pragma once
 
 #include <filesystem>

@@ -79,7 +79,7 @@ ReferenceFolder lookInto(const fs::path& folder) {
 
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
-    // files at the top, a README for one, are no datasets
+    // files at the top, such as a README, are not datasets
     if (entry.is_directory() && known.count(name) == 0) found.unknown.push_back(name);
   }
   for (const std::string& parent : shared) {

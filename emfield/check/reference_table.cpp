@@ -30,12 +30,12 @@ std::vector<Line> readLines(const std::filesystem::path& file) {
   return lines;
 }
 
-double parseNumber(const std::string& cell, const SourceLocation& place, std::string_view what) {
+double parseNumber(const std::string& cell, const SourceLocation& location, std::string_view what) {
   double value = 0;
   const char* end = cell.data() + cell.size();
   const auto [stop, error] = std::from_chars(cell.data(), end, value);
   if (error != std::errc() || stop != end || !std::isfinite(value)) {
-    throw Error(ErrorCode::bad_input, place, fmt::format("{}: '{}' is not a finite number", what, cell));
+    throw Error(ErrorCode::bad_input, location, fmt::format("{}: '{}' is not a finite number", what, cell));
   }
   return value;
 }
@@ -68,13 +68,13 @@ ReferenceTable::ReferenceTable(const std::filesystem::path& file,
 }
 
 double ReferenceTable::number(int row, std::string_view column) const {
-  return parseNumber(text(row, column), place(row), column);
+  return parseNumber(text(row, column), location(row), column);
 }
 
 int ReferenceTable::integer(int row, std::string_view column) const {
   const double value = number(row, column);
   if (value != std::trunc(value) || std::fabs(value) > 1e9) {
-    throw Error(ErrorCode::bad_input, place(row),
+    throw Error(ErrorCode::bad_input, location(row),
                 fmt::format("{}: '{}' is not a whole number", column, text(row, column)));
   }
   return static_cast<int>(value);
@@ -88,27 +88,27 @@ const std::string& ReferenceTable::text(int row, std::string_view column) const 
   return rows_.at(static_cast<std::size_t>(row)).cells[static_cast<std::size_t>(name - names_.begin())];
 }
 
-SourceLocation ReferenceTable::place(int row) const {
+SourceLocation ReferenceTable::location(int row) const {
   return {file_, rows_.at(static_cast<std::size_t>(row)).line, 0};
 }
 
 std::vector<ReferenceProfile> readReferenceProfiles(const std::filesystem::path& file) {
   std::vector<ReferenceProfile> profiles;
   for (const Line& line : readLines(file)) {
-    const SourceLocation place{file.string(), line.number, 0};
-    const double intervals = parseNumber(line.cells[0], place, "n_intervals");
+    const SourceLocation location{file.string(), line.number, 0};
+    const double intervals = parseNumber(line.cells[0], location, "n_intervals");
     if (!(intervals >= 1) || line.cells.size() != intervals + 3) {
-      throw Error(ErrorCode::bad_input, place,
+      throw Error(ErrorCode::bad_input, location,
                   fmt::format("n_intervals is {} but {} heights follow; expected one more than intervals",
                               line.cells[0], static_cast<long long>(line.cells.size()) - 2));
     }
     ReferenceProfile& profile = profiles.emplace_back();
-    profile.step_m = parseNumber(line.cells[1], place, "step_m");
+    profile.step_m = parseNumber(line.cells[1], location, "step_m");
     if (profile.step_m <= 0) {
-      throw Error(ErrorCode::bad_input, place, fmt::format("step_m: {} is not above 0 m", profile.step_m));
+      throw Error(ErrorCode::bad_input, location, fmt::format("step_m: {} is not above 0 m", profile.step_m));
     }
     for (std::size_t i = 2; i < line.cells.size(); ++i) {
-      profile.heights_msl_m.push_back(parseNumber(line.cells[i], place, fmt::format("h_{}", i - 2)));
+      profile.heights_msl_m.push_back(parseNumber(line.cells[i], location, fmt::format("h_{}", i - 2)));
     }
   }
   return profiles;

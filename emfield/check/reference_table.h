@@ -10,10 +10,10 @@
 
 namespace emscape::emfield {
 
-/// A file of reference cases, one a row. Every complaint names file and line.
+/// A file of reference cases, one per row. Every error names file and line.
 class ReferenceTable {
  public:
-  /// @param columns  names that must be there; others may stand beside them
+  /// @param columns  required names; the file may have other columns
   /// @throws Error (bad_input) if the file cannot be read, a column is missing, a row has too many or too few
   /// cells, or there is no row
   ReferenceTable(const std::filesystem::path& file, const std::vector<std::string_view>& columns);
@@ -23,13 +23,13 @@ class ReferenceTable {
   /// @param column  one of the names in the first line
   /// @throws Error (bad_input) if the column is missing or the cell is not a finite number
   double number(int row, std::string_view column) const;
-  /// @throws Error (bad_input) too if it is not a whole number
+  /// @throws Error (bad_input) also if it is not a whole number
   int integer(int row, std::string_view column) const;
   const std::string& text(int row, std::string_view column) const;
   /// The cell is not empty.
   bool has(int row, std::string_view column) const { return !text(row, column).empty(); }
   /// Of a row, for messages.
-  SourceLocation place(int row) const;
+  SourceLocation location(int row) const;
 
  private:
   struct Row {
@@ -47,7 +47,7 @@ struct ReferenceProfile {
   std::vector<double> heights_msl_m;
 };
 
-/// Reads profiles.csv: no names, one profile a row: n_intervals, step_m, h_0, ..., h_n.
+/// Reads profiles.csv: no names, one profile per row: n_intervals, step_m, h_0, ..., h_n.
 /// @throws Error (bad_input) that names file and line
 std::vector<ReferenceProfile> readReferenceProfiles(const std::filesystem::path& file);
 

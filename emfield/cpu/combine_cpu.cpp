@@ -18,11 +18,11 @@ __attribute__((always_inline)) inline void fillPiece(const EmitterBeam& emitter,
   for (int i = 0; i < row.count; ++i) out[i] = powerDensity_wm2<kind>(local, row.column + i, row.t_m);
 }
 
-/// Voxels tried at once for lying outside the lobe, which saves the pattern: most of a narrow beam's do.
+/// Number of voxels tested together for being outside the lobe, where the pattern need not be evaluated: most
+/// are with a narrow beam.
 constexpr int kPiece = 64;
 
-/// Fills a piece of at most kPiece voxels as if it lay outside the main lobe, and says whether some of it may
-/// not.
+/// Fills at most kPiece voxels as outside the main lobe. @return true if some may be inside
 __attribute__((always_inline)) inline bool fillBesideLobe(const EmitterBeam& emitter, const Row& row,
                                                           float* out) {
   const EmitterBeam local = emitter;
@@ -123,7 +123,7 @@ void startRow(const CombineTask& task, std::size_t channel, std::size_t first) {
   }
 }
 
-/// @param buffer  of one row, for emitters whose power density is not kept
+/// @param buffer  of one row, for emitters whose power density is not stored
 /// @return the row's power density
 const float* powerOf(const CombineEmitter& emitter, const Row& row, std::size_t first, float* buffer) {
   float* const power_wm2 = emitter.power_wm2 != nullptr ? emitter.power_wm2 + first : buffer;
@@ -145,7 +145,7 @@ void combineRow(const CombineTask& task, int j, int k, float* buffer) {
   }
   for (const CombineEmitter& emitter : task.emitters) {
     const float* const power_wm2 = powerOf(emitter, row, first, buffer);
-    for (const ChannelShare& share : emitter.shares) {
+    for (const ChannelWeight& share : emitter.shares) {
       const Accumulator& out = task.accumulators[share.channel];
       if (out.value == nullptr) continue;
       reduceRow(task.reductions[share.channel], share.weight, emitter.emitter_index, power_wm2, count,

@@ -12,8 +12,8 @@ namespace {
 
 /// Buffers of one channel.
 struct ChannelBuffers {
-  std::vector<float> value, largest;                  ///< accumulator over all emitters
-  std::vector<float> resting_value, resting_largest;  ///< accumulator over the resting emitters alone
+  std::vector<float> value, largest;                ///< accumulator over all emitters
+  std::vector<float> static_value, static_largest;  ///< accumulator over the static emitters alone
   std::vector<std::shared_ptr<volume::DenseVolume>> pool;
 };
 
@@ -34,8 +34,8 @@ class CpuEngine : public FieldEngine {
     }
   }
 
-  std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) override;
-  void setResting(const std::vector<bool>& channels) override;
+  std::vector<GeometryResult> computeGeometry(const std::vector<GeometryRequest>& requests) override;
+  void setStaticSums(const std::vector<bool>& channels) override;
   void combine(const CombinePass& pass) override;
   std::vector<volume::Volume> makeVolumes(const std::vector<VolumeRequest>& requests) override;
   void planChanged(bool channels_changed) final;
@@ -45,7 +45,7 @@ class CpuEngine : public FieldEngine {
 
  private:
   bool hasLargest(std::size_t channel) const {
-    return setup_.recipes[channel].reduction == Reduction::dominant;
+    return setup_.channel_plans[channel].reduction == Reduction::dominant;
   }
   std::shared_ptr<volume::DenseVolume> freeVolume(ChannelBuffers& buffers) const;
 
@@ -53,13 +53,13 @@ class CpuEngine : public FieldEngine {
   std::size_t voxels_;
   std::vector<int> first_row_k_;
   std::vector<EmitterGeometry> slots_;
-  KeptPower<std::vector<float>> kept_power_;  // not of the last slot, which emitters share
+  KeptPower<std::vector<float>> kept_power_;  // without the last slot, which emitters share
   std::vector<ChannelBuffers> buffers_;
   StageTimes times_;
 };
 
-std::vector<GeometryFindings> CpuEngine::computeGeometry(const std::vector<GeometryRequest>& requests) {
-  std::vector<GeometryFindings> all;
+std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<GeometryRequest>& requests) {
+  std::vector<GeometryResult> all;
   for (const GeometryRequest& request : requests) {
     EmitterGeometry& geometry = slots_[request.slot];
     kept_power_.forget(static_cast<std::size_t>(request.slot));
@@ -67,11 +67,11 @@ std::vector<GeometryFindings> CpuEngine::computeGeometry(const std::vector<Geome
     geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
                      setup_.columns, setup_.terrain.get(), setup_.resolution, spent);
     times_.fan_ms += spent.fan_ms;
-    times_.plane_ms += spent.plane_ms;
+    times_.excess_ms += spent.excess_ms;
 
-    GeometryFindings found;
+    GeometryResult found;
     found.unknown_columns = geometry.unknownColumns();
-    found.remarks = geometry.remarks();
+    found.warnings = geometry.warnings();
     if (found.unknown_columns > 0) {
       found.unknown.resize(setup_.columns.columns.size());
       for (std::size_t c = 0; c < found.unknown.size(); ++c) found.unknown[c] = geometry.isUnknown(c);
@@ -97,13 +97,13 @@ void CpuEngine::planChanged(bool channels_changed) {
   }
 }
 
-void CpuEngine::setResting(const std::vector<bool>& channels) {
+void CpuEngine::setStaticSums(const std::vector<bool>& channels) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
     ChannelBuffers& buffers = buffers_[c];
-    buffers.resting_value.resize(channels[c] ? voxels_ : 0);
-    buffers.resting_largest.resize(channels[c] && hasLargest(c) ? voxels_ : 0);
-    buffers.resting_value.shrink_to_fit();
-    buffers.resting_largest.shrink_to_fit();
+    buffers.static_value.resize(channels[c] ? voxels_ : 0);
+    buffers.static_largest.resize(channels[c] && hasLargest(c) ? voxels_ : 0);
+    buffers.static_value.shrink_to_fit();
+    buffers.static_largest.shrink_to_fit();
   }
 }
 
@@ -115,15 +115,15 @@ void CpuEngine::combine(const CombinePass& pass) {
   task.keep = pass.keep;
   for (std::size_t c = 0; c < buffers_.size(); ++c) {
     ChannelBuffers& buffers = buffers_[c];
-    auto& value = pass.into_resting ? buffers.resting_value : buffers.value;
-    auto& largest = pass.into_resting ? buffers.resting_largest : buffers.largest;
+    auto& value = pass.into_static_sums ? buffers.static_value : buffers.value;
+    auto& largest = pass.into_static_sums ? buffers.static_largest : buffers.largest;
     const auto orNull = [](std::vector<float>& array) { return array.empty() ? nullptr : array.data(); };
-    task.reductions.push_back(setup_.recipes[c].reduction);
+    task.reductions.push_back(setup_.channel_plans[c].reduction);
     task.accumulators.push_back(pass.channels[c] ? Accumulator{orNull(value), orNull(largest)}
                                                  : Accumulator{});
-    task.initial.push_back(
-        pass.into_resting ? ConstAccumulator{}
-                          : ConstAccumulator{orNull(buffers.resting_value), orNull(buffers.resting_largest)});
+    task.initial.push_back(pass.into_static_sums ? ConstAccumulator{}
+                                                 : ConstAccumulator{orNull(buffers.static_value),
+                                                                    orNull(buffers.static_largest)});
   }
   for (const CombinePass::Member& member : pass.members) {
     task.emitters.push_back(member.emitter);
@@ -165,7 +165,7 @@ std::vector<volume::Volume> CpuEngine::makeVolumes(const std::vector<VolumeReque
     volume->first_valid_k = *request.first_valid_k;
     ProductTask task;
     task.dims = setup_.grid.dims;
-    task.product = setup_.recipes[request.channel].product;
+    task.product = setup_.channel_plans[request.channel].product;
     task.accumulator = buffers.value.data();
     task.first_valid_k = volume->first_valid_k.empty() ? nullptr : volume->first_valid_k.data();
     task.values = volume->values.data();
@@ -181,7 +181,7 @@ void CpuEngine::addMemory(MemoryUse& use) const {
   std::size_t channel_bytes = 0;
   for (const ChannelBuffers& buffers : buffers_) {
     for (const auto* buffer :
-         {&buffers.value, &buffers.largest, &buffers.resting_value, &buffers.resting_largest}) {
+         {&buffers.value, &buffers.largest, &buffers.static_value, &buffers.static_largest}) {
       channel_bytes += buffer->capacity() * sizeof(float);
     }
     for (const auto& volume : buffers.pool) channel_bytes += volume->values.capacity() * sizeof(float);

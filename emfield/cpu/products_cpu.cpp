@@ -12,7 +12,7 @@ namespace {
 constexpr volume::ValueRange kNothing{std::numeric_limits<float>::infinity(),
                                       -std::numeric_limits<float>::infinity()};
 
-// Simple loops, one thing each: so g++ makes full-width SIMD code of them.
+// Separate simple loops, which g++ vectorises at full width.
 
 EMSCAPE_SIMD_CLONES void decibelRow(const ProductScale& product, const float* accumulator, int count,
                                     float* values) {

@@ -1,4 +1,4 @@
-/// What the loops of the CPU's stages run over.
+/// A row of voxels, the unit of the CPU's loops.
 #pragma once
 
 #include <cstddef>

@@ -11,10 +11,10 @@ using scenario::PatternKind;
 
 constexpr int kThreads = 128;
 
-/// What a kernel may be given as its parameters.
+/// Largest size of a kernel's parameters.
 constexpr int kParameterBytes = CUDART_VERSION >= 12010 ? 32000 : 4000;
-/// Channels that one launch serves: an emitter's power density is computed once for all of them.
-constexpr int kMostChannels = 4;
+/// Channels per launch: an emitter's power density is computed once for all of them.
+constexpr int kMaxChannels = 4;
 
 /// An emitter's part in the channels of a launch.
 template <int kChannels>
@@ -57,12 +57,12 @@ __device__ void fillLayers(const EmitterBeam& beam, std::size_t column, const fl
   }
 }
 
-/// A warp of a block goes over neighbouring columns, the next one over the layers above: they share the
-/// columns' numbers in the first-level cache. Few layers a thread keep the patterns' code short, too.
+/// A warp of a block processes neighbouring columns, the next one the layers above: they share the columns'
+/// numbers in the first-level cache. Few layers per thread also keep the code of the patterns short.
 constexpr int kWarp = 32;
 constexpr int kWarps = 8;
 
-/// A thread does kLayers layers of a column.
+/// A thread processes kLayers layers of a column.
 template <int kChannels, int kLayers, bool kDominant>
 __global__ void __launch_bounds__(kWarp* kWarps)
     combineKernel(const __grid_constant__ Launch<kChannels> launch) {
@@ -185,7 +185,7 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
     Member<kChannels> member{
         emitter.beam, emitter.power_wm2, emitter.power_is_known, emitter.emitter_index, {}, {}};
     bool takes_part = false;
-    for (const ChannelShare& share : emitter.shares) {
+    for (const ChannelWeight& share : emitter.shares) {
       for (int c = 0; c < kChannels; ++c) {
         if (channels[c] != share.channel) continue;
         member.weights[c] = share.weight;
@@ -199,7 +199,7 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
   if (launch.member_count > 0 || !launch.keep) run();
 }
 
-/// The same float order as unsigned integers.
+/// Maps floats to unsigned integers of the same order.
 __device__ unsigned orderOf(float value) {
   const unsigned bits = __float_as_uint(value);
   return (bits & 0x80000000u) != 0 ? ~bits : bits | 0x80000000u;
@@ -253,9 +253,9 @@ void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaSt
       channels.push_back(c);
     }
   }
-  for (std::size_t begin = 0; begin < channels.size(); begin += kMostChannels) {
+  for (std::size_t begin = 0; begin < channels.size(); begin += kMaxChannels) {
     const int* first = channels.data() + begin;
-    switch (std::min<std::size_t>(kMostChannels, channels.size() - begin)) {
+    switch (std::min<std::size_t>(kMaxChannels, channels.size() - begin)) {
       case 1:
         combineChannels<1, 2, false>(task, first_valid_k, first, stream);
         break;

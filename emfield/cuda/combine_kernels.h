@@ -12,8 +12,7 @@
 namespace emscape::emfield::cuda {
 
 /// One pass over the grid, as combineCpu(): all pointers are to device memory.
-/// @param first_valid_k  lowest layer above ground of each column, null: 0. Below it little is computed, and
-/// what it holds means nothing.
+/// @param first_valid_k  lowest layer above ground of each column, null: 0. Values below it are undefined.
 void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
 /// One radar's pass, as radarCpu(): all pointers are to device memory.
@@ -24,7 +23,7 @@ void addRadar(const RadarPass& pass, const std::uint16_t* first_valid_k, cudaStr
 struct DeviceRange {
   unsigned lowest = ~0u, highest = 0;
 
-  /// @return empty where nothing is above the floor
+  /// @return empty if nothing is above the floor
   volume::ValueRange range(float floor) const;
 };
 

@@ -13,11 +13,11 @@ namespace {
 using emscape::cuda::Buffer;
 using emscape::cuda::check;
 
-/// Samples of fans held at once: what is more is computed piece by piece.
-constexpr long long kMostSamples = kDeviceScratchBytes / sizeof(float);
+/// Samples of fans in memory at once: larger fans are computed sector by sector.
+constexpr long long kMaxSamples = kDeviceScratchBytes / sizeof(float);
 
-/// Makes an array at least so long; what it held is lost. It never shrinks: sizes vary little from one update
-/// to the next, and to give memory back would make every stream wait.
+/// Makes an array at least so long; its contents are lost. It never shrinks: sizes vary little from one
+/// update to the next, and freeing memory would make every stream wait.
 template <class T>
 T* atLeast(Buffer<T>& buffer, std::size_t count) {
   if (buffer.size() < count) buffer.resize(buffer.size() == 0 ? count : count + count / 4);
@@ -48,7 +48,7 @@ std::vector<int> borderOf(const Dims& dims) {
 }  // namespace
 
 DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots)
-    : setup_(setup), lean_m_(leanOf(setup.columns)), border_(borderOf(setup.grid.dims)), slots_(slots) {
+    : setup_(setup), tilt_m_(tiltOf(setup.columns)), border_(borderOf(setup.grid.dims)), slots_(slots) {
   if (setup.terrain != nullptr) terrain_ = DeviceTerrain(setup.terrain->view());
   grid_columns_.upload(setup.columns.columns);
   t_m_.upload(setup.columns.t_m);
@@ -93,7 +93,7 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
     for (int c : border_) {
       coordinates.push_back(fanCoordinates(work.station, setup_.columns.columns[c], columns_.middle_m));
     }
-    work.shape = fanShape(work.station, coordinates, setup_.terrain.get(), setup_.resolution, lean_m_);
+    work.shape = fanShape(work.station, coordinates, setup_.terrain.get(), setup_.resolution, tilt_m_);
   }
   const double far_m = setup_.far_field_m[request.emitter];
   work.task.station = work.station;
@@ -101,7 +101,7 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   return work;
 }
 
-/// Gives the tasks their memory.
+/// Assigns memory to the tasks.
 void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   std::vector<double> ranges_m;
   std::size_t azimuths = 0;
@@ -112,18 +112,18 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   const auto columns = static_cast<std::size_t>(columns_.count);
   const double* range_m = sent(ranges_m_, ranges_m, stream);
   int* used = atLeast(used_ranges_, azimuths);
-  FanPlace* places = atLeast(places_, works.size() * columns);
+  FanIndex* fan_indices = atLeast(fan_indices_, works.size() * columns);
   GeometryCounts* counts = atLeast(counts_, works.size());
   atLeast(terms_, ranges_m.size());
-  // Leaning columns stand over several azimuths: of each all ranges, and more, are used.
+  // Tilted columns extend over several azimuths: all ranges of each are used.
   check(cudaMemsetAsync(used, columns_.tilted ? 0x7f : 0, azimuths * sizeof(int), stream), "cudaMemsetAsync");
   check(cudaMemsetAsync(counts, 0, works.size() * sizeof(GeometryCounts), stream), "cudaMemsetAsync");
   std::vector<LocateTask> tasks;
   for (Work& work : works) {
     LocateTask& task = work.task;
-    task.places = places;
+    task.fan_indices = fan_indices;
     task.counts = work.excess.counts = counts++;
-    places += columns;
+    fan_indices += columns;
     if (work.needsFan()) {
       task.fan = work.shape.view();
       task.fan.ranges_m = range_m;
@@ -152,8 +152,8 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   }
 }
 
-std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<GeometryRequest>& requests,
-                                                      cudaStream_t stream, StageClock& clock) {
+std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRequest>& requests,
+                                                    cudaStream_t stream, StageClock& clock) {
   std::vector<Work> works(requests.size());
   parallelFor(static_cast<int>(requests.size()), 1, [&](int begin, int end) {
     for (int r = begin; r < end; ++r) works[r] = prepare(requests[r]);
@@ -177,7 +177,7 @@ std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<Geometry
     if (!work.model || work.model->needsTerrain()) continue;
     clock.begin(stream);
     fill(work, {}, stream);
-    clock.end(&StageTimes::plane_ms, stream);
+    clock.end(&StageTimes::excess_ms, stream);
   }
   for (Batch& batch : batchesOf(works)) runBatch(batch, stream, clock);
 
@@ -186,11 +186,11 @@ std::vector<GeometryFindings> DeviceGeometry::compute(const std::vector<Geometry
                         cudaMemcpyDeviceToHost, stream),
         "cudaMemcpyAsync from the GPU");
   check(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
-  std::vector<GeometryFindings> all;
+  std::vector<GeometryResult> all;
   for (std::size_t r = 0; r < works.size(); ++r) {
-    GeometryFindings found;
+    GeometryResult found;
     found.unknown_columns = counts[r].unknown_columns;
-    found.remarks = counts[r].remarks;
+    found.warnings = counts[r].warnings;
     found.near_voxels = static_cast<long long>(counts[r].near_voxels);
     if (found.unknown_columns > 0) {
       std::vector<float> edges_m(columns);
@@ -208,7 +208,7 @@ bool DeviceGeometry::isDiffraction(const Work& work) {
   return work.model && std::holds_alternative<propagation::DiffractionExcess>(work.model->model);
 }
 
-/// As many intervals at a time as the memory for samples takes.
+/// As many intervals at a time as fit into the memory for samples.
 std::vector<DeviceGeometry::Batch> DeviceGeometry::batchesOf(const std::vector<Work>& works) {
   std::vector<Batch> batches;
   long long samples = 0, most_samples = 0;
@@ -217,28 +217,29 @@ std::vector<DeviceGeometry::Batch> DeviceGeometry::batchesOf(const std::vector<W
     if (!work.needsFan()) continue;
     const long long ranges = work.shape.rangeCount();
     const int intervals = work.shape.interval_count;
-    // A leaning column may cross intervals: it needs them all at once.
-    const long long at_once = columns_.tilted ? intervals : std::max(1LL, kMostSamples / ranges - 1);
+    // A tilted column may cross intervals: it needs them all at once.
+    const long long at_once = columns_.tilted ? intervals : std::max(1LL, kMaxSamples / ranges - 1);
     for (int first = 0; first < intervals; first += static_cast<int>(at_once)) {
-      FanPiece piece;
-      piece.emitter = work.task;
-      piece.first_interval = first;
-      piece.interval_count = static_cast<int>(std::min<long long>(at_once, intervals - first));
-      piece.terrain = terrain_.view();
-      piece.has_terrain = setup_.terrain != nullptr;
-      piece.terms = terms;
-      piece.holds_slopes = work.has_shadow;
-      // Threads of neighbouring columns read neighbouring azimuths; one of any model a profile of its own.
+      FanSector sector;
+      sector.emitter = work.task;
+      sector.first_interval = first;
+      sector.interval_count = static_cast<int>(std::min<long long>(at_once, intervals - first));
+      sector.terrain = terrain_.view();
+      sector.has_terrain = setup_.terrain != nullptr;
+      sector.terms = terms;
+      sector.holds_slopes = work.has_shadow;
+      // Diffraction's threads of neighbouring columns read neighbouring azimuths; other models' threads each
+      // read a profile.
       const bool azimuth_fastest = work.has_shadow || isDiffraction(work);
-      piece.azimuth_stride = azimuth_fastest ? 1 : ranges;
-      piece.range_stride = azimuth_fastest ? piece.interval_count + 1 : 1;
-      const long long here = ranges * (piece.interval_count + 1);
-      if (batches.empty() || samples + here > kMostSamples) {
+      sector.azimuth_stride = azimuth_fastest ? 1 : ranges;
+      sector.range_stride = azimuth_fastest ? sector.interval_count + 1 : 1;
+      const long long here = ranges * (sector.interval_count + 1);
+      if (batches.empty() || samples + here > kMaxSamples) {
         batches.emplace_back();
         samples = 0;
       }
       batches.back().works.push_back(&work);
-      batches.back().pieces.push_back(piece);
+      batches.back().sectors.push_back(sector);
       samples += here;
       most_samples = std::max(most_samples, samples);
     }
@@ -247,68 +248,68 @@ std::vector<DeviceGeometry::Batch> DeviceGeometry::batchesOf(const std::vector<W
   float* const first = atLeast(samples_, static_cast<std::size_t>(most_samples));
   for (Batch& batch : batches) {
     float* next = first;
-    for (FanPiece& piece : batch.pieces) {
-      piece.samples = next;
-      next += static_cast<long long>(piece.emitter.fan.range_count) * (piece.interval_count + 1);
+    for (FanSector& sector : batch.sectors) {
+      sector.samples = next;
+      next += static_cast<long long>(sector.emitter.fan.range_count) * (sector.interval_count + 1);
     }
   }
   return batches;
 }
 
 void DeviceGeometry::runBatch(Batch& batch, cudaStream_t stream, StageClock& clock) {
-  PieceExtent extent;
-  extent.pieces = static_cast<int>(batch.pieces.size());
+  SectorExtent extent;
+  extent.sectors = static_cast<int>(batch.sectors.size());
   bool has_slopes = false;
   std::vector<DiffractionTask> diffraction;
-  for (std::size_t p = 0; p < batch.pieces.size(); ++p) {
-    const FanPiece& piece = batch.pieces[p];
+  for (std::size_t p = 0; p < batch.sectors.size(); ++p) {
+    const FanSector& sector = batch.sectors[p];
     const Work& work = *batch.works[p];
-    extent.azimuths = std::max(extent.azimuths, piece.interval_count + 1);
-    extent.ranges = std::max(extent.ranges, piece.emitter.fan.range_count);
-    has_slopes = has_slopes || piece.holds_slopes;
+    extent.azimuths = std::max(extent.azimuths, sector.interval_count + 1);
+    extent.ranges = std::max(extent.ranges, sector.emitter.fan.range_count);
+    has_slopes = has_slopes || sector.holds_slopes;
     if (isDiffraction(work)) {
-      diffraction.push_back(
-          {std::get<propagation::DiffractionExcess>(work.model->model), work.model->air, piece, work.excess});
+      diffraction.push_back({std::get<propagation::DiffractionExcess>(work.model->model), work.model->air,
+                             sector, work.excess});
     }
   }
   clock.begin(stream);
-  const FanPiece* const pieces = sent(pieces_, batch.pieces, stream);
-  readFans(pieces, extent, stream);
+  const FanSector* const sectors = sent(sectors_, batch.sectors, stream);
+  readFans(sectors, extent, stream);
   clock.end(&StageTimes::fan_ms, stream);
   clock.begin(stream);
-  if (has_slopes) findShadowEdges(pieces, extent, columns_, stream);
+  if (has_slopes) findShadowEdges(sectors, extent, columns_, stream);
   if (!diffraction.empty()) fillDiffractions(diffraction, extent, stream);
-  for (std::size_t p = 0; p < batch.pieces.size(); ++p) {
-    const FanPiece& piece = batch.pieces[p];
+  for (std::size_t p = 0; p < batch.sectors.size(); ++p) {
+    const FanSector& sector = batch.sectors[p];
     const Work& work = *batch.works[p];
     if (work.has_shadow || isDiffraction(work)) continue;
-    fill(work, {piece.emitter.fan, piece.samples, piece.first_interval, piece.interval_count}, stream);
+    fill(work, {sector.emitter.fan, sector.samples, sector.first_interval, sector.interval_count}, stream);
   }
-  clock.end(&StageTimes::plane_ms, stream);
+  clock.end(&StageTimes::excess_ms, stream);
 }
 
-void DeviceGeometry::fillDiffractions(std::vector<DiffractionTask>& tasks, PieceExtent extent,
+void DeviceGeometry::fillDiffractions(std::vector<DiffractionTask>& tasks, SectorExtent extent,
                                       cudaStream_t stream) {
-  const auto blocksOf = [](const FanPiece& piece) {
-    return static_cast<std::size_t>(DiffractionTask::blockCount(piece.emitter.fan.range_count)) *
-           static_cast<std::size_t>(piece.interval_count + 1);
+  const auto blocksOf = [](const FanSector& sector) {
+    return static_cast<std::size_t>(DiffractionTask::blockCount(sector.emitter.fan.range_count)) *
+           static_cast<std::size_t>(sector.interval_count + 1);
   };
   std::size_t blocks = 0;
-  for (const DiffractionTask& task : tasks) blocks += blocksOf(task.piece);
+  for (const DiffractionTask& task : tasks) blocks += blocksOf(task.sector);
   FanBlock* next_block = atLeast(blocks_, blocks);
   TerrainSums* next_sums = atLeast(sums_, blocks);
   for (DiffractionTask& task : tasks) {
     task.blocks = next_block;
     task.sums = next_sums;
-    next_block += blocksOf(task.piece);
-    next_sums += blocksOf(task.piece);
+    next_block += blocksOf(task.sector);
+    next_sums += blocksOf(task.sector);
   }
-  extent.pieces = static_cast<int>(tasks.size());
+  extent.sectors = static_cast<int>(tasks.size());
   fillDiffraction(sent(diffraction_, tasks, stream), extent, excess_grid_, columns_.row, columns_.tilted,
                   firstValidK(), stream);
 }
 
-/// The excess of any model, with memory for a column in each thread.
+/// The excess of any model, with memory for one column per thread.
 void DeviceGeometry::fill(const Work& work, const FanHeights& fan, cudaStream_t stream) {
   double* const scratch = atLeast(scratch_, kDeviceScratchBytes / sizeof(double));
   fillExcess(*work.model, work.station, excess_grid_, fan, work.excess, scratch, kDeviceScratchBytes, stream);
@@ -317,7 +318,7 @@ void DeviceGeometry::fill(const Work& work, const FanHeights& fan, cudaStream_t 
 std::size_t DeviceGeometry::bytes() const {
   const auto bytesOf = [](const auto& buffer) { return buffer.size() * sizeof(*buffer.data()); };
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(t_m_) + bytesOf(first_valid_k_) + bytesOf(tasks_) +
-                      bytesOf(pieces_) + bytesOf(ranges_m_) + bytesOf(used_ranges_) + bytesOf(places_) +
+                      bytesOf(sectors_) + bytesOf(ranges_m_) + bytesOf(used_ranges_) + bytesOf(fan_indices_) +
                       bytesOf(terms_) + bytesOf(samples_) + bytesOf(diffraction_) + bytesOf(blocks_) +
                       bytesOf(sums_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) + bytesOf(model_tables_);
   for (const Slot& slot : slots_) bytes += bytesOf(slot.numbers) + bytesOf(slot.excess);

@@ -1,4 +1,4 @@
-/// Stages 1 and 2 of the emitters on the device: what each slot keeps, and the memory to compute it.
+/// Stages 1 and 2 of the emitters on the device: the results in each slot, and the memory to compute them.
 #pragma once
 
 #include <optional>
@@ -19,10 +19,10 @@ class DeviceGeometry {
   /// @throws Error (device)
   DeviceGeometry(const FieldSetup& setup, int slots);
 
-  /// All requests in one batch of launches; waits for what they found.
-  std::vector<GeometryFindings> compute(const std::vector<GeometryRequest>& requests, cudaStream_t stream,
-                                        StageClock& clock);
-  /// What a slot was computed for last.
+  /// Computes all requests in one batch of launches and waits for the results.
+  std::vector<GeometryResult> compute(const std::vector<GeometryRequest>& requests, cudaStream_t stream,
+                                      StageClock& clock);
+  /// Inputs of the last computation of a slot.
   ColumnGeometryView view(int slot) const;
   const DeviceColumns& columns() const { return columns_; }
   /// Null without terrain.
@@ -32,7 +32,7 @@ class DeviceGeometry {
   std::size_t bytes() const;
 
  private:
-  /// A request on its way.
+  /// A request in progress.
   struct Work {
     Station station;
     FanShape shape;
@@ -43,10 +43,10 @@ class DeviceGeometry {
 
     bool needsFan() const { return has_shadow || (model && model->needsTerrain()); }
   };
-  /// Pieces of fans that are computed at a time.
+  /// Sectors of fans that are computed at a time.
   struct Batch {
-    std::vector<const Work*> works;  ///< whose the pieces are
-    std::vector<FanPiece> pieces;
+    std::vector<const Work*> works;  ///< the request of each sector
+    std::vector<FanSector> sectors;
   };
 
   Work prepare(const GeometryRequest& request) const;
@@ -54,18 +54,18 @@ class DeviceGeometry {
   static bool isDiffraction(const Work& work);
   std::vector<Batch> batchesOf(const std::vector<Work>& works);
   void runBatch(Batch& batch, cudaStream_t stream, StageClock& clock);
-  void fillDiffractions(std::vector<DiffractionTask>& tasks, PieceExtent extent, cudaStream_t stream);
+  void fillDiffractions(std::vector<DiffractionTask>& tasks, SectorExtent extent, cudaStream_t stream);
   void fill(const Work& work, const FanHeights& fan, cudaStream_t stream);
 
   const FieldSetup& setup_;
-  double lean_m_;
-  std::vector<int> border_;  ///< columns between which all others lie
+  double tilt_m_;
+  std::vector<int> border_;  ///< columns of the border, which enclose all others
   DeviceTerrain terrain_;
   emscape::cuda::Buffer<GridColumn> grid_columns_;
   emscape::cuda::Buffer<float> t_m_;
   emscape::cuda::Buffer<std::uint16_t> first_valid_k_;
   DeviceColumns columns_;
-  emscape::cuda::Buffer<float> ground_msl_m_;  ///< empty: none, or of columns that lean
+  emscape::cuda::Buffer<float> ground_msl_m_;  ///< empty: none, or tilted columns
   ExcessGrid excess_grid_;
   struct Slot {
     emscape::cuda::Buffer<float> numbers;  ///< of the columns, then the shadow's edges
@@ -74,13 +74,13 @@ class DeviceGeometry {
   };
   std::vector<Slot> slots_;
 
-  // for the emitters being computed; kept, as they come again
+  // for the emitters being computed; kept for the next update
   emscape::cuda::Buffer<LocateTask> tasks_;
-  emscape::cuda::Buffer<FanPiece> pieces_;
+  emscape::cuda::Buffer<FanSector> sectors_;
   emscape::cuda::Buffer<double> ranges_m_;
   emscape::cuda::Buffer<float> model_tables_;
   emscape::cuda::Buffer<int> used_ranges_;
-  emscape::cuda::Buffer<FanPlace> places_;
+  emscape::cuda::Buffer<FanIndex> fan_indices_;
   emscape::cuda::Buffer<RangeTerms<float>> terms_;
   emscape::cuda::Buffer<float> samples_;
   emscape::cuda::Buffer<DiffractionTask> diffraction_;

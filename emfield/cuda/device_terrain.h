@@ -9,7 +9,7 @@
 
 namespace emscape::emfield::cuda {
 
-/// A copy of a terrain's rasters; heights come from the same function as on the host.
+/// A copy of a terrain's rasters; heights are computed by the same function as on the host.
 class DeviceTerrain {
  public:
   DeviceTerrain() = default;

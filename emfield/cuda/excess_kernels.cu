@@ -2,6 +2,7 @@
 #include <type_traits>
 
 #include "base/cuda/cuda_memory.h"
+#include "base/device_math.h"
 #include "emfield/cuda/excess_kernels.h"
 
 namespace emscape::emfield::cuda {
@@ -19,20 +20,20 @@ unsigned blocksFor(int threads) {
   return static_cast<unsigned>((threads + kThreads - 1) / kThreads);
 }
 
-/// A column's profile as DiffractionColumn reads it: the fan's samples nearer than the column, linear between
+/// A column's profile for DiffractionColumn: the fan's samples nearer than the column, linear between
 /// the azimuths, as readProfile().
 class FanPosts {
  public:
-  __device__ FanPosts(const DiffractionTask& task, const FanPlace& place)
-      : ranges_m_(task.piece.emitter.fan.ranges_m),
-        azimuths_(task.piece.interval_count + 1),
-        before_(task.piece.emitter.fan.lastBefore(place.range_m)),
-        distance_m_(place.range_m) {
-    const int interval = static_cast<int>(place.azimuth_index);
-    weight_ = static_cast<float>(place.azimuth_index - interval);
-    heights_m_ = task.piece.samples + (interval - task.piece.first_interval);
-    blocks_ = task.blocks + (interval - task.piece.first_interval);
-    sums_ = task.sums + (interval - task.piece.first_interval);
+  __device__ FanPosts(const DiffractionTask& task, const FanIndex& index)
+      : ranges_m_(task.sector.emitter.fan.ranges_m),
+        azimuths_(task.sector.interval_count + 1),
+        before_(task.sector.emitter.fan.lastBefore(index.range_m)),
+        distance_m_(index.range_m) {
+    const int interval = static_cast<int>(index.azimuth_index);
+    weight_ = static_cast<float>(index.azimuth_index - interval);
+    heights_m_ = task.sector.samples + (interval - task.sector.first_interval);
+    blocks_ = task.blocks + (interval - task.sector.first_interval);
+    sums_ = task.sums + (interval - task.sector.first_interval);
   }
 
   /// Below the column.
@@ -42,15 +43,15 @@ class FanPosts {
   __device__ double range_m(int i) const { return ranges_m_[i]; }
   __device__ float height_msl_m(int i) const {
     const float* left = heights_m_ + i * azimuths_;
-    return mixed(left[0], left[1]);
+    return lerp(left[0], left[1], weight_);
   }
   __device__ float highest_msl_m(int b) const {
     const FanBlock* left = blocks_ + b * azimuths_;
-    return mixed(left[0].highest_msl_m, left[1].highest_msl_m);
+    return lerp(left[0].highest_msl_m, left[1].highest_msl_m, weight_);
   }
   __device__ float lowered_msl_m(int b) const {
     const FanBlock* left = blocks_ + b * azimuths_;
-    return mixed(left[0].lowered_msl_m, left[1].lowered_msl_m);
+    return lerp(left[0].lowered_msl_m, left[1].lowered_msl_m, weight_);
   }
   __device__ TerrainSums sumsBefore(int b) const {
     const TerrainSums* left = sums_ + b * azimuths_;
@@ -59,7 +60,7 @@ class FanPosts {
   }
   __device__ double distance_m() const { return distance_m_; }
   __device__ float ground_msl_m() const { return ground_msl_m_; }
-  /// Ranges are even but for the first ones: a guess from the end, then a few steps.
+  /// Ranges are even except for the first ones: an estimate from the end, then a few steps.
   __device__ int lastBefore(double range_m) const {
     if (before_ == 0) return 0;
     const double even_m = ranges_m_[before_] - ranges_m_[before_ - 1];
@@ -71,8 +72,6 @@ class FanPosts {
   }
 
  private:
-  __device__ float mixed(float left, float right) const { return left + weight_ * (right - left); }
-
   const double* ranges_m_;
   long long azimuths_;
   int before_;
@@ -87,15 +86,15 @@ class FanPosts {
 /// Blocks, and the sums of each one's own intervals.
 __global__ void blocksKernel(const DiffractionTask* tasks) {
   const DiffractionTask& task = tasks[blockIdx.z];
-  const FanPiece& piece = task.piece;
+  const FanSector& sector = task.sector;
   const int a = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   const int b = static_cast<int>(blockIdx.y);
-  if (a > piece.interval_count || b >= DiffractionTask::blockCount(piece.emitter.fan.range_count)) return;
-  const int used = piece.usedRanges(a);
+  if (a > sector.interval_count || b >= DiffractionTask::blockCount(sector.emitter.fan.range_count)) return;
+  const int used = sector.usedRanges(a);
   const int begin = b * kDiffractionBlock;
   const int end = min(begin + kDiffractionBlock, used);
-  const float* const heights_m = piece.samples + a * piece.azimuth_stride;
-  const double* const ranges_m = piece.emitter.fan.ranges_m;
+  const float* const heights_m = sector.samples + a * sector.azimuth_stride;
+  const double* const ranges_m = sector.emitter.fan.ranges_m;
   const double curvature = static_cast<double>(task.model.model.half_curvature);
   const double base = static_cast<double>(heights_m[0]);
   FanBlock block{-HUGE_VALF, -HUGE_VALF};
@@ -103,10 +102,10 @@ __global__ void blocksKernel(const DiffractionTask* tasks) {
   double before_m = 0, before_height_m = 0;
   if (begin > 0 && begin < end) {
     before_m = ranges_m[begin - 1];
-    before_height_m = static_cast<double>(heights_m[(begin - 1) * piece.range_stride]) - base;
+    before_height_m = static_cast<double>(heights_m[(begin - 1) * sector.range_stride]) - base;
   }
   for (int i = begin; i < end; ++i) {
-    const float height_msl_m = heights_m[i * piece.range_stride];
+    const float height_msl_m = heights_m[i * sector.range_stride];
     const double range_m = ranges_m[i], height_m = static_cast<double>(height_msl_m) - base;
     if (i > 0) sums.add(before_m, before_height_m, range_m, height_m);
     before_m = range_m;
@@ -116,20 +115,20 @@ __global__ void blocksKernel(const DiffractionTask* tasks) {
     block.highest_msl_m = fmaxf(block.highest_msl_m, height_msl_m);
     block.lowered_msl_m = fmaxf(block.lowered_msl_m, lowered);
   }
-  const long long at = static_cast<long long>(b) * (piece.interval_count + 1) + a;
+  const long long at = static_cast<long long>(b) * (sector.interval_count + 1) + a;
   task.blocks[at] = block;
   task.sums[at] = sums;
 }
 
-/// Sums of each block become those before it. A thread walks along one azimuth.
+/// Sums of each block become those before it. One thread per azimuth.
 __global__ void sumsKernel(const DiffractionTask* tasks) {
   constexpr int kAhead = 8;
   const DiffractionTask& task = tasks[blockIdx.y];
-  const FanPiece& piece = task.piece;
+  const FanSector& sector = task.sector;
   const int a = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (a > piece.interval_count) return;
-  const long long azimuths = piece.interval_count + 1;
-  const int blocks = DiffractionTask::blockCount(piece.usedRanges(a));
+  if (a > sector.interval_count) return;
+  const long long azimuths = sector.interval_count + 1;
+  const int blocks = DiffractionTask::blockCount(sector.usedRanges(a));
   TerrainSums* const of = task.sums + a;
   TerrainSums before;
   for (int begin = 0; begin < blocks; begin += kAhead) {
@@ -155,11 +154,11 @@ __device__ void markUnknown(const ExcessOutputs& to, int column) {
   atomicAdd(&to.counts->unknown_columns, 1);
 }
 
-/// Columns of a block, and of each of its warps: a square has more in common than a row.
+/// Columns of a block, and of each of its warps: the columns of a square share more data than those of a row.
 constexpr int kTileX = 16, kTileY = 8, kWarpX = 8, kWarpY = 4;
 
-/// @tparam kLeans  columns lean: they are cut into the grid's pieces, each of them over a place of its own
-template <bool kLeans>
+/// @tparam kTilted  columns are tilted: they are cut into the grid's segments, each above a point of its own
+template <bool kTilted>
 __global__ void __launch_bounds__(kTileX* kTileY, 5)
     diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid, int row,
                       const std::uint16_t* first_valid_k) {
@@ -171,11 +170,11 @@ __global__ void __launch_bounds__(kTileX* kTileY, 5)
   if (x >= row || static_cast<long long>(y) * row >= layer) return;
   const int c = y * row + x;
   const DiffractionTask& task = tasks[blockIdx.z];
-  FanPlace place;
-  if (!kLeans) {
-    place = task.piece.emitter.places[c];
-    const int interval = static_cast<int>(place.azimuth_index) - task.piece.first_interval;
-    if (interval < 0 || interval >= task.piece.interval_count) return;
+  FanIndex index;
+  if (!kTilted) {
+    index = task.sector.emitter.fan_indices[c];
+    const int interval = static_cast<int>(index.azimuth_index) - task.sector.first_interval;
+    if (interval < 0 || interval >= task.sector.interval_count) return;
   }
 
   ExcessCode* const codes = task.to.out.codes + c;
@@ -184,23 +183,23 @@ __global__ void __launch_bounds__(kTileX* kTileY, 5)
   const AirLoss& air = task.air;
   const GridColumn& column = grid.columns[c];
   bool is_unknown = false;
-  for (int piece = 0; piece < (kLeans ? grid.pieces : 1); ++piece) {
-    const int end = kLeans ? grid.firstLayer(piece + 1) : grid.layers;
-    int k = kLeans ? max(lowest, grid.firstLayer(piece)) : lowest;
-    if (kLeans) {
-      const LocateTask& emitter = task.piece.emitter;
-      const FanCoordinates point = grid.placeOf(emitter.station, static_cast<std::size_t>(c), piece);
-      place = {emitter.fan.azimuthIndex(point.azimuth_rad), point.range_m};
+  for (int segment = 0; segment < (kTilted ? grid.segments : 1); ++segment) {
+    const int end = kTilted ? grid.firstLayer(segment + 1) : grid.layers;
+    int k = kTilted ? max(lowest, grid.firstLayer(segment)) : lowest;
+    if (kTilted) {
+      const LocateTask& emitter = task.sector.emitter;
+      const FanCoordinates point = grid.coordinatesOf(emitter.station, static_cast<std::size_t>(c), segment);
+      index = {emitter.fan.azimuthIndex(point.azimuth_rad), point.range_m};
     }
     const auto heightOf = [&](int layer_k) {
       const int here = min(layer_k, end - 1);
       return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[here])));
     };
-    bool is_free = !(place.range_m > 0);  // the emitter's own place
+    bool is_free = !(index.range_m > 0);  // at the emitter itself
     if (!is_free) {
-      FanPosts posts(task, place);
-      if (kLeans) {
-        posts.setGround(heightBetween(task.piece.emitter.fan, place.range_m,
+      FanPosts posts(task, index);
+      if (kTilted) {
+        posts.setGround(heightBetween(task.sector.emitter.fan, index.range_m,
                                       [&](int range) { return posts.height_msl_m(range); }));
       } else {
         posts.setGround(grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : 0);
@@ -218,7 +217,7 @@ __global__ void __launch_bounds__(kTileX* kTileY, 5)
 #pragma unroll
         for (int j = 0; j < kReceivers; ++j) {
           if (k + j >= end) break;
-          if (!air.isClear()) loss_db[j] += air.lossDb(static_cast<float>(place.range_m), rx_msl_m[j]);
+          if (!air.isClear()) loss_db[j] += air.lossDb(static_cast<float>(index.range_m), rx_msl_m[j]);
           codes[(k + j) * layer] = excessCode(loss_db[j]);
         }
         k += kReceivers;
@@ -226,21 +225,21 @@ __global__ void __launch_bounds__(kTileX* kTileY, 5)
     }
     for (; k < end; ++k) {
       codes[k * layer] =
-          air.isClear() ? 0 : excessCode(air.lossDb(static_cast<float>(place.range_m), heightOf(k)));
+          air.isClear() ? 0 : excessCode(air.lossDb(static_cast<float>(index.range_m), heightOf(k)));
     }
   }
   if (is_unknown) markUnknown(task.to, c);
 }
 
-__device__ void note(const ExcessOutputs& to, int column, unsigned remarks) {
-  if ((remarks & kMissingTerrain) != 0) markUnknown(to, column);
-  if ((remarks & ~kMissingTerrain) != 0) atomicOr(&to.counts->remarks, remarks & ~kMissingTerrain);
+__device__ void note(const ExcessOutputs& to, int column, unsigned warnings) {
+  if ((warnings & kMissingTerrain) != 0) markUnknown(to, column);
+  if ((warnings & ~kMissingTerrain) != 0) atomicOr(&to.counts->warnings, warnings & ~kMissingTerrain);
 }
 
 /// Memory of columns that are computed at a time.
 class ColumnMemory {
  public:
-  /// What one kernel leaves the next of a column.
+  /// State of a column between two kernels.
   struct Begun {
     ExcessColumn column;
     bool is_open;  ///< there is something to fill
@@ -270,7 +269,7 @@ class ColumnMemory {
   int posts_, layers_;
 };
 
-/// Whole columns, a thread each.
+/// Whole columns, one per thread.
 template <class Model>
 __global__ void __launch_bounds__(kThreads)
     excessKernel(const __grid_constant__ ExcessTask<Model> task, const __grid_constant__ ExcessOutputs to,
@@ -280,22 +279,22 @@ __global__ void __launch_bounds__(kThreads)
   const ExcessGrid& grid = task.grid;
   const ExcessScratch scratch = memory.scratch(thread);
   for (std::size_t c = thread; c < grid.column_count; c += threads) {
-    unsigned remarks = 0;
-    if (!task.fillColumn(c, scratch, remarks)) continue;
-    note(to, static_cast<int>(c), remarks);
+    unsigned warnings = 0;
+    if (!task.fillColumn(c, scratch, warnings)) continue;
+    note(to, static_cast<int>(c), warnings);
     for (int k = 0; k < grid.layers; ++k) {
       to.out.codes[k * grid.column_count + c] = excessCode(scratch.excess_db[k]);
     }
   }
 }
 
-/// A piece of some columns.
+/// A segment of some columns.
 struct ColumnRun {
   int first, count;
-  int piece;
+  int segment;
 };
 
-/// What comes once for a column.
+/// The part that runs once per column.
 template <class Model>
 __global__ void __launch_bounds__(kThreads)
     beginKernel(const __grid_constant__ ExcessTask<Model> task, const __grid_constant__ ExcessOutputs to,
@@ -304,20 +303,20 @@ __global__ void __launch_bounds__(kThreads)
   if (n >= run.count) return;
   const ExcessScratch scratch = memory.scratch(n);
   ExcessColumn column;
-  const bool is_here = task.readPiece(run.first + n, run.piece, scratch, column);
-  unsigned remarks = 0;
-  const int first = task.grid.firstLayer(run.piece);
-  if (is_here) remarks = task.model.begin(column, scratch, scratch.excess_db + first);
-  memory.begun(n) = {column, is_here && remarks == 0};
-  if (remarks == 0) return;
-  note(to, run.first + n, remarks);
+  const bool is_here = task.readSegment(run.first + n, run.segment, scratch, column);
+  unsigned warnings = 0;
+  const int first = task.grid.firstLayer(run.segment);
+  if (is_here) warnings = task.model.begin(column, scratch, scratch.excess_db + first);
+  memory.begun(n) = {column, is_here && warnings == 0};
+  if (warnings == 0) return;
+  note(to, run.first + n, warnings);
   for (int k = 0; k < column.count; ++k) {
     const float excess_db = scratch.excess_db[first + k];
     to.out.codes[(first + k) * task.grid.column_count + run.first + n] = excessCode(excess_db);
   }
 }
 
-/// Parts of columns, a thread each: neighbours read the same profile.
+/// Parts of columns, one per thread: neighbours read the same profile.
 template <class Model>
 __global__ void __launch_bounds__(kThreads)
     fillKernel(const __grid_constant__ ExcessTask<Model> task, const __grid_constant__ ExcessOutputs to,
@@ -330,7 +329,7 @@ __global__ void __launch_bounds__(kThreads)
   const int end = min(begin + kBisectionStep, begun.column.count);
   if (!begun.is_open || begin >= end) return;
   const ExcessScratch scratch = memory.scratch(n);
-  const int first = task.grid.firstLayer(run.piece);
+  const int first = task.grid.firstLayer(run.segment);
   float* const excess_db = scratch.excess_db + first;
   float other_db[kBisectionStep + 1];
   note(to, run.first + n, task.model.fill(begun.column, scratch, {begin, end, other_db}, excess_db));
@@ -349,13 +348,13 @@ void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const 
     excessKernel<<<blocksFor(std::min(memory.columns(), columns)), kThreads, 0, stream>>>(task, to, memory);
     checkLaunch("excess");
   } else {
-    const int parts = (grid.firstLayer(1) + kBisectionStep) / kBisectionStep;  // pieces differ by a layer
+    const int parts = (grid.firstLayer(1) + kBisectionStep) / kBisectionStep;  // segments differ by a layer
     const int runs = (columns + memory.columns() - 1) / memory.columns();
-    for (int piece = 0; piece < grid.pieces; ++piece) {
+    for (int segment = 0; segment < grid.segments; ++segment) {
       for (int r = 0; r < runs; ++r) {
         const int first = static_cast<int>(static_cast<long long>(columns) * r / runs);
         const int end = static_cast<int>(static_cast<long long>(columns) * (r + 1) / runs);
-        const ColumnRun run{first, end - first, piece};
+        const ColumnRun run{first, end - first, segment};
         beginKernel<<<blocksFor(run.count), kThreads, 0, stream>>>(task, to, memory, run);
         checkLaunch("excess of columns");
         fillKernel<<<blocksFor(run.count * parts), kThreads, 0, stream>>>(task, to, memory, run, parts);
@@ -368,8 +367,8 @@ void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const 
 }  // namespace
 
 void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, const ExcessGrid& grid, int row,
-                     bool leans, const std::uint16_t* first_valid_k, cudaStream_t stream) {
-  const auto count = static_cast<unsigned>(extent.pieces);
+                     bool tilted, const std::uint16_t* first_valid_k, cudaStream_t stream) {
+  const auto count = static_cast<unsigned>(extent.sectors);
   const dim3 blocks(blocksFor(extent.azimuths),
                     static_cast<unsigned>(DiffractionTask::blockCount(extent.ranges)), count);
   blocksKernel<<<blocks, kThreads, 0, stream>>>(tasks);
@@ -381,7 +380,7 @@ void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, co
   const int rows = static_cast<int>(grid.column_count) / row;
   const dim3 tiles(static_cast<unsigned>((row + kTileX - 1) / kTileX),
                    static_cast<unsigned>((rows + kTileY - 1) / kTileY), count);
-  const auto kernel = leans ? diffractionKernel<true> : diffractionKernel<false>;
+  const auto kernel = tilted ? diffractionKernel<true> : diffractionKernel<false>;
   kernel<<<tiles, kTileX * kTileY, 0, stream>>>(tasks, grid, row, first_valid_k);
   checkLaunch("diffraction");
 }
@@ -392,7 +391,7 @@ void fillExcess(const EmitterExcess& excess, const Station& station, const Exces
   std::visit(
       [&](const auto& m) {
         using Model = std::decay_t<decltype(m)>;
-        if constexpr (!std::is_same_v<Model, DiffractionExcess>) {  // which has a kernel of its own
+        if constexpr (!std::is_same_v<Model, DiffractionExcess>) {  // it has its own kernel
           const ExcessTask<Model> task{m, excess.air, station, grid, fan};
           launchExcess(task, to, ColumnMemory(scratch, scratch_bytes, task.posts(), grid.layers), stream);
         }

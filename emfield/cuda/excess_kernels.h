@@ -19,17 +19,17 @@ struct ExcessOutputs {
   GeometryCounts* counts = nullptr;
 };
 
-/// What DiffractionColumn knows of a block of posts along an azimuth.
+/// Summary of a block of posts along an azimuth; see DiffractionColumn.
 struct FanBlock {
   float highest_msl_m, lowered_msl_m;
 };
 
-/// `diffraction` over some intervals of an emitter's fan, over all of them for columns that lean: a thread a
-/// column, the profile read from the fan as often as it is needed.
+/// `diffraction` over some intervals of an emitter's fan, over all of them for tilted columns: one thread per
+/// column, which reads its profile from the fan as often as it needs it.
 struct DiffractionTask {
   DiffractionExcess model;
   AirLoss air;
-  FanPiece piece;  ///< heights, azimuth fastest
+  FanSector sector;  ///< heights, azimuth fastest
   ExcessOutputs to;
   /// Of each block of posts and each azimuth, azimuth fastest; made by fillDiffraction().
   FanBlock* blocks = nullptr;
@@ -40,18 +40,18 @@ struct DiffractionTask {
     return (posts + kDiffractionBlock - 1) / kDiffractionBlock;
   }
 };
-/// @param extent         of the tasks' pieces
+/// @param extent         of the tasks' sectors
 /// @param grid           of device memory
 /// @param row            columns along x
-/// @param leans          whether the columns do
+/// @param tilted         whether the columns are
 /// @param first_valid_k  voxels below get no excess; null: none is below
-void fillDiffraction(const DiffractionTask* tasks, const PieceExtent& extent, const ExcessGrid& grid, int row,
-                     bool leans, const std::uint16_t* first_valid_k, cudaStream_t stream);
+void fillDiffraction(const DiffractionTask* tasks, const SectorExtent& extent, const ExcessGrid& grid,
+                     int row, bool tilted, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
-/// Any model: a thread a column with memory of its own.
+/// Any model: one thread per column, with its own scratch memory.
 /// @param excess     its tables in device memory
 /// @param grid, fan  of device memory; fan: range fastest, none for models without terrain
-/// @param scratch    device memory; the more there is of it, the more columns are computed at a time
+/// @param scratch    device memory; its size bounds the number of columns computed at a time
 void fillExcess(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
                 const FanHeights& fan, const ExcessOutputs& to, void* scratch, std::size_t scratch_bytes,
                 cudaStream_t stream);

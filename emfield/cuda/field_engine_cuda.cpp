@@ -17,7 +17,7 @@ using emscape::cuda::Buffer;
 using emscape::cuda::check;
 using volume::DeviceVolume;
 
-/// The tables of an antenna's pattern on the device. Antennas that emitters share are there once.
+/// The tables of an antenna's pattern on the device. One copy per antenna, also if emitters share it.
 class DevicePattern {
  public:
   explicit DevicePattern(const scenario::PatternView& pattern) : view_(pattern) {
@@ -44,12 +44,12 @@ class DevicePattern {
 
 /// Buffers of one channel.
 struct ChannelBuffers {
-  Buffer<float> value, largest;                  ///< accumulator over all emitters
-  Buffer<float> resting_value, resting_largest;  ///< accumulator over the resting emitters alone
+  Buffer<float> value, largest;                ///< accumulator over all emitters
+  Buffer<float> static_value, static_largest;  ///< accumulator over the static emitters alone
   volume::DeviceVolumeRing ring;
 };
 
-/// What a radar's part in a channel points to.
+/// The tables that a radar's part in a channel points to.
 struct RadarTables {
   Buffer<DetectionCurveView::Knot> knots;
   Buffer<JammerAtRadar> jammers;
@@ -59,12 +59,12 @@ class CudaEngine : public FieldEngine {
  public:
   CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecision precision);
 
-  std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) override {
+  std::vector<GeometryResult> computeGeometry(const std::vector<GeometryRequest>& requests) override {
     for (const GeometryRequest& request : requests)
       kept_power_.forget(static_cast<std::size_t>(request.slot));
     return geometry_.compute(requests, stream_, clock_);
   }
-  void setResting(const std::vector<bool>& channels) override;
+  void setStaticSums(const std::vector<bool>& channels) override;
   void combine(const CombinePass& pass) override;
   std::vector<volume::Volume> makeVolumes(const std::vector<VolumeRequest>& requests) override;
   void planChanged(bool channels_changed) final;
@@ -74,7 +74,7 @@ class CudaEngine : public FieldEngine {
 
  private:
   bool hasLargest(std::size_t channel) const {
-    return setup_.recipes[channel].reduction == Reduction::dominant;
+    return setup_.channel_plans[channel].reduction == Reduction::dominant;
   }
 
   const FieldSetup& setup_;
@@ -83,9 +83,9 @@ class CudaEngine : public FieldEngine {
   emscape::cuda::Stream stream_;
   cuda::StageClock clock_;
   cuda::DeviceGeometry geometry_;
-  KeptPower<Buffer<float>> kept_power_;                      // not of the last slot, which emitters share
+  KeptPower<Buffer<float>> kept_power_;                      // without the last slot, which emitters share
   std::map<scenario::AntennaPtr, DevicePattern> patterns_;   ///< of the emitters' antennas
-  std::map<std::pair<int, int>, RadarTables> radar_tables_;  ///< of a channel and an emitter
+  std::map<std::pair<int, int>, RadarTables> radar_tables_;  ///< by channel and emitter
   std::vector<ChannelBuffers> buffers_;
   Buffer<cuda::DeviceRange> ranges_;
 };
@@ -121,10 +121,10 @@ void CudaEngine::planChanged(bool channels_changed) {
   }
 }
 
-void CudaEngine::setResting(const std::vector<bool>& channels) {
+void CudaEngine::setStaticSums(const std::vector<bool>& channels) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    buffers_[c].resting_value.resize(channels[c] ? voxels_ : 0);
-    buffers_[c].resting_largest.resize(channels[c] && hasLargest(c) ? voxels_ : 0);
+    buffers_[c].static_value.resize(channels[c] ? voxels_ : 0);
+    buffers_[c].static_largest.resize(channels[c] && hasLargest(c) ? voxels_ : 0);
   }
 }
 
@@ -135,13 +135,13 @@ void CudaEngine::combine(const CombinePass& pass) {
   task.keep = pass.keep;
   for (std::size_t c = 0; c < buffers_.size(); ++c) {
     ChannelBuffers& buffers = buffers_[c];
-    auto& value = pass.into_resting ? buffers.resting_value : buffers.value;
-    auto& largest = pass.into_resting ? buffers.resting_largest : buffers.largest;
-    task.reductions.push_back(setup_.recipes[c].reduction);
+    auto& value = pass.into_static_sums ? buffers.static_value : buffers.value;
+    auto& largest = pass.into_static_sums ? buffers.static_largest : buffers.largest;
+    task.reductions.push_back(setup_.channel_plans[c].reduction);
     task.accumulators.push_back(pass.channels[c] ? Accumulator{value.data(), largest.data()} : Accumulator{});
     task.initial.push_back(
-        pass.into_resting ? ConstAccumulator{}
-                          : ConstAccumulator{buffers.resting_value.data(), buffers.resting_largest.data()});
+        pass.into_static_sums ? ConstAccumulator{}
+                              : ConstAccumulator{buffers.static_value.data(), buffers.static_largest.data()});
   }
   for (const CombinePass::Member& member : pass.members) {
     task.emitters.push_back(member.emitter);
@@ -186,7 +186,7 @@ std::vector<volume::Volume> CudaEngine::makeVolumes(const std::vector<VolumeRequ
     volume->info = request.info;
     volume->setMask(*request.first_valid_k);
     cuda::DeviceProductTask task;
-    task.product = setup_.recipes[request.channel].product;
+    task.product = setup_.channel_plans[request.channel].product;
     task.accumulator = buffers.value.data();
     task.first_valid_k = volume->storage().firstValidK();
     task.range = ranges_.data() + r;
@@ -208,7 +208,7 @@ void CudaEngine::addMemory(MemoryUse& use) const {
   std::size_t channel_bytes = 0;
   for (const ChannelBuffers& buffers : buffers_) {
     for (const auto* buffer :
-         {&buffers.value, &buffers.largest, &buffers.resting_value, &buffers.resting_largest}) {
+         {&buffers.value, &buffers.largest, &buffers.static_value, &buffers.static_largest}) {
       channel_bytes += buffer->size() * sizeof(float);
     }
     channel_bytes += volume::deviceBytes(setup_.grid.dims, precision_);

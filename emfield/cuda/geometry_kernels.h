@@ -23,15 +23,15 @@ struct DeviceColumns {
   bool tilted = false;
 };
 
-/// What the kernels count for an emitter.
+/// Counters of the kernels for an emitter.
 struct GeometryCounts {
   int unknown_columns = 0;
-  unsigned remarks = 0;  ///< of the excess model, on all columns
+  unsigned warnings = 0;  ///< of the excess model, on all columns
   unsigned long long near_voxels = 0;
 };
 
-/// A column's place in a fan.
-struct FanPlace {
+/// A column's coordinates in a fan.
+struct FanIndex {
   double azimuth_index = 0;
   double range_m = 0;
 };
@@ -39,18 +39,18 @@ struct FanPlace {
 /// An emitter whose columns are located. Pointers are to device memory.
 struct LocateTask {
   Station station;
-  FanView fan;                     ///< range_count 0: no fan is needed
-  float* numbers = nullptr;        ///< kColumnNumbers x columns
-  float* shadow_edge_m = nullptr;  ///< set to "nothing is in shadow"
-  FanPlace* places = nullptr;      ///< one a column
-  /// One an azimuth, raised to the ranges that some column lies behind. Columns that lean may do so anywhere.
+  FanView fan;                      ///< range_count 0: no fan is needed
+  float* numbers = nullptr;         ///< kColumnNumbers x columns
+  float* shadow_edge_m = nullptr;   ///< initialised with "nothing is in shadow"
+  FanIndex* fan_indices = nullptr;  ///< one per column
+  /// One per azimuth: the number of ranges nearer than some column. Tilted columns need all ranges.
   int* used_ranges = nullptr;
   float near2_m2 = 0;  ///< square of the far field's distance
   GeometryCounts* counts = nullptr;
 };
 
 /// Some neighbouring intervals of an emitter's fan. Pointers are to device memory.
-struct FanPiece {
+struct FanSector {
   LocateTask emitter;
   int first_interval = 0, interval_count = 0;
   scenario::TerrainView terrain;
@@ -58,31 +58,30 @@ struct FanPiece {
   RangeTerms<float>* terms = nullptr;  ///< of the fan's ranges
   bool holds_slopes = true;            ///< false: heights
   /// Of (interval_count + 1) azimuths and the fan's ranges: heights above mean sea level, or slopes to the
-  /// terrain and in the end the grazing slopes.
+  /// terrain, later replaced by the grazing slopes.
   float* samples = nullptr;
   long long azimuth_stride = 0, range_stride = 0;
 
-  /// Samples of the piece's azimuth that are needed.
+  /// Number of samples needed on an azimuth of the sector.
   EMSCAPE_HD int usedRanges(int azimuth) const {
     const int used = emitter.used_ranges[first_interval + azimuth];
     return used < emitter.fan.range_count ? used : emitter.fan.range_count;
   }
 };
 
-/// Numbers, places and used ranges of all columns; near voxels.
+/// Computes the numbers, fan indices and used ranges of all columns, and counts near voxels.
 void locateColumns(const LocateTask* tasks, int count, const DeviceColumns& columns, cudaStream_t stream);
 
-/// What the largest of some pieces needs of a launch.
-struct PieceExtent {
-  int pieces = 0;
+/// Launch dimensions for a batch of sectors: the maximum over them.
+struct SectorExtent {
+  int sectors = 0;
   int azimuths = 0;
   int ranges = 0;
 };
-/// Terrain along the azimuths of some pieces.
-void readFans(const FanPiece* pieces, const PieceExtent& extent, cudaStream_t stream);
-/// Slopes of the pieces that hold them become grazing slopes, and these the columns' shadow edges; counts
-/// what is unknown.
-void findShadowEdges(const FanPiece* pieces, const PieceExtent& extent, const DeviceColumns& columns,
+/// Reads the terrain along the azimuths of the sectors.
+void readFans(const FanSector* sectors, const SectorExtent& extent, cudaStream_t stream);
+/// Converts slopes to grazing slopes, and these to the columns' shadow edges; counts unknown columns.
+void findShadowEdges(const FanSector* sectors, const SectorExtent& extent, const DeviceColumns& columns,
                      cudaStream_t stream);
 
 }  // namespace emscape::emfield::cuda

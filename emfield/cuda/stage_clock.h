@@ -10,7 +10,7 @@
 
 namespace emscape::emfield::cuda {
 
-/// Sums of the pieces of each stage. begin() and end() only put events on the stream.
+/// Sums of the intervals of each stage. begin() and end() only record events on the stream.
 class StageClock {
  public:
   using Stage = double StageTimes::*;
@@ -24,7 +24,7 @@ class StageClock {
     timers_[used_]->timer.end(stream);
     timers_[used_++]->stage = stage;
   }
-  /// Waits for the last piece.
+  /// Waits for the last interval.
   StageTimes times() const {
     StageTimes times;
     for (std::size_t i = 0; i < used_; ++i) times.*(timers_[i]->stage) += timers_[i]->timer.elapsed_ms();

@@ -16,7 +16,7 @@ namespace {
 using scenario::Emitter;
 using scenario::EmitterState;
 
-/// Nearer along the ground than this (m) nothing lies between two stations: no path is looked at.
+/// Ground distance (m) below which there is no obstacle between two stations: no path is computed.
 constexpr double kNoPath_m = 2;
 
 /// The straight line from a station to a point, east-north-up (m).
@@ -26,7 +26,7 @@ Vec3d lineBetween(const Station& from, const GeodeticPosition& to) {
 }
 
 double freeSpaceDensity_wm2(const Emitter& emitter, const scenario::BeamPose& beam, const Vec3d& line) {
-  const double distance_m = std::max(length(line), static_cast<double>(kSmallestDistance_m));
+  const double distance_m = std::max(length(line), static_cast<double>(kMinDistance_m));
   const Vec3d unit = length(line) > 0 ? line / length(line) : beam.forward;
   const double amplitude = emitter.antenna->amplitudeTowards(
       {dot(unit, beam.forward), dot(unit, beam.right), dot(unit, beam.up)}, beam.steer_u, beam.steer_v);
@@ -36,21 +36,21 @@ double freeSpaceDensity_wm2(const Emitter& emitter, const scenario::BeamPose& be
 
 }  // namespace
 
-std::vector<JammerInSight> jammersInSight(const scenario::Snapshot& snapshot, int radar,
-                                          const std::vector<int>& jammers, const scenario::Terrain* terrain,
-                                          const FanResolution& resolution, std::string* warning) {
+std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int radar,
+                                    const std::vector<int>& jammers, const scenario::Terrain* terrain,
+                                    const FanResolution& resolution, std::string* warning) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const EmitterState& at = snapshot.emitters[radar];
   const double k_factor = scenario.atmosphere.k_factor;
   const Station station = makeStation(at.position, at.height_msl_m, k_factor);
-  std::vector<JammerInSight> all;
+  std::vector<JammerPath> all;
   for (int j : jammers) {
     const EmitterState& from = snapshot.emitters[j];
     if (!from.active) continue;
     const Station jammer_station = makeStation(from.position, from.height_msl_m, k_factor);
     Vec3d ray = lineBetween(station, from.position);
     const double level_m = std::hypot(ray.x, ray.y);
-    JammerInSight jammer{j, {}, 0};
+    JammerPath jammer{j, {}, 0};
     const auto alone = [&] {
       return freeSpaceDensity_wm2(scenario.emitters[j], from.beam, lineBetween(jammer_station, at.position));
     };

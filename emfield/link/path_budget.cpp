@@ -25,7 +25,7 @@ using scenario::EmitterState;
 using scenario::Quantity;
 using Kind = BudgetTerm::Kind;
 
-/// Ranges at which rays from a height touch a smooth earth at mean sea level.
+/// Distance of the horizon of a height over a smooth earth at mean sea level.
 double smoothHorizon_m(double height_msl_m, double effective_earth_radius_m) {
   return std::sqrt(2 * effective_earth_radius_m * std::max(height_msl_m, 0.0));
 }
@@ -56,22 +56,21 @@ PathPointing pointingOf(const Emitter& emitter, const scenario::BeamPose& beam, 
   return pointing;
 }
 
-/// A quantity's value where one emitter alone makes a power density: what the field's product stage makes of
-/// it, without its floor.
+/// A quantity's value for a power density of one emitter, as by the field's product stage without its floor.
 double quantityOf(Quantity quantity, const scenario::Scenario& scenario, int emitter,
                   double power_density_dbwm2) {
   Channel channel;
   channel.quantity = quantity;
   channel.emitters = {emitter};
-  const ChannelRecipe recipe = recipeOf(channel, scenario);
-  const double accumulator_db = power_density_dbwm2 + ratioToDb(static_cast<double>(recipe.weights.front()));
-  return static_cast<double>(recipe.product.scale) * accumulator_db +
-         static_cast<double>(recipe.product.offset_db);
+  const ChannelPlan plan = channelPlan(channel, scenario);
+  const double accumulator_db = power_density_dbwm2 + ratioToDb(static_cast<double>(plan.weights.front()));
+  return static_cast<double>(plan.product.scale) * accumulator_db +
+         static_cast<double>(plan.product.offset_db);
 }
 
-/// Of spreading over the slant range (dB/m2).
+/// Spreading over the slant range (dB/m2).
 double spreading_dbm2(const PathGeometry& geometry) {
-  const double distance_m = std::max(geometry.slant_range_m, static_cast<double>(kSmallestDistance_m));
+  const double distance_m = std::max(geometry.slant_range_m, static_cast<double>(kMinDistance_m));
   return -ratioToDb(4 * kPi * distance_m * distance_m);
 }
 
@@ -156,7 +155,7 @@ std::vector<BudgetTerm> termsOf(const scenario::Snapshot& snapshot, int emitter_
   addRadiatedTerms(emitter, budget.pointing, terms);
   double level_db = terms.back().value;
 
-  const double distance_m = std::max(budget.geometry.slant_range_m, static_cast<double>(kSmallestDistance_m));
+  const double distance_m = std::max(budget.geometry.slant_range_m, static_cast<double>(kMinDistance_m));
   const double spreading_db = -ratioToDb(4 * kPi * distance_m * distance_m);
   terms.push_back({"spreading_dbm2", "spreading over the slant range", spreading_db, "dB/m2",
                    fmt::format("1 / (4 pi R^2), R = {:.3f} km", distance_m / 1000)});
@@ -231,7 +230,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   budget.warnings = budget.excess.warnings;
   if (geometry.slant_range_m < geometry.far_field_m) {
     budget.warnings.push_back(
-        fmt::format("the point lies {:.0f} m from the antenna, nearer than its far field (2 D^2 / lambda = "
+        fmt::format("the point is {:.0f} m from the antenna, nearer than its far field (2 D^2 / lambda = "
                     "{:.0f} m): the "
                     "far field's formula is taken all the same",
                     geometry.slant_range_m, geometry.far_field_m));

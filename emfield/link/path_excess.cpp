@@ -44,7 +44,7 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
     std::vector<float> tables;
     addAir(propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), tables), profile, excess);
   }
-  for (std::string& warning : pathWarnings(emitter, inputs, path.remarks()))
+  for (std::string& warning : pathWarnings(emitter, inputs, path.warnings()))
     excess.warnings.push_back(std::move(warning));
   return excess;
 }

@@ -14,7 +14,7 @@
 namespace emscape::emfield {
 namespace {
 
-constexpr double kShortestPath_m = 1;
+constexpr double kMinPath_m = 1;
 
 /// Ranges of a fan before the path's end, and the end.
 std::vector<double> pathRanges(double range_m, double even_step_m) {
@@ -29,7 +29,7 @@ void checkTerrain(const PathProfile& profile, const scenario::Terrain& terrain) 
                                  [](float height_m) { return std::isnan(height_m); });
   if (hole == profile.ground_msl_m.end()) return;
   const double range_m = profile.ranges_m[static_cast<std::size_t>(hole - profile.ground_msl_m.begin())];
-  const GeodeticPosition place =
+  const GeodeticPosition position =
       geodesicDirect(profile.begin.position.latitude_deg, profile.begin.position.longitude_deg,
                      profile.azimuth_rad, range_m);
   const scenario::GeoBox box = terrain.coverage();
@@ -37,7 +37,7 @@ void checkTerrain(const PathProfile& profile, const scenario::Terrain& terrain) 
       ErrorCode::bad_input,
       fmt::format("terrain is missing on the path, {:.2f} km from the emitter at latitude {:.5f}, longitude "
                   "{:.5f} deg; the files cover latitude {:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg",
-                  range_m / 1000, place.latitude_deg, place.longitude_deg, box.south_deg, box.north_deg,
+                  range_m / 1000, position.latitude_deg, position.longitude_deg, box.south_deg, box.north_deg,
                   box.west_deg, box.east_deg));
 }
 
@@ -75,11 +75,11 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_f
   profile.azimuth_rad = coordinates.azimuth_rad;
   profile.range_m = coordinates.range_m;
   const double longest_m = 0.5 * kPi * station.earth_radius_m;
-  if (!(profile.range_m >= kShortestPath_m && profile.range_m <= longest_m)) {
+  if (!(profile.range_m >= kMinPath_m && profile.range_m <= longest_m)) {
     throw Error(
         ErrorCode::bad_input,
         fmt::format("the path is {:.6g} km long over the ground; profiles are drawn from {:g} to {:.0f} km",
-                    profile.range_m / 1000, kShortestPath_m / 1000, longest_m / 1000));
+                    profile.range_m / 1000, kMinPath_m / 1000, longest_m / 1000));
   }
   FanShape path;  // a fan of one azimuth
   path.first_azimuth_rad = profile.azimuth_rad;

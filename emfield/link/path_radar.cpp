@@ -23,14 +23,14 @@ class RadarPoint {
         ray_(ray * (1 / length(ray))),
         boresight_wm2_(dbToRatio(boresight_dbwm2)) {}
 
-  /// What the channel of a quantity accumulates for this radar alone.
-  double accumulated(const Channel& channel, const std::vector<JammerInSight>& jammers) const {
+  /// Accumulated value of a quantity's channel for this radar alone.
+  double accumulated(const Channel& channel, const std::vector<JammerPath>& jammers) const {
     RadarTask task;
-    const ChannelRecipe recipe = recipeOf(channel, scenario_);
-    if (recipe.radars.empty()) {
+    const ChannelPlan plan = channelPlan(channel, scenario_);
+    if (plan.radars.empty()) {
       task.echo_root = static_cast<float>(echoRoot_m2_w(scenario_.emitters[radar_]));
     } else {
-      task = recipe.radars.front();
+      task = plan.radars.front();
     }
     const RadarShare share = radarShare(scenario_, radar_, snapshot_.emitters[radar_], task, jammers);
     const Vec3f direction =
@@ -73,8 +73,8 @@ RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const V
     if (snapshot.scenario->emitters[e].kind == EmitterKind::jammer)
       channel.jammers.push_back(static_cast<int>(e));
   }
-  const std::vector<JammerInSight> jammers =
-      jammersInSight(snapshot, radar, channel.jammers, terrain, resolution, nullptr);
+  const std::vector<JammerPath> jammers =
+      jammerPaths(snapshot, radar, channel.jammers, terrain, resolution, nullptr);
   const RadarPoint point(snapshot, radar, ray, boresight_dbwm2);
   RadarAtPoint result;
   channel.quantity = Quantity::snr_db;

@@ -1,4 +1,4 @@
-/// What a radar makes of a target at the end of a path: echo, jamming, detection.
+/// Echo, jamming and detection of a target at the end of a path.
 #pragma once
 
 #include "emfield/terrain_fan.h"
@@ -8,7 +8,7 @@
 
 namespace emscape::emfield {
 
-/// As a voxel there holds it, without the volume's floor.
+/// The values of a voxel at that point, without the volume's floor.
 struct RadarAtPoint {
   double snr_db = 0;                 ///< -infinity without an echo
   double jammer_to_signal_db = 0;    ///< -infinity without jamming
@@ -17,7 +17,7 @@ struct RadarAtPoint {
 
 /// @param ray                start of the refracted ray to the point, east-north-up at the radar
 /// @param boresight_dbwm2    power density at the point if the beam pointed there
-/// @throws Error (bad_input) where a jammer's path to the radar crosses missing terrain
+/// @throws Error (bad_input) if a jammer's path to the radar crosses missing terrain
 RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray,
                           double boresight_dbwm2, const scenario::Terrain* terrain,
                           const FanResolution& resolution);

@@ -38,7 +38,7 @@ std::vector<ReportLine> geometryLines(const PathBudget& budget) {
 }
 
 std::string valueText(double value) {
-  if (std::isinf(value)) return value < 0 ? "none" : "all";
+  if (std::isinf(value)) return value < 0 ? "no field" : "infinite";
   return fmt::format("{:.2f}", std::abs(value) < 0.005 ? 0.0 : value);
 }
 

@@ -20,9 +20,9 @@ std::string thingAt(const PathObstacle& obstacle) {
                      distanceText(obstacle.range_m));
 }
 
-/// What the path costs, after "and".
+/// The path's loss, as a phrase after "and".
 std::string costText(double loss_db) {
-  if (std::isinf(loss_db)) return "the model knows no field behind it";
+  if (std::isinf(loss_db)) return "the model gives no field behind it";
   if (std::abs(loss_db) < 0.05) return "the path is as good as free space";
   if (loss_db < 0) return fmt::format("the path gains {:.1f} dB over free space", -loss_db);
   return fmt::format("the path costs {:.1f} dB over free space", loss_db);
@@ -32,16 +32,14 @@ std::string pathText(const PathBudget& budget) {
   const double loss_db = budget.excess.loss_db;
   const auto decisive = std::find_if(budget.obstacles.begin(), budget.obstacles.end(),
                                      [](const PathObstacle& obstacle) { return obstacle.decides; });
-  if (decisive == budget.obstacles.end())
-    return fmt::format("Clear: nothing stands between, and {}", costText(loss_db));
+  if (decisive == budget.obstacles.end()) return fmt::format("Clear: no obstacle, and {}", costText(loss_db));
   const double radii = decisive->clearanceInFresnelRadii();
   const long others = std::count_if(budget.obstacles.begin(), budget.obstacles.end(),
                                     [](const PathObstacle& obstacle) { return obstacle.clearance_m < 0; }) -
                       1;
-  const std::string company =
-      others > 0 ? fmt::format(", {} more stand{} above it too", others, others == 1 ? "s" : "") : "";
+  const std::string company = others > 0 ? fmt::format(", {} more above it", others) : "";
   if (radii < 0) {
-    return fmt::format("Blocked: {} stands {:.0f} m above the ray ({:.1f} Fresnel radii){}, and {}",
+    return fmt::format("Blocked: {} is {:.0f} m above the ray ({:.1f} Fresnel radii){}, and {}",
                        thingAt(*decisive), -decisive->clearance_m, -radii, company, costText(loss_db));
   }
   if (radii < 0.6) {
@@ -50,11 +48,11 @@ std::string pathText(const PathBudget& budget) {
         thingAt(*decisive), decisive->clearance_m, radii, costText(loss_db));
   }
   return fmt::format(
-      "Clear: the nearest ground, {}, lies {:.0f} m below the ray ({:.1f} Fresnel radii), and {}",
+      "Clear: the nearest ground, {}, is {:.0f} m below the ray ({:.1f} Fresnel radii), and {}",
       distanceText(decisive->range_m) + " away", decisive->clearance_m, radii, costText(loss_db));
 }
 
-/// Where the antenna itself takes much of the power.
+/// For a direction in which the antenna's gain is far below its maximum.
 std::string pointingText(const PathPointing& pointing) {
   constexpr double kWorthSaying_db = -6;
   if (pointing.pattern_db > kWorthSaying_db) return "";

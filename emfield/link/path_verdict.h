@@ -7,7 +7,7 @@
 
 namespace emscape::emfield {
 
-/// What decides over the path: the emitter's silence, an obstacle, the antenna's pattern, the distance.
+/// Names the dominant cause: the emitter is silent, an obstacle, the antenna's pattern, or the distance.
 std::string verdictOf(const PathBudget& budget);
 
 }  // namespace emscape::emfield

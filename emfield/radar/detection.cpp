@@ -12,14 +12,14 @@ namespace emscape::emfield {
 namespace {
 
 void check(const Detector& detector) {
-  if (detector.pulses < 1 || detector.pulses > kMostPulses) {
+  if (detector.pulses < 1 || detector.pulses > kMaxPulses) {
     throw Error(ErrorCode::bad_input,
-                fmt::format("pulses: {} is outside 1..{}", detector.pulses, kMostPulses));
+                fmt::format("pulses: {} is outside 1..{}", detector.pulses, kMaxPulses));
   }
   const double pfa = detector.false_alarm_probability;
-  if (!(pfa >= kLeastFalseAlarm && pfa <= 0.5)) {
+  if (!(pfa >= kMinFalseAlarm && pfa <= 0.5)) {
     throw Error(ErrorCode::bad_input, fmt::format("probability of false alarm: {:.6g} is outside {:.6g}..0.5",
-                                                  pfa, kLeastFalseAlarm));
+                                                  pfa, kMinFalseAlarm));
   }
 }
 
@@ -32,7 +32,7 @@ void checkProbability(const Detector& detector, double probability) {
   }
 }
 
-/// log(n!), n >= 0: Stirling's series, which unlike std::lgamma writes no global variable.
+/// log(n!), n >= 0, by Stirling's series; std::lgamma is not used because it writes a global variable.
 double logFactorial(double n) {
   double shift = 0;
   for (; n < 16; ++n) shift += std::log(n + 1);
@@ -83,7 +83,7 @@ double shapeOf(const Detector& detector) {
   return 0;
 }
 
-/// P(K = 0), P(K = 1), ...: a number that may begin far below what a double holds is kept as mantissa and
+/// P(K = 0), P(K = 1), ...: values that may start below the range of a double are stored as mantissa and
 /// exponent.
 class SignalCounts {
  public:
@@ -150,7 +150,7 @@ double detectionProbability(const Detector& detector, double threshold, double s
   double event = poisson(threshold, detector.pulses);  // Q(N + k + 1, T) - Q(N + k, T)
   SignalCounts counts(shapeOf(detector), detector.pulses * snr);
   double detected = 0, seen = 0;
-  // From where Q is 1 to the last digit, all that has not been seen is detected.
+  // Once Q is 1 to the last digit, all remaining terms are detections.
   for (int n = detector.pulses; n <= threshold || event > 1e-17; ++n) {
     const double p = counts.probability();
     detected += p * over;
@@ -221,7 +221,7 @@ double albersheimProbability(const Detector& detector, double snr_db) {
 }
 
 double shnidmanProbability(const Detector& detector, double snr_db) {
-  // In logits, which spread both ends.
+  // In logits, which resolve both ends.
   const auto probabilityOf = [](double logit) { return 1 / (1 + std::exp(-logit)); };
   const double pfa = detector.false_alarm_probability;
   double low = std::log(pfa / (1 - pfa)) + 1e-9, high = 30;
@@ -245,7 +245,7 @@ DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMeth
         return detectionProbability(detector, threshold, dbToRatio(snr_db));
     }
   };
-  // Beyond the ends the curve is flat; what that costs is a fifth of the accuracy stated.
+  // Beyond the ends the curve is flat; the error is a fifth of the stated accuracy.
   constexpr double kTail = 2e-5;
   const double first = requiredSnrDb(detector, detector.false_alarm_probability + kTail);
   const double last = requiredSnrDb(detector, 1 - kTail);

@@ -16,7 +16,7 @@
 
 namespace emscape::emfield {
 
-/// How a target's echo fluctuates.
+/// Fluctuation of a target's echo.
 enum class Swerling {
   steady,            ///< case 0
   slow_exponential,  ///< case 1: Rayleigh, from scan to scan
@@ -29,19 +29,19 @@ enum class Swerling {
 /// @throws Error (bad_input) otherwise
 Swerling swerlingOfCase(int swerling_case);
 
-/// What decides between target and noise.
+/// The detector.
 struct Detector {
   Swerling swerling = Swerling::slow_exponential;
-  int pulses = 1;                         ///< N, added up; 1..kMostPulses
-  double false_alarm_probability = 1e-6;  ///< per decision; kLeastFalseAlarm..0.5
+  int pulses = 1;                         ///< N, added up; 1..kMaxPulses
+  double false_alarm_probability = 1e-6;  ///< per decision; kMinFalseAlarm..0.5
 };
 inline bool operator==(const Detector& a, const Detector& b) {
   return a.swerling == b.swerling && a.pulses == b.pulses &&
          a.false_alarm_probability == b.false_alarm_probability;
 }
 
-constexpr int kMostPulses = 1000000;
-constexpr double kLeastFalseAlarm = 1e-15;
+constexpr int kMaxPulses = 1000000;
+constexpr double kMinFalseAlarm = 1e-15;
 
 /// Threshold T with Q(N, T) = Pfa: the noise alone exceeds it with the probability of false alarm.
 /// @throws Error (bad_input) for a detector outside the ranges stated
@@ -54,14 +54,14 @@ double detectionThreshold(const Detector& detector);
 /// @accuracy 1e-10 absolute, 1 to 1000 pulses, Pfa down to 1e-12
 double detectionProbability(const Detector& detector, double threshold, double snr);
 
-/// Signal-to-noise ratio (dB) of one pulse that a probability of detection takes: the inverse of
+/// Signal-to-noise ratio (dB) of one pulse required for a probability of detection: the inverse of
 /// detectionProbability, to 1e-9 dB.
 /// @param probability  above the probability of false alarm, below 1
 /// @throws Error (bad_input) otherwise
 double requiredSnrDb(const Detector& detector, double probability);
 
-/// Albersheim's approximation of requiredSnrDb for a steady target; the detector's Swerling case is not
-/// looked at. Within 0.2 dB for 1 to 8096 pulses, Pd 0.1 to 0.9, Pfa 1e-7 to 1e-3.
+/// Albersheim's approximation of requiredSnrDb for a steady target; the detector's Swerling case is ignored.
+/// Within 0.2 dB for 1 to 8096 pulses, Pd 0.1 to 0.9, Pfa 1e-7 to 1e-3.
 /// @see W. J. Albersheim, Proc. IEEE 69 (1981), p. 839
 double albersheimSnrDb(const Detector& detector, double probability);
 
@@ -70,12 +70,12 @@ double albersheimSnrDb(const Detector& detector, double probability);
 /// @see D. A. Shnidman, IEEE Trans. AES-38 (2002), p. 1059
 double shnidmanSnrDb(const Detector& detector, double probability);
 
-/// Probability of detection by Albersheim's formula turned round. Between its Pd of 0.1 and 0.9 within 0.05
-/// of the exact one; below it ends at 0.01 to 0.03, the least that the formula can say.
+/// Probability of detection by the inverse of Albersheim's formula. Between its Pd of 0.1 and 0.9 within 0.05
+/// of the exact one; below it ends at 0.01 to 0.03, the formula's minimum.
 double albersheimProbability(const Detector& detector, double snr_db);
 
-/// The same by Shnidman's: the largest probability that takes no more than the signal-to-noise ratio. Where
-/// the formula jumps, at Pd = 0.872, it stays.
+/// The same by Shnidman's: the largest probability whose required ratio is not above the given one. It is
+/// constant where the formula jumps, at Pd = 0.872.
 double shnidmanProbability(const Detector& detector, double snr_db);
 
 /// Probability of detection over signal-to-noise in dB, for inner loops: monotone cubics between exact

@@ -1,8 +1,8 @@
 /// The radar range equation, jamming and noise: closed forms for one radar, one target and one jammer.
 ///
-/// A path's excess over free space is given one way, in dB, and counts twice for an echo: with the one-way
-/// voltage factor F it is -20 log10 F, and an echo has F^4. Gases and rain count in the same way. Jamming
-/// goes one way.
+/// A path's excess over free space is one-way, in dB, and enters twice for an echo: with the one-way
+/// voltage factor F it is -20 log10 F, and an echo has F^4. Gases and rain enter in the same way. Jamming is
+/// one-way.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace emscape::emfield {
 
-/// A radar that receives through the antenna it transmits with.
+/// A monostatic radar.
 struct RadarLink {
   double power_w = 0;       ///< peak, > 0
   double frequency_hz = 0;  ///< > 0
@@ -32,8 +32,8 @@ struct JammerLink {
   double radar_receive_losses_db = 0;  ///< the radar's, on receiving
 };
 
-/// Part (0..1) of a signal's power within a receiver's band. The signal fills its band evenly; one of no
-/// width lies within or without.
+/// Part (0..1) of a signal's power within a receiver's band. The signal fills its band evenly; one of zero
+/// width is inside or outside.
 EMSCAPE_HD inline double bandOverlap(double signal_hz, double signal_width_hz, double receiver_hz,
                                      double receiver_width_hz) {
   const double begin_hz = std::fmax(receiver_hz - receiver_width_hz / 2, signal_hz - signal_width_hz / 2);
@@ -118,15 +118,15 @@ EMSCAPE_HD inline double jammerToSignalDb(const RadarLink& radar, double rcs_m2,
                          echoPower_w(radar, rcs_m2, range_m, excess_db));
 }
 
-/// Range (m) below which a target shows through the jamming of a jammer that it carries itself: where J/S has
-/// risen to the value that the radar bears, in free space. J/S grows with R^2.
+/// Range (m) below which a target shows through the jamming of a jammer that it carries itself: where J/S
+/// reaches the value at which the radar still detects, in free space. J/S grows with R^2.
 /// @param bearable_db  J/S at which the radar still detects
 EMSCAPE_HD inline double selfScreeningBurnThrough_m(const RadarLink& radar, double rcs_m2,
                                                     const JammerLink& jammer, double bearable_db) {
   return std::pow(10.0, (bearable_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, 1)) / 20);
 }
 
-/// The same for a jammer that stands off at a range of its own: J/S grows with R^4.
+/// The same for a stand-off jammer at its own range: J/S grows with R^4.
 EMSCAPE_HD inline double standOffBurnThrough_m(const RadarLink& radar, double rcs_m2,
                                                const JammerLink& jammer, double jammer_range_m,
                                                double bearable_db) {

@@ -1,4 +1,4 @@
-/// Where a radar's beam points when it looks at a target, and what its antenna then gives in a direction.
+/// Direction of a radar's beam towards a target, and the antenna's amplitude in another direction.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace emscape::emfield {
 
-/// How a beam follows a target. Directions are (forward, right, up) in a frame that `turned` and `steered`
-/// take from the antenna's mount and `held` from the beam itself.
+/// Means by which a beam follows a target. Directions are (forward, right, up) in a frame that `turned` and
+/// `steered` take from the antenna's mount and `held` from the beam itself.
 enum class LookKind {
   held,    ///< not at all
   turned,  ///< the antenna turns onto the target: azimuth about the mount's up, then elevation
@@ -21,7 +21,7 @@ enum class LookKind {
 /// A look as plain data.
 struct RadarLook {
   LookKind kind = LookKind::held;
-  /// turned: how far, to either side of the mount's forward; cosine -1: all the way round.
+  /// turned: largest azimuth to either side of the mount's forward; cosine -1: full circle.
   float cos_azimuth = -1, sin_azimuth = 0;
   /// turned: sines and cosines of the lowest and of the highest elevation.
   float sin_lowest = -1, cos_lowest = 0;
@@ -30,13 +30,13 @@ struct RadarLook {
   float steer_u = 0, steer_v = 0;
 };
 
-/// An antenna that looks at something.
+/// The attitude of an antenna that points at a target.
 struct Aim {
   float cos_azimuth = 1, sin_azimuth = 0, cos_elevation = 1, sin_elevation = 0;
   float steer_u = 0, steer_v = 0;
 };
 
-/// The aim at a target, or as near to it as the look lets the beam come. Without branches, for SIMD.
+/// The aim at a target, or the nearest that the look permits. Without branches, for SIMD.
 /// @param target  direction in the look's frame, of any length; 0: the aim is ahead
 EMSCAPE_HD inline Aim aimAt(const RadarLook& look, const Vec3f& target) {
   const bool turns = look.kind == LookKind::turned, steers = look.kind == LookKind::steered;

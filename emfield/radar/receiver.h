@@ -9,7 +9,7 @@
 
 namespace emscape::emfield {
 
-/// The radar with an isotropic antenna, all losses and gains of its chain counted once: the transmitter's
+/// The radar with an isotropic antenna, with all losses and gains of its chain once: the transmitter's
 /// (Emitter::losses_db), the receiver's and the processing's.
 RadarLink radarLinkOf(const scenario::Emitter& radar);
 
@@ -29,7 +29,7 @@ double requiredSignalToJammerDb(const scenario::RadarReceiver& receiver);
 /// Received power (W) of a receiver for a power density of 1 W/m2 of an emitter.
 double receivingArea_m2(const scenario::Emitter& emitter, const scenario::ReceiverProfile& receiver);
 
-/// How the radar looks at targets; `held` for RadarLook::scan.
+/// The radar's look at targets; `held` for RadarLook::scan.
 RadarLook lookOf(const scenario::Emitter& radar, scenario::RadarLook look);
 
 }  // namespace emscape::emfield

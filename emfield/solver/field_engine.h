@@ -1,6 +1,6 @@
-/// The stages of the field on one backend: where their arrays live, and what runs over them.
+/// The stages of the field on one backend, with their arrays:
 ///
-/// FieldSolver decides what is computed anew and what is kept; an engine computes it. Emitters, channels and
+/// FieldSolver decides what is recomputed and what is kept; an engine computes it. Emitters, channels and
 /// slots are numbered by index.
 #pragma once
 
@@ -18,7 +18,7 @@
 
 namespace emscape::emfield {
 
-/// What a field is computed from. The base, FieldPlan, changes when the scenario is edited; the rest stays
+/// The inputs of a field. The base, FieldPlan, changes when the scenario is edited; the rest stays
 /// the same as long as the engine lives.
 struct FieldSetup : FieldPlan {
   scenario::TerrainPtr terrain;  ///< null: none
@@ -27,40 +27,41 @@ struct FieldSetup : FieldPlan {
   FanResolution resolution;
 };
 
-/// Stages 1 and 2 for one emitter, into a slot.
+/// Request to run stages 1 (fan) and 2 (excess) for one emitter; the results go into a slot.
 struct GeometryRequest {
   int emitter = 0;
   int slot = 0;
   scenario::EmitterState state;
 };
 
-/// What they found.
-struct GeometryFindings {
-  long long unknown_columns = 0;  ///< whose path crosses missing terrain
-  std::vector<bool> unknown;      ///< which they are; empty: none
-  unsigned remarks = 0;           ///< of the excess model: see remarkMessages()
-  long long near_voxels = 0;      ///< nearer than the emitter's far field
+/// Findings of stages 1 and 2 for one emitter.
+struct GeometryResult {
+  long long unknown_columns = 0;  ///< columns whose path crosses missing terrain
+  std::vector<bool> unknown;      ///< one per column; empty: none is unknown
+  unsigned warnings = 0;          ///< of the excess model: see warningMessages()
+  long long near_voxels = 0;      ///< voxels nearer than the emitter's far field
 };
 
 /// One pass of stage 3.
 struct CombinePass {
   struct Member {
     int slot = 0;
-    /// Without the views of geometry and pattern, which are the engine's. Its shares are in the channels of
-    /// the setup.
+    /// Without the views of geometry and pattern, which belong to the engine. Channels are those of the
+    /// setup.
     CombineEmitter emitter;
-    std::vector<RadarShare> radars;  ///< its parts in channels that take echoes
+    std::vector<RadarShare> radars;  ///< its parts in channels of echoes
   };
   std::vector<Member> members;
-  std::vector<bool> channels;  ///< those that take part
-  bool into_resting = false;   ///< true: the sums of resting emitters, from nothing
-  bool keep = false;  ///< true: goes on from what the sums hold; false: from the resting emitters' sums
+  std::vector<bool> channels;     ///< true for those of the pass
+  bool into_static_sums = false;  ///< true: computes the sums of static emitters, from nothing
+  bool keep =
+      false;  ///< true: continues with the present sums; false: starts from the sums of static emitters
 };
 
 /// Stage 4 for one channel.
 struct VolumeRequest {
   int channel = 0;
-  volume::VolumeInfo info;                                    ///< but for the value range
+  volume::VolumeInfo info;                                    ///< without the value range
   const std::vector<std::uint16_t>* first_valid_k = nullptr;  ///< as in DenseVolume
 };
 
@@ -68,13 +69,13 @@ class FieldEngine {
  public:
   virtual ~FieldEngine() = default;
 
-  /// @return one a request, in their order
-  virtual std::vector<GeometryFindings> computeGeometry(const std::vector<GeometryRequest>& requests) = 0;
-  /// Which channels have sums of resting emitters from now on; a pass into them fills them.
-  virtual void setResting(const std::vector<bool>& channels) = 0;
+  /// @return one per request, in their order
+  virtual std::vector<GeometryResult> computeGeometry(const std::vector<GeometryRequest>& requests) = 0;
+  /// Sets which channels have separate sums of static emitters; a pass into them fills them.
+  virtual void setStaticSums(const std::vector<bool>& channels) = 0;
   virtual void combine(const CombinePass& pass) = 0;
-  /// Makes new volumes of some channels where the engine computes; it reuses the memory of earlier ones that
-  /// nobody holds any more.
+  /// Makes new volumes of some channels in the engine's memory (host or GPU); reuses the memory of earlier
+  /// ones that are released.
   /// @return one per request, in their order
   virtual std::vector<volume::Volume> makeVolumes(const std::vector<VolumeRequest>& requests) = 0;
 
@@ -85,7 +86,7 @@ class FieldEngine {
   /// Sets the stages' times to 0.
   virtual void resetTimes() = 0;
   virtual StageTimes times() = 0;
-  /// Adds what the engine holds to total_bytes and to the bytes of voxels and channels.
+  /// Adds the engine's memory to total_bytes and to the bytes of voxels and channels.
   virtual void addMemory(MemoryUse& use) const = 0;
 };
 
@@ -97,18 +98,18 @@ std::unique_ptr<FieldEngine> makeCpuEngine(const FieldSetup& setup, int slots);
 std::unique_ptr<FieldEngine> makeCudaEngine(const FieldSetup& setup, int slots,
                                             volume::VoxelPrecision precision);
 
-/// What the CUDA engine may take of the GPU's memory for fans while geometry is computed, and as much again
-/// for models' own arrays (bytes).
+/// Limit (bytes) of the CUDA engine's memory for fans while geometry is computed, and the same again for the
+/// models' own arrays.
 constexpr std::size_t kDeviceScratchBytes = std::size_t{1} << 29;
 
 /// Bytes of a terrain's posts.
 std::size_t postBytes(const scenario::TerrainView& terrain);
 
-/// Memory of the host that a CPU engine takes, at most.
+/// Upper bound of the host memory of a CPU engine.
 /// @param slot_bytes  what the emitters keep
 std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes);
 
-/// Memory of the GPU that an engine takes there, at most.
+/// Upper bound of the GPU memory of a CUDA engine.
 /// @param slot_bytes  what the emitters keep
 std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
                             volume::VoxelPrecision precision);

@@ -34,7 +34,7 @@ auto membersOf(const RadarLook& look) {
                   steer_v);
 }
 auto membersOf(const DetectionCurveView& curve) {
-  // Plans keep a curve as long as its detector stays the same: the knots' address stands for them.
+  // Plans keep a curve as long as its detector stays the same: the address of the knots identifies it.
   const auto& [knots, count, first_snr_db, steps_per_db] = curve;
   return std::tie(knots, count, first_snr_db, steps_per_db);
 }
@@ -86,7 +86,7 @@ bool samePattern(const PatternView& a, const PatternView& b) {
          sameTable(grid_table, b.grid_table, static_cast<long long>(azimuth_count) * elevation_count);
 }
 
-bool sameChannelShare(const ChannelShare& a, const ChannelShare& b) {
+bool sameChannelWeight(const ChannelWeight& a, const ChannelWeight& b) {
   const auto& [channel, weight] = a;
   return channel == b.channel && weight == b.weight;
 }
@@ -105,9 +105,9 @@ bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
 }
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const scenario::EmitterState& state) {
-  // Who reads a member: nothing but the listed inputs enters geometry. What is not named below enters the
-  // combine stage (power_w, losses_db, antenna, receiver, bandwidth_hz), the channels (kind), the snapshot
-  // (platform, scan, active_s) or messages (name, places).
+  // Only the listed inputs enter the geometry. Members that are not named below enter the combine stage
+  // (power_w, losses_db, antenna, receiver, bandwidth_hz), the channels (kind), the snapshot (platform, scan,
+  // active_s) or messages (name, locations).
   const auto& [name, platform, kind, frequency_hz, bandwidth_hz, power_w, losses_db, polarization, antenna,
                scan, propagation, receiver, active_s, place, frequency_place] =
       plan.scenario->emitters[static_cast<std::size_t>(emitter_index)];
@@ -139,7 +139,7 @@ bool areSame(const ProductScale& a, const ProductScale& b) {
 
 bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, std::vector<bool>& channels) {
   const auto markAll = [&channels](const CombineInputs& inputs) {
-    for (const ChannelShare& share : inputs.member.emitter.shares) channels[share.channel] = true;
+    for (const ChannelWeight& share : inputs.member.emitter.shares) channels[share.channel] = true;
     for (const RadarShare& share : inputs.member.radars) channels[share.channel] = true;
     return !inputs.member.emitter.shares.empty() || !inputs.member.radars.empty();
   };
@@ -155,11 +155,11 @@ bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, 
   bool is_any = false;
   const auto mark = [&](int channel) { is_any = channels[channel] = true; };
   const bool has_beam = sameBeam(old_beam, beam);
-  for (const ChannelShare& share : now->member.emitter.shares) {
-    const ChannelShare* const old = shareIn(before->member.emitter.shares, share.channel);
-    if (!has_beam || old == nullptr || !sameChannelShare(*old, share)) mark(share.channel);
+  for (const ChannelWeight& share : now->member.emitter.shares) {
+    const ChannelWeight* const old = shareIn(before->member.emitter.shares, share.channel);
+    if (!has_beam || old == nullptr || !sameChannelWeight(*old, share)) mark(share.channel);
   }
-  // Where a radar looks at targets, its share does not say where its scan has the beam.
+  // If a radar looks at targets, its share does not contain the beam's direction in the scan.
   for (const RadarShare& share : now->member.radars) {
     const RadarShare* const old = shareIn(before->member.radars, share.channel);
     if (old == nullptr || !sameShare(*old, share)) mark(share.channel);

@@ -1,8 +1,8 @@
-/// What each stage of the field is computed from, for an update to tell what an edit or the time invalidates.
+/// The inputs of each stage of the field, from which an update finds what an edit or the time invalidates.
 ///
-/// The inputs of stages 1 and 2 (fan and excess) are read in many places; they are collected here, out of
-/// structs that are taken apart member by member: a member that is added to one of them fails to compile
-/// until it is sorted in. The inputs of stage 3 (combine) are what the engine is given.
+/// The inputs of stages 1 and 2 (fan and excess) are read in many places; they are collected here by
+/// structured bindings of every member: a new member does not compile until it is added here. The inputs of
+/// stage 3 (combine) are those of the engine.
 #pragma once
 
 #include <vector>
@@ -12,8 +12,7 @@
 
 namespace emscape::emfield {
 
-/// What the geometry of an emitter (stages 1 and 2) and its warnings are computed from, but for grid and
-/// terrain.
+/// Inputs of an emitter's geometry (stages 1 and 2) and its warnings, without grid and terrain.
 struct GeometryInputs {
   GeodeticPosition position;
   double height_msl_m = 0;
@@ -23,28 +22,28 @@ struct GeometryInputs {
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter, const scenario::EmitterState& state);
 
-/// Whether all but the position is the same. Source locations do not count.
+/// True if all except the position is equal. Source locations are ignored.
 bool haveSameSettings(const GeometryInputs& a, const GeometryInputs& b);
-/// Whether the position is the same, too, to the last bit.
+/// True if the position is also equal, to the last bit.
 bool areSame(const GeometryInputs& a, const GeometryInputs& b);
 
-/// What an emitter's part in the channels (stage 3) is computed from, but for its geometry.
+/// Inputs of an emitter's part in the channels (stage 3), without its geometry.
 struct CombineInputs {
   CombinePass::Member member;
   scenario::AntennaPtr antenna;
 };
 
-/// Whether two antennas, not null, have the same pattern; their gains may differ.
+/// True if two antennas, not null, have the same pattern; their gains may differ.
 bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b);
 
-/// Marks the channels in which an emitter's part is another one.
+/// Marks the channels in which an emitter's part has changed.
 /// @param before    of the last update; null: it was not active
 /// @param now       null: it is not active
 /// @param channels  one per channel; those that differ are set
 /// @return whether any channel was marked
 bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, std::vector<bool>& channels);
 
-/// Whether two channels' products (stage 4) are made alike from their sums.
+/// True if two channels compute their products (stage 4) from their sums in the same way.
 bool areSame(const ProductScale& a, const ProductScale& b);
 
 }  // namespace emscape::emfield

@@ -1,4 +1,4 @@
-// What the field takes of the memory of the host or of a GPU.
+// Memory of the field on the host or on a GPU.
 
 #include "emfield/solver/field_engine.h"
 
@@ -16,8 +16,8 @@ std::size_t postBytes(const scenario::TerrainView& terrain) {
 std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes) {
   const auto voxels = static_cast<std::size_t>(setup.grid.dims.count());
   std::size_t bytes = slot_bytes;
-  for (const ChannelRecipe& recipe : setup.recipes) {
-    const std::size_t accumulators = recipe.reduction == Reduction::dominant ? 2 : 1;
+  for (const ChannelPlan& plan : setup.channel_plans) {
+    const std::size_t accumulators = plan.reduction == Reduction::dominant ? 2 : 1;
     // all emitters' and the resting ones' sums; a volume that is shown and one that is written
     bytes += (2 * accumulators + 2) * voxels * sizeof(float);
   }
@@ -29,8 +29,8 @@ std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
   const auto voxels = static_cast<std::size_t>(setup.grid.dims.count());
   const std::size_t columns = setup.columns.columns.size();
   std::size_t bytes = slot_bytes + columns * sizeof(GridColumn);
-  for (const ChannelRecipe& recipe : setup.recipes) {
-    const std::size_t accumulators = recipe.reduction == Reduction::dominant ? 2 : 1;
+  for (const ChannelPlan& plan : setup.channel_plans) {
+    const std::size_t accumulators = plan.reduction == Reduction::dominant ? 2 : 1;
     // all emitters' and the resting ones' sums; a volume that is shown and one that is written
     bytes += 2 * voxels * accumulators * sizeof(float) + 2 * volume::deviceBytes(setup.grid.dims, precision);
   }

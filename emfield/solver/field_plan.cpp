@@ -16,13 +16,14 @@ FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
   plan.warnings = checkModels(*plan.scenario);
   plan.channels = channelsOf(*plan.scenario, quantities);
   std::vector<std::shared_ptr<const DetectionCurve>> curves;
-  const auto collect = [&curves](const ChannelRecipe& recipe) {
-    curves.insert(curves.end(), recipe.curves.begin(), recipe.curves.end());
+  const auto collect = [&curves](const ChannelPlan& channel_plan) {
+    curves.insert(curves.end(), channel_plan.curves.begin(), channel_plan.curves.end());
   };
-  if (previous != nullptr) std::for_each(previous->recipes.begin(), previous->recipes.end(), collect);
+  if (previous != nullptr)
+    std::for_each(previous->channel_plans.begin(), previous->channel_plans.end(), collect);
   for (const Channel& channel : plan.channels) {
-    plan.recipes.push_back(recipeOf(channel, *plan.scenario, curves));
-    collect(plan.recipes.back());
+    plan.channel_plans.push_back(channelPlan(channel, *plan.scenario, curves));
+    collect(plan.channel_plans.back());
   }
   const std::vector<Emitter>& emitters = plan.scenario->emitters;
   for (const Emitter& emitter : emitters) {
@@ -37,12 +38,13 @@ bool haveSameChannels(const FieldPlan& a, const FieldPlan& b) {
   const auto sameChannel = [](const Channel& x, const Channel& y) {
     return x.quantity == y.quantity && x.name == y.name && x.emitters == y.emitters && x.jammers == y.jammers;
   };
-  const auto sameSums = [](const ChannelRecipe& x, const ChannelRecipe& y) {
+  const auto sameSums = [](const ChannelPlan& x, const ChannelPlan& y) {
     return x.reduction == y.reduction && x.radars.empty() == y.radars.empty();
   };
   return std::equal(a.channels.begin(), a.channels.end(), b.channels.begin(), b.channels.end(),
                     sameChannel) &&
-         std::equal(a.recipes.begin(), a.recipes.end(), b.recipes.begin(), b.recipes.end(), sameSums);
+         std::equal(a.channel_plans.begin(), a.channel_plans.end(), b.channel_plans.begin(),
+                    b.channel_plans.end(), sameSums);
 }
 
 }  // namespace emscape::emfield

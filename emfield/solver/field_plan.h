@@ -1,4 +1,4 @@
-/// What a solver derives from a scenario alone: channels, and how each is made.
+/// Data that a solver derives from a scenario alone: the channels and the computation of each.
 #pragma once
 
 #include <memory>
@@ -13,19 +13,19 @@ namespace emscape::emfield {
 struct FieldPlan {
   std::shared_ptr<const scenario::Scenario> scenario;
   std::vector<Channel> channels;
-  std::vector<ChannelRecipe> recipes;  ///< one per channel
-  std::vector<double> far_field_m;     ///< of each emitter: 2 D^2 / lambda
-  std::vector<std::string> warnings;   ///< of the models, on values of the scenario
+  std::vector<ChannelPlan> channel_plans;  ///< one per channel
+  std::vector<double> far_field_m;         ///< of each emitter: 2 D^2 / lambda
+  std::vector<std::string> warnings;       ///< of the models, on values of the scenario
 };
 
 /// @param quantities  names; empty: the scenario's
-/// @param previous    plan of an earlier scenario, whose detection curves are reused where they are the same;
+/// @param previous    plan of an earlier scenario, whose detection curves are reused if they are the same;
 /// may be null
-/// @throws Error (bad_input) for what the field or its models cannot compute
+/// @throws Error (bad_input) for a scenario that the field or its models cannot compute
 FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
                    const std::vector<std::string>& quantities, const FieldPlan* previous);
 
-/// Whether two plans have the same channels, with sums of the same kinds.
+/// True if two plans have the same channels, with sums of the same kinds.
 bool haveSameChannels(const FieldPlan& a, const FieldPlan& b);
 
 }  // namespace emscape::emfield

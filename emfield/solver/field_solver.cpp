@@ -14,7 +14,7 @@
 namespace emscape::emfield {
 namespace {
 
-/// Whether two regions have the same grid.
+/// True if two regions have the same grid.
 bool sameRegion(const scenario::Region& a, const scenario::Region& b) {
   const auto& [origin, size_m, dims] = a;
   const auto& [kind, latitude_deg, longitude_deg, height_msl_m] = origin;
@@ -67,7 +67,7 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
 }
 
 /// Chooses the emitters that are cached.
-/// @param slot_bytes  receives what the slots take; may be null
+/// @param slot_bytes  receives the bytes of the slots; may be null
 std::vector<bool> FieldSolver::Impl::chooseCached(const FieldPlan& plan, std::size_t* slot_bytes) const {
   std::vector<bool> cached;
   std::size_t cached_bytes = 0, largest_uncached = 0;
@@ -127,8 +127,7 @@ void FieldSolver::Impl::checkHoles() const {
       Hint::allow_missing_terrain);
 }
 
-/// Whether an edited scenario can be computed with what does not belong to the plan: the grid, the slots of
-/// the emitters and who is cached.
+/// True if an edited scenario can be computed with the present grid, slots and choice of cached emitters.
 bool FieldSolver::Impl::canKeep(const FieldPlan& plan, const scenario::TerrainPtr& terrain) const {
   const auto sameName = [](const scenario::Emitter& a, const scenario::Emitter& b) {
     return a.name == b.name;

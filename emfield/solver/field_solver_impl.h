@@ -1,4 +1,4 @@
-/// The state of a FieldSolver between updates; for its own sources alone.
+/// The state of a FieldSolver between updates; internal to its sources.
 #pragma once
 
 #include <map>
@@ -20,30 +20,31 @@ using WarningCounts = std::map<std::string, long long>;
 /// An emitter between updates.
 struct EmitterCache {
   scenario::EmitterState state;            ///< at the last update
-  std::optional<GeometryInputs> geometry;  ///< of findings, and of the slot if the emitter is cached
+  std::optional<GeometryInputs> geometry;  ///< of geometry_result, and of the slot if the emitter is cached
   std::optional<CombineInputs> combined;   ///< its part in the sums; none: not active
-  bool is_cached = true;                   ///< false: its geometry is given up after each use
-  GeometryFindings findings;
-  bool mount_changed = true;           ///< since the update before: moved, switched or turned as a whole
-  std::vector<JammerInSight> jammers;  ///< radars, where jamming counts
+  bool is_cached = true;                   ///< false: its geometry is discarded after each use
+  GeometryResult geometry_result;
+  bool mount_changed = true;        ///< since the previous update: moved, switched or turned as a whole
+  std::vector<JammerPath> jammers;  ///< of radars, for quantities with jamming
   WarningCounts warnings, jamming_warnings;
 };
 
 struct FieldSolver::Impl {
   FieldOptions options;
   FieldSetup setup;
-  Backend backend = Backend::cpu;       ///< cpu or cuda
-  std::unique_ptr<FieldEngine> engine;  ///< a slot for each emitter, and one for those that are not cached
+  Backend backend = Backend::cpu;  ///< cpu or cuda
+  std::unique_ptr<FieldEngine>
+      engine;  ///< one slot per emitter plus a shared one for emitters that are not cached
   std::vector<EmitterCache> emitters;
   std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
   std::vector<volume::Volume> volumes;
 
-  /// So many emitters, the first ones, have their sum in the engine's resting accumulators.
+  /// Number of emitters, counted from the first, whose sum is in the engine's static accumulators.
   int resting = 0;
-  /// Emitters combined again though they had not changed, since the resting sum was last made.
+  /// Number of unchanged emitters that were combined again since the static sum was last computed.
   int wasted = 0;
   bool is_first = true;
-  bool is_stale = false;  ///< an update failed: nothing that was computed counts
+  bool is_stale = false;  ///< an update failed: all results are invalid
 
   Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
        FieldOptions options_in);
@@ -53,13 +54,13 @@ struct FieldSolver::Impl {
   void checkHoles() const;
   std::string placeOf(std::size_t column) const;
 
-  /// What an edit or the time changed, while an update is computed.
+  /// Changes by an edit or the time, during an update.
   struct Changes {
     FieldChanged report;
-    bool all = false;                   ///< everything is computed anew
-    bool is_edited = false;             ///< by another scenario
+    bool all = false;                   ///< everything is recomputed
+    bool is_edited = false;             ///< the scenario is another one
     const FieldPlan* before = nullptr;  ///< the plan before an edit
-    std::vector<bool> emitters;         ///< whose part in some channel is another one
+    std::vector<bool> emitters;         ///< true if its part in some channel changed
     std::vector<bool> sums;             ///< channels whose sums change
     std::vector<bool> products;         ///< channels of which at least the product changes
   };
@@ -75,9 +76,9 @@ struct FieldSolver::Impl {
   void findCombined(Changes& changes);
   void findProducts(Changes& changes);
   void computeGeometry(const std::vector<int>& chosen, bool into_scratch);
-  void takeFindings(int e, GeometryFindings found);
+  void takeGeometry(int e, GeometryResult found);
   void chooseResting(const std::vector<bool>& changed);
-  void combine(int begin, int end, const std::vector<bool>& channel_chosen, bool into_resting);
+  void combine(int begin, int end, const std::vector<bool>& channel_chosen, bool into_static_sums);
   CombineInputs combineInputs(int e) const;
   std::vector<RadarShare> radarShares(int e) const;
   void makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes);

@@ -1,4 +1,4 @@
-// Radars that look at targets, and what jams them.
+// Radars that look at targets, and their jammers.
 
 #include <algorithm>
 
@@ -8,8 +8,8 @@
 
 namespace emscape::emfield {
 
-/// Jamming at the radars of channels where it counts: where a radar or one of its jammers changed, and after
-/// an edit everywhere, as paths depend on much of a scenario.
+/// Updates the jamming at the radars of channels that depend on it: for radars that changed or whose jammers
+/// changed; after an edit for all, since paths depend on much of a scenario.
 void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Changes& changes) {
   std::vector<bool> jammer_changed(emitters.size(), changes.all || changes.is_edited);
   for (const std::vector<int>* list : {&changes.report.moved, &changes.report.turned}) {
@@ -27,24 +27,24 @@ void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Ch
       if (channel.jammers.empty() || done[e] || !cache.state.active) continue;
       if (!jammed_anew && !cache.mount_changed) continue;
       std::string warning;
-      cache.jammers = jammersInSight(snapshot, e, channel.jammers, setup.terrain.get(), setup.resolution,
-                                     options.allow_missing_terrain ? &warning : nullptr);
+      cache.jammers = jammerPaths(snapshot, e, channel.jammers, setup.terrain.get(), setup.resolution,
+                                  options.allow_missing_terrain ? &warning : nullptr);
       if (!warning.empty()) ++cache.jamming_warnings[warning];
       done[e] = true;
     }
   }
 }
 
-/// An emitter's parts in channels that take radars' echoes.
+/// An emitter's parts in channels of radar echoes.
 std::vector<RadarShare> FieldSolver::Impl::radarShares(int e) const {
   const scenario::EmitterState& state = emitters[e].state;
   std::vector<RadarShare> shares;
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     const Channel& channel = setup.channels[c];
     const auto place = std::find(channel.emitters.begin(), channel.emitters.end(), e);
-    if (place == channel.emitters.end() || setup.recipes[c].radars.empty()) continue;
-    const RadarTask& task = setup.recipes[c].radars[place - channel.emitters.begin()];
-    const std::vector<JammerInSight> none;
+    if (place == channel.emitters.end() || setup.channel_plans[c].radars.empty()) continue;
+    const RadarTask& task = setup.channel_plans[c].radars[place - channel.emitters.begin()];
+    const std::vector<JammerPath> none;
     shares.push_back(
         radarShare(*setup.scenario, e, state, task, channel.jammers.empty() ? none : emitters[e].jammers));
     shares.back().channel = static_cast<int>(c);

@@ -22,25 +22,25 @@ void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool int
   for (int e : chosen) {
     requests.push_back({e, into_scratch ? static_cast<int>(emitters.size()) : e, emitters[e].state});
   }
-  std::vector<GeometryFindings> findings = engine->computeGeometry(requests);
-  for (std::size_t i = 0; i < chosen.size(); ++i) takeFindings(chosen[i], std::move(findings[i]));
+  std::vector<GeometryResult> geometry_result = engine->computeGeometry(requests);
+  for (std::size_t i = 0; i < chosen.size(); ++i) takeGeometry(chosen[i], std::move(geometry_result[i]));
 }
 
-void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
+void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   const Emitter& emitter = setup.scenario->emitters[e];
   EmitterCache& cache = emitters[e];
   cache.geometry = geometryInputs(setup, e, cache.state);
-  cache.findings = std::move(found);
-  const GeometryFindings& findings = cache.findings;
-  if (findings.unknown_columns > 0) {
+  cache.geometry_result = std::move(found);
+  const GeometryResult& geometry_result = cache.geometry_result;
+  if (geometry_result.unknown_columns > 0) {
     if (!options.allow_missing_terrain) {
-      const auto first = std::find(findings.unknown.begin(), findings.unknown.end(), true);
-      throw Error(
-          ErrorCode::bad_input, {setup.scenario->file},
-          fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
-                      emitter.name, placeOf(static_cast<std::size_t>(first - findings.unknown.begin())),
-                      findings.unknown_columns - 1),
-          Hint::allow_missing_terrain);
+      const auto first = std::find(geometry_result.unknown.begin(), geometry_result.unknown.end(), true);
+      throw Error(ErrorCode::bad_input, {setup.scenario->file},
+                  fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
+                              emitter.name,
+                              placeOf(static_cast<std::size_t>(first - geometry_result.unknown.begin())),
+                              geometry_result.unknown_columns - 1),
+                  Hint::allow_missing_terrain);
     }
     ++cache.warnings[fmt::format("emitter '{}': columns seen across missing terrain hold no field",
                                  emitter.name)];
@@ -49,10 +49,10 @@ void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
       makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere.k_factor);
   const propagation::PathInputs inputs = pathInputs(*setup.scenario, emitter, station, setup.terrain.get(),
                                                     pathExtent(station, setup.columns), setup.resolution);
-  for (const std::string& warning : pathWarnings(emitter, inputs, findings.remarks)) {
+  for (const std::string& warning : pathWarnings(emitter, inputs, geometry_result.warnings)) {
     ++cache.warnings[warning];
   }
-  if (findings.near_voxels > 0) {
+  if (geometry_result.near_voxels > 0) {
     ++cache.warnings[fmt::format(
         "emitter '{}': voxels nearer than its far field (2 D^2 / lambda = {:.0f} m) hold the far "
         "field's formula",
@@ -61,8 +61,8 @@ void FieldSolver::Impl::takeFindings(int e, GeometryFindings found) {
 }
 
 /// Emitters that do not change are summed once: those before the first that changed, so that every sum is
-/// added up in the order of the scenario and does not depend on earlier updates. The resting sum is made anew
-/// when the emitters combined in vain since it was last made would have paid for it.
+/// added up in the order of the scenario and does not depend on earlier updates. The static sum is recomputed
+/// when the number of unchanged emitters combined since it was last computed reaches its cost.
 void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
   const auto first_changed =
       static_cast<int>(std::find(changed.begin(), changed.end(), true) - changed.begin());
@@ -77,13 +77,13 @@ void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
 
   wasted = 0;
   resting = chosen;
-  std::vector<bool> has_resting;
+  std::vector<bool> has_static_sums;
   for (const Channel& channel : setup.channels) {
-    has_resting.push_back(
+    has_static_sums.push_back(
         std::any_of(channel.emitters.begin(), channel.emitters.end(), [&](int e) { return e < resting; }));
   }
-  engine->setResting(has_resting);
-  if (resting > 0) combine(0, resting, has_resting, true);
+  engine->setStaticSums(has_static_sums);
+  if (resting > 0) combine(0, resting, has_static_sums, true);
 }
 
 /// An emitter's part in the channels.
@@ -106,8 +106,8 @@ CombineInputs FieldSolver::Impl::combineInputs(int e) const {
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     const auto& members = setup.channels[c].emitters;
     const auto place = std::find(members.begin(), members.end(), e);
-    if (place == members.end() || !setup.recipes[c].radars.empty()) continue;
-    part.shares.push_back({static_cast<int>(c), setup.recipes[c].weights[place - members.begin()]});
+    if (place == members.end() || !setup.channel_plans[c].radars.empty()) continue;
+    part.shares.push_back({static_cast<int>(c), setup.channel_plans[c].weights[place - members.begin()]});
   }
   return inputs;
 }
@@ -115,10 +115,10 @@ CombineInputs FieldSolver::Impl::combineInputs(int e) const {
 /// Combines the active emitters begin..end - 1: cached ones in one pass over the grid, as
 /// many as follow each other, each of the others in a pass of its own.
 void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& channel_chosen,
-                                bool into_resting) {
+                                bool into_static_sums) {
   CombinePass pass;
   pass.channels = channel_chosen;
-  pass.into_resting = into_resting;
+  pass.into_static_sums = into_static_sums;
   const auto isChosen = [&](const auto& share) { return channel_chosen[share.channel]; };
   const auto enters = [&](const CombinePass::Member& member) {
     return std::any_of(member.emitter.shares.begin(), member.emitter.shares.end(), isChosen) ||
@@ -145,15 +145,15 @@ void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& cha
   if (!pass.keep || !pass.members.empty()) run();
 }
 
-/// First valid layers of a channel's columns: those above ground, but for columns that are unknown to one of
+/// First valid layers of a channel's columns: those above ground; none in columns that are unknown to one of
 /// its emitters.
-/// @param own  holds the result where it is not that of all channels
+/// @param own  receives the result if it differs from that of the other channels
 const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& channel,
                                                             std::vector<std::uint16_t>& own) const {
   const std::vector<std::uint16_t>& above_ground = setup.columns.first_valid_k;
   own.clear();
   for (int e : channel.emitters) {
-    const std::vector<bool>& unknown = emitters[e].findings.unknown;
+    const std::vector<bool>& unknown = emitters[e].geometry_result.unknown;
     if (!emitters[e].state.active || unknown.empty()) continue;
     if (own.empty()) own = above_ground;
     own.resize(unknown.size(), 0);
@@ -164,7 +164,7 @@ const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& chann
   return own.empty() ? above_ground : own;
 }
 
-/// Makes the volumes of channels that changed. After an edit the others take the name, time and metadata of
+/// Makes the volumes of channels that changed. After an edit the others get the name, time and metadata of
 /// the edited scenario.
 void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes) {
   if (changes.report.channels) {
@@ -176,7 +176,7 @@ void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Ch
     if (!changes.products[c] && !changes.is_edited) continue;
     VolumeRequest request = volumeRequest(static_cast<int>(c), snapshot);
     if (changes.products[c]) {
-      volumes[c] = {};  // so that its memory can be used again
+      volumes[c] = {};  // so that its memory can be reused
       requests.push_back(std::move(request));
     } else {
       request.info.range_min = volumes[c].info().range_min;
@@ -199,7 +199,7 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   out.unit = quantity.unit;
   out.time_s = snapshot.time_s;
   out.time_utc = snapshot.time_utc;
-  out.floor = setup.recipes[c].product.floor;
+  out.floor = setup.channel_plans[c].product.floor;
   out.categorical = quantity.categorical;
   if (const char* const scale = scaleOf(channel.quantity)) out.extra[volume::kScaleKey] = scale;
   out.extra["scenario"] = setup.scenario->name;
@@ -207,7 +207,7 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   std::string names, near_field;
   for (int e : channel.emitters) {
     if (!emitters[e].state.active) continue;
-    const long long near_voxels = emitters[e].findings.near_voxels;
+    const long long near_voxels = emitters[e].geometry_result.near_voxels;
     if (near_voxels > 0) {
       near_field += fmt::format("{}{}: {} voxels within {:.0f} m", near_field.empty() ? "" : "; ",
                                 setup.scenario->emitters[e].name, near_voxels, setup.far_field_m[e]);

@@ -1,4 +1,4 @@
-// An update: what the time or an edited scenario changed, and what is computed for it.
+// An update: finds what the time or an edited scenario changed, and computes it.
 
 #include <algorithm>
 #include <utility>
@@ -15,7 +15,7 @@ bool samePose(const scenario::BeamPose& a, const scenario::BeamPose& b) {
          a.steer_v == b.steer_v;
 }
 
-/// What decides whether an emitter's beam is the same as at the last update.
+/// True if an emitter's beam is the same as at the last update.
 bool sameBeam(const EmitterState& a, const EmitterState& b) {
   if (a.active != b.active) return false;
   if (!a.active) return true;
@@ -32,7 +32,7 @@ bool isAny(const std::vector<bool>& flags) {
 
 }  // namespace
 
-/// @param edited  plan of an edited scenario, with which the engine can go on; none: only the time changed
+/// @param edited  plan of an edited scenario, with which the engine can continue; none: only the time changed
 FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::optional<FieldPlan> edited) {
   engine->resetTimes();
   Changes changes;
@@ -63,7 +63,7 @@ void FieldSolver::Impl::setEnginePlan(bool channels_changed) {
   engine->planChanged(channels_changed);
 }
 
-/// After a failure: what is computed may be of either scenario.
+/// After a failure: the results may belong to either scenario.
 void FieldSolver::Impl::discardAll() {
   is_stale = true;
   resting = wasted = 0;
@@ -106,7 +106,7 @@ void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& c
     if (changes.is_edited && cache.geometry &&
         !areSame(*cache.geometry, geometryInputs(setup, static_cast<int>(e), now))) {
       cache.geometry.reset();
-      cache.findings = {};
+      cache.geometry_result = {};
       cache.warnings.clear();
     }
     const bool has_moved =
@@ -155,7 +155,8 @@ void FieldSolver::Impl::findProducts(Changes& changes) {
   changes.products = changes.sums;
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     if (changes.is_edited && !changes.products[c]) {
-      changes.products[c] = !areSame(changes.before->recipes[c].product, setup.recipes[c].product);
+      changes.products[c] =
+          !areSame(changes.before->channel_plans[c].product, setup.channel_plans[c].product);
     }
     if (changes.products[c]) changes.report.volumes.push_back(static_cast<int>(c));
   }

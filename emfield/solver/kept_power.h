@@ -1,4 +1,4 @@
-/// Power densities of emitters that stay as they are while others change.
+/// Cache of the power densities of emitters that do not change while others do.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,19 @@
 
 namespace emscape::emfield {
 
-/// Whether two emitters have the same power density everywhere if their geometry is the same.
+/// True if two emitters have the same power density everywhere if their geometry is the same.
 bool samePower(const scenario::AntennaPtr& antenna_a, const EmitterBeam& a,
                const scenario::AntennaPtr& antenna_b, const EmitterBeam& b);
 
-/// An emitter that enters a second sum as it entered the last one is computed once more and kept; from then
-/// on it is read, which is many times faster, and the same to the bit.
+/// An emitter that enters a second sum unchanged is computed once more and stored; after that it is read,
+/// which is many times faster and bit-identical.
 /// @tparam Array  of floats: std::vector<float> or a GPU's buffer
 template <class Array>
 class KeptPower {
  public:
   /// @param slots            emitters with geometry of their own
   /// @param voxels           of the grid
-  /// @param available_bytes  of which an eighth is taken at most, and no more than 1 GiB
+  /// @param available_bytes  an eighth of it, but not more than 1 GiB, is used
   KeptPower(std::size_t slots, std::size_t voxels, std::size_t available_bytes)
       : voxels_(voxels), slots_(slots) {
     constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
@@ -31,9 +31,9 @@ class KeptPower {
     limit_ = (bytes < kMaxBytes ? bytes : kMaxBytes) / (sizeof(float) * (voxels > 0 ? voxels : 1));
   }
 
-  /// Says where the power of an emitter is written or read in the next pass. The pass must be run, and the
-  /// emitter take part in it (takesPart()): else what is kept is never written.
-  /// @param slot     of the emitter; others than those of the constructor are never kept
+  /// Sets the array to which the next pass writes, or from which it reads, the power of an emitter. The pass
+  /// must be run with the emitter in it (takesPart()), otherwise the array is never written.
+  /// @param slot     of the emitter; others than those of the constructor are never stored
   /// @param antenna  of the emitter
   /// @param emitter  its beam is complete; power_wm2 and power_is_known are set
   void choose(std::size_t slot, const scenario::AntennaPtr& antenna, CombineEmitter& emitter) {
@@ -50,7 +50,7 @@ class KeptPower {
     kept.is_known = true;
     emitter.power_wm2 = kept.power_wm2.data();
   }
-  /// The geometry of a slot is another one.
+  /// The geometry of a slot has changed.
   void forget(std::size_t slot) {
     if (slot >= slots_.size()) return;
     if (slots_[slot].is_known) free_.push_back(std::move(slots_[slot].power_wm2));
@@ -60,13 +60,13 @@ class KeptPower {
 
  private:
   struct Slot {
-    scenario::AntennaPtr antenna;  ///< null: did not enter a sum
+    scenario::AntennaPtr antenna;  ///< null: has not entered a sum
     EmitterBeam beam;
     Array power_wm2;
     bool is_known = false;
   };
 
-  /// @return false where there is no memory for another one
+  /// @return false if there is no memory for another one
   bool take(Slot& slot) {
     if (!free_.empty()) {
       slot.power_wm2 = std::move(free_.back());
@@ -76,7 +76,7 @@ class KeptPower {
     if (taken_ >= limit_) return false;
     try {
       slot.power_wm2.resize(voxels_);
-    } catch (const std::exception&) {  // somebody else took the memory
+    } catch (const std::exception&) {  // the memory is not available any more
       limit_ = taken_;
       return false;
     }

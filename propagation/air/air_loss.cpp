@@ -10,20 +10,20 @@
 namespace emscape::propagation {
 namespace {
 
-/// The tilt of a polarisation as P.838 counts it.
+/// Tilt angle (rad) of a polarisation, as P.838 defines it.
 double tilt_rad(Polarization polarization) {
   if (polarization == Polarization::horizontal) return 0;
   return polarization == Polarization::vertical ? kPi / 2 : kPi / 4;
 }
 
-/// Specific attenuation of the air (dB/m) at every height. The standard atmosphere, with pressure and
-/// temperature in proportion to what the atmosphere states of sea level, and its vapour.
+/// Specific attenuation of the air (dB/m) at every height. The standard atmosphere, its pressure and
+/// temperature scaled to the scenario's values at sea level, with the scenario's vapour.
 class GasProfile {
  public:
   GasProfile(const Atmosphere& atmosphere, double frequency_hz, double highest_msl_m) {
     const AirState sea = standardAtmosphere(0);
-    const double lowest_m = kGasesHeight.least * kGasesHeight.si_per_unit;
-    const double top_m = std::min(std::max(highest_msl_m, 0.0), kGasesHeight.most * kGasesHeight.si_per_unit);
+    const double lowest_m = kGasesHeight.min * kGasesHeight.si_per_unit;
+    const double top_m = std::min(std::max(highest_msl_m, 0.0), kGasesHeight.max * kGasesHeight.si_per_unit);
     const int count = static_cast<int>((top_m - lowest_m) / kStep_m) + 2;
     for (int i = 0; i < count; ++i) {
       const double height_m = lowest_m + i * kStep_m;
@@ -31,7 +31,7 @@ class GasProfile {
       air.pressure_hpa *= atmosphere.pressure_hpa / sea.pressure_hpa;
       air.temperature_k *= atmosphere.temperature_k / sea.temperature_k;
       const double vapour_hpa = std::min(air.vapourPressure_hpa(), air.pressure_hpa);
-      // Line by line below 1 GHz too, where what P.676 gives at 1 GHz would be too much.
+      // The line-by-line sum also below 1 GHz, where the value of P.676 at 1 GHz would be too large.
       gamma_.push_back(lineByLineGasAttenuation(frequency_hz, air.pressure_hpa - vapour_hpa,
                                                 air.temperature_k, air.vapour_g_m3)
                            .total_db_per_km() /
@@ -41,7 +41,7 @@ class GasProfile {
 
   double at(double height_msl_m) const {
     const double position =
-        std::clamp(height_msl_m / kStep_m - kGasesHeight.least * kGasesHeight.si_per_unit / kStep_m, 0.0,
+        std::clamp(height_msl_m / kStep_m - kGasesHeight.min * kGasesHeight.si_per_unit / kStep_m, 0.0,
                    static_cast<double>(gamma_.size()) - 1.001);
     const auto below = static_cast<std::size_t>(position);
     return gamma_[below] + (position - static_cast<double>(below)) * (gamma_[below + 1] - gamma_[below]);

@@ -1,4 +1,4 @@
-/// What gases and rain take along a path: added to any model's excess.
+/// Attenuation by gases and rain along a path, added to any model's excess.
 #pragma once
 
 #include <cmath>
@@ -53,7 +53,7 @@ struct AirLoss {
                                            (1 + height_msl_m / earth_radius_m));
   }
 
-  /// Part (0..1) of the ray that lies below the rain's top. The ray's height over the range is a parabola.
+  /// Fraction (0..1) of the ray below the top of the rain. The ray's height over the range is a parabola.
   EMSCAPE_HD float partBelowRainTop(float range_m, float height_msl_m) const {
     const float below_m = rain_top_msl_m - station_msl_m;
     if (range_m < 1) {
@@ -67,7 +67,7 @@ struct AirLoss {
     const float slope = (height_msl_m - station_msl_m) / range_m - range_m * curvature / 2;
     const float discriminant = slope * slope + 2 * below_m * curvature;
     if (discriminant <= 0) return 0;
-    // Roots of below = slope x + curvature x^2 / 2, each in the form that keeps its digits.
+    // Roots of below = slope x + curvature x^2 / 2, each in the form without cancellation.
     const float root = std::sqrt(discriminant);
     const float near_m = slope > 0 ? -(slope + root) / curvature : 2 * below_m / (slope - root);
     const float far_m = slope > 0 ? 2 * below_m / (slope + root) : (root - slope) / curvature;
@@ -98,8 +98,8 @@ struct AirLoss {
 /// @see ITU-R P.839-2, by latitude; later editions have maps
 double rainHeight_m(double latitude_deg);
 
-/// What the air takes from an emitter's paths.
-/// @param with_gases  whether gases count; rain does wherever it rains
+/// Attenuation by the air on an emitter's paths.
+/// @param with_gases  true: adds the gases; rain is always added
 /// @param gases       receives the table that the result points to
 AirLoss airLoss(const PathInputs& inputs, bool with_gases, std::vector<float>& gases);
 

@@ -33,7 +33,7 @@ double pressureOver(double height_km, const TemperatureLayer& layer) {
 GasAttenuation gasAttenuation(double frequency_hz, double dry_pressure_hpa, double temperature_k,
                               double vapour_g_m3) {
   return lineByLineGasAttenuation(
-      std::clamp(frequency_hz, kGasesFrequency.least * 1e9, kGasesFrequency.most * 1e9), dry_pressure_hpa,
+      std::clamp(frequency_hz, kGasesFrequency.min * 1e9, kGasesFrequency.max * 1e9), dry_pressure_hpa,
       temperature_k, vapour_g_m3);
 }
 
@@ -74,9 +74,9 @@ GasAttenuation lineByLineGasAttenuation(double frequency_hz, double dry_pressure
 }
 
 AirState standardAtmosphere(double height_msl_m, double surface_vapour_g_m3) {
-  const double height_km = std::max(height_msl_m / 1000, kGasesHeight.least);
+  const double height_km = std::max(height_msl_m / 1000, kGasesHeight.min);
   AirState air{0, 0, 0};
-  if (height_km > kGasesHeight.most) {
+  if (height_km > kGasesHeight.max) {
     air.temperature_k = 195.08;
     return air;
   }

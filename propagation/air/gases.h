@@ -18,17 +18,18 @@ constexpr ModelLimit kGasesSlantFrequency{
 constexpr ModelLimit kGasesElevation{
     "elevation (slant path)",      "deg", 3.14159265358979323846 / 180, 5, 90, Beyond::refused,
     "a flat stratified atmosphere"};
-constexpr ModelLimit kGasesHeight{"height",
-                                  "km",
-                                  1000,
-                                  -1,
-                                  100,
-                                  Beyond::clamped,
-                                  "no attenuation above 100 km; below sea level the lowest layer goes on"};
+constexpr ModelLimit kGasesHeight{
+    "height",
+    "km",
+    1000,
+    -1,
+    100,
+    Beyond::clamped,
+    "no attenuation above 100 km; below sea level the lowest layer is continued"};
 constexpr const ModelLimit* kGasesLimits[] = {&kGasesFrequency, &kGasesSlantFrequency, &kGasesElevation,
                                               &kGasesHeight};
 
-/// State of the air at one place.
+/// State of the air at one point.
 struct AirState {
   double pressure_hpa = 1013.25;  ///< total: dry air and vapour
   double temperature_k = 288.15;
@@ -46,7 +47,7 @@ struct GasAttenuation {
   double total_db_per_km() const { return oxygen_db_per_km + vapour_db_per_km; }
 };
 
-/// Line by line. Takes about 2 us: call it once for a layer of air, not for a voxel.
+/// Line by line. Takes about 2 us: call it once per layer of air, not per voxel.
 /// @param dry_pressure_hpa  of the dry air alone
 /// @see P.676-13 Annex 1 eq. (1) to (9)
 GasAttenuation gasAttenuation(double frequency_hz, double dry_pressure_hpa, double temperature_k,
@@ -56,7 +57,7 @@ inline GasAttenuation gasAttenuation(double frequency_hz, const AirState& air) {
                         air.vapour_g_m3);
 }
 
-/// The same without limits of frequency: for models that take the equations below 1 GHz too.
+/// The same without limits of frequency, for models that use the equations also below 1 GHz.
 GasAttenuation lineByLineGasAttenuation(double frequency_hz, double dry_pressure_hpa, double temperature_k,
                                         double vapour_g_m3);
 

@@ -58,7 +58,7 @@ constexpr SpectralLine kOxygenLines[] = {
     {834.145546, 183.100, 0.145, 14.700, 0, 0, 0},
 };
 
-/// P.676-13 table 2: water vapour, b1 to b6; the last stands for the continuum.
+/// P.676-13 table 2: water vapour, b1 to b6; the last is the continuum.
 constexpr SpectralLine kVapourLines[] = {
     {22.235080, 0.1079, 2.144, 26.38, 0.76, 5.087, 1.00},
     {67.803960, 0.0011, 8.732, 28.58, 0.69, 4.930, 0.82},
@@ -102,9 +102,8 @@ struct OxygenHeight {
   double frequency_ghz, a, b, c, d;
 };
 
-/// From the table that comes with P.676-13 (part 1), which has a row each 0.5 GHz: all rows about the
-/// oxygen's lines at 60 and 118.75 GHz, elsewhere as many as a straight line between them needs to stay
-/// within 0.2 % of the rows left out.
+/// From the data table of P.676-13 (part 1), which has one row per 0.5 GHz: all rows near the oxygen lines at
+/// 60 and 118.75 GHz, elsewhere enough rows for linear interpolation within 0.2 % of the omitted ones.
 constexpr OxygenHeight kOxygenHeights[] = {
     {1.0, -2.700258e+00, 2.724587e-02, 5.971574e-04, 5.130385e-04},
     {1.5, -2.462805e+00, 2.715168e-02, -1.203684e-05, -7.200561e-05},

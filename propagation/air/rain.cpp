@@ -44,7 +44,7 @@ constexpr Bell kVerticalAlpha[] = {{-0.07771, 2.33840, -0.76284},
 }  // namespace
 
 RainCoefficients<double> rainCoefficients(double frequency_hz, double elevation_rad, double tilt_rad) {
-  const double x = std::log10(std::clamp(frequency_hz / 1e9, kRainFrequency.least, kRainFrequency.most));
+  const double x = std::log10(std::clamp(frequency_hz / 1e9, kRainFrequency.min, kRainFrequency.max));
   const double k_h = std::pow(10, fit(kHorizontalK, -0.18961, 0.71147, x));  // eq. (2)
   const double k_v = std::pow(10, fit(kVerticalK, -0.16398, 0.63297, x));
   const double alpha_h = fit(kHorizontalAlpha, 0.67849, -1.95537, x);  // eq. (3)

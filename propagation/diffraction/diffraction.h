@@ -66,7 +66,7 @@ struct DiffractionModel {
 
   /// Height of an antenna, no lower above its ground than kDiffractionAboveGround.
   static EMSCAPE_HD Real raised_m(Real antenna_m, Real ground_m) {
-    const Real lowest = ground_m + Real(kDiffractionAboveGround.least);
+    const Real lowest = ground_m + Real(kDiffractionAboveGround.min);
     return antenna_m > lowest ? antenna_m : lowest;
   }
 

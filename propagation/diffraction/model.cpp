@@ -7,8 +7,8 @@ namespace emscape::propagation {
 std::vector<Setting> diffractionSettings() {
   return {choiceSetting<&ModelSettings::diffraction, &DiffractionSettings::method>(
       "method", DiffractionMethod::deygout,
-      "delta_bullington: terrain as one edge and the earth's bulge; single_edge, deygout (three "
-      "edges): terrain alone")};
+      "delta_bullington: terrain as one edge, and the smooth earth; single_edge, deygout (three edges): "
+      "terrain only")};
 }
 
 InputFaults checkDiffraction(const EmitterInputs& inputs) {
@@ -57,7 +57,7 @@ Explanation explainDiffraction(const PathInputs& inputs, PathColumn& path) {
       deltaBullington(model.model, path.column().profile, model.tx_msl_m, path.column().height_msl_m[0])
           .terrain_db);
   explanation.add("terrain_edge", "terrain as one edge (Bullington)", terrain_db);
-  explanation.add("smooth_earth", "what that lacks of the earth's bulge", loss_db - terrain_db);
+  explanation.add("smooth_earth", "smooth-earth correction (P.526 4.5.3)", loss_db - terrain_db);
   explanation.why = "delta-Bullington over the terrain profile";
   return explanation;
 }

@@ -1,4 +1,4 @@
-/// Excess of the models that have none of their own, free_space and horizon: what the air adds.
+/// Excess of free_space and horizon, which have none of their own: the attenuation by the air.
 #pragma once
 
 #include "emscape/base/host_device.h"

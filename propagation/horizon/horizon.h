@@ -16,8 +16,7 @@ namespace emscape::propagation {
 /// Above this height (m) the linear refractivity profile no longer holds.
 constexpr double kLinearRefractivityHeight_m = 10000;
 
-/// What the geometry needs of a ground range: of the angle that it spans at the earth's centre, sine and 1 -
-/// cosine.
+/// Terms of a ground range: sine and 1 - cosine of the angle that it subtends at the earth's centre.
 template <class Real>
 struct RangeTerms {
   Real sine = 0;
@@ -57,7 +56,7 @@ EMSCAPE_HD inline float steeper(float highest, float here) {
 
 /// Slopes of the grazing rays along one azimuth: slope[i] is the largest slope to the terrain at
 /// samples 1..i, so that a point between samples i and i + 1 is lit if the slope to it is not below slope[i].
-/// slope[0] is -infinity: nothing stands before.
+/// slope[0] is -infinity: there is no sample before it.
 /// @param profile_msl_m  terrain heights of `count` samples; from a NaN on all slopes are NaN
 /// @param ranges         terms of the samples' ranges, `count` of them
 template <class Real>

@@ -18,7 +18,7 @@ std::vector<std::string> horizonPathWarnings(const PathInputs& inputs) {
 }
 
 Explanation explainHorizon(const PathInputs& inputs, PathColumn& path) {
-  // As the field has it: slopes in single precision.
+  // Slopes in single precision, as in the field.
   const HorizonGeometry<float> geometry{static_cast<float>(inputs.site.height_msl_m),
                                         static_cast<float>(inputs.site.effective_earth_radius_m)};
   const TerrainProfile& profile = path.column().profile;
@@ -30,8 +30,8 @@ Explanation explainHorizon(const PathInputs& inputs, PathColumn& path) {
   const bool is_lit =
       before == 0 || path.column().height_msl_m[0] >= geometry.heightOn(slopes[before], ranges.back());
   Explanation explanation;
-  explanation.why = is_lit ? "nothing stands above the ray: free space"
-                           : "something stands above the ray: no field at all behind it (no diffraction)";
+  explanation.why = is_lit ? "no obstacle above the ray: free space"
+                           : "an obstacle above the ray: no field behind it (no diffraction)";
   if (!is_lit) {
     explanation.add("shadow", "shadow of terrain and earth", std::numeric_limits<double>::infinity());
   }

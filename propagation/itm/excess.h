@@ -1,4 +1,4 @@
-/// Excess of the model `itm`: where it holds, and `diffraction` elsewhere.
+/// Excess of the model `itm`: ITM within its limits, `diffraction` elsewhere.
 #pragma once
 
 #include "emscape/base/host_device.h"
@@ -8,18 +8,18 @@
 
 namespace emscape::propagation {
 
-/// ITM refused a path within its zone: diffraction stands there instead. A bit beside ItmWarning's.
+/// Warning bit, besides those of ItmWarning: ITM refused a path within its zone, and diffraction was used.
 constexpr unsigned kItmRefused = 1u << 30;
 
-/// ITM is for antennas near the ground: a voxel takes it by a weight, and diffraction by the rest (dB).
-/// The weight is 1 up to kItmFull_m above the ground, from there linear down to 0 at the model's limit, for
-/// either end; and from 0 at kItmNearest_m along the ground, where the model's data begin, linear up to 1 at
-/// twice that.
+/// ITM is for antennas near the ground: a voxel's loss (dB) is a weighted mean of ITM and diffraction.
+/// The weight of ITM is 1 up to kItmFull_m above the ground, from there linear down to 0 at the model's
+/// limit, for either end; and from 0 at kItmNearest_m along the ground, where the model's data begin, it
+/// rises linearly to 1 at twice that distance.
 constexpr double kItmFull_m = 2000;
-constexpr double kItmNearest_m = kItmDistance.least * kItmDistance.si_per_unit;
+constexpr double kItmNearest_m = kItmDistance.min * kItmDistance.si_per_unit;
 
 EMSCAPE_HD inline float itmHeightWeight(double height_agl_m) {
-  const double part = (kItmHeight.most - height_agl_m) / (kItmHeight.most - kItmFull_m);
+  const double part = (kItmHeight.max - height_agl_m) / (kItmHeight.max - kItmFull_m);
   return part < 0 ? 0.0f : part > 1 ? 1.0f : static_cast<float>(part);
 }
 EMSCAPE_HD inline float itmRangeWeight(double range_m) {
@@ -33,25 +33,25 @@ struct ItmExcess {
   static constexpr float kTolerance_db = 0.1f;
 
   DiffractionExcess diffraction;
-  ItmLink<float> link;  ///< but for the antennas' heights
+  ItmLink<float> link;  ///< without the antennas' heights
   ItmQuantiles<float> quantiles;
   bool is_area = false;
-  ItmArea<float> area;  ///< but for the distance
+  ItmArea<float> area;  ///< without the distance
   double step_m = 0;    ///< of profiles, or somewhat less: whole steps
 
-  /// Loss over free space along the ground, which the field takes as loss over free space along the path.
-  /// @accuracy heights between evaluations: 99 % within 0.1 dB of the model, but for its jumps
+  /// Loss over free space along the ground; the field uses it as the loss over free space along the path.
+  /// @accuracy heights between evaluations: 99 % within 0.1 dB of the model, except at its jumps
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch,
                                  float* excess_db) const {
-    const unsigned remarks = begin(column, scratch, excess_db);
-    if (remarks != 0) return remarks;
+    const unsigned warnings = begin(column, scratch, excess_db);
+    if (warnings != 0) return warnings;
     return fill(column, scratch, {0, column.count, scratch.other_db}, excess_db);
   }
   EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
                             float* excess_db) const {
-    const unsigned remarks = diffraction(column, scratch, excess_db);
-    if (remarks == 0 && pathWeight(column) > 0) spaceEvenly(column.profile, scratch.even_ground_msl_m);
-    return remarks;
+    const unsigned warnings = diffraction(column, scratch, excess_db);
+    if (warnings == 0 && pathWeight(column) > 0) spaceEvenly(column.profile, scratch.even_ground_msl_m);
+    return warnings;
   }
   EMSCAPE_HD unsigned fill(const ExcessColumn& column, const ExcessScratch& scratch, const ColumnPart& part,
                            float* excess_db) const {
@@ -64,7 +64,7 @@ struct ItmExcess {
     int in_zone = part.begin;  // heights below this one, of those that the bisection reaches
     const int most = part.begin + part.reach(column.count);
     while (in_zone < most && itmHeightWeight(heightAgl(column, in_zone)) > 0) ++in_zone;
-    unsigned remarks = 0;
+    unsigned warnings = 0;
     const auto lossAt = [&](int k) {
       ItmLink<float> here = link;
       here.height_agl_m[0] = txAgl(column);
@@ -77,7 +77,7 @@ struct ItmExcess {
       } else {
         result = itmPointToPoint(even, here, quantiles);
       }
-      remarks |= result.refused() ? kItmRefused : result.warnings;
+      warnings |= result.refused() ? kItmRefused : result.warnings;
       return result.loss_db - result.free_space_db;
     };
     fillByBisection(lossAt, in_zone - part.begin, kTolerance_db, part.memory_db);
@@ -87,7 +87,7 @@ struct ItmExcess {
       const float weight = path_weight * itmHeightWeight(heightAgl(column, k));
       excess_db[k] += weight * (other - excess_db[k]);
     }
-    return remarks;
+    return warnings;
   }
 
  private:
@@ -99,13 +99,13 @@ struct ItmExcess {
   }
   /// Height above ground, no lower than the model allows.
   static EMSCAPE_HD float above(float height_msl_m, float ground_msl_m) {
-    const float above_m = height_msl_m - ground_msl_m, least_m = static_cast<float>(kItmHeight.least);
+    const float above_m = height_msl_m - ground_msl_m, least_m = static_cast<float>(kItmHeight.min);
     return above_m > least_m ? above_m : least_m;
   }
   static EMSCAPE_HD double heightAgl(const ExcessColumn& column, int k) {
     return static_cast<double>(above(column.height_msl_m[k], column.ground_msl_m));
   }
-  /// At least 2 and no more than the profile has.
+  /// At least 2, at most as many as the profile has.
   EMSCAPE_HD int evenIntervals(const TerrainProfile& profile) const {
     const int last = profile.count - 1;
     int intervals = static_cast<int>(profile.range_m[last] / step_m) + 1;

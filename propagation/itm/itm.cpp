@@ -24,7 +24,7 @@ std::string itmMessage(ItmStatus status) {
     case ItmStatus::receiver_height:
       return outside(kItmHeight, kEnds[1]);
     case ItmStatus::climate:
-      return "the climate is none of 1..7";
+      return "the climate is not one of 1..7";
     case ItmStatus::time:
       return outside(kItmPercentage, "time");
     case ItmStatus::location:
@@ -43,7 +43,7 @@ std::string itmMessage(ItmStatus status) {
       return "the ground's impedance is more reactive than resistive: permittivity or conductivity is "
              "impossible";
     case ItmStatus::variability_mode:
-      return "the mode of variability is none of 0..3, 10..13, 20..23";
+      return "the mode of variability is not one of 0..3, 10..13, 20..23";
     case ItmStatus::effective_earth:
       return outside(kItmEffectiveEarth);
     case ItmStatus::distance:
@@ -51,9 +51,9 @@ std::string itmMessage(ItmStatus status) {
     case ItmStatus::irregularity:
       return outside(kItmIrregularity);
     case ItmStatus::transmitter_siting:
-      return "transmitter: the siting is none of random, careful, very careful";
+      return "transmitter: the siting is not one of random, careful, very careful";
     case ItmStatus::receiver_siting:
-      return "receiver: the siting is none of random, careful, very careful";
+      return "receiver: the siting is not one of random, careful, very careful";
     case ItmStatus::surface_refractivity_too_small:
     case ItmStatus::surface_refractivity_too_large:
       return outside(kItmSurfaceRefractivity);

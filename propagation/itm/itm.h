@@ -1,8 +1,8 @@
 /// Model `itm`: Irregular Terrain Model (Longley-Rice), version 1.2.2; point-to-point and area mode.
 ///
 /// Gives the basic transmission loss between two antennas near the ground that is not exceeded for
-/// percentages of time, of locations and of situations. Distances are not continuous in their effect: where a
-/// horizon passes from one post of the profile to another, the loss may jump, and the model does so itself.
+/// percentages of time, of locations and of situations. The loss is not continuous over distance: it may jump
+/// where a horizon moves from one post of the profile to another. This is a property of the model.
 ///
 /// @see Hufford, The ITS Irregular Terrain Model, version 1.2.2: the Algorithm (1995), cited as [Alg n.m];
 ///      NTIA Report 82-100 (1982); NBS Technical Note 101 (1967), cited as [TN101]; ESSA ERL 79-ITS 67 (1968)
@@ -59,7 +59,7 @@ constexpr const ModelLimit* kItmLimits[] = {&kItmFrequency,
                                             &kItmHorizonDistance,
                                             &kItmDeviate};
 
-/// Numbers as in the NTIA's implementation; from 1000 on there is no result.
+/// Numbers as in the NTIA's implementation; 1000 and above: no result.
 enum class ItmStatus {
   done = 0,
   done_with_warnings = 1,
@@ -82,7 +82,7 @@ enum class ItmStatus {
   receiver_siting = 1020,
   surface_refractivity_too_small = 1021,
   surface_refractivity_too_large = 1022,
-  profile = 2000,  ///< fewer than two intervals, or a height is missing; not one of NTIA's
+  profile = 2000,  ///< fewer than two intervals, or a height is missing; not in NTIA's implementation
 };
 
 /// Bits as in the NTIA's implementation.
@@ -104,7 +104,7 @@ enum ItmWarning : unsigned {
   kItmWarnSurfaceRefractivity = 0x4000,
 };
 
-/// The link but for the terrain.
+/// The link without the terrain.
 template <class Real>
 struct ItmLink {
   Real height_agl_m[2] = {};  ///< transmitter, receiver
@@ -112,12 +112,13 @@ struct ItmLink {
   bool vertical_polarization = true;
   Real relative_permittivity = 15;
   Real conductivity_s_m = Real(0.005);
-  Real sea_level_refractivity = 301;  ///< N_0 (N-units); its curvature of the rays replaces any k factor
+  Real sea_level_refractivity =
+      301;  ///< N_0 (N-units); gives the curvature of the rays, in place of a k factor
   ItmClimate climate = ItmClimate::continental_temperate;
   int variability_mode = 12;  ///< 0..3, 10..13, 20..23: see itmQuantileDb
 };
 
-/// The loss is not exceeded in `time` percent of the time, in `location` percent of the places, in
+/// The loss is not exceeded in `time` percent of the time, in `location` percent of the locations, in
 /// `situation` percent of such links.
 template <class Real>
 struct ItmQuantiles {
@@ -139,7 +140,7 @@ struct ItmResult {
   Real free_space_db = 0;
   Real reference_db = 0;  ///< reference attenuation, above free space
   ItmMode mode = ItmMode::none;
-  ItmPath<Real> path;  ///< all that was found on the way
+  ItmPath<Real> path;  ///< intermediate results
 
   EMSCAPE_HD bool refused() const { return static_cast<int>(status) >= 1000; }
 };
@@ -153,7 +154,7 @@ struct ItmArea {
 
 namespace itm_detail {
 
-/// What does not come from the path.
+/// Parameters that do not depend on the path.
 template <class Real>
 EMSCAPE_HD ItmStatus checkInput(const ItmLink<Real>& link, const ItmQuantiles<Real>& quantiles,
                                 unsigned& warnings) {
@@ -171,11 +172,11 @@ EMSCAPE_HD ItmStatus checkInput(const ItmLink<Real>& link, const ItmQuantiles<Re
   if (!holds<kItmFrequency>(link.frequency_hz)) return ItmStatus::frequency;
   if (!holds<kItmProvenFrequency>(link.frequency_hz)) warnings |= kItmWarnFrequency;
   if (!holds<kItmPermittivity>(link.relative_permittivity)) return ItmStatus::permittivity;
-  if (!(link.conductivity_s_m > kItmConductivity.least)) return ItmStatus::conductivity;
+  if (!(link.conductivity_s_m > kItmConductivity.min)) return ItmStatus::conductivity;
   const int mode = link.variability_mode;
   if (mode < 0 || mode > 23 || mode % 10 > 3) return ItmStatus::variability_mode;
   const auto possible = [](Real percent) {
-    return percent > kItmPercentage.least && percent < kItmPercentage.most;
+    return percent > kItmPercentage.min && percent < kItmPercentage.max;
   };
   if (!possible(quantiles.situation_percent)) return ItmStatus::situation;
   if (!possible(quantiles.time_percent)) return ItmStatus::time;
@@ -183,7 +184,7 @@ EMSCAPE_HD ItmStatus checkInput(const ItmLink<Real>& link, const ItmQuantiles<Re
   return ItmStatus::done;
 }
 
-/// What does come from the path.
+/// Parameters of the path.
 template <class Real>
 EMSCAPE_HD ItmStatus checkPath(const ItmPath<Real>& path, unsigned& warnings) {
   for (int end = 0; end < 2; ++end) {
@@ -192,17 +193,17 @@ EMSCAPE_HD ItmStatus checkPath(const ItmPath<Real>& path, unsigned& warnings) {
     if (!holds<kItmHorizonAngle>(terminal.horizon_angle_rad)) {
       warnings |= end == 0 ? kItmWarnTransmitterHorizonAngle : kItmWarnReceiverHorizonAngle;
     }
-    if (terminal.horizon_distance_m < Real(kItmHorizonDistance.least) * smooth_m) {
+    if (terminal.horizon_distance_m < Real(kItmHorizonDistance.min) * smooth_m) {
       warnings |= end == 0 ? kItmWarnTransmitterHorizonNear : kItmWarnReceiverHorizonNear;
     }
-    if (terminal.horizon_distance_m > Real(kItmHorizonDistance.most) * smooth_m) {
+    if (terminal.horizon_distance_m > Real(kItmHorizonDistance.max) * smooth_m) {
       warnings |= end == 0 ? kItmWarnTransmitterHorizonFar : kItmWarnReceiverHorizonFar;
     }
   }
   const Real refractivity = path.surface_refractivity;
   if (!holds<kItmSurfaceRefractivity>(refractivity)) {
-    return refractivity > kItmSurfaceRefractivity.most ? ItmStatus::surface_refractivity_too_large
-                                                       : ItmStatus::surface_refractivity_too_small;
+    return refractivity > kItmSurfaceRefractivity.max ? ItmStatus::surface_refractivity_too_large
+                                                      : ItmStatus::surface_refractivity_too_small;
   }
   if (!holds<kItmProvenSurfaceRefractivity>(refractivity)) warnings |= kItmWarnSurfaceRefractivity;
   if (!holds<kItmEffectiveEarth>(path.effective_earth_radius_m)) return ItmStatus::effective_earth;
@@ -211,9 +212,9 @@ EMSCAPE_HD ItmStatus checkPath(const ItmPath<Real>& path, unsigned& warnings) {
   const Real difference_m =
       std::fabs(path.terminal[0].effective_height_m - path.terminal[1].effective_height_m);
   if (path.distance_m < difference_m / Real(0.2)) warnings |= kItmWarnDistanceUnderHeights;
-  if (path.distance_m < kItmDistance.least * kItmDistance.si_per_unit) warnings |= kItmWarnDistanceUnder1km;
+  if (path.distance_m < kItmDistance.min * kItmDistance.si_per_unit) warnings |= kItmWarnDistanceUnder1km;
   if (!holds<kItmProvenDistance>(path.distance_m)) warnings |= kItmWarnDistanceOver1000km;
-  if (path.distance_m > kItmDistance.most * kItmDistance.si_per_unit) warnings |= kItmWarnDistanceOver2000km;
+  if (path.distance_m > kItmDistance.max * kItmDistance.si_per_unit) warnings |= kItmWarnDistanceOver2000km;
   return ItmStatus::done;
 }
 
@@ -224,7 +225,7 @@ EMSCAPE_HD ItmResult<Real>& refuse(ItmResult<Real>& result, ItmStatus status) {
   return result;
 }
 
-/// From the path, whose terrain is known, to the loss.
+/// Loss of a path whose terrain parameters are known.
 template <class Real>
 EMSCAPE_HD void finish(const ItmLink<Real>& link, const ItmQuantiles<Real>& quantiles,
                        ItmResult<Real>& result) {
@@ -319,7 +320,7 @@ EMSCAPE_HD ItmResult<Real> itmAreaMode(const ItmArea<Real>& area, const ItmLink<
   return result;
 }
 
-/// What a status or a warning means, with the limits: "frequency outside 20..20000 MHz: refused".
+/// Text of a status or a warning, with the limits: "frequency outside 20..20000 MHz: refused".
 std::string itmMessage(ItmStatus status);
 std::vector<std::string> itmMessages(unsigned warnings);
 

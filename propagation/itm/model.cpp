@@ -60,13 +60,12 @@ std::vector<Setting> itmSettings() {
           "form", ItmForm::area,
           "point_to_point: over the terrain's profiles; area: over terrain of irregularity_m"),
       percent(numberSetting<kItm, &ItmSettings::time_percent>, "time_percent",
-              "of the time the loss is not exceeded"),
+              "percentage of time for which the loss is not exceeded"),
       percent(numberSetting<kItm, &ItmSettings::location_percent>, "location_percent",
-              "of places; area form alone"),
+              "of locations; area form only"),
       percent(numberSetting<kItm, &ItmSettings::situation_percent>, "situation_percent",
-              "of such links (confidence)"),
-      choiceSetting<kItm, &ItmSettings::service>("service", ItmService::broadcast,
-                                                 "whose statistics they are"),
+              "of situations (confidence)"),
+      choiceSetting<kItm, &ItmSettings::service>("service", ItmService::broadcast, "kind of statistics"),
       numberSetting<kItm, &ItmSettings::irregularity_m>(
           "irregularity_m", "m", 0, 1000,
           "of the terrain, area form: 0 sea, 30 plains, 90 hills, 200 mountains"),
@@ -81,7 +80,7 @@ InputFaults checkItm(const EmitterInputs& inputs) {
   InputFaults faults;
   checkInput(kItmFrequency, inputs.frequency_hz, InputOrigin::frequency, faults);
   checkInput(kItmProvenFrequency, inputs.frequency_hz, InputOrigin::frequency, faults);
-  // All that does not depend on the path, on a path that nothing else is wrong with.
+  // Checks that do not depend on the path, by a valid path.
   ItmLink<float> link = itmLink(inputs);
   link.height_agl_m[0] = link.height_agl_m[1] = 10;
   ItmArea<float> area;
@@ -95,16 +94,16 @@ InputFaults checkItm(const EmitterInputs& inputs) {
   return faults;
 }
 
-std::vector<std::string> itmRemarkMessages(unsigned remarks) {
+std::vector<std::string> itmWarningMessages(unsigned warnings) {
   std::vector<std::string> messages;
   std::string all;
-  for (const std::string& message : itmMessages(remarks & ~(kMissingTerrain | kItmRefused))) {
+  for (const std::string& message : itmMessages(warnings & ~(kMissingTerrain | kItmRefused))) {
     all += (all.empty() ? "on some paths: " : "; ") + message;
   }
   if (!all.empty()) messages.push_back(all);
-  if ((remarks & kItmRefused) != 0) {
+  if ((warnings & kItmRefused) != 0) {
     messages.push_back(
-        "paths refused, on which 'diffraction' stands instead: the refractivity at the surface "
+        "paths refused, 'diffraction' is used instead: the refractivity at the surface "
         "or the effective earth is outside the model's limits");
   }
   return messages;
@@ -120,7 +119,7 @@ ItmLink<float> itmLink(const EmitterInputs& inputs) {
   link.conductivity_s_m = static_cast<float>(ground.conductivity_s_per_m);
   link.sea_level_refractivity = static_cast<float>(inputs.atmosphere.sea_level_refractivity);
   link.climate = itmClimate(inputs.atmosphere.climate);
-  // Where the terrain is known the place does not vary: 10 more.
+  // With a known terrain there is no location variability: mode + 10.
   link.variability_mode =
       itmVariability(settings.service) + (settings.form == ItmForm::point_to_point ? 10 : 0);
   return link;
@@ -136,7 +135,7 @@ ItmExcess itmExcess(const PathInputs& inputs) {
   excess.area.irregularity_m = static_cast<float>(settings.irregularity_m);
   excess.area.siting[0] = settings.transmitter_siting;
   excess.area.siting[1] = settings.receiver_siting;
-  excess.step_m = inputs.post_spacing_m;  // as the posts lie
+  excess.step_m = inputs.post_spacing_m;  // spacing of the posts
   return excess;
 }
 
@@ -159,8 +158,8 @@ Explanation explainItm(const PathInputs& inputs, PathColumn& path) {
                   (1 - weight) * diffraction_db);
   explanation.why = weight == 1 ? "both ends and the distance are within ITM's limits"
                     : weight == 0
-                        ? "an end or the distance is outside ITM's limits: diffraction stands instead"
-                        : "near ITM's limits it goes over to diffraction by weights";
+                        ? "an end or the distance is outside ITM's limits: diffraction is used instead"
+                        : "near ITM's limits: a weighted mean with diffraction";
   return explanation;
 }
 

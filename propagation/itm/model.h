@@ -11,12 +11,11 @@ namespace emscape::propagation {
 
 std::vector<Setting> itmSettings();
 InputFaults checkItm(const EmitterInputs& inputs);
-/// What the model's remarks on the paths of an emitter mean, one line each; those on missing terrain left
-/// out.
-std::vector<std::string> itmRemarkMessages(unsigned remarks);
+/// Texts of the model's warning bits on the paths of an emitter, one line each, without missing terrain.
+std::vector<std::string> itmWarningMessages(unsigned warnings);
 Explanation explainItm(const PathInputs& inputs, PathColumn& path);
 
-/// An emitter's link but for the antennas' heights.
+/// An emitter's link without the antennas' heights.
 ItmLink<float> itmLink(const EmitterInputs& inputs);
 ItmExcess itmExcess(const PathInputs& inputs);
 

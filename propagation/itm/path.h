@@ -1,5 +1,5 @@
-/// ITM: what the reference attenuation is computed from, whether found along a terrain profile
-/// (itm_profile.h) or estimated from the terrain's irregularity (area mode).
+/// ITM: the inputs of the reference attenuation, found along a terrain profile (profile.h) or estimated from
+/// the terrain's irregularity (area mode).
 #pragma once
 
 #include <cmath>
@@ -68,7 +68,7 @@ struct ItmPath {
   }
 };
 
-/// Delta h(s): the irregularity that shows on a stretch of terrain [Alg 3.9].
+/// Delta h(s): the irregularity over a path of length s [Alg 3.9].
 template <class Real>
 EMSCAPE_HD Real itmIrregularityWithin_m(Real distance_m, Real irregularity_m) {
   return irregularity_m * (1 - Real(0.8) * std::exp(-distance_m / Real(50e3)));
@@ -80,7 +80,7 @@ EMSCAPE_HD Real itmTerrainDeviation_m(Real irregularity_m) {
   return Real(0.78) * irregularity_m * std::exp(-std::sqrt(std::sqrt(irregularity_m / 16)));
 }
 
-/// Sets what ground and atmosphere make of a frequency [Alg 1.2-1.5].
+/// Sets the parameters that depend on ground, atmosphere and frequency [Alg 1.2-1.5].
 /// @param sea_level_refractivity  N_0 (N-units)
 /// @param mean_height_msl_m       of the terrain along the path; 0 where it is unknown
 template <class Real>

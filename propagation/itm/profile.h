@@ -1,8 +1,8 @@
-/// ITM: what a terrain profile says of a path: horizons, irregularity, effective heights [Hufford 1995, sec.
-/// 2].
+/// ITM: parameters of a path from its terrain profile: horizons, irregularity, effective heights [Hufford
+/// 1995, sec. 2].
 ///
-/// Distances along the profile are doubles whatever Real is: the method cuts them to whole posts, and a
-/// rounding that fell the other way would take other posts.
+/// Distances along the profile are doubles whatever Real is: the method truncates them to whole posts, and a
+/// different rounding would select other posts.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace emscape::propagation {
 
-/// A product rounded by itself. Fused with an addition, as compilers do where they can, it would cut
-/// positions to other posts than the reference's, and change the loss by a tenth of a dB where that happens.
+/// A product with its own rounding. Fused with an addition, as compilers may do, it would sometimes select
+/// other posts than the reference does, and change the loss by a tenth of a dB.
 EMSCAPE_HD inline double itmProduct(double a, double b) {
   volatile double product = a * b;
   return product;
@@ -31,7 +31,7 @@ struct ItmProfile {
 
 namespace itm_detail {
 
-/// Sums run in four lanes, so that additions need not wait for each other.
+/// Four partial sums, so that additions do not wait for each other.
 constexpr int kLanes = 4;
 
 /// Sum over the posts first..last of the heights above `base_m`.
@@ -84,8 +84,7 @@ struct FittedLine {
   Real at_end_m = 0;
 };
 
-/// Least squares over the posts that lie within begin..end (in posts), the two outermost with half their
-/// weight.
+/// Least squares over the posts within begin..end (in posts), the two outermost with half weight.
 template <class Real, class Height>
 EMSCAPE_HD FittedLine<Real> fitLine(const Height* heights_m, int intervals, double begin, double end) {
   int first = begin > 0 ? static_cast<int>(begin) : 0;
@@ -128,8 +127,8 @@ struct HorizonDistances {
   double distance_m[2];
 };
 
-/// Sets the horizons of both terminals: the posts that stand highest as seen from each. A terminal without an
-/// obstacle sees the other one.
+/// Sets the horizons of both terminals: the posts at the largest elevation as seen from each. A terminal
+/// without an obstacle sees the other one.
 template <class Real, class Height>
 EMSCAPE_HD HorizonDistances findHorizons(const ItmProfile<Height>& profile, ItmPath<Real>& path) {
   const double length_m = profile.length_m();
@@ -146,7 +145,7 @@ EMSCAPE_HD HorizonDistances findHorizons(const ItmProfile<Height>& profile, ItmP
     from_transmitter_m += profile.step_m;
     from_receiver_m -= profile.step_m;
     const Real height_m = profile.heights_msl_m[i];
-    // divided only where a post stands higher than all before it
+    // divided only if the post is higher than all before it
     const Real forth_m = Real(from_transmitter_m);
     const Real rise_forth_m = height_m - transmitter_m - forth_m * forth_m * half_curvature;
     if (rise_forth_m > transmitter_angle * forth_m) {
@@ -168,7 +167,7 @@ EMSCAPE_HD HorizonDistances findHorizons(const ItmProfile<Height>& profile, ItmP
   return horizons;
 }
 
-/// The value at place `rank` (from 0) of the few values in ascending order. Reorders them.
+/// The value of a rank (from 0) among few values. Sorts them in ascending order.
 template <class Real>
 EMSCAPE_HD Real valueAtRank(Real* values, int count, int rank) {
   for (int i = 1; i < count; ++i) {
@@ -182,14 +181,14 @@ EMSCAPE_HD Real valueAtRank(Real* values, int count, int rank) {
 
 /// Difference of the `tenth`-th largest and the `tenth`-th smallest of the values.
 ///
-/// Values are counted in buckets, and only those of the two buckets in question sorted: the values' order,
-/// smooth as terrain is, does not matter. 0 below a micrometre.
+/// Values are counted in buckets, and only those of the two buckets that contain the result are sorted. 0
+/// below a micrometre.
 /// @tparam kMost  largest count, <= 255
 template <int kMost, class Real>
 EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
   constexpr int kBuckets = 128;
   static_assert(kMost <= 255, "places and counts are bytes");
-  // in lanes, so that comparisons need not wait for each other
+  // in lanes, so that comparisons do not wait for each other
   Real lane_least[kLanes] = {values[0], values[0], values[0], values[0]};
   Real lane_most[kLanes] = {values[0], values[0], values[0], values[0]};
   for (int i = 0; i < count; i += kLanes) {
@@ -206,7 +205,8 @@ EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
 
   unsigned char bucket[kMost];
   unsigned char members[kBuckets] = {};
-  unsigned char more_members[kBuckets] = {};  // counted in turn, so that equal buckets need not wait
+  unsigned char more_members[kBuckets] =
+      {};  // used alternately, so that equal buckets do not wait for each other
   const Real scale = (kBuckets - 1) / (most - least);
   for (int i = 0; i < count; ++i)
     bucket[i] = static_cast<unsigned char>(static_cast<int>((values[i] - least) * scale));
@@ -246,9 +246,9 @@ EMSCAPE_HD Real irregularityBetween_m(const ItmProfile<Height>& profile, double 
   int tenth = static_cast<int>(0.1 * (end - begin + 8));
   tenth = tenth < 4 ? 4 : tenth > 25 ? 25 : tenth;
   const int samples = 10 * tenth - 5;
-  constexpr int kMostSamples = 10 * 25 - 5;
+  constexpr int kMaxSamples = 10 * 25 - 5;
 
-  Real above_m[kMostSamples];
+  Real above_m[kMaxSamples];
   // positions in posts, in fixed point: 32 bits for the fraction
   constexpr double kOne = 4294967296.0;
   const auto spacing = static_cast<long long>((end - begin) / (samples - 1) * kOne);
@@ -264,7 +264,7 @@ EMSCAPE_HD Real irregularityBetween_m(const ItmProfile<Height>& profile, double 
   const Real slope_m = (line.at_end_m - line.at_start_m) / (samples - 1);
   for (int i = 0; i < samples; ++i) above_m[i] -= line.at_start_m + slope_m * i;
 
-  const Real range_m = interdecileRange<kMostSamples>(above_m, samples, tenth);
+  const Real range_m = interdecileRange<kMaxSamples>(above_m, samples, tenth);
   return range_m / (1 - Real(0.8) * Real(std::exp(-(end_m - begin_m) / 50e3)));
 }
 
@@ -294,7 +294,7 @@ EMSCAPE_HD void setLineOfSight(const ItmProfile<Height>& profile, double begin_m
   }
 }
 
-/// Effective heights where each terminal looks at a horizon of its own.
+/// Effective heights where each terminal has its own horizon.
 template <class Real, class Height>
 EMSCAPE_HD void setBeyondHorizon(const ItmProfile<Height>& profile, double begin_m, double end_m,
                                  const HorizonDistances& horizons, ItmPath<Real>& path) {
@@ -323,7 +323,7 @@ EMSCAPE_HD void itmSetTerrain(ItmPath<Real>& path, const ItmProfile<Height>& pro
   path.profile_is_known = true;
   path.distance_m = Real(profile.length_m());
   const HorizonDistances horizons = findHorizons(profile, path);
-  // what is close to a terminal, as seen from its height or within a tenth of its horizon, does not count
+  // terrain near a terminal is left out: 15 structural heights or a tenth of its horizon distance, if less
   const auto foreground_m = [&](int end) {
     const double near_m = itmProduct(15, static_cast<double>(path.terminal[end].height_agl_m));
     const double tenth_m = itmProduct(0.1, horizons.distance_m[end]);

@@ -37,7 +37,7 @@ struct LossLine {
   EMSCAPE_HD Real at(Real distance_m) const { return at_zero_db + slope_db_m * distance_m; }
 };
 
-/// Of a knife edge, from the square of the Fresnel parameter [Alg 4.21; TN101, I.1].
+/// Loss of a knife edge, from the square of the Fresnel parameter [Alg 4.21; TN101, I.1].
 template <class Real>
 EMSCAPE_HD Real knifeEdgeDb(Real parameter_squared) {
   if (parameter_squared < Real(5.76)) {
@@ -63,8 +63,8 @@ EMSCAPE_HD Real heightGainDb(Real x, Real k) {
   return (1 - w) * far_db + w * (40 * log_x - 117);
 }
 
-/// Diffraction over the horizon as a weighted sum of two knife edges and a rounded earth [Alg 4.9-4.22]. What
-/// does not depend on the distance is computed once.
+/// Diffraction over the horizon as a weighted sum of two knife edges and a rounded earth [Alg 4.9-4.22]. The
+/// terms that do not depend on the distance are computed once.
 template <class Real>
 class Diffraction {
  public:
@@ -90,7 +90,7 @@ class Diffraction {
         itmTerrainDeviation_m(itmIrregularityWithin_m(path.smoothHorizonDistance_m(), path.irregularity_m));
     clutter_db_ =
         smaller(Real(15), 5 * std::log10(1 + Real(1e-5) * product_m2 * path.frequency_mhz * deviation_m));
-    // 10 m2 more where the profile is known: low antennas there stand as they are, not among clutter
+    // 10 m2 more if the profile is known: low antennas are then not among clutter
     const Real known_m2 = product_m2 + (path.profile_is_known ? 10 : 0);
     height_ratio_ = std::sqrt(1 + (effective_m2 - product_m2) / known_m2);
   }
@@ -106,7 +106,7 @@ class Diffraction {
   }
 
  private:
-  /// What the three-radii method needs of a radius.
+  /// Terms of a radius in the three-radii method.
   struct Rounded {
     Real k;
     Real x_per_m;
@@ -248,8 +248,8 @@ class Troposcatter {
  public:
   EMSCAPE_HD explicit Troposcatter(const ItmPath<Real>& path) : path_(path) {}
 
-  /// From the farther distance to the nearer one: a gain above 15 dB is taken over from the call before.
-  /// @return a loss above 1000 dB where there is no scatter to speak of
+  /// Call for the farther distance first: a gain above 15 dB is replaced by that of the previous call.
+  /// @return a loss above 1000 dB where scatter is negligible
   EMSCAPE_HD Real lossDb(Real distance_m) {
     const Real angle_rad = path_.horizonAngle_rad() + distance_m / path_.effective_earth_radius_m;
     if (!(gain_db_ > 15)) {
@@ -305,7 +305,7 @@ class Troposcatter {
 
 }  // namespace itm_detail
 
-/// Reference attenuation (dB above free space, >= 0) and what carries the signal [Alg 4.1].
+/// Reference attenuation (dB above free space, >= 0) and the mode of propagation [Alg 4.1].
 template <class Real>
 EMSCAPE_HD ItmReference<Real> itmReference(const ItmPath<Real>& path) {
   using namespace itm_detail;

@@ -45,7 +45,7 @@ struct ClimateFactor {
 /// Constants of one radio climate.
 template <class Real>
 struct ClimateStatistics {
-  ClimateCurve<Real> median;        ///< V_med: what the all-year median lies above the reference (dB)
+  ClimateCurve<Real> median;        ///< V_med: all-year median above the reference (dB)
   ClimateCurve<Real> below, above;  ///< sigma_T-, sigma_T+: spread in time on either side of the median (dB)
   Real rare_factor, rare_from;      ///< C_D, z_D: the distribution's far tail
   ClimateFactor<Real> below_factor, above_factor;
@@ -119,7 +119,7 @@ struct ItmDeviates {
 /// @param reference_db  the reference attenuation
 /// @param mode          of variability: 0 single message, 1 individual, 2 mobile, 3 broadcast; + 10: no
 ///                      location variability; + 20: no situation variability
-/// @param deviates      the mode's own: those that it does not use are set to those that it uses instead
+/// @param deviates      of the mode; those that it does not use are set to those that it uses instead
 template <class Real>
 EMSCAPE_HD Real itmQuantileDb(const ItmPath<Real>& path, Real reference_db, ItmClimate climate, int mode,
                               ItmDeviates<Real>& deviates) {
@@ -185,7 +185,7 @@ EMSCAPE_HD Real itmQuantileDb(const ItmPath<Real>& path, Real reference_db, ItmC
   }
   const Real excess_db =
       reference_db - statistics.median.at(effective_m) - y - std::sqrt(variance) * z_situation;
-  // a gain over free space is held back [Alg 5.17]
+  // a gain over free space is limited [Alg 5.17]
   return excess_db >= 0 ? excess_db : excess_db * (29 - excess_db) / (29 - 10 * excess_db);
 }
 

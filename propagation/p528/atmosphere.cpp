@@ -9,8 +9,8 @@
 namespace emscape::propagation {
 namespace {
 
-/// Refractivity and absorption are tabulated: their logarithms, linear between heights. Both fall by e in 2
-/// km at least, so that the error of the tables is below 2e-5 of them.
+/// Refractivity and absorption are tabulated: their logarithms, linear between heights. Their scale heights
+/// are at least 2 km, so that the relative error of the tables is below 2e-5.
 constexpr double kSpacing_km = 0.025;
 constexpr double kTop_km = 21;
 
@@ -56,7 +56,7 @@ P528Ray P528Atmosphere::traceUp(double lower_km, double upper_km, double elevati
   double thickness_km = (upper_km - lower_km) * std::expm1(kGrowth) / std::expm1((last - first) * kGrowth);
   double height_km = lower_km;
   Air air = airAt(height_km + thickness_km / 2);
-  // Snell's law in spheres: n r cos(elevation) stays the same
+  // Snell's law in spherical layers: n r cos(elevation) is constant
   const double invariant_km =
       air.refractive_index * (kP528EarthRadius_km + lower_km) * std::cos(elevation_rad);
   const auto elevationAt = [invariant_km](double n_r_km) {
@@ -85,7 +85,7 @@ P528Ray P528Atmosphere::traceUp(double lower_km, double upper_km, double elevati
 double P528Atmosphere::grazingHeight_km(double height_km, double elevation_rad) const {
   const double invariant_km =
       airAt(height_km).refractive_index * (kP528EarthRadius_km + height_km) * std::cos(elevation_rad);
-  // By halves, to 1 m, as for the published figures: near grazing the path's length depends on it.
+  // By bisection to 1 m, as in the published figures: near grazing the path's length depends on it.
   constexpr double kTolerance_km = 0.001;
   double grazing_km = height_km;
   double step_km = height_km / 2;

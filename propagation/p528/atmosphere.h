@@ -1,4 +1,4 @@
-/// P.528: rays through the layered atmosphere: where they end, how long they are, what the gases take.
+/// P.528: rays through the layered atmosphere: end point, length and absorption.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@ namespace emscape::propagation {
 /// Earth radius (km) of the recommendation.
 constexpr double kP528EarthRadius_km = 6371;
 
-/// What became of a ray.
+/// A traced ray.
 struct P528Ray {
   double length_km = 0;
   double absorption_db = 0;
@@ -18,9 +18,8 @@ struct P528Ray {
 
 /// Rays of one frequency through the mean annual global reference atmosphere (P.835).
 ///
-/// Layers and refraction after ITU-R P.676 Annex 1, section 2.2. As in the figures that the recommendation
-/// publishes, the atmosphere's total pressure stands for that of dry air.
-/// Safe to share between threads.
+/// Layers and refraction after ITU-R P.676 Annex 1, section 2.2. As in the published figures of the
+/// recommendation, the total pressure is used as that of dry air. Safe to share between threads.
 class P528Atmosphere {
  public:
   /// @param frequency_hz  100 MHz to 30 GHz

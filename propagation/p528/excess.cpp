@@ -18,9 +18,7 @@ P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables) {
   const PathExtent& extent = inputs.extent;
   const double surface_msl_m = inputs.surface_msl_m;
   const double tx_m = inputs.site.height_msl_m - surface_msl_m;
-  const auto allowed = [](double height_m) {
-    return std::clamp(height_m, kP528Height.least, kP528Height.most);
-  };
+  const auto allowed = [](double height_m) { return std::clamp(height_m, kP528Height.min, kP528Height.max); };
   P528Excess result;
   result.height_count = kHeights;
   result.range_count = kRanges;

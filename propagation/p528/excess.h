@@ -12,7 +12,7 @@ namespace emscape::propagation {
 
 /// A table of the loss less free space and of the horizon's distance. Heights go by their square root, in
 /// which the horizon's distance is almost linear; ranges by their ratio to that of the horizon, so that lobes
-/// and horizon lie at the same place of neighbouring curves, and densest near it.
+/// and horizon of neighbouring curves are at the same ratio; the nodes are densest near the horizon.
 struct P528Excess {
   static constexpr bool kNeedsTerrain = false;
   static constexpr bool kInParts = false;
@@ -34,8 +34,8 @@ struct P528Excess {
     return 0;
   }
 
-  /// Position of a ratio of ranges among the nodes, 0..1: half of them lie before the horizon, and they crowd
-  /// at it from either side.
+  /// Position of a ratio of ranges among the nodes, 0..1: half of them are before the horizon, and they are
+  /// densest at it on either side.
   static EMSCAPE_HD float positionOf(float ratio, float farthest_ratio) {
     if (ratio <= 1) return 0.5f * (1 - std::sqrt(1 - ratio));
     const float beyond = (ratio - 1) / (farthest_ratio - 1);
@@ -68,7 +68,7 @@ struct P528Excess {
   }
 };
 
-/// @param tables  receives what the result points to
+/// @param tables  receives the tables that the result points to
 P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables);
 
 }  // namespace emscape::propagation

@@ -11,7 +11,7 @@ namespace emscape::propagation {
 
 std::vector<Setting> p528Settings() {
   return {numberSetting<&ModelSettings::p528, &P528Settings::time_percent>(
-      "time_percent", "percent", 0.01, 99.99, "of the time the loss is not exceeded")};
+      "time_percent", "percent", 0.01, 99.99, "percentage of time for which the loss is not exceeded")};
 }
 
 InputFaults checkP528(const EmitterInputs& inputs) {
@@ -29,7 +29,7 @@ Explanation explainP528(const PathInputs& inputs, PathColumn& path) {
   const EmitterInputs& emitter = inputs.emitter;
   const double time_percent = emitter.settings.p528.time_percent;
   const auto allowed = [&](double height_msl_m) {
-    return std::clamp(height_msl_m - inputs.surface_msl_m, kP528Height.least, kP528Height.most);
+    return std::clamp(height_msl_m - inputs.surface_msl_m, kP528Height.min, kP528Height.max);
   };
   const P528Curve curve(std::make_shared<const P528Atmosphere>(emitter.frequency_hz), emitter.frequency_hz,
                         allowed(inputs.site.height_msl_m), allowed(inputs.extent.highest_msl_m),

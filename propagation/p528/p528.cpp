@@ -28,7 +28,7 @@ double freeSpace_db(double frequency_mhz, double length_km) {
   return 20 * std::log10(frequency_mhz) + 20 * std::log10(length_km) + 32.45;
 }
 
-/// Of the ground, without its real part: epsilon_r - i X.
+/// Complex permittivity of the ground: epsilon_r - i X.
 double reactance(double frequency_mhz) {
   return 18000 * kConductivity_s_m / frequency_mhz;
 }
@@ -48,7 +48,7 @@ double diffractionHeightGain_db(double x, double k) {
   return std::max(low_db, -117.0);
 }
 
-/// Finds where a rising function of the grazing angle, 0..pi/2, passes 0.
+/// Root of a rising function of the grazing angle, 0..pi/2.
 template <class Rising>
 double grazingAngleWhere(Rising passes) {
   double low = 0;
@@ -62,7 +62,7 @@ double grazingAngleWhere(Rising passes) {
 
 }  // namespace
 
-/// The direct ray and the one reflected by the ground, where their grazing angle is given [7].
+/// The direct ray and the one reflected by the ground, for a grazing angle [7].
 struct P528Curve::TwoRays {
   double grazing_rad;
   double distance_km;          ///< along the ground
@@ -179,7 +179,7 @@ P528Curve::TwoRays P528Curve::raysAtDelay(double path_difference_km) const {
       grazingAngleWhere([&](double angle) { return raysAt(angle).difference_km > path_difference_km; }));
 }
 
-/// The reflected ray's field where the direct one's is 1, but for the phase by which it comes later [8, 9].
+/// Field of the reflected ray relative to the direct one, without the phase of the path difference [8, 9].
 Complex<double> P528Curve::reflectedField(const TwoRays& rays) const {
   const double sine = std::sin(rays.grazing_rad);
   const Complex<double> ground{kPermittivity, -reactance(frequency_mhz_)};
@@ -196,7 +196,7 @@ Complex<double> P528Curve::reflectedField(const TwoRays& rays) const {
   return (incident - root) / (incident + root) * (divergence * lengths);
 }
 
-/// Of both rays against the direct one alone, at most 0 [8].
+/// Level (dB) of both rays relative to the direct one alone, at most 0 [8].
 double P528Curve::twoRayGain_db(const TwoRays& rays) const {
   if (rays.grazing_rad > last_lobe_rad_) return 0;
   const double lag = 2 * kPi * rays.difference_km / wavelength_km_;
@@ -205,7 +205,7 @@ double P528Curve::twoRayGain_db(const TwoRays& rays) const {
   return 10 * std::log10(std::min(norm(field), 1.0));
 }
 
-/// Where lobes begin and end [6, 8].
+/// Limits of the lobing region [6, 8].
 void P528Curve::setLobing() {
   last_lobe_rad_ = raysAtDelay(wavelength_km_ / 2).grazing_rad;
   // the farthest distance at which two rays in opposition give the free-space level
@@ -247,7 +247,7 @@ P528Curve::LineOfSight P528Curve::lineOfSight(double distance_km, double time_pe
   };
   const P528Slow median = slowAt(50);
 
-  // what is left of the reflected ray as fading (13-2) to (13-4)
+  // the reflected ray's contribution to fading (13-2) to (13-4)
   double steadiness = 1;
   if (median.adjustment_db >= 9) {
     steadiness = 0.1;
@@ -344,11 +344,11 @@ P528Curve::Scatter P528Curve::scatterAt(double distance_km) const {
   return scatter;
 }
 
-/// Where scatter takes over from diffraction: the first kilometre over which its loss grows more slowly [3,
-/// step 6].
+/// Distance at which scatter takes over from diffraction: the first kilometre over which its loss grows more
+/// slowly [3, step 6].
 void P528Curve::setBeyondHorizon() {
   constexpr int kSearched_km = 100;
-  constexpr double kLeastLoss_db = 20;  // below, the scatter model does not hold
+  constexpr double kMinLoss_db = 20;  // below, the scatter model does not hold
   beyond_ = diffraction_;
   lesser_counts_ = true;
   double before_db = std::numeric_limits<double>::quiet_NaN();
@@ -356,7 +356,7 @@ void P528Curve::setBeyondHorizon() {
     scatter_from_km_ = horizon_km_ + 3 + i;
     const double before_km = scatter_from_km_ - 1;
     const double loss_db = scatterAt(scatter_from_km_).loss_db;
-    if (loss_db < kLeastLoss_db) continue;
+    if (loss_db < kMinLoss_db) continue;
     if (loss_db - before_db <= beyond_.slope_db_km) {  // not where before_db is NaN
       lesser_counts_ = before_db >= beyond_.at(before_km);
       if (!lesser_counts_) {

@@ -3,7 +3,7 @@
 ///
 /// Gives the basic transmission loss that is not exceeded for a percentage of time, from the line of sight
 /// through diffraction to scatter, in a mean continental atmosphere, over land of average constants: neither
-/// terrain nor k factor have a part in it.
+/// terrain nor the k factor is used.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@ constexpr const ModelLimit* kP528Limits[] = {&kP528Frequency, &kP528Height, &kP5
 enum class P528Mode { line_of_sight = 1, diffraction = 2, troposcatter = 3 };
 
 struct P528Loss {
-  double loss_db = 0;        ///< basic transmission loss; NaN for a distance or percentage that is refused
+  double loss_db = 0;        ///< basic transmission loss; NaN if the distance or the percentage is refused
   double free_space_db = 0;  ///< part of it, along the ray
   double absorption_db = 0;  ///< part of it, by oxygen and water vapour
   P528Mode mode = P528Mode::line_of_sight;
@@ -39,9 +39,8 @@ struct P528Terminal {
   double horizon_km = 0;            ///< distance along the ground to where it does
 };
 
-/// Loss against distance for one pair of heights. What does not depend on the distance is computed once, at
-/// construction; a point then takes about 0.1 ms.
-/// Safe to share between threads.
+/// Loss against distance for one pair of heights. The terms that do not depend on the distance are computed
+/// once, at construction; a point then takes about 0.1 ms. Safe to share between threads.
 class P528Curve {
  public:
   /// @param atmosphere  of the same frequency; curves of several heights share it
@@ -91,9 +90,9 @@ class P528Curve {
   double horizon_km_;         ///< d_ML: both horizons' distances, summed
   Line diffraction_;
   double horizon_loss_db_;  ///< A_dML: by diffraction, at the horizon
-  double lobing_end_km_;    ///< d_0: where two rays hand over to a line towards the horizon
+  double lobing_end_km_;    ///< d_0: end of the two-ray region; from there a line to the horizon
   double lobing_end_gain_db_;
-  double last_lobe_rad_;    ///< psi_limit: rays steeper than this see no lobes, but free space
+  double last_lobe_rad_;    ///< psi_limit: rays steeper than this have the free-space level, no lobes
   double horizon_k_db_;     ///< of the fading at the horizon
   Line beyond_;             ///< the diffraction line, turned to meet the scatter curve if need be
   double scatter_from_km_;  ///< d_crx

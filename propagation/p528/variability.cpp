@@ -4,12 +4,13 @@
 #include <cmath>
 #include <iterator>
 
+#include "base/device_math.h"
 #include "propagation/itm/variability.h"
 
 namespace emscape::propagation {
 namespace {
 
-// P.528-5 Annex 2, section 17: Nakagami-Rice distributions, a row for each K, a column for each percentage.
+// P.528-5 Annex 2, section 17: Nakagami-Rice distributions, one row per K, one column per percentage.
 constexpr int kPercentages = 17;
 constexpr int kCurves = 17;
 constexpr double kPercentage[kPercentages] = {1,  2,  5,  10, 15, 20, 30, 40, 50,
@@ -37,21 +38,17 @@ constexpr double kFading_db[kCurves][kPercentages] = {
 };
 // clang-format on
 
-/// Place of a value between the entries of a rising list, which bound it.
-struct Place {
+/// Position of a value between two entries of a rising list; values outside the list take its ends.
+struct ListPosition {
   int below;  ///< the entry below; the next one exists
   double fraction;
 };
 template <int kCount>
-Place placeIn(const double (&list)[kCount], double value) {
+ListPosition positionIn(const double (&list)[kCount], double value) {
   const double bounded = std::clamp(value, list[0], list[kCount - 1]);
   const auto above = std::upper_bound(std::begin(list) + 1, std::end(list) - 1, bounded);
   const int below = static_cast<int>(above - std::begin(list)) - 1;
   return {below, (bounded - list[below]) / (list[below + 1] - list[below])};
-}
-
-double between(double low, double high, double fraction) {
-  return low + (high - low) * fraction;
 }
 
 /// Curves of a statistic against the effective distance [TN101, vol. 2, III]: rise to a crest, then fall to a
@@ -68,7 +65,7 @@ constexpr DistanceCurve kAt90{2.93e-4, 3.78e-8, 1.02e-7, 2.00, 2.88, 3.15, 3.2, 
 constexpr DistanceCurve kAt10{5.25e-4, 1.57e-6, 4.70e-7, 1.97, 2.31, 2.90, 5.4, 10.0};    // table III.3, A
 constexpr DistanceCurve kMedian{1.59e-5, 1.56e-11, 2.77e-8, 2.32, 4.08, 3.25, 0.0, 3.9};  // table III.5
 
-// Below 10 % of the time: factor of the spread, and what the level may exceed free space by.
+// Below 10 % of the time: factor of the spread, and the largest level above free space.
 constexpr double kRare[] = {1, 2, 5, 10};
 constexpr double kRareFactor[] = {1.9507, 1.7166, 1.3265, 1.0000};
 constexpr double kRareMost_db[] = {5.0, 4.5, 3.7, 0.0};
@@ -95,9 +92,9 @@ P528Slow p528SlowVariability(double horizons_km, double distance_km, double freq
   const double spread_90_db = kAt90.at(effective_km) * factor_90;
 
   const bool rare = time_percent < kRare[3];
-  const Place place = placeIn(kRare, time_percent);
+  const ListPosition position = positionIn(kRare, time_percent);
   const auto rareValue = [&](const double(&values)[4]) {
-    return between(values[place.below], values[place.below + 1], place.fraction);
+    return lerp(values[position.below], values[position.below + 1], position.fraction);
   };
   double above_median_db = 0;
   if (rare) {
@@ -117,20 +114,19 @@ P528Slow p528SlowVariability(double horizons_km, double distance_km, double freq
 }
 
 double p528Fading_db(double k_db, double time_percent) {
-  const Place curve = placeIn(kK_db, k_db);
-  const Place column = placeIn(kPercentage, time_percent);
+  const ListPosition curve = positionIn(kK_db, k_db);
+  const ListPosition column = positionIn(kPercentage, time_percent);
   const auto at = [&](int percentage) {
-    return between(kFading_db[curve.below][percentage], kFading_db[curve.below + 1][percentage],
-                   curve.fraction);
+    return lerp(kFading_db[curve.below][percentage], kFading_db[curve.below + 1][percentage], curve.fraction);
   };
-  return between(at(column.below), at(column.below + 1), column.fraction);
+  return lerp(at(column.below), at(column.below + 1), column.fraction);
 }
 
 double p528KOfLossAt99Percent_db(double loss_db) {
   double losses_db[kCurves];
   for (int i = 0; i < kCurves; ++i) losses_db[i] = kFading_db[i][kPercentages - 1];
-  const Place place = placeIn(losses_db, loss_db);
-  return between(kK_db[place.below], kK_db[place.below + 1], place.fraction);
+  const ListPosition position = positionIn(losses_db, loss_db);
+  return lerp(kK_db[position.below], kK_db[position.below + 1], position.fraction);
 }
 
 double p528Combined_db(double slow_median_db, double slow_db, double fading_db, double time_percent) {

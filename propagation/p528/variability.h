@@ -3,13 +3,13 @@
 
 namespace emscape::propagation {
 
-/// Least value of K (dB): hardly any fading.
+/// Smallest value of K (dB): almost no fading.
 constexpr double kP528LeastK_db = -40;
 
 /// Slow variability at a percentage of time.
 struct P528Slow {
   double gain_db;        ///< Y_e: above the median without variability
-  double adjustment_db;  ///< A_Y: what keeps the signal from exceeding free space unrealistically
+  double adjustment_db;  ///< A_Y: limits the level above free space
 };
 
 /// @param horizons_km   distance of both terminals' horizons, summed
@@ -27,7 +27,7 @@ double p528Fading_db(double k_db, double time_percent);
 /// K (dB) of the fading whose loss not exceeded for 99 % of the time is given (dB against the median).
 double p528KOfLossAt99Percent_db(double loss_db);
 
-/// Of slow variability and fading together: the level (dB) exceeded for a percentage of time.
+/// Level (dB) exceeded for a percentage of time, with slow variability and fading.
 /// @see P.528-5 Annex 2, section 16
 double p528Combined_db(double slow_median_db, double slow_db, double fading_db, double time_percent);
 

@@ -1,14 +1,14 @@
 /// The models that have an excess loss per column, as the field sees them.
 ///
 /// A model is a plain struct with
-///     static constexpr bool kNeedsTerrain;  // whether a column's profile is read for it
-///     static constexpr bool kInParts;       // whether it is made of begin() and fill()
+///     static constexpr bool kNeedsTerrain;  // true: it reads the column's profile
+///     static constexpr bool kInParts;       // true: it has begin() and fill()
 ///     EMSCAPE_HD unsigned operator()(const ExcessColumn&, const ExcessScratch&, float* excess_db) const;
-/// which fills the excess (dB) of a column's voxels and returns remarks (bits). It runs on host and device.
-/// On a device that has more threads than columns fit into its memory, begin() does what comes once for a
-/// column and fill(), which also takes a ColumnPart, some of the heights of many. begin() returns 0, or
-/// kMissingTerrain with NaN for every voxel; then there is nothing to fill. A model with a member `tables`
-/// (const float*) has that point to its tables, on the host or on the device.
+/// which fills the excess (dB) of a column's voxels and returns warnings (bits). It runs on host and device.
+/// On a device with more threads than columns that fit into its memory, begin() runs once per column, and
+/// fill(), which also takes a ColumnPart, in several threads per column, each for some of its heights.
+/// begin() returns 0, or kMissingTerrain with NaN for every voxel; then there is nothing to fill. A model
+/// with a member `tables` (const float*) has that point to its tables, on the host or on the device.
 #pragma once
 
 #include <variant>

@@ -1,5 +1,5 @@
-/// The registry of propagation models: one row per model, from which the schema of scenarios, its validation,
-/// warnings, explanations and the field take what they need to know of a model.
+/// The registry of propagation models: one row per model, which the scenario schema, validation, warnings,
+/// explanations and the field read.
 #pragma once
 
 #include <string>
@@ -15,10 +15,10 @@
 
 namespace emscape::propagation {
 
-/// What a model does about oxygen and water vapour.
+/// Treatment of oxygen and water vapour by a model.
 enum class GasRole {
-  on_request,  ///< a bound: counted only if the atmosphere says `always`
-  added,       ///< counted unless the atmosphere says `never`
+  on_request,  ///< the model is a bound: added only if the atmosphere's `gases` is `always`
+  added,       ///< added unless the atmosphere's `gases` is `never`
   included     ///< in the model's own loss
 };
 
@@ -26,31 +26,31 @@ struct ModelInfo {
   PropagationModel model = PropagationModel::free_space;
   std::string name;       ///< as in scenario files
   std::string reference;  ///< the publication that the model follows
-  /// Keys of the model's own section in an emitter, and what the section is for; none: no section.
+  /// Keys of the model's own section in an emitter, and its description; none: no section.
   std::vector<Setting> settings;
   std::string settings_description;
-  std::vector<PropagationModel> also_uses;  ///< models whose settings enter, too
+  std::vector<PropagationModel> also_uses;  ///< other models whose settings are read
   std::vector<const ModelLimit*> limits;
-  std::vector<std::string> reference_datasets;  ///< of `emscape check` that hold the model to figures
+  std::vector<std::string> reference_datasets;  ///< of `emscape check` that test the model
 
   GasRole gases = GasRole::added;
   bool casts_shadow = false;       ///< no field behind terrain
   bool on_smooth_surface = false;  ///< PathInputs::surface_msl_m is read
   bool needs_extent = false;       ///< PathInputs::extent is read to make the excess
 
-  /// What can be said before anything is computed.
+  /// Checks before anything is computed.
   InputFaults (*check)(const EmitterInputs&) = [](const EmitterInputs&) { return InputFaults{}; };
-  /// Warnings from where the emitter stands and where its paths end.
+  /// Warnings that depend on the emitter's site and the extent of its paths.
   std::vector<std::string> (*pathWarnings)(const PathInputs&) = [](const PathInputs&) {
     return std::vector<std::string>{};
   };
-  /// What the remarks (bits) of the excess model mean, one line each; those on missing terrain left out.
-  std::vector<std::string> (*remarkMessages)(unsigned remarks) = [](unsigned) {
+  /// Texts of the excess model's warning bits, one line each, without missing terrain.
+  std::vector<std::string> (*warningMessages)(unsigned warnings) = [](unsigned) {
     return std::vector<std::string>{};
   };
-  /// What the loss of one path is made of, without the air.
+  /// The parts of the loss of one path, without the air.
   Explanation (*explain)(const PathInputs&, PathColumn&) = nullptr;
-  /// The excess per column; null: the model has none. `tables` receives what the result points to.
+  /// Makes the excess model; null: there is none. `tables` receives the data that the result points to.
   ExcessModel (*excess)(const PathInputs&, std::vector<float>& tables) = nullptr;
 };
 
@@ -60,19 +60,19 @@ const ModelInfo& modelInfo(PropagationModel model);
 /// Null if no model has the name.
 const ModelInfo* modelNamed(const std::string& name);
 
-/// Whether the settings of one model enter when another is chosen, or itself.
+/// True if a model reads the settings of another model, or its own.
 bool settingsEnter(const ModelInfo& settings_of, const ModelInfo& chosen);
 
-/// Whether an emitter's paths lose to oxygen and water vapour beside what the model says.
+/// True if attenuation by oxygen and water vapour is added to the model's loss.
 bool hasGases(const EmitterInputs& inputs);
-/// Whether they lose to gases or rain.
+/// True if attenuation by gases or rain is added.
 bool hasAirLoss(const EmitterInputs& inputs);
-/// Whether the paths have an excess: not by a model without one in clear air.
+/// True if the paths have an excess loss, of the model or of the air.
 bool hasExcess(const EmitterInputs& inputs);
-/// Whether PathInputs::extent is read.
+/// True if PathInputs::extent is read.
 bool needsExtent(const EmitterInputs& inputs);
 
-/// Whether two settings choose the same model and agree in all values.
+/// True if two settings choose the same model and agree in all values.
 bool areSame(const ModelSettings& a, const ModelSettings& b);
 
 }  // namespace emscape::propagation

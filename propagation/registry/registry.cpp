@@ -49,7 +49,7 @@ ModelInfo horizonRow() {
 ModelInfo diffractionRow() {
   ModelInfo row = rowOf(PropagationModel::diffraction, "ITU-R P.526-15, section 4.5");
   row.settings = diffractionSettings();
-  row.settings_description = "how; also above itm's heights";
+  row.settings_description = "settings of the model; also used above itm's heights";
   row.limits = listOf(kDiffractionLimits);
   row.reference_datasets = {"p526_delta_bullington", "radar/knife_edge_J_nu_derived.csv"};
   row.check = checkDiffraction;
@@ -66,7 +66,7 @@ ModelInfo diffractionRow() {
 ModelInfo twoRayRow() {
   ModelInfo row = rowOf(PropagationModel::two_ray, "Blake 1980; ITU-R P.526-15, P.527-6");
   row.settings = twoRaySettings();
-  row.settings_description = "how";
+  row.settings_description = "settings of the model";
   row.limits = listOf(kTwoRayLimits);
   row.reference_datasets = {"radar/two_ray_flat_pec_derived.csv"};
   row.on_smooth_surface = true;
@@ -82,13 +82,13 @@ ModelInfo twoRayRow() {
 ModelInfo itmRow() {
   ModelInfo row = rowOf(PropagationModel::itm, "NTIA Report 82-100");
   row.settings = itmSettings();
-  row.settings_description = "how";
+  row.settings_description = "settings of the model";
   row.also_uses = {PropagationModel::diffraction};
   row.limits = listOf(kItmLimits);
   row.reference_datasets = {"itm_p2p", "itm_p2p_published", "itm_area"};
   row.check = checkItm;
   row.pathWarnings = diffractionPathWarnings;
-  row.remarkMessages = itmRemarkMessages;
+  row.warningMessages = itmWarningMessages;
   row.explain = explainItm;
   row.excess = [](const PathInputs& inputs, std::vector<float>&) -> ExcessModel { return itmExcess(inputs); };
   return row;
@@ -97,7 +97,7 @@ ModelInfo itmRow() {
 ModelInfo p528Row() {
   ModelInfo row = rowOf(PropagationModel::p528, "ITU-R P.528-5");
   row.settings = p528Settings();
-  row.settings_description = "how";
+  row.settings_description = "settings of the model";
   row.limits = listOf(kP528Limits);
   row.reference_datasets = {"p528"};
   row.gases = GasRole::included;

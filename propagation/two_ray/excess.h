@@ -9,12 +9,12 @@
 
 namespace emscape::propagation {
 
-/// In double precision: phases are differences of paths in wavelengths, which may be many.
+/// In double precision: phases are path differences of many wavelengths.
 struct TwoRayExcess {
   static constexpr bool kNeedsTerrain = false;
   static constexpr bool kInParts = false;
 
-  TwoRayModel<double> model;  ///< of horizontal polarisation, if both enter
+  TwoRayModel<double> model;  ///< of horizontal polarisation, if `both`
   TwoRayModel<double> vertical;
   bool both = false;  ///< slanted or circular: half of the power each
   double surface_msl_m = 0;

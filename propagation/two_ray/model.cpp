@@ -7,9 +7,9 @@ namespace emscape::propagation {
 std::vector<Setting> twoRaySettings() {
   return {choiceSetting<&ModelSettings::two_ray, &TwoRaySettings::sum>(
               "sum", TwoRaySum::envelope,
-              "coherent: lobes and nulls; envelope: the lobes' tops, where voxels are larger than lobes"),
+              "coherent: lobes and nulls; envelope: the maxima of the lobes, for voxels larger than lobes"),
           choiceSetting<&ModelSettings::two_ray, &TwoRaySettings::roughness_model>(
-              "roughness_model", RoughnessModel::miller_brown, "what roughness leaves of the reflection")};
+              "roughness_model", RoughnessModel::miller_brown, "reduction of the reflection by roughness")};
 }
 
 InputFaults checkTwoRay(const EmitterInputs& inputs) {

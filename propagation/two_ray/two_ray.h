@@ -1,16 +1,16 @@
 /// Model `two_ray`: the direct ray and the one that a smooth spherical earth or sea reflects, and their
 /// interference (lobing).
 ///
-/// The reflected ray has Fresnel's coefficient of its ground and polarisation, less what roughness scatters
-/// and what the curved surface spreads. Where the direct ray clears the earth by less than 0.552 Fresnel
-/// radii the loss goes over to diffraction, in proportion to what of that clearance is left; beyond the
-/// horizon it is the spherical earth's alone:
+/// The reflected ray has Fresnel's coefficient of its ground and polarisation, reduced by roughness and by
+/// the divergence of the curved surface. Where the direct ray clears the earth by less than 0.552 Fresnel
+/// radii the loss changes to diffraction, linearly in the remaining clearance; beyond the horizon it is that
+/// of the spherical earth alone:
 ///   L = q L_two-ray + (1 - q) L_first-term(a_m), q = clearance / required clearance, 0..1
 /// which is P.526's interpolation (section 3.2) with the interference in place of 0 dB. It is continuous in
 /// range, heights and frequency.
 ///
-/// No terrain: heights are above one smooth surface. Antennas are taken to point alike along both rays, but
-/// for `reflected_gain`.
+/// No terrain: heights are above one smooth surface. The antenna gain is the same along both rays, except for
+/// `reflected_gain`.
 #pragma once
 
 #include <cmath>
@@ -86,7 +86,7 @@ EMSCAPE_HD Real scaledBesselI0(Real z) {
          std::sqrt(z);
 }
 
-/// Part (0..1) of the reflection that stays coherent.
+/// Coherent fraction (0..1) of the reflection.
 /// @param sine  of the grazing angle
 template <class Real>
 EMSCAPE_HD Real roughnessFactor(RoughnessModel model, Real roughness_m, Real sine, Real wavelength_m) {
@@ -136,7 +136,7 @@ struct ReflectedPath {
 /// @param distance_m            along the surface, > 0
 /// @param height1_m, height2_m  > 0, within their common horizon
 /// @see P.526-15 eq. (25) for the point; Blake 1980, eq. (6.29) for the divergence, D^-2 = 1 + 2 d1 d2 / (a d
-/// sin psi); the difference of the paths is exact for the angles that these have, without cancellation:
+/// sin psi); the path difference is exact for these angles, without cancellation:
 /// (r1 + r2)^2 - r^2 = 4 r1 r2 sin^2 psi
 template <class Real>
 EMSCAPE_HD ReflectedPath<Real> reflectedPath(Real earth_radius_m, Real distance_m, Real height1_m,
@@ -150,13 +150,13 @@ EMSCAPE_HD ReflectedPath<Real> reflectedPath(Real earth_radius_m, Real distance_
     return std::sqrt((to_m - from_m) * (to_m - from_m) +
                      chord * chord * (1 + from_m / earth_radius_m) * (1 + to_m / earth_radius_m));
   };
-  // height over the plane that touches the earth at the point
+  // height above the tangent plane at the point
   const auto overPlane = [&](Real range_m, Real height_m) {
     const Real half_sine = std::sin(range_m / (2 * earth_radius_m));
     return height_m - 2 * (earth_radius_m + height_m) * half_sine * half_sine;
   };
   const Real r1 = length(d1, 0, low), r2 = length(d2, 0, high), r = length(distance_m, low, high);
-  // The point is the reflection's to a part of height over radius: take the mean of the two angles.
+  // The point is exact to a relative error of height over radius: use the mean of the two angles.
   const Real sine = (overPlane(d1, low) / r1 + overPlane(d2, high) / r2) / 2;
   ReflectedPath<Real> path;
   path.sine = sine > 0 ? sine : Real(0);
@@ -184,16 +184,16 @@ EMSCAPE_HD Real interferenceFactor(const TwoRayModel<Real>& model, const Reflect
 }
 
 /// Loss (dB) over free space; negative in the lobes.
-/// @param distance_m            along the surface; below 1 m it counts as that
+/// @param distance_m            along the surface; below 1 m: 1 m
 /// @param height1_m, height2_m  above the surface; see kTwoRayHeight
-/// @return in the nulls no more than 60 dB
+/// @return at most 60 dB, in the nulls
 /// @accuracy float within 0.05 dB of double outside the nulls, where F > -20 dB, up to 1e4 wavelengths of
 /// path difference
 template <class Real>
 EMSCAPE_HD Real twoRayExcessDb(const TwoRayModel<Real>& model, Real distance_m, Real height1_m,
                                Real height2_m, Real reflected_gain = 1) {
-  constexpr Real kDeepestNull = Real(1e-3);
-  const Real lowest = Real(kTwoRayHeight.least);
+  constexpr Real kMinFieldFactor = Real(1e-3);
+  const Real lowest = Real(kTwoRayHeight.min);
   const Real h1 = height1_m > lowest ? height1_m : lowest, h2 = height2_m > lowest ? height2_m : lowest;
   const Real radius_m = model.earth.earth_radius_m;
   distance_m = distance_m < 1 ? Real(1) : distance_m;  // straight above: finite
@@ -203,7 +203,8 @@ EMSCAPE_HD Real twoRayExcessDb(const TwoRayModel<Real>& model, Real distance_m, 
     return loss_db > 0 ? loss_db : Real(0);
   }
   const Real factor = interferenceFactor(model, reflectedPath(radius_m, distance_m, h1, h2), reflected_gain);
-  const Real interference_db = -kDbPerNeper<Real> * std::log(factor > kDeepestNull ? factor : kDeepestNull);
+  const Real interference_db =
+      -kDbPerNeper<Real> * std::log(factor > kMinFieldFactor ? factor : kMinFieldFactor);
   const LeastClearance<Real> least = leastClearance(model.earth, distance_m, h1, h2);
   const Real part = least.clearance_m / least.required_m;
   if (part >= 1) return interference_db;

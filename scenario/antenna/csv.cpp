@@ -29,14 +29,14 @@ struct ColumnSpec {
 };
 constexpr ColumnSpec kAzimuth{"azimuth_deg", -360, 360, "deg"};
 constexpr ColumnSpec kElevation{"elevation_deg", -90, 90, "deg"};
-constexpr ColumnSpec kAttenuation{"attenuation_db", 0, kMostAttenuation_db, "dB"};
+constexpr ColumnSpec kAttenuation{"attenuation_db", 0, kMaxAttenuation_db, "dB"};
 
 struct GridRow {
-  std::array<double, 3> values{};  ///< in the order of the columns asked for, of which there are two or three
+  std::array<double, 3> values{};  ///< in the order of the requested columns, two or three
   int line = 0;
 };
 
-/// The rows of a table with exactly the columns asked for, in any order.
+/// The rows of a table with exactly the requested columns, in any order.
 std::vector<GridRow> readRows(const AntennaText& text, const std::vector<ColumnSpec>& columns) {
   int line = 1;
   const auto fail = [&](const CsvCell& cell, const std::string& message) {
@@ -59,9 +59,9 @@ std::vector<GridRow> readRows(const AntennaText& text, const std::vector<ColumnS
     if (column == columns.end()) {
       fail(header[i], fmt::format("unknown column '{}'; the header should be {}", header[i].text, wanted));
     }
-    std::size_t& place = position[static_cast<std::size_t>(column - columns.begin())];
-    if (place < header.size()) fail(header[i], fmt::format("column '{}' stands here twice", header[i].text));
-    place = i;
+    std::size_t& index = position[static_cast<std::size_t>(column - columns.begin())];
+    if (index < header.size()) fail(header[i], fmt::format("column '{}' occurs twice", header[i].text));
+    index = i;
   }
   if (header.size() < columns.size())
     fail(header.front(), fmt::format("missing column; the header should be {}", wanted));
@@ -133,9 +133,8 @@ std::vector<double> inGridOrder(std::vector<GridRow> rows, const MeasuredAxis& a
       if (rows[row].values[2] == attenuations_db.back()) continue;
       throw Error(
           ErrorCode::bad_input, {file.file, rows[row].line, 1},
-          fmt::format(
-              "azimuth {} deg, elevation {} deg stands here a second time, with {} dB instead of {} dB",
-              pair.second, pair.first, rows[row].values[2], attenuations_db.back()));
+          fmt::format("azimuth {} deg, elevation {} deg occurs a second time, with {} dB instead of {} dB",
+                      pair.second, pair.first, rows[row].values[2], attenuations_db.back()));
     }
   }
   return attenuations_db;
@@ -155,7 +154,7 @@ AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& eleva
 
 AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
   requireGain(gain_dbi);
-  const SourceLocation place{file, 0, 0};
+  const SourceLocation location{file, 0, 0};
   const AntennaText text(file);
   std::vector<GridRow> rows = readRows(text, {kElevation, kAzimuth, kAttenuation});
   std::vector<double> azimuths_deg, elevations_deg;
@@ -163,23 +162,23 @@ AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
     elevations_deg.push_back(row.values[0] = MeasuredAxis::normalized(AxisKind::elevation, row.values[0]));
     azimuths_deg.push_back(row.values[1] = MeasuredAxis::normalized(AxisKind::circle, row.values[1]));
   }
-  const MeasuredAxis azimuth(AxisKind::circle, std::move(azimuths_deg), place, "grid's azimuths");
-  const MeasuredAxis elevation(AxisKind::elevation, std::move(elevations_deg), place, "grid's elevations");
+  const MeasuredAxis azimuth(AxisKind::circle, std::move(azimuths_deg), location, "grid's azimuths");
+  const MeasuredAxis elevation(AxisKind::elevation, std::move(elevations_deg), location, "grid's elevations");
 
-  const std::vector<double> attenuations_db = inGridOrder(std::move(rows), azimuth, elevation, place);
-  requireMaximum(*std::min_element(attenuations_db.begin(), attenuations_db.end()), place, "grid");
+  const std::vector<double> attenuations_db = inGridOrder(std::move(rows), azimuth, elevation, location);
+  requireMaximum(*std::min_element(attenuations_db.begin(), attenuations_db.end()), location, "grid");
   std::vector<double> measured(attenuations_db.size());
   std::transform(attenuations_db.begin(), attenuations_db.end(), measured.begin(), amplitudeOfAttenuation);
 
   const GridNodes nodes = gridNodes(azimuth.angles_deg(), elevation.angles_deg());
-  std::vector<AxisPlace> columns;
+  std::vector<AxisSample> columns;
   for (const double azimuth_deg : nodes.azimuths_deg) columns.push_back(azimuth.locate(azimuth_deg));
   std::vector<float> amplitudes;
   for (const double elevation_deg : nodes.elevations_deg) {
-    const AxisPlace e = elevation.locate(elevation_deg);
+    const AxisSample e = elevation.locate(elevation_deg);
     const double* below = &measured[e.below * azimuth.angles_deg().size()];
     const double* above = &measured[e.above * azimuth.angles_deg().size()];
-    for (const AxisPlace& a : columns) {
+    for (const AxisSample& a : columns) {
       const double at_below = below[a.below] + a.fraction * (below[a.above] - below[a.below]);
       const double at_above = above[a.below] + a.fraction * (above[a.above] - above[a.below]);
       amplitudes.push_back(static_cast<float>(at_below + e.fraction * (at_above - at_below)));
@@ -192,7 +191,7 @@ AntennaPtr readAntenna(const std::string& file, double gain_dbi) {
   if (upperCase(std::filesystem::path(file).extension().string()) != ".CSV") return readMsi(file, gain_dbi);
   if (std::isnan(gain_dbi)) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
-                "a CSV grid holds no gain; gain_dbi must be given beside the file");
+                "a CSV grid has no gain; gain_dbi must be given with the file");
   }
   return readCsvGrid(file, gain_dbi);
 }

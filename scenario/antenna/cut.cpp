@@ -22,10 +22,10 @@ MeasuredAxis::MeasuredAxis(AxisKind kind, std::vector<double> angles_deg, const 
   for (std::size_t i = 0; i + (closes ? 0 : 1) < angles_deg_.size(); ++i) {
     const bool last = i + 1 == angles_deg_.size();
     const double next = last ? angles_deg_.front() + 360 : angles_deg_[i + 1];
-    if (next - angles_deg_[i] > kLargestGap_deg) {
+    if (next - angles_deg_[i] > kMaxGap_deg) {
       throw Error(ErrorCode::bad_input, file,
                   fmt::format("the {} has no rows between {} and {} deg; gaps of up to {} deg are allowed",
-                              what, angles_deg_[i], last ? angles_deg_.front() : next, kLargestGap_deg));
+                              what, angles_deg_[i], last ? angles_deg_.front() : next, kMaxGap_deg));
     }
   }
 }
@@ -43,7 +43,7 @@ std::size_t MeasuredAxis::indexOf(double normalized_deg) const {
                                   angles_deg_.begin());
 }
 
-AxisPlace MeasuredAxis::locate(double angle_deg) const {
+AxisSample MeasuredAxis::locate(double angle_deg) const {
   const std::size_t count = angles_deg_.size();
   if (kind_ == AxisKind::circle) {
     const double angle = std::remainder(angle_deg, 360.0);
@@ -92,8 +92,9 @@ MeasuredCut::MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const SourceLo
 }
 
 double MeasuredCut::amplitudeAt(double angle_deg) const {
-  const AxisPlace place = axis_.locate(angle_deg);
-  return amplitudes_[place.below] + place.fraction * (amplitudes_[place.above] - amplitudes_[place.below]);
+  const AxisSample sample = axis_.locate(angle_deg);
+  return amplitudes_[sample.below] +
+         sample.fraction * (amplitudes_[sample.above] - amplitudes_[sample.below]);
 }
 
 double MeasuredCut::attenuationAt_db(double angle_deg) const {

@@ -11,8 +11,8 @@ namespace emscape::scenario {
 /// Full circle (azimuths, whole vertical cuts) or elevations from -90 to 90 degrees.
 enum class AxisKind { circle, elevation };
 
-/// Two neighbours on an axis and the place between them.
-struct AxisPlace {
+/// Two neighbours on an axis and a position between them.
+struct AxisSample {
   std::size_t below = 0, above = 0;
   double fraction = 0;  ///< 0..1, from below to above
 };
@@ -21,23 +21,22 @@ struct AxisPlace {
 /// -90..90.
 class MeasuredAxis {
  public:
-  /// Largest distance (deg) of neighbours: to fill in more would be invention.
-  static constexpr double kLargestGap_deg = 90;
+  /// Largest gap (deg) between neighbours that is interpolated.
+  static constexpr double kMaxGap_deg = 90;
 
-  /// @param angles_deg  in any order and number, each as brought by normalized()
+  /// @param angles_deg  in any order and number, each as returned by normalized()
   /// @param file, what  name the axis in errors
   /// @throws Error (bad_input) naming the gap if they do not cover the axis
   MeasuredAxis(AxisKind kind, std::vector<double> angles_deg, const SourceLocation& file, const char* what);
 
-  /// An angle as axes hold it: in the kind's range and rounded to 1e-6 degree, so that equal angles are equal
-  /// numbers.
+  /// An angle in the range of the kind and rounded to 1e-6 degree, so that equal angles are equal numbers.
   static double normalized(AxisKind kind, double angle_deg);
 
   const std::vector<double>& angles_deg() const { return angles_deg_; }
-  /// Index of an angle of the axis itself.
+  /// Index of one of the axis's own angles.
   std::size_t indexOf(double normalized_deg) const;
-  /// Place of any angle of the kind's range (circle: any angle).
-  AxisPlace locate(double angle_deg) const;
+  /// Position of any angle in the kind's range (circle: any angle).
+  AxisSample locate(double angle_deg) const;
 
  private:
   AxisKind kind_;
@@ -48,7 +47,7 @@ class MeasuredAxis {
 struct CutRow {
   double angle_deg = 0;
   double attenuation_db = 0;  ///< below the maximum
-  int line = 0, column = 0;   ///< where it stands
+  int line = 0, column = 0;   ///< of its text in the file
 };
 
 /// Amplitude by angle, linear in amplitude between the rows.
@@ -70,13 +69,13 @@ class MeasuredCut {
   std::vector<double> amplitudes_;
 };
 
-/// Attenuations (dB) as files may hold them.
-constexpr double kMostAttenuation_db = 300;
+/// Largest attenuation (dB) that files may contain.
+constexpr double kMaxAttenuation_db = 300;
 
 /// Relative voltage of an attenuation.
 double amplitudeOfAttenuation(double attenuation_db);
 
-/// @throws Error (bad_input) unless the smallest attenuation is within 1 dB of 0, as it is where values are
+/// @throws Error (bad_input) unless the smallest attenuation is within 1 dB of 0, which holds for values
 /// relative to the maximum
 void requireMaximum(double smallest_attenuation_db, const SourceLocation& file, const char* what);
 

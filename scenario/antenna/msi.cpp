@@ -1,4 +1,4 @@
-/// MSI/Planet antenna files, and the pattern in space that their two cuts are taken to mean.
+/// MSI/Planet antenna files, and the interpolation of a pattern in space from their two cuts.
 ///
 /// The file gives the attenuation in the horizontal plane, H(azimuth), and in the vertical plane through
 /// boresight, V(angle), whose angle runs from the horizon ahead (0) downwards to the nadir (90), the horizon
@@ -48,7 +48,7 @@ class MsiReader {
 
  private:
   [[noreturn]] void fail(const TextField& field, const std::string& message) const {
-    throw Error(ErrorCode::bad_input, text_.place(field), message);
+    throw Error(ErrorCode::bad_input, text_.location(field), message);
   }
 
   void readKeyword(const TextField& line) {
@@ -64,7 +64,7 @@ class MsiReader {
     } else if (keyword == "NAME") {
       content_.name = std::string(value.text);
     } else if (keyword == "TILT" || keyword == "ELECTRICAL_TILT") {
-      // TILT often holds a word (ELECTRICAL, MECHANICAL) instead of an angle.
+      // TILT often contains a word (ELECTRICAL, MECHANICAL) instead of an angle.
       if (const auto tilt_deg = numberIn(value.text)) content_.tilt_deg = tilt_deg;
     } else if (numberIn(words[0].text)) {
       fail(line,
@@ -72,18 +72,18 @@ class MsiReader {
                "'{}' is a row of numbers outside a HORIZONTAL or VERTICAL cut; more rows than announced?",
                line.text));
     }
-    // All other keywords say nothing of the pattern; makers add their own.
+    // Other keywords do not describe the pattern; manufacturers add their own.
   }
 
   void readCut(const std::vector<TextField>& words, std::vector<CutRow>& rows) {
-    constexpr int kFewestRows = 4;
-    constexpr int kMostRows = 36000;
+    constexpr int kMinRows = 4;
+    constexpr int kMaxRows = 36000;
     if (!rows.empty()) fail(words[0], fmt::format("a second {} cut", words[0].text));
     const std::optional<double> count = words.size() == 2 ? numberIn(words[1].text) : std::nullopt;
-    if (!count || *count != std::floor(*count) || *count < kFewestRows || *count > kMostRows) {
+    if (!count || *count != std::floor(*count) || *count < kMinRows || *count > kMaxRows) {
       fail(words.size() < 2 ? words[0] : words[1],
-           fmt::format("{} must be followed by its number of rows, {} to {}", words[0].text, kFewestRows,
-                       kMostRows));
+           fmt::format("{} must be followed by its number of rows, {} to {}", words[0].text, kMinRows,
+                       kMaxRows));
     }
     for (int i = 1; i <= static_cast<int>(*count); ++i) {
       if (next_ == text_.lines().size()) {
@@ -100,7 +100,7 @@ class MsiReader {
       fail(line, fmt::format("{} is '{}'; it should be an angle and an attenuation", what, line.text));
     }
     const double angle_deg = numberWithin(words[0], -360, 360, what + ": angle", "deg");
-    return {angle_deg, numberWithin(words[1], 0, kMostAttenuation_db, what + ": attenuation", "dB"),
+    return {angle_deg, numberWithin(words[1], 0, kMaxAttenuation_db, what + ": attenuation", "dB"),
             words[0].line, words[0].column};
   }
 
@@ -145,7 +145,7 @@ double peakAngle_deg(const MeasuredCut& cut) {
                            [&](double a, double b) { return cut.amplitudeAt(a) < cut.amplitudeAt(b); });
 }
 
-/// A tilt that differs by more from where the cut has its maximum is worth a warning.
+/// Difference (deg) of the stated tilt and the cut's maximum above which a warning is given.
 constexpr double kTiltTolerance_deg = 2;
 
 }  // namespace
@@ -153,24 +153,24 @@ constexpr double kTiltTolerance_deg = 2;
 AntennaPtr readMsi(const std::string& file, double gain_dbi) {
   const AntennaText text(file);
   MsiFile content = MsiReader(text).read();
-  const SourceLocation place{file, 0, 0};
+  const SourceLocation location{file, 0, 0};
   if (content.horizontal.empty())
-    throw Error(ErrorCode::bad_input, place, "no HORIZONTAL cut: not an MSI antenna file?");
-  if (content.vertical.empty()) throw Error(ErrorCode::bad_input, place, "no VERTICAL cut");
+    throw Error(ErrorCode::bad_input, location, "no HORIZONTAL cut: not an MSI antenna file?");
+  if (content.vertical.empty()) throw Error(ErrorCode::bad_input, location, "no VERTICAL cut");
   if (std::isnan(gain_dbi)) {
     if (!content.gain_dbi)
-      throw Error(ErrorCode::bad_input, place, "no GAIN, and gain_dbi is not given beside the file");
+      throw Error(ErrorCode::bad_input, location, "no GAIN, and gain_dbi is not given with the file");
     gain_dbi = *content.gain_dbi;
   }
   requireGain(gain_dbi);
-  // The horizontal cut may lie off the maximum of a tilted beam; the vertical one passes through it.
-  requireMaximum(smallestAttenuation_db(content.vertical), place, "VERTICAL cut");
-  const MeasuredCut horizontal(AxisKind::circle, std::move(content.horizontal), place, "HORIZONTAL cut");
-  const MeasuredCut vertical(AxisKind::circle, std::move(content.vertical), place, "VERTICAL cut");
+  // The horizontal cut may miss the maximum of a tilted beam; the vertical one passes through it.
+  requireMaximum(smallestAttenuation_db(content.vertical), location, "VERTICAL cut");
+  const MeasuredCut horizontal(AxisKind::circle, std::move(content.horizontal), location, "HORIZONTAL cut");
+  const MeasuredCut vertical(AxisKind::circle, std::move(content.vertical), location, "VERTICAL cut");
 
   if (content.tilt_deg && std::abs(peakAngle_deg(vertical) - *content.tilt_deg) > kTiltTolerance_deg) {
     logWarning(fmt::format(
-        "{}: the file tells of {} deg of tilt, but its VERTICAL cut has its maximum at {} deg; the cut is "
+        "{}: the file states {} deg of tilt, but its VERTICAL cut has its maximum at {} deg; the cut is "
         "used as it stands",
         file, *content.tilt_deg, peakAngle_deg(vertical)));
   }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/device_math.h"
 #include "base/fast_math.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
@@ -22,28 +23,26 @@ EMSCAPE_HD inline PatternAngles anglesOf(const Vec3f& direction) {
   return {fastAtan2(direction.y, direction.x), fastAtan2(direction.z, level)};
 }
 
-/// A place between entries `index` and `index + 1` of a table.
-struct TablePlace {
+/// A position between entries `index` and `index + 1` of a table.
+struct TableCell {
   int index;
   float fraction;  ///< 0..1
 };
-/// The place of x in a uniform table of `count` entries, odd, over -half_span..half_span. Counted from the
-/// middle, so that small x keep their digits. Outside the table: its last interval, extrapolated; NaN: an
+/// The position of x in a uniform table of `count` entries, odd, over -half_span..half_span. Counted from the
+/// middle, so that small x keep their precision. Outside the table: its last interval, extrapolated; NaN: an
 /// interval of the table.
-EMSCAPE_HD inline TablePlace placeInTable(float x, float half_span, int count) {
+EMSCAPE_HD inline TableCell cellInTable(float x, float half_span, int count) {
   const int middle = count / 2;
   const float t = x * (static_cast<float>(middle) / half_span);
-  // Rounding t - 1/2 is floor(t); at a tie either neighbour will do, for the interpolation is continuous.
+  // Rounding t - 1/2 is floor(t); at a tie either neighbour is correct, because the interpolation is
+  // continuous.
   const int below = static_cast<int>(fast_math_detail::roundToInt(t - 0.5f).as_int);
   const int above_low = below < -middle ? -middle : below;
   const int bounded = above_low > middle - 1 ? middle - 1 : above_low;
   return {bounded + middle, t - static_cast<float>(bounded)};
 }
-EMSCAPE_HD inline float mix(float from, float to, float fraction) {
-  return from + fraction * (to - from);
-}
-EMSCAPE_HD inline float atPlace(const float* table, const TablePlace& place) {
-  return mix(table[place.index], table[place.index + 1], place.fraction);
+EMSCAPE_HD inline float atCell(const float* table, const TableCell& cell) {
+  return lerp(table[cell.index], table[cell.index + 1], cell.fraction);
 }
 EMSCAPE_HD inline float larger(float a, float b) {
   return a < b ? b : a;
@@ -59,37 +58,37 @@ EMSCAPE_HD inline float gaussianAmplitude(const PatternView& pattern, const Vec3
 
 EMSCAPE_HD inline float separableAmplitude(const PatternView& pattern, const Vec3f& direction) {
   const PatternAngles angles = anglesOf(direction);
-  const TablePlace azimuth = placeInTable(angles.azimuth_rad, float(kPi), pattern.azimuth_count);
-  const TablePlace elevation = placeInTable(angles.elevation_rad, float(kPi / 2), pattern.elevation_count);
-  const float product = atPlace(pattern.azimuth_table, azimuth) * atPlace(pattern.elevation_table, elevation);
+  const TableCell azimuth = cellInTable(angles.azimuth_rad, float(kPi), pattern.azimuth_count);
+  const TableCell elevation = cellInTable(angles.elevation_rad, float(kPi / 2), pattern.elevation_count);
+  const float product = atCell(pattern.azimuth_table, azimuth) * atCell(pattern.elevation_table, elevation);
   return larger(std::fabs(product), pattern.side_lobe_amplitude);
 }
 
 EMSCAPE_HD inline float phasedArrayAmplitude(const PatternView& pattern, const Vec3f& direction,
                                              float steer_u, float steer_v) {
-  const TablePlace u = placeInTable(direction.y - steer_u, 2.0f, pattern.azimuth_count);
-  const TablePlace v = placeInTable(direction.z - steer_v, 2.0f, pattern.elevation_count);
-  const float array = std::fabs(atPlace(pattern.azimuth_table, u) * atPlace(pattern.elevation_table, v));
+  const TableCell u = cellInTable(direction.y - steer_u, 2.0f, pattern.azimuth_count);
+  const TableCell v = cellInTable(direction.z - steer_v, 2.0f, pattern.elevation_count);
+  const float array = std::fabs(atCell(pattern.azimuth_table, u) * atCell(pattern.elevation_table, v));
   const float element = fastExp2(pattern.element_exponent * fastLog2(direction.x));
   return direction.x > 0.0f ? array * element : pattern.side_lobe_amplitude;
 }
 
 EMSCAPE_HD inline float gridAmplitude(const PatternView& pattern, const Vec3f& direction) {
   const PatternAngles angles = anglesOf(direction);
-  const TablePlace azimuth = placeInTable(angles.azimuth_rad, float(kPi), pattern.azimuth_count);
-  const TablePlace elevation = placeInTable(angles.elevation_rad, float(kPi / 2), pattern.elevation_count);
-  // One index of 32 bits, not an offset pointer a lane: so the look-ups become gathers.
+  const TableCell azimuth = cellInTable(angles.azimuth_rad, float(kPi), pattern.azimuth_count);
+  const TableCell elevation = cellInTable(angles.elevation_rad, float(kPi / 2), pattern.elevation_count);
+  // One 32-bit index instead of one offset pointer per lane, so that the look-ups become gathers.
   const int corner = elevation.index * pattern.azimuth_count + azimuth.index;
   const int above = corner + pattern.azimuth_count;
   const float* table = pattern.grid_table;
-  return std::fabs(mix(mix(table[corner], table[corner + 1], azimuth.fraction),
-                       mix(table[above], table[above + 1], azimuth.fraction), elevation.fraction));
+  return std::fabs(lerp(lerp(table[corner], table[corner + 1], azimuth.fraction),
+                        lerp(table[above], table[above + 1], azimuth.fraction), elevation.fraction));
 }
 
 }  // namespace antenna_detail
 
-/// 0 or above where a direction (forward, right, up; of any length) may see more of the pattern than
-/// side_lobe_amplitude. For patterns whose lobe_tangent is not 0.
+/// >= 0 if the amplitude in a direction (forward, right, up; of any length) may exceed side_lobe_amplitude.
+/// For patterns whose lobe_tangent is not 0.
 EMSCAPE_HD inline float depthInLobe(const PatternView& pattern, const Vec3f& direction) {
   return pattern.lobe_tangent * direction.x - std::fabs(direction.y);
 }

@@ -14,9 +14,10 @@ namespace {
 
 /// x where (sin x / x)^2 = 1/2.
 constexpr double kHalfPowerOfSinc = 1.3915573782515103;
-/// Beamwidth (rad) times side over wavelength of a narrow evenly lit aperture: 2 kHalfPowerOfSinc / pi.
+/// Beamwidth (rad) times side over wavelength of a narrow evenly illuminated aperture: 2 kHalfPowerOfSinc /
+/// pi.
 constexpr double kEvenApertureFactor = 0.885892941;
-/// Table steps as parts of the beamwidth: within 1e-3 dB down to -40 dB, where the error of linear
+/// Table steps as fractions of the beamwidth: within 1e-3 dB down to -40 dB, where the error of linear
 /// interpolation is largest relative to the amplitude; finer where the shape has a corner.
 constexpr double kStepsPerBeamwidth = 768;
 constexpr double kStepsPerBeamwidthAtCorners = 2048;
@@ -70,7 +71,7 @@ class GaussianAntenna : public Antenna {
   double azimuth_, elevation_, side_lobe_amplitude_;
 };
 
-/// Lobe of what radiates everywhere but backwards.
+/// Lobe limit of a pattern that covers the forward half space.
 constexpr float kHalfSpaceTangent = 1e30f;
 
 /// A planar aperture in direction cosines, continuous or of elements.

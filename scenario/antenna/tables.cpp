@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/device_math.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 /// A number of intervals, rounded up to an even number so that the middle is an entry.
 int evenIntervals(double intervals) {
-  return 2 * static_cast<int>(std::ceil(std::clamp(intervals, 2.0, double(kMostIntervals)) / 2));
+  return 2 * static_cast<int>(std::ceil(std::clamp(intervals, 2.0, double(kMaxIntervals)) / 2));
 }
 
 ShapeTable sample(Shape shape, double half_span, int intervals) {
@@ -35,7 +36,7 @@ ShapeTable tabulate(Shape shape, double half_span, double largest_step) {
 
 ShapeTable tabulate(Shape shape, double half_span, const std::vector<double>& angles_deg) {
   return sample(std::move(shape), half_span,
-                intervalsThatMeet(angles_deg, radToDeg(2 * half_span), kMostIntervals));
+                intervalsThatMeet(angles_deg, radToDeg(2 * half_span), kMaxIntervals));
 }
 
 int intervalsThatMeet(const std::vector<double>& angles_deg, double span_deg, int most) {
@@ -86,7 +87,7 @@ Angles patternAngles(const Vec3d& direction) {
 }
 
 float lobeTangent(double edge_azimuth_rad) {
-  // Well before a right angle the tangent grows too steep to be of use; the margin covers its rounding.
+  // Near a right angle the tangent is too steep to be of use; the margin covers its rounding.
   constexpr double kWidest_rad = 1.4, kMargin = 1e-4;
   return edge_azimuth_rad < kWidest_rad
              ? static_cast<float>(std::tan(edge_azimuth_rad) * (1 + kMargin) + kMargin)
@@ -147,8 +148,8 @@ double GridAntenna::amplitudeTowards(const Vec3d& direction, double, double) con
   const auto entry = [&](int i, int j) {
     return double(amplitudes_[static_cast<std::size_t>(row + j) * azimuth_count_ + column + i]);
   };
-  const auto mix = [](double from, double to, double fraction) { return from + fraction * (to - from); };
-  return mix(mix(entry(0, 0), entry(1, 0), x - column), mix(entry(0, 1), entry(1, 1), x - column), y - row);
+  return lerp(lerp(entry(0, 0), entry(1, 0), x - column), lerp(entry(0, 1), entry(1, 1), x - column),
+              y - row);
 }
 
 GridNodes gridNodes(const std::vector<double>& azimuths_deg, const std::vector<double>& elevations_deg) {
@@ -157,8 +158,8 @@ GridNodes gridNodes(const std::vector<double>& azimuths_deg, const std::vector<d
     for (int i = 0; i <= intervals; ++i) angles.push_back(span_deg * (double(i) / intervals - 0.5));
     return angles;
   };
-  return {nodes(360, intervalsThatMeet(azimuths_deg, 360, kMostGridIntervals)),
-          nodes(180, intervalsThatMeet(elevations_deg, 180, kMostGridIntervals / 2))};
+  return {nodes(360, intervalsThatMeet(azimuths_deg, 360, kMaxGridIntervals)),
+          nodes(180, intervalsThatMeet(elevations_deg, 180, kMaxGridIntervals / 2))};
 }
 
 AntennaPtr makeGridAntenna(const GridNodes& nodes, std::vector<float> amplitudes, double gain_dbi,

@@ -1,4 +1,4 @@
-/// Tables of patterns and the antennas that are made of them.
+/// Tables of patterns, and the antennas that use them.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@ namespace emscape::scenario {
 /// Signed amplitude by an angle (rad) or a direction cosine.
 using Shape = std::function<double(double)>;
 
-/// Most intervals of a table of one variable: 1 MiB of floats.
-constexpr int kMostIntervals = 1 << 18;
+/// Largest number of intervals of a table of one variable: 1 MiB of floats.
+constexpr int kMaxIntervals = 1 << 18;
 
 /// A shape sampled evenly over -half_span..half_span, both ends and 0 among the samples.
 struct ShapeTable {
@@ -23,21 +23,21 @@ struct ShapeTable {
 
   int count() const { return static_cast<int>(values.size()); }
 };
-/// @param largest_step  > 0; met up to kMostIntervals intervals
+/// @param largest_step  > 0; larger if more than kMaxIntervals intervals were needed
 ShapeTable tabulate(Shape shape, double half_span, double largest_step);
 /// The same with samples at every one of the angles (deg), if they are multiples of 0.0001 degree and the
 /// intervals suffice.
 ShapeTable tabulate(Shape shape, double half_span, const std::vector<double>& angles_deg);
 
 /// Intervals, an even number up to `most`, that divide a span (deg) so that every angle is an end of one.
-/// Where that takes too many, or angles are not multiples of 0.0001 degree: eight or more to the smallest
-/// distance of two angles.
+/// If that needs too many, or angles are not multiples of 0.0001 degree: at least eight per smallest distance
+/// of two angles.
 /// @param angles_deg  counted from the span's middle, ascending
 int intervalsThatMeet(const std::vector<double>& angles_deg, double span_deg, int most);
 
 /// Distance between the half-power points to both sides of a table's maximum, in the unit of half_span; 2
 /// half_span if there are none on either side.
-/// @param closed  the table's ends are one place (azimuth)
+/// @param closed  the table's ends coincide (azimuth)
 double halfPowerWidth(const std::vector<float>& values, double half_span, bool closed);
 
 /// Azimuth and elevation of a direction (forward, right, up); azimuth 0 at the poles.
@@ -77,8 +77,8 @@ class GridAntenna : public Antenna {
   int azimuth_count_, elevation_count_;
 };
 
-/// Most intervals of a grid in azimuth, and twice as many as in elevation: 0.1 degree, 26 MB.
-constexpr int kMostGridIntervals = 3600;
+/// Largest number of intervals of a grid in azimuth, twice that in elevation: 0.1 degree, 26 MB.
+constexpr int kMaxGridIntervals = 3600;
 
 /// Angles (deg) of a grid's entries: azimuths from -180 to 180, elevations from -90 to 90, evenly.
 struct GridNodes {

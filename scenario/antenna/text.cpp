@@ -10,10 +10,11 @@
 namespace emscape::scenario {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t{64} << 20;
+constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;
 constexpr std::string_view kBlanks = " \t";
 
-/// Outside ASCII or a control character, but for line ends, tabs, and zeros, which tell binary files.
+/// True for bytes outside ASCII and control characters, except line ends, tabs, and zeros, which mark binary
+/// files.
 bool isForeign(char c) {
   const auto byte = static_cast<unsigned char>(c);
   return byte >= 0x7F || (byte < 0x20 && c != '\0' && c != '\t' && c != '\n' && c != '\r');
@@ -28,7 +29,7 @@ TextField restOf(const TextField& field, std::size_t offset) {
           field.column + static_cast<int>(first)};
 }
 
-AntennaText::AntennaText(const std::string& file) : file_(file), text_(readWholeText(file, kLargestFile)) {
+AntennaText::AntennaText(const std::string& file) : file_(file), text_(readWholeText(file, kMaxFileBytes)) {
   if (text_.compare(0, 3, "\xEF\xBB\xBF") == 0) text_.erase(0, 3);
   std::replace_if(text_.begin(), text_.end(), isForeign, '?');
   const std::string_view text = text_;

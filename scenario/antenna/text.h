@@ -10,16 +10,16 @@
 
 namespace emscape::scenario {
 
-/// A piece of a line. line and column (bytes) count from 1.
+/// Part of a line. line and column (bytes) count from 1.
 struct TextField {
   std::string_view text;
   int line = 0;
   int column = 0;
 };
 
-/// The text of an antenna file, read whole, up to 64 MiB. Antenna files come in any encoding and mean nothing
-/// outside ASCII: other bytes, and control characters, are read as '?', so that what is quoted of them is
-/// safe to print.
+/// The text of an antenna file, read whole, up to 64 MiB. Antenna files have any encoding, and only their
+/// ASCII characters matter: other bytes, and control characters, are read as '?', so that quotations in
+/// messages are safe to print.
 class AntennaText {
  public:
   /// @throws Error (bad_input) if the file cannot be read or is not text (holds a zero byte)
@@ -30,11 +30,11 @@ class AntennaText {
   const std::string& file() const { return file_; }
   /// The whole text, for CsvReader.
   std::string_view text() const { return text_; }
-  /// The lines that say something, without blanks at their ends; lines end in LF, CRLF or CR. Empty ones and
+  /// The lines with content, without blanks at their ends; lines end in LF, CRLF or CR. Empty ones and
   /// those that begin with # are left out.
   const std::vector<TextField>& lines() const { return lines_; }
-  /// The place of a field, for an Error.
-  SourceLocation place(const TextField& field) const { return {file_, field.line, field.column}; }
+  /// The location of a field, for an Error.
+  SourceLocation location(const TextField& field) const { return {file_, field.line, field.column}; }
 
  private:
   std::string file_;

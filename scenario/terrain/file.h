@@ -12,21 +12,21 @@
 
 namespace emscape::scenario {
 
-/// Posts at the centres of the raster's pixels: what GDAL calls a pixel's centre is where the height was
-/// taken, for pixel-is-area as for pixel-is-point (GDAL moves the latter's corners by half a pixel when it
-/// opens them). Not safe to share between threads.
+/// Posts are at the centres of the raster's pixels, as GDAL defines them, for pixel-is-area and for
+/// pixel-is-point (GDAL shifts the corners of the latter by half a pixel when it opens them). Not safe to
+/// share between threads.
 class TerrainFile {
  public:
   /// Opens the file; reads no heights.
-  /// @param place  where the scenario names it; may be empty
+  /// @param location  of its name in the scenario; may be empty
   /// @throws Error (bad_input): no such file, not a raster, no georeference, heights of an unknown unit
-  TerrainFile(const std::string& file, const SourceLocation& place);
+  TerrainFile(const std::string& file, const SourceLocation& location);
   ~TerrainFile();
 
   const std::string& name() const;
   const std::string& format() const;
   std::string crs() const;
-  /// What a user should know: bands left out, unit converted, positions brought to WGS84.
+  /// Notes for the user: bands left out, unit converted, positions transformed to WGS84.
   const std::vector<std::string>& notes() const;
 
   const PostLattice& lattice() const;
@@ -42,15 +42,15 @@ class TerrainFile {
   /// @throws Error (bad_input) if reading fails
   void read(const PostWindow& window, const RowSink& take) const;
 
-  /// True: the lattice is of longitudes and latitudes of WGS84 (deg). False: of a plane of its own.
+  /// True: the lattice is of WGS84 longitudes and latitudes (deg). False: of the file's own plane.
   bool isGeographic() const;
-  /// The same text for files whose lattices lie in the same plane.
+  /// A text that is equal for files whose lattices are in the same plane.
   const std::string& planeName() const;
-  /// Brings points of the plane to longitude and latitude (deg) in place; NaN where there are none.
+  /// Transforms points of the plane to longitude and latitude (deg) in place; NaN where that fails.
   void toGeographic(std::vector<double>& x, std::vector<double>& y) const;
-  /// Brings longitudes and latitudes (deg) to the plane in place; NaN where it has no such point.
+  /// Transforms longitudes and latitudes (deg) to the plane in place; NaN where that fails.
   void toPlane(std::vector<double>& x, std::vector<double>& y) const;
-  /// The same for points in line, a hundredth of a post wrong at most and much faster.
+  /// The same for points on a line: much faster, error at most a hundredth of a post.
   void lineToPlane(std::vector<double>& x, std::vector<double>& y) const;
 
  private:

@@ -19,26 +19,26 @@ namespace {
 
 /// Values that mean void in HGT and DTED whatever a file's header says.
 constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
-/// Nothing on earth is higher or deeper (m): such a height is a void that the file does not declare.
-constexpr float kHighestOnEarth_m = 20000.0f;
+/// Largest height or depth on earth (m), with a margin: beyond it a height is an undeclared void.
+constexpr float kMaxHeightOnEarth_m = 20000.0f;
 /// Positions of another datum count as WGS84 if they are closer than this (posts).
 constexpr double kSameDatum_posts = 0.05;
-/// Georeferences are rounded in files: a lattice this close (posts) to whole fractions of a degree is meant
-/// to be one.
+/// Georeferences are rounded in files: a lattice this close (posts) to whole fractions of a degree is snapped
+/// to them.
 constexpr double kSnap_posts = 0.01;
 /// Largest error of positions interpolated between transformed ones (posts).
 constexpr double kLineTolerance_posts = 0.01;
 constexpr long long kStripPosts = 1 << 21;
-/// Of a file that lies on the earth. Coordinates: metres or feet of a projection; angles are much smaller.
+/// Limits of a plausible georeference. Coordinates: metres or feet of a projection; angles are much smaller.
 constexpr double kMaxCrsCoordinate = 1e9;
 constexpr double kMaxLongitude_deg = 1080;
 constexpr int kMaxPostsPerAxis = 1 << 22;  ///< the whole earth in a third of an arc second
 
-/// Formats of elevation; GDAL's others read databases, network services and programs' own files.
+/// Elevation formats; GDAL's other drivers read databases, network services and application files.
 constexpr const char* kAllowedDrivers[] = {"GTiff",   "SRTMHGT", "DTED", "VRT",
                                            "AAIGrid", "USGSDEM", "EHdr", nullptr};
 
-/// Keeps GDAL from printing and remembers its first complaint.
+/// Keeps GDAL from printing and stores its first message.
 class GdalMessages {
  public:
   GdalMessages() { CPLPushErrorHandlerEx(&GdalMessages::take, this); }
@@ -99,12 +99,11 @@ double metresOf(std::string unit) {
   return 0.0;
 }
 
-/// Brings an axis of posts to whole fractions of a degree if that moves none of them by more than
-/// kSnap_posts.
+/// Snaps an axis of posts to whole fractions of a degree if that moves none of them by more than kSnap_posts.
 void snapToDegrees(double& first, double& step, int count) {
   const double per_degree = std::round(1.0 / step);
   if (per_degree < 1.0) return;
-  // Pixel-is-area posts lie on odd halves.
+  // Pixel-is-area posts are at odd halves.
   const double halves = std::round(first * 2.0 * per_degree);
   const double last = first + (count - 1) * step;
   const double snapped_first = halves / (2.0 * per_degree);
@@ -139,7 +138,7 @@ void transform(OGRCoordinateTransformation& transformation, std::vector<double>&
 
 struct TerrainFile::Impl {
   std::string name;
-  SourceLocation place;
+  SourceLocation location;
   std::vector<std::string> notes;
   std::string format;
   int columns = 0, rows = 0;
@@ -147,7 +146,7 @@ struct TerrainFile::Impl {
 
   double pixel_to_crs[6] = {0, 1, 0, 0, 0, 1};
   bool turned = false;  ///< rows or columns do not run along the CRS's axes: the plane is that of the pixels
-  bool north_first = true;  ///< order of the file's rows in the lattice's terms
+  bool north_first = true;  ///< order of the file's rows
   PostLattice lattice;
   bool is_area = true;
   OGRSpatialReference crs;
@@ -158,7 +157,7 @@ struct TerrainFile::Impl {
   std::unique_ptr<void, void (*)(void*)> line_transformer{nullptr, GDALDestroyApproxTransformer};
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw Error(ErrorCode::bad_input, place, "elevation file " + name + ": " + problem);
+    throw Error(ErrorCode::bad_input, location, "elevation file " + name + ": " + problem);
   }
 
   std::unique_ptr<GDALDataset> open() const;
@@ -186,7 +185,7 @@ std::unique_ptr<GDALDataset> TerrainFile::Impl::open() const {
 }
 
 void TerrainFile::Impl::readHead() {
-  const GdalMessages quiet;  // before the dataset, which may complain when it is closed
+  const GdalMessages quiet;  // constructed before the dataset, whose destructor may report errors
   GDALAllRegister();
   const std::unique_ptr<GDALDataset> dataset = open();
   if (dataset->GetRasterCount() == 0) {
@@ -241,8 +240,8 @@ void TerrainFile::Impl::placePosts(GDALDataset& dataset) {
     fail("has a georeference of no extent");
   }
   if (reach > kMaxCrsCoordinate) {
-    fail("its posts lie nowhere on the earth: a coordinate is " + shortText(reach) +
-         ", more than the allowed " + shortText(kMaxCrsCoordinate));
+    fail("its posts are not on the earth: a coordinate is " + shortText(reach) + ", more than the allowed " +
+         shortText(kMaxCrsCoordinate));
   }
   const char* meaning = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
   is_area = meaning == nullptr || !EQUAL(meaning, GDALMD_AOP_POINT);
@@ -307,7 +306,7 @@ void TerrainFile::Impl::placeOnEarth(const OGRSpatialReference* given) {
                   " are brought to latitudes and longitudes of WGS84, bilinear");
 }
 
-/// The CRS's longitudes and latitudes differ from WGS84's by nothing that matters.
+/// True if the CRS's longitudes and latitudes differ from WGS84's by less than kSameDatum_posts.
 bool TerrainFile::Impl::liesOnWgs84() const {
   std::vector<double> x, y;
   for (double part_y : {0.0, 0.5, 1.0}) {
@@ -340,7 +339,7 @@ void TerrainFile::Impl::crsOfPlane(std::vector<double>& x, std::vector<double>& 
 void TerrainFile::Impl::planeOfCrs(std::vector<double>& x, std::vector<double>& y) const {
   const double* g = pixel_to_crs;
   if (crs.IsGeographic()) {
-    // The turn of longitude in which the file counts.
+    // The range of longitudes that the file uses, in whole turns.
     const double turn = 2.0 * kPi / crs.GetAngularUnits();
     const double middle = g[0] + 0.5 * (columns * g[1] + rows * g[2]);
     for (double& longitude : x) longitude = middle + std::remainder(longitude - middle, turn);
@@ -354,10 +353,10 @@ void TerrainFile::Impl::planeOfCrs(std::vector<double>& x, std::vector<double>& 
   }
 }
 
-TerrainFile::TerrainFile(const std::string& file, const SourceLocation& place)
+TerrainFile::TerrainFile(const std::string& file, const SourceLocation& location)
     : impl_(std::make_unique<Impl>()) {
   impl_->name = file;
-  impl_->place = place;
+  impl_->location = location;
   impl_->readHead();
 }
 TerrainFile::~TerrainFile() = default;
@@ -398,7 +397,7 @@ const std::string& TerrainFile::planeName() const {
 }
 
 void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
-  const GdalMessages messages;  // before the dataset, which may complain when it is closed
+  const GdalMessages messages;  // constructed before the dataset, whose destructor may report errors
   const std::unique_ptr<GDALDataset> dataset = impl_->open();
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   GDALRasterBand* mask_band = (band.GetMaskFlags() & GMF_ALL_VALID) == 0 ? band.GetMaskBand() : nullptr;
@@ -423,7 +422,7 @@ void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
     for (std::size_t k = 0; k < strip.size(); ++k) {
       const bool declared_void = mask[k] == 0 || strip[k] == kVoidValues[0] || strip[k] == kVoidValues[1];
       const double height_m = (strip[k] * impl_->scale + impl_->offset) * impl_->unit_m;
-      const bool known = !declared_void && std::abs(height_m) <= kHighestOnEarth_m;
+      const bool known = !declared_void && std::abs(height_m) <= kMaxHeightOnEarth_m;
       strip[k] = known ? static_cast<float>(height_m) : std::numeric_limits<float>::quiet_NaN();
     }
     for (int row = 0; row < rows; ++row) {

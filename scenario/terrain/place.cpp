@@ -10,13 +10,13 @@ namespace {
 
 /// Posts of the geographic lattice to one of the plane, in each direction.
 constexpr double kOversampling = 2.0;
-/// Points a side at which the outline of a box is followed through a projection.
+/// Points per side of a box whose outline is transformed by a projection.
 constexpr int kOutline = 65;
-/// What lies between those points may reach further than they do, by this part of the box.
+/// Margin, as a fraction of the box, for the outline between these points.
 constexpr double kOutlineMargin = 0.01;
 constexpr double kMetresPerDegree = 111132.0;
 
-/// Points all over a rectangle, its edges included.
+/// Points evenly over a rectangle, its edges included.
 void scatter(const PlaneBox& box, std::vector<double>& x, std::vector<double>& y) {
   for (int j = 0; j < kOutline; ++j) {
     for (int i = 0; i < kOutline; ++i) {
@@ -26,7 +26,7 @@ void scatter(const PlaneBox& box, std::vector<double>& x, std::vector<double>& y
   }
 }
 
-/// The rectangle about points, those that are NaN left out; x_min > x_max if there are none.
+/// The bounding rectangle of points without NaN; x_min > x_max if there are none.
 PlaneBox boundsOf(const std::vector<double>& x, const std::vector<double>& y) {
   PlaneBox box{1.0, 1.0, -1.0, -1.0};
   bool any = false;
@@ -43,7 +43,7 @@ PlaneBox boundsOf(const std::vector<double>& x, const std::vector<double>& y) {
   return {box.x_min - x_margin, box.y_min - y_margin, box.x_max + x_margin, box.y_max + y_margin};
 }
 
-/// What columns and rows of posts cover: half a post further where they stand for areas.
+/// The area of columns and rows of posts: half a post further if they stand for areas.
 PlaneBox extentOf(const PostLattice& lattice, int columns, int rows, bool is_area) {
   const double rim = is_area ? 0.5 : 0.0;
   return {lattice.x(-rim), lattice.y(-rim), lattice.x(columns - 1 + rim), lattice.y(rows - 1 + rim)};
@@ -62,7 +62,7 @@ GeoBox geographicBox(const TerrainFile& file, const PlaneBox& box) {
   for (double& longitude : x) longitude = middle + wrapLongitude_deg(longitude - middle);
   const PlaneBox bounds = boundsOf(x, y);
   GeoBox result{std::max(bounds.y_min, -90.0), std::min(bounds.y_max, 90.0), bounds.x_min, bounds.x_max};
-  // A pole inside the rectangle has all longitudes about it.
+  // If a pole is inside the rectangle, all longitudes are.
   for (double pole_deg : {-90.0, 90.0}) {
     std::vector<double> pole_x{0.0}, pole_y{pole_deg};
     file.toPlane(pole_x, pole_y);
@@ -76,14 +76,13 @@ GeoBox geographicBox(const TerrainFile& file, const PlaneBox& box) {
   return result;
 }
 
-/// A part of a box, and how many turns east of an area's own longitudes it meets the area.
+/// A part of a box, and the number of turns by which its longitudes exceed those of an area that it meets.
 struct Overlap {
   GeoBox part;
   double turns;
 };
 
-/// Where a box meets an area, in the box's longitudes; what lies up to `reach` beyond the area still meets
-/// it.
+/// The intersections of a box with an area that is extended by `reach`, in the box's longitudes.
 std::vector<Overlap> overlaps(const GeoBox& box, const GeoBox& area, double reach_lat_deg,
                               double reach_lon_deg) {
   std::vector<Overlap> found;
@@ -100,7 +99,7 @@ std::vector<Overlap> overlaps(const GeoBox& box, const GeoBox& area, double reac
   return found;
 }
 
-/// The posts about a rectangle, one beyond it on each side, as far as there are any.
+/// The posts of a rectangle and one more on each side, within the lattice.
 PostWindow windowAbout(const PlaneBox& box, const PostLattice& lattice, int columns, int rows) {
   const auto first = [](double post, int count) {
     return static_cast<long long>(std::clamp(std::floor(post - 1e-6), 0.0, static_cast<double>(count)));
@@ -169,29 +168,29 @@ GeoBox geographicBoxOf(const TerrainFile& file) {
   return geographicBox(file, extentOf(file.lattice(), file.columns(), file.rows(), file.isArea()));
 }
 
-std::vector<TerrainPiece> piecesWithin(const TerrainFilePtr& file, const GeoBox& box) {
-  std::vector<TerrainPiece> pieces;
+std::vector<RasterTile> tilesWithin(const TerrainFilePtr& file, const GeoBox& box) {
+  std::vector<RasterTile> tiles;
   const PostLattice& lattice = file->lattice();
   const GeoBox area = geographicBoxOf(*file);
   if (file->isGeographic()) {
-    // A post just outside the box may be needed for the gap that the box begins in.
+    // Interpolation at the box's edge needs the post outside it.
     for (const auto& [part, turns] : overlaps(box, area, lattice.step_y, lattice.step_x)) {
       PostLattice moved = lattice;
       moved.x0 += 360.0 * turns;
       const PostWindow window = windowAbout({part.west_deg, part.south_deg, part.east_deg, part.north_deg},
                                             moved, file->columns(), file->rows());
-      if (!window.empty()) pieces.push_back({file, moved, window});
+      if (!window.empty()) tiles.push_back({file, moved, window});
     }
-    return pieces;
+    return tiles;
   }
   for (const auto& [part, turns] : overlaps(box, area, 0.0, 0.0)) {
     std::vector<double> x, y;
     scatter({part.west_deg, part.south_deg, part.east_deg, part.north_deg}, x, y);
     file->toPlane(x, y);
     const PostWindow window = windowAbout(boundsOf(x, y), lattice, file->columns(), file->rows());
-    if (!window.empty()) pieces.push_back({file, lattice, window});
+    if (!window.empty()) tiles.push_back({file, lattice, window});
   }
-  return pieces;
+  return tiles;
 }
 
 std::vector<TerrainSheet> toGeographicSheets(TerrainSheet sheet, const GeoBox& box) {

@@ -1,5 +1,4 @@
-/// Where elevation files lie on the earth: the parts that a box needs, and sheets brought to longitude and
-/// latitude.
+/// Georeferencing of elevation files: the parts that a box needs, and resampling to longitude and latitude.
 #pragma once
 
 #include <vector>
@@ -11,11 +10,11 @@ namespace emscape::scenario {
 /// The longitudes and latitudes (deg) that a file covers; east may exceed 180.
 GeoBox geographicBoxOf(const TerrainFile& file);
 
-/// The posts of a file that a box needs, as pieces: none if they do not meet, several if the box meets the
-/// file again a turn further. Longitudes are moved to the box's.
-std::vector<TerrainPiece> piecesWithin(const TerrainFilePtr& file, const GeoBox& box);
+/// The posts of a file that a box needs, as tiles: none if they do not meet, several if the box meets the
+/// file again a turn further. Longitudes are shifted to those of the box.
+std::vector<RasterTile> tilesWithin(const TerrainFilePtr& file, const GeoBox& box);
 
-/// Brings a sheet in a plane of its own to longitudes and latitudes within the box: bilinear, on a lattice
+/// Resamples a sheet in its own plane to longitudes and latitudes within the box: bilinear, on a lattice
 /// twice as fine as the sheet's, so that peaks and ridges keep most of their height.
 /// @accuracy at the sheet's own posts, 30 m apart in the White Mountains: 0.23 m rms, 2.4 m at most
 std::vector<TerrainSheet> toGeographicSheets(TerrainSheet sheet, const GeoBox& box);

@@ -1,4 +1,4 @@
-/// Regular posts and parts of them: what the sources of terrain share.
+/// Regular posts and parts of them.
 #pragma once
 
 namespace emscape::scenario {

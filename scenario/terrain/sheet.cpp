@@ -14,54 +14,55 @@ namespace {
 constexpr double kSamePost_posts = 0.01;
 constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 
-/// A piece on the lattice of its group, half open: columns begin..end of that lattice.
-struct PlacedPiece {
-  const TerrainPiece* piece;
+/// A tile on the lattice of its group, half open: columns begin..end of that lattice.
+struct PlacedTile {
+  const RasterTile* tile;
   long long column_begin, column_end, row_begin, row_end;
 };
 
-/// Pieces that touch each other, and the window about them.
+/// Tiles that touch each other, and their common window.
 struct Patch {
-  std::vector<PlacedPiece> pieces;  ///< in the order in which the files were named
+  std::vector<PlacedTile> tiles;  ///< in the order in which the files were named
   long long column_begin, column_end, row_begin, row_end;
 };
 
 struct LatticeGroup {
   PostLattice lattice;
   std::string plane;
-  std::vector<PlacedPiece> pieces;
+  std::vector<PlacedTile> tiles;
 };
 
-/// The first and last of `count` posts from `first` fall on whole posts of the other lattice, as far apart.
+/// True if the first and last of `count` posts from `first` coincide with posts of the other lattice at the
+/// same distance.
 bool coincide(double first, double last, int count) {
   return std::abs(first - std::round(first)) < kSamePost_posts &&
          std::abs(last - std::round(last)) < kSamePost_posts &&
          std::llround(last) - std::llround(first) == count - 1;
 }
 
-bool fits(const TerrainPiece& piece, const LatticeGroup& group) {
-  const int columns = piece.file->columns(), rows = piece.file->rows();
-  const PostLattice& own = piece.lattice;
-  return piece.file->planeName() == group.plane &&
+bool fits(const RasterTile& tile, const LatticeGroup& group) {
+  const int columns = tile.file->columns(), rows = tile.file->rows();
+  const PostLattice& own = tile.lattice;
+  return tile.file->planeName() == group.plane &&
          coincide(group.lattice.column(own.x(0)), group.lattice.column(own.x(columns - 1)), columns) &&
          coincide(group.lattice.row(own.y(0)), group.lattice.row(own.y(rows - 1)), rows);
 }
 
-std::vector<LatticeGroup> groupByLattice(const std::vector<TerrainPiece>& pieces) {
+std::vector<LatticeGroup> groupByLattice(const std::vector<RasterTile>& tiles) {
   std::vector<LatticeGroup> groups;
-  for (const TerrainPiece& piece : pieces) {
+  for (const RasterTile& tile : tiles) {
     auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const LatticeGroup& candidate) { return fits(piece, candidate); });
+                              [&](const LatticeGroup& candidate) { return fits(tile, candidate); });
     if (group == groups.end()) {
-      groups.push_back({piece.lattice, piece.file->planeName(), {}});
+      groups.push_back({tile.lattice, tile.file->planeName(), {}});
       group = groups.end() - 1;
     }
-    const PostWindow& window = piece.window;
+    const PostWindow& window = tile.window;
     const long long column =
-        std::llround(group->lattice.column(piece.lattice.x(static_cast<double>(window.first_column))));
+        std::llround(group->lattice.column(tile.lattice.x(static_cast<double>(window.first_column))));
     const long long row =
-        std::llround(group->lattice.row(piece.lattice.y(static_cast<double>(window.first_row))));
-    group->pieces.push_back({&piece, column, column + window.columns, row, row + window.rows});
+        std::llround(group->lattice.row(tile.lattice.y(static_cast<double>(window.first_row))));
+    group->tiles.push_back({&tile, column, column + window.columns, row, row + window.rows});
   }
   return groups;
 }
@@ -71,11 +72,11 @@ bool touch(const Patch& a, const Patch& b) {
          b.row_begin <= a.row_end;
 }
 
-/// Tiles far apart must not become one sheet of nothing.
-std::vector<Patch> joinTouching(const std::vector<PlacedPiece>& pieces) {
+/// Distant tiles must not become one sheet that is mostly empty.
+std::vector<Patch> joinTouching(const std::vector<PlacedTile>& tiles) {
   std::vector<Patch> patches;
-  for (const PlacedPiece& piece : pieces) {
-    Patch joined{{piece}, piece.column_begin, piece.column_end, piece.row_begin, piece.row_end};
+  for (const PlacedTile& tile : tiles) {
+    Patch joined{{tile}, tile.column_begin, tile.column_end, tile.row_begin, tile.row_end};
     for (std::size_t k = 0; k < patches.size();) {
       if (!touch(joined, patches[k])) {
         ++k;
@@ -83,18 +84,18 @@ std::vector<Patch> joinTouching(const std::vector<PlacedPiece>& pieces) {
       }
       const Patch other = std::move(patches[k]);
       patches.erase(patches.begin() + static_cast<std::ptrdiff_t>(k));
-      joined.pieces.insert(joined.pieces.end(), other.pieces.begin(), other.pieces.end());
+      joined.tiles.insert(joined.tiles.end(), other.tiles.begin(), other.tiles.end());
       joined.column_begin = std::min(joined.column_begin, other.column_begin);
       joined.column_end = std::max(joined.column_end, other.column_end);
       joined.row_begin = std::min(joined.row_begin, other.row_begin);
       joined.row_end = std::max(joined.row_end, other.row_end);
-      k = 0;  // having grown, it may touch those that it did not touch before
+      k = 0;  // the grown patch may touch others that it did not touch before
     }
     patches.push_back(std::move(joined));
   }
   for (Patch& patch : patches) {
-    std::sort(patch.pieces.begin(), patch.pieces.end(),
-              [](const PlacedPiece& a, const PlacedPiece& b) { return a.piece < b.piece; });
+    std::sort(patch.tiles.begin(), patch.tiles.end(),
+              [](const PlacedTile& a, const PlacedTile& b) { return a.tile < b.tile; });
   }
   return patches;
 }
@@ -110,7 +111,7 @@ void measureSpacing(TerrainSheet& sheet) {
   sheet.spacing_m = std::sqrt(across_m * along_m);
   if (!(sheet.spacing_m > 0.0)) {
     throw Error(ErrorCode::bad_input,
-                "elevation file " + sheet.file->name() + ": its posts lie nowhere on the earth");
+                "elevation file " + sheet.file->name() + ": its posts are not on the earth");
   }
   sheet.finest_m = std::max(std::min(across_m, along_m), 0.5 * std::max(across_m, along_m));
 }
@@ -119,16 +120,16 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
   PostLattice own = lattice;
   own.x0 = lattice.x(static_cast<double>(patch.column_begin - 1));
   own.y0 = lattice.y(static_cast<double>(patch.row_begin - 1));
-  TerrainSheet sheet(patch.pieces.front().piece->file, own, patch.column_end - patch.column_begin + 2,
+  TerrainSheet sheet(patch.tiles.front().tile->file, own, patch.column_end - patch.column_begin + 2,
                      patch.row_end - patch.row_begin + 2);
-  for (const PlacedPiece& placed : patch.pieces) {
-    const TerrainFile& file = *placed.piece->file;
+  for (const PlacedTile& placed : patch.tiles) {
+    const TerrainFile& file = *placed.tile->file;
     sheet.is_area = sheet.is_area || file.isArea();
     const int first_column = static_cast<int>(placed.column_begin - patch.column_begin) + 1;
     const int first_row = static_cast<int>(placed.row_begin - patch.row_begin) + 1;
-    file.read(placed.piece->window, [&](long long row, const float* heights_m) {
+    file.read(placed.tile->window, [&](long long row, const float* heights_m) {
       std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));
-      for (long long column = 0; column < placed.piece->window.columns; ++column, ++post) {
+      for (long long column = 0; column < placed.tile->window.columns; ++column, ++post) {
         if (sheet.kinds[post] == PostKind::known) continue;
         sheet.kinds[post] = std::isnan(heights_m[column]) ? PostKind::empty : PostKind::known;
         sheet.heights_m[post] = heights_m[column];
@@ -139,7 +140,7 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
   return sheet;
 }
 
-/// Visits the absent posts of a sheet that have a neighbour of a file.
+/// Visits the absent posts of a sheet that have a neighbour from a file.
 template <class Visit>
 void visitRim(const TerrainSheet& sheet, const Visit& visit) {
   for (int row = 0; row < sheet.rows; ++row) {
@@ -161,7 +162,7 @@ struct RimPost {
   float height_m;
 };
 
-/// Heights that the other sheets have for the rim of sheet `k`.
+/// Heights of the other sheets at the rim of sheet `k`.
 std::vector<RimPost> rimFromOthers(const std::vector<TerrainSheet>& sheets, std::size_t k) {
   std::vector<TerrainRaster> others;
   for (std::size_t other = 0; other < sheets.size(); ++other) {
@@ -178,7 +179,7 @@ std::vector<RimPost> rimFromOthers(const std::vector<TerrainSheet>& sheets, std:
   return rim;
 }
 
-/// Opens the sheet's limits to the ring where that is filled.
+/// Extends the sheet's limits to the ring where that is filled.
 void fillRim(TerrainSheet& sheet, const std::vector<RimPost>& rim) {
   for (const RimPost& post : rim) {
     sheet.heights_m[sheet.index(post.column, post.row)] = post.height_m;
@@ -190,7 +191,7 @@ void fillRim(TerrainSheet& sheet, const std::vector<RimPost>& rim) {
   }
 }
 
-/// Lets the outermost heights reach half a post further.
+/// Extends the outermost heights by half a post.
 void holdOuterHeights(TerrainSheet& sheet) {
   const auto hold = [&](int column, int row) {
     const std::size_t ring = sheet.index(column, row);
@@ -220,11 +221,11 @@ void holdOuterHeights(TerrainSheet& sheet) {
 TerrainSheet::TerrainSheet(const TerrainFilePtr& of_file, const PostLattice& of_lattice,
                            long long with_columns, long long with_rows)
     : file(of_file), lattice(of_lattice) {
-  if (with_columns > kMostSheetPosts / with_rows) {
+  if (with_columns > kMaxSheetPosts / with_rows) {
     throw Error(ErrorCode::bad_input,
                 "elevation file " + file->name() + ": the region takes " + std::to_string(with_columns) +
                     " x " + std::to_string(with_rows) + " posts of its spacing, more than " +
-                    std::to_string(kMostSheetPosts) + "; use a coarser file or a smaller region");
+                    std::to_string(kMaxSheetPosts) + "; use a coarser file or a smaller region");
   }
   columns = static_cast<int>(with_columns);
   rows = static_cast<int>(with_rows);
@@ -259,16 +260,16 @@ bool TerrainSheet::besideVoid(double column, double row) const {
          kind(i, j + 1) == PostKind::empty || kind(i + 1, j + 1) == PostKind::empty;
 }
 
-std::vector<TerrainSheet> readSheets(const std::vector<TerrainPiece>& pieces) {
+std::vector<TerrainSheet> readSheets(const std::vector<RasterTile>& tiles) {
   std::vector<TerrainSheet> sheets;
-  for (const LatticeGroup& group : groupByLattice(pieces)) {
-    for (const Patch& patch : joinTouching(group.pieces)) sheets.push_back(readPatch(patch, group.lattice));
+  for (const LatticeGroup& group : groupByLattice(tiles)) {
+    for (const Patch& patch : joinTouching(group.tiles)) sheets.push_back(readPatch(patch, group.lattice));
   }
   return sheets;
 }
 
 void closeSeams(std::vector<TerrainSheet>& sheets) {
-  // All rims before any is filled, so that no sheet hands on what it has from another.
+  // All rims are computed before any is filled, so that heights are not passed on from sheet to sheet.
   std::vector<std::vector<RimPost>> rims;
   for (std::size_t k = 0; k < sheets.size(); ++k) rims.push_back(rimFromOthers(sheets, k));
   for (std::size_t k = 0; k < sheets.size(); ++k) {

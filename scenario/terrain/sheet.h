@@ -1,4 +1,4 @@
-/// Sheets of posts in memory, and how files become sheets.
+/// Sheets of posts in memory, read from files.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ namespace emscape::scenario {
 
 using TerrainFilePtr = std::shared_ptr<const TerrainFile>;
 
-/// Part of a file that is to be read.
-struct TerrainPiece {
+/// The part of a file to read.
+struct RasterTile {
   TerrainFilePtr file;
-  PostLattice lattice;  ///< the file's; longitudes moved by whole turns to where they are wanted
+  PostLattice lattice;  ///< of the file; longitudes shifted by whole turns to those of the box
   PostWindow window;    ///< of the file's posts
 };
 
@@ -26,8 +26,8 @@ enum class PostKind : std::uint8_t {
   known,
 };
 
-/// One lattice of posts, filled from files. The outermost ring of posts is of no file: it is there for what
-/// neighbouring sheets know, so that heights go on across the seam.
+/// One lattice of posts, filled from files. The outermost ring of posts is from no file: it takes the heights
+/// of neighbouring sheets, so that heights are continuous across the seam.
 struct TerrainSheet {
   TerrainFilePtr file;  ///< one of the sheet's, for its plane
   PostLattice lattice;
@@ -35,13 +35,13 @@ struct TerrainSheet {
   bool is_area = false;  ///< reaches half a post beyond the files' posts
   double spacing_m = 0;  ///< of the files' posts, geometric mean of both directions
   double finest_m =
-      0;  ///< the lesser of both directions, but at least half the other: meridians crowd near the poles
+      0;  ///< the smaller of both directions, but at least half the other: meridians converge near the poles
   std::vector<float> heights_m;  ///< south row first; NaN where not known
   std::vector<PostKind> kinds;
-  double first_column, last_column, first_row, last_row;  ///< where heights may be asked for
+  double first_column, last_column, first_row, last_row;  ///< limits of lookups
 
   /// All posts absent.
-  /// @throws Error (bad_input) if the sheet has more than kMostSheetPosts posts
+  /// @throws Error (bad_input) if the sheet has more than kMaxSheetPosts posts
   TerrainSheet(const TerrainFilePtr& of_file, const PostLattice& of_lattice, long long with_columns,
                long long with_rows);
 
@@ -50,23 +50,23 @@ struct TerrainSheet {
            static_cast<std::size_t>(column);
   }
   PostKind kind(int column, int row) const { return kinds[index(column, row)]; }
-  /// For lookups. Of a sheet in a plane of its own only limit() and heightAtPost() have a meaning.
+  /// For lookups. For a sheet in its own plane only limit() and heightAtPost() are defined.
   TerrainRaster raster() const;
-  /// One of the four posts about a point within the limits is void.
+  /// True if one of the four posts around a point within the limits is void.
   bool besideVoid(double column, double row) const;
 };
 
 /// Posts that one sheet may hold (8 GiB of heights).
-constexpr long long kMostSheetPosts = 1LL << 31;
+constexpr long long kMaxSheetPosts = 1LL << 31;
 
-/// Reads pieces into sheets. Pieces whose posts coincide (to a hundredth of a post) and whose windows touch
-/// become one sheet. Where several files know the same post, the one named first is believed.
+/// Reads tiles into sheets. Tiles whose posts coincide (to a hundredth of a post) and whose windows touch
+/// become one sheet. Where several files have the same post, the one listed first takes precedence.
 /// @throws Error (bad_input) if reading fails
-std::vector<TerrainSheet> readSheets(const std::vector<TerrainPiece>& pieces);
+std::vector<TerrainSheet> readSheets(const std::vector<RasterTile>& tiles);
 
-/// Continues sheets of longitudes and latitudes over their seams: a post of no file beside others takes its
-/// height from the other sheets, of which the first that knows it is believed; and at the outer edge of
-/// pixel-is-area files the heights are held for half a post.
+/// Continues sheets of longitudes and latitudes over their seams: the ring of a sheet takes its heights from
+/// the first other sheet that has them; at the outer edge of pixel-is-area files the heights are held for
+/// half a post.
 void closeSeams(std::vector<TerrainSheet>& sheets);
 
 }  // namespace emscape::scenario

@@ -14,7 +14,7 @@
 namespace emscape::scenario {
 namespace {
 
-/// Points a side at which the box is asked whether a file covers it; its edges are among them.
+/// Points per side of the box at which coverage is tested; its edges are included.
 constexpr int kCoverageProbes = 257;
 
 const GeoBox& checked(const GeoBox& box) {
@@ -44,17 +44,17 @@ void subtractGeoid(TerrainSheet& sheet) {
   });
 }
 
-/// Sheets of longitudes and latitudes, the finest first, that go on into each other.
+/// Sheets of longitudes and latitudes, the finest first, continued into each other.
 std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& box) {
-  std::vector<TerrainPiece> pieces;
+  std::vector<RasterTile> tiles;
   for (std::size_t k = 0; k < spec.files.size(); ++k) {
-    const SourceLocation place = k < spec.places.size() ? spec.places[k] : SourceLocation{};
-    const auto file = std::make_shared<const TerrainFile>(spec.files[k], place);
+    const SourceLocation location = k < spec.locations.size() ? spec.locations[k] : SourceLocation{};
+    const auto file = std::make_shared<const TerrainFile>(spec.files[k], location);
     for (const std::string& note : file->notes()) logInfo("elevation file " + file->name() + ": " + note);
-    for (TerrainPiece& piece : piecesWithin(file, box)) pieces.push_back(std::move(piece));
+    for (RasterTile& tile : tilesWithin(file, box)) tiles.push_back(std::move(tile));
   }
   std::vector<TerrainSheet> sheets;
-  for (TerrainSheet& sheet : readSheets(pieces)) {
+  for (TerrainSheet& sheet : readSheets(tiles)) {
     if (sheet.file->isGeographic()) {
       sheets.push_back(std::move(sheet));
     } else {
@@ -77,7 +77,7 @@ class TerrainMosaic : public Terrain {
     std::vector<TerrainSheet> sheets = sheetsWithin(spec, box);
     for (const TerrainSheet& sheet : sheets) rasters_.push_back(sheet.raster());
     survey(sheets);
-    // The heights do not move in memory: the rasters go on pointing at them.
+    // The heights do not move in memory: the rasters' pointers stay valid.
     for (TerrainSheet& sheet : sheets) heights_m_.push_back(std::move(sheet.heights_m));
   }
 
@@ -158,7 +158,7 @@ void TerrainMosaic::surveyPosts(const TerrainSheet& sheet) {
   }
 }
 
-/// A file has posts about the point, be they void.
+/// True if a file has posts around the point, void or not.
 bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double latitude_deg,
                             double longitude_deg) const {
   if (!std::isnan(heightMsl_m(latitude_deg, longitude_deg))) return true;

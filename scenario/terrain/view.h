@@ -3,28 +3,28 @@
 
 #include <cmath>
 
+#include "base/device_math.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
 
 namespace emscape::scenario {
 
 /// One raster of posts, south row first, west post first; a void is NaN. Rows and columns are counted in
-/// posts as real numbers: post (column, row) lies at (column, row) exactly.
+/// posts as real numbers: post (column, row) is at (column, row) exactly.
 struct TerrainRaster {
   const float* heights_msl_m = nullptr;
   int columns = 0, rows = 0;           ///< >= 2 each
   double south_rad = 0, west_rad = 0;  ///< of post (0, 0); west within -2 pi..2 pi
   double posts_per_rad_lat = 0, posts_per_rad_lon = 0;
-  /// Where heights may be asked for, within 0..columns - 1 and 0..rows - 1.
+  /// Limits of lookups, within 0..columns - 1 and 0..rows - 1.
   double first_column = 0, last_column = 0, first_row = 0, last_row = 0;
 
-  /// How far beyond its limits a point still belongs to the raster (posts): what rounded georeferences may be
-  /// off.
+  /// Tolerance (posts) beyond the limits, for rounded georeferences.
   static constexpr double kSlack = 1e-3;
-  /// A post with less weight than this does not make its neighbourhood void.
+  /// A void post with less weight than this is ignored.
   static constexpr float kNoWeight = 1e-6f;
 
-  /// Brings a point to posts, within the limits. False if it lies beyond them.
+  /// Clamps a point to the limits. False if it is beyond the tolerance.
   EMSCAPE_HD bool limit(double& column, double& row) const {
     if (!(column >= first_column - kSlack && column <= last_column + kSlack && row >= first_row - kSlack &&
           row <= last_row + kSlack)) {
@@ -35,12 +35,12 @@ struct TerrainRaster {
     return true;
   }
 
-  /// The point as real numbers of posts; false if it lies outside the raster.
+  /// The point in posts, as real numbers; false if it is outside the raster.
   EMSCAPE_HD bool locate(double latitude_rad, double longitude_rad, double& column, double& row) const {
     row = (latitude_rad - south_rad) * posts_per_rad_lat;
     column = (longitude_rad - west_rad) * posts_per_rad_lon;
     if (limit(column, row)) return true;
-    // The same meridian, some turns further.
+    // The same meridian in another turn.
     const double turn = 2.0 * kPi * posts_per_rad_lon;
     column -= turn * std::floor((column - first_column + kSlack) / turn);
     return limit(column, row);
@@ -54,9 +54,9 @@ struct TerrainRaster {
     const float* north = south + columns;
     const float x = static_cast<float>(column - i);
     const float y = static_cast<float>(row - j);
-    const float on_south = south[0] + x * (south[1] - south[0]);
-    const float on_north = north[0] + x * (north[1] - north[0]);
-    const float height = on_south + y * (on_north - on_south);
+    const float on_south = lerp(south[0], south[1], x);
+    const float on_north = lerp(north[0], north[1], x);
+    const float height = lerp(on_south, on_north, y);
     return height == height ? height : besideVoid(south, north, x, y);
   }
 
@@ -67,7 +67,7 @@ struct TerrainRaster {
   }
 
  private:
-  /// The same where a post is void: its height does not matter where it has no weight.
+  /// The same if a post is void: it is ignored if it has no weight.
   EMSCAPE_HD static float besideVoid(const float* south, const float* north, float x, float y) {
     const float weights[4] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
     const float posts[4] = {south[0], south[1], north[0], north[1]};
@@ -86,7 +86,7 @@ struct TerrainView {
   int count = 0;
 
   /// Height above mean sea level (m): of the finest raster that has one here; NaN if none has.
-  /// @param latitude_rad -pi/2..pi/2, longitude_rad any
+  /// @param latitude_rad  -pi/2..pi/2, longitude_rad any
   EMSCAPE_HD float heightAt(double latitude_rad, double longitude_rad) const {
     float height = NAN;
     for (int k = 0; k < count && !(height == height); ++k) {

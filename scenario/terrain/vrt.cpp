@@ -28,7 +28,7 @@ bool looksLikeVrt(const fs::path& file) {
   return head.find("<VRTDataset") != std::string::npos;
 }
 
-/// @param element  one that names a source
+/// @param element  an element that names a source
 std::string faultOfSource(const CPLXMLNode& element, const fs::path& vrt, int nesting) {
   const std::string name = CPLGetXMLValue(&element, nullptr, "");
   const bool relative = std::string(CPLGetXMLValue(&element, "relativeToVRT", "0")) == "1";
@@ -37,7 +37,7 @@ std::string faultOfSource(const CPLXMLNode& element, const fs::path& vrt, int ne
   const fs::path inside = source.lexically_relative(folder);
   const bool is_file = name.find('<') == std::string::npos && name.compare(0, 4, "/vsi") != 0;
   if (!is_file || inside.empty() || *inside.begin() == "..") {
-    return "names '" + name + "', which does not lie in its own folder";
+    return "names '" + name + "', which is not in its own folder";
   }
   return foreignSource(source, nesting + 1);
 }

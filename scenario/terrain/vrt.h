@@ -1,4 +1,4 @@
-/// What a GDAL virtual raster (VRT) may name.
+/// Check of the files that a GDAL virtual raster (VRT) names.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@ namespace emscape::scenario {
 
 /// Checks that a file, if it is a VRT, names only files of its own folder and the folders in it: no other
 /// files of the machine and none of the network. VRTs that it names are checked, too.
-/// @return what is wrong; empty if nothing is or the file is no VRT
+/// @return the fault; empty if there is none or the file is not a VRT
 std::string foreignSourceOfVrt(const std::string& file);
 
 }  // namespace emscape::scenario

@@ -19,7 +19,7 @@ TEST(Error, StartsWithThePlace) {
   const Error error(ErrorCode::bad_input, {"a.yaml", 3, 7}, "gain_dbi is 99");
   EXPECT_STREQ(error.what(), "a.yaml:3:7: gain_dbi is 99");
   EXPECT_EQ(error.message(), "gain_dbi is 99");
-  EXPECT_EQ(error.place().line, 3);
+  EXPECT_EQ(error.location().line, 3);
   EXPECT_EQ(error.code(), ErrorCode::bad_input);
 }
 
@@ -27,7 +27,7 @@ TEST(Error, WithoutAPlaceIsTheMessageAlone) {
   const Error error(ErrorCode::usage, "no such subcommand");
   EXPECT_STREQ(error.what(), "no such subcommand");
   EXPECT_STREQ(Error(ErrorCode::usage, SourceLocation{}, "no such subcommand").what(), "no such subcommand");
-  EXPECT_TRUE(error.place().file.empty());
+  EXPECT_TRUE(error.location().file.empty());
 }
 
 TEST(Error, CarriesAHintForProgramsAndNoneByDefault) {

@@ -12,7 +12,7 @@ std::string faultOf(const std::string& text) {
   ProblemList problems;
   readDocument("a.yaml", text, problems);
   const std::vector<Problem> all = problems.inOrder();
-  return all.empty() ? "" : toString(all.front().place) + ": " + all.front().message;
+  return all.empty() ? "" : toString(all.front().location) + ": " + all.front().message;
 }
 
 TEST(Document, KeepsWhereKeysAndValuesStand) {

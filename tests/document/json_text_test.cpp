@@ -59,7 +59,7 @@ std::pair<std::string, std::optional<bool>> readBoolean(const std::string& value
   const DocumentNodePtr root = readDocument(file, "on: " + value + "\n", problems);
   checkObject(file, *root, spec, problems);
   const std::vector<Problem> all = problems.inOrder();
-  return {all.empty() ? "" : toString(all.front().place) + ": " + all.front().message,
+  return {all.empty() ? "" : toString(all.front().location) + ": " + all.front().message,
           Section(file, root.get(), spec).optionalBoolean("on")};
 }
 

@@ -47,7 +47,7 @@ TEST_F(CheckFolder, ReadsATableByColumnNames) {
   EXPECT_EQ(table.number(0, "b"), -2.5e-3);
   EXPECT_EQ(table.text(0, "c"), "x y");
   EXPECT_FALSE(table.has(1, "b"));
-  EXPECT_EQ(table.place(1).line, 4);
+  EXPECT_EQ(table.location(1).line, 4);
 }
 
 TEST_F(CheckFolder, NamesFileAndLineOfAMalformedTable) {

@@ -74,10 +74,10 @@ class Columns {
   }
   const EmitterExcess& excess() const { return excess_; }
 
-  mutable unsigned remarks = 0;
+  mutable unsigned warnings = 0;
 
  private:
-  /// @param fill  (model, column, scratch, losses) -> remarks
+  /// @param fill  (model, column, scratch, losses) -> warnings
   template <class Fill>
   std::vector<float> filled(const ProfileData& profile, const std::vector<float>& heights_msl_m,
                             const Fill& fill) const {
@@ -92,7 +92,7 @@ class Columns {
     column.height_msl_m = heights_msl_m.data();
     column.count = count;
     std::vector<float> losses(heights_msl_m.size());
-    std::visit([&](const auto& model) { remarks |= fill(model, column, scratch, losses.data()); },
+    std::visit([&](const auto& model) { warnings |= fill(model, column, scratch, losses.data()); },
                excess_.model);
     return losses;
   }
@@ -159,7 +159,7 @@ TEST(ExcessModels, AColumnInPartsIsTheColumn) {
         const std::vector<float> heights = heightsFrom(profile.height_msl_m.back() + 20, 45, count);
         EXPECT_EQ(whole.fill(profile, heights), parts.fillInParts(profile, heights));
       }
-      EXPECT_EQ(whole.remarks, parts.remarks);
+      EXPECT_EQ(whole.warnings, parts.warnings);
     }
   }
 }
@@ -456,16 +456,16 @@ TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
 
 TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {
   auto scenario = smoothEarth(PropagationModel::p528, 50e6, 20);
-  scenario->emitters[0].frequency_place = {"my.yaml", 12, 7};
+  scenario->emitters[0].frequency_location = {"my.yaml", 12, 7};
   const auto messageOf = [&] {
     const Error error = test::thrownBy([&] { FieldSolver solver(scenario, nullptr, {}); });
-    return toString(error.place()) + ": " + error.message();
+    return toString(error.location()) + ": " + error.message();
   };
   EXPECT_EQ(messageOf(),
             "my.yaml:12:7: emitter 'site': 'p528': frequency 50 MHz is outside 100..30000 MHz: refused");
   scenario->emitters[0].frequency_hz = 1e9;
   scenario->emitters[0].propagation.p528.time_percent = 0.5;
-  scenario->emitters[0].propagation.place = {"my.yaml", 20, 3};
+  scenario->emitters[0].propagation.location = {"my.yaml", 20, 3};
   EXPECT_EQ(messageOf(),
             "my.yaml:20:3: emitter 'site': 'p528': percentage of time 0.5 % is outside 1..99 %: refused");
   scenario->emitters[0].propagation.model = PropagationModel::itm;
@@ -474,7 +474,7 @@ TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {
             "my.yaml:12:7: emitter 'site': 'itm': frequency 35000 MHz is outside 20..20000 MHz: refused");
   scenario->emitters[0].frequency_hz = 1e9;
   scenario->ground.conductivity_s_m = 0;
-  scenario->ground.place = {"my.yaml", 5, 9};
+  scenario->ground.location = {"my.yaml", 5, 9};
   EXPECT_THAT(messageOf(), HasSubstr("my.yaml:5:9: emitter 'site': 'itm': "));
 
   scenario->emitters[0].propagation.model = PropagationModel::diffraction;

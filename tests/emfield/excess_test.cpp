@@ -27,9 +27,9 @@ TEST(ExcessCode, KeepsDecibelsToHalfAStepAndSaturates) {
     EXPECT_NEAR(excessDb(excessCode(db)), db, 1 / 256.0 + 1e-5) << db;
     EXPECT_NEAR(-ratioToDb(static_cast<double>(excessFactor(excessCode(db)))), db, 1 / 256.0 + 1e-4) << db;
   }
-  EXPECT_EQ(excessDb(excessCode(1000.0f)), kLargestExcess_db);
-  EXPECT_EQ(excessDb(excessCode(-1000.0f)), -kLargestExcess_db);
-  EXPECT_EQ(excessDb(excessCode(HUGE_VALF)), kLargestExcess_db);
+  EXPECT_EQ(excessDb(excessCode(1000.0f)), kMaxExcess_db);
+  EXPECT_EQ(excessDb(excessCode(-1000.0f)), -kMaxExcess_db);
+  EXPECT_EQ(excessDb(excessCode(HUGE_VALF)), kMaxExcess_db);
   EXPECT_EQ(excessCode(NAN), kUnknownExcess);
   EXPECT_EQ(excessFactor(kUnknownExcess), 0.0f);
 }
@@ -134,18 +134,18 @@ TEST(Excess, ATurningBeamIsCombinedAloneAndAMovingOneComputedAnew) {
   FieldSolver solver(scenario, nullptr, {});
   scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
   solver.update(snapshot);
-  EXPECT_GT(solver.stageTimes().plane_ms, 0);
+  EXPECT_GT(solver.stageTimes().excess_ms, 0);
 
   const FieldChanged turned = solver.update(scenario::snapshotAt(scenario, nullptr, 1));
   EXPECT_THAT(turned.moved, IsEmpty());
   EXPECT_THAT(turned.turned, ElementsAre(0));
-  EXPECT_EQ(solver.stageTimes().plane_ms, 0);
+  EXPECT_EQ(solver.stageTimes().excess_ms, 0);
   EXPECT_EQ(solver.stageTimes().fan_ms, 0);
 
   snapshot = scenario::snapshotAt(scenario, nullptr, 1);
   snapshot.emitters[0].position.latitude_deg += 0.01;
   EXPECT_THAT(solver.update(snapshot).moved, ElementsAre(0));
-  EXPECT_GT(solver.stageTimes().plane_ms, 0);
+  EXPECT_GT(solver.stageTimes().excess_ms, 0);
 }
 
 TEST(Excess, CountsOnceInPowerDensityAndTwiceInARadarsSignalToNoise) {

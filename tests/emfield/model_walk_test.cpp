@@ -26,7 +26,7 @@ using namespace emscape::emfield::testing;
 constexpr double kFrequencies_hz[] = {1e8, 1e9, 1e10};
 constexpr double kMastAgl_m = 15;
 /// J(nu) itself begins with 0.02 dB, to which Bullington's correction adds its part.
-constexpr double kLeastJump_db = 0.1;
+constexpr double kMinJump_db = 0.1;
 
 struct Jump {
   double before = 0, after = 0;  ///< places next to each other
@@ -94,7 +94,7 @@ class Walk {
   void expectJumpsAreOnly(const Loss& loss_db, const Explain& explain) const {
     for (const Way& way : ways()) {
       const auto along = [&](double at) { return loss_db(way.path(at)); };
-      for (const Jump& jump : jumpsOf(along, way.begin, way.end, way.steps, kLeastJump_db)) {
+      for (const Jump& jump : jumpsOf(along, way.begin, way.end, way.steps, kMinJump_db)) {
         EXPECT_TRUE(explain(way.path(jump.before), way.path(jump.after)))
             << way.name << ": " << jump.size_db << " dB at " << jump.before;
       }
@@ -198,7 +198,7 @@ ItmResult<double> itmOver(const PathProfile& profile, double frequency_hz) {
                          ItmQuantiles<double>());
 }
 
-/// Whether ITM takes another course on two paths next to each other: another mode, another post as a horizon,
+/// True if ITM takes another course on two paths next to each other: another mode, another post as a horizon,
 /// horizons seen and estimated in each other's place, or the irregularity from another number of posts.
 bool takesAnotherCourse(const ItmResult<double>& a, const ItmResult<double>& b) {
   bool other = a.mode != b.mode ||

@@ -213,7 +213,7 @@ TEST(PathBudget, VerdictNamesWhatDecides) {
                                HasSubstr("above the ray"), HasSubstr("the path costs ")));
   EXPECT_EQ(verdict({44.5, -71.4, 3000}, 3000, 7), "Silent: 'site' does not radiate at t = 7 s.");
   scenario->emitters[0].propagation.model = PropagationModel::horizon;
-  EXPECT_THAT(verdict({45.4, -71.4, 10}, 10, 0), HasSubstr("the model knows no field behind it"));
+  EXPECT_THAT(verdict({45.4, -71.4, 10}, 10, 0), HasSubstr("the model gives no field behind it"));
   scenario->emitters[0].antenna = scenario::makeGaussian(30, 3, 3, -40);
   EXPECT_THAT(verdict({44.3, -71.47, 3000}, 3000, 0), HasSubstr("but the antenna points "));
 }

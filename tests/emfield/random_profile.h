@@ -29,7 +29,7 @@ inline scenario::TerrainPtr whiteMountainsTile() {
   const std::string file = test::sourceFile("tests/data/dem/N44W072.tif");
   scenario::TerrainSpec spec;
   spec.files = {file};
-  spec.places = {{file}};
+  spec.locations = {{file}};
   return scenario::Terrain::load(spec, {44.01, 44.99, -71.99, -71.01});
 }
 

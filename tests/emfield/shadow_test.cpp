@@ -111,7 +111,7 @@ scenario::TerrainPtr whiteMountains(const scenario::Scenario& scenario) {
   const std::string file = test::sourceFile("tests/data/dem/N44W072.tif");
   scenario::TerrainSpec spec;
   spec.files = {file};
-  spec.places = {{file}};
+  spec.locations = {{file}};
   return scenario::Terrain::load(spec, scenario::terrainBox(scenario));
 }
 

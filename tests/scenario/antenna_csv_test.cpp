@@ -128,7 +128,7 @@ TEST(CsvGrid, SaysWhatIsWrongAndWhere) {
   expectBroken("", 1, 1, "no header line; it should be elevation_deg,azimuth_deg,attenuation_db");
   expectBroken(header, 0, 0, "the grid's azimuths has no rows");
   expectBroken("azimuth_deg,elevation,attenuation_db\n", 1, 13, "unknown column 'elevation'");
-  expectBroken("azimuth_deg,azimuth_deg,attenuation_db\n", 1, 13, "column 'azimuth_deg' stands here twice");
+  expectBroken("azimuth_deg,azimuth_deg,attenuation_db\n", 1, 13, "column 'azimuth_deg' occurs twice");
   expectBroken("azimuth_deg,elevation_deg\n", 1, 1, "missing column");
   expectBroken(header + "0,0\n", 2, 1, "2 values, but the header names 3 columns");
   expectBroken(header + "0,x,0\n", 2, 3, "elevation_deg is 'x', not a number");
@@ -137,7 +137,7 @@ TEST(CsvGrid, SaysWhatIsWrongAndWhere) {
   expectBroken(header + "0,0,-3\n", 2, 5, "attenuation_db is -3 dB; allowed are 0 to 300 dB");
   expectBroken(header + "0,0,nan\n", 2, 5, "attenuation_db is 'nan', not a number");
   expectBroken(grid(30) + "0,0,7\n", 86, 1,
-               "azimuth 0 deg, elevation 0 deg stands here a second time, with 7 dB instead of 0 dB");
+               "azimuth 0 deg, elevation 0 deg occurs a second time, with 7 dB instead of 0 dB");
   expectBroken(header + "0,-90,0\n90,-90,0\n180,-90,0\n270,-90,0\n", 0, 0,
                "runs from -90 to -90 deg; it must reach from -90 to 90 deg");
 }

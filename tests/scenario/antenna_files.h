@@ -31,9 +31,9 @@ inline void expectFault(const std::function<void()>& read, const std::string& fi
                         const std::string& part) {
   const Error error = test::thrownBy(read);
   EXPECT_EQ(error.code(), ErrorCode::bad_input);
-  EXPECT_EQ(error.place().file, file);
-  EXPECT_EQ(error.place().line, line) << error.what();
-  EXPECT_EQ(error.place().column, column) << error.what();
+  EXPECT_EQ(error.location().file, file);
+  EXPECT_EQ(error.location().line, line) << error.what();
+  EXPECT_EQ(error.location().column, column) << error.what();
   EXPECT_THAT(error.message(), testing::HasSubstr(part));
 }
 

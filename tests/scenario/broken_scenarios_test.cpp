@@ -26,7 +26,7 @@ std::vector<std::string> brokenScenarios() {
 
 /// "[file:]line:column fragment", as the first lines of a broken scenario have it behind "# expect: ".
 struct Expectation {
-  std::string place, fragment;
+  std::string location, fragment;
 };
 
 std::vector<Expectation> expectationsOf(const std::string& text, const std::string& own_name) {
@@ -35,16 +35,16 @@ std::vector<Expectation> expectationsOf(const std::string& text, const std::stri
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line) && line.compare(0, kMark.size(), kMark) == 0;) {
     const std::size_t end = line.find(' ', kMark.size());
-    std::string place = line.substr(kMark.size(), end - kMark.size());
-    if (place[0] >= '0' && place[0] <= '9') place = own_name + ":" + place;
-    all.push_back({place, line.substr(end + 1)});
+    std::string location = line.substr(kMark.size(), end - kMark.size());
+    if (location[0] >= '0' && location[0] <= '9') location = own_name + ":" + location;
+    all.push_back({location, line.substr(end + 1)});
   }
   return all;
 }
 
 std::string told(const std::vector<Problem>& problems) {
   std::string text;
-  for (const Problem& problem : problems) text += toString(problem.place) + ": " + problem.message + "\n";
+  for (const Problem& problem : problems) text += toString(problem.location) + ": " + problem.message + "\n";
   return text;
 }
 
@@ -58,9 +58,9 @@ TEST_P(BrokenScenario, IsToldWithItsPlaces) {
   ASSERT_FALSE(expectations.empty());
   ASSERT_EQ(result.problems.size(), expectations.size()) << told(result.problems);
   for (std::size_t i = 0; i < expectations.size(); ++i) {
-    SourceLocation place = result.problems[i].place;
-    place.file = std::filesystem::path(place.file).filename().string();
-    EXPECT_EQ(toString(place), expectations[i].place) << told(result.problems);
+    SourceLocation location = result.problems[i].location;
+    location.file = std::filesystem::path(location.file).filename().string();
+    EXPECT_EQ(toString(location), expectations[i].location) << told(result.problems);
     EXPECT_NE(result.problems[i].message.find(expectations[i].fragment), std::string::npos)
         << "expected: " << expectations[i].fragment << "\n"
         << told(result.problems);
@@ -132,7 +132,7 @@ output: {quantities: [snr_db], combine: per_emitter}
     ASSERT_FALSE(result.problems.empty());
     for (const Problem& problem : result.problems) {
       EXPECT_FALSE(problem.message.empty());
-      EXPECT_GE(problem.place.line, 1) << problem.message;
+      EXPECT_GE(problem.location.line, 1) << problem.message;
     }
   }
 };

@@ -212,7 +212,7 @@ TEST_F(EditScenario, FaultsElsewhereAreAtTheirPlaceInTheFile) {
   scenario.set("platforms.site.attitude", "{roll_deg: 1}");  // a line more
   EXPECT_THAT(faultOf(scenario, "platforms.site.name", "other"),
               HasSubstr("s.yaml:21:15: there is no platform 'site'"));
-  EXPECT_EQ(scenario.emitters[0].place.line, 20);
+  EXPECT_EQ(scenario.emitters[0].location.line, 20);
 }
 
 TEST_F(EditScenario, AllFaultsOfSeveralEditsAreTold) {
@@ -221,8 +221,8 @@ TEST_F(EditScenario, AllFaultsOfSeveralEditsAreTold) {
       file, {{"nothing", "1"}, {"atmosphere.k_factor", "0"}, {"emitters.search radar.power_w", "5"}});
   EXPECT_EQ(result.scenario, nullptr);
   ASSERT_EQ(result.problems.size(), 2u);
-  EXPECT_EQ(result.problems[0].place.file, "nothing=1");
-  EXPECT_EQ(result.problems[1].place.file, "atmosphere.k_factor=0");
+  EXPECT_EQ(result.problems[0].location.file, "nothing=1");
+  EXPECT_EQ(result.problems[1].location.file, "atmosphere.k_factor=0");
 }
 
 TEST_F(EditScenario, UnchangedAntennasAndTerrainStay) {

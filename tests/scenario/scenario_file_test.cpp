@@ -68,7 +68,7 @@ TEST_F(ScenarioYaml, ReadsEverySection) {
   EXPECT_EQ(radar.receiver.target_rcs_m2, 5);
   ASSERT_EQ(radar.active_s.size(), 2u);
   EXPECT_EQ(radar.active_s[1].begin_s, 90);
-  EXPECT_EQ(radar.place.line, 20);
+  EXPECT_EQ(radar.location.line, 20);
   ASSERT_EQ(scenario->emitters[1].scan.dwells.size(), 2u);
   EXPECT_EQ(scenario->emitters[1].scan.dwells[1].duration_s, 0.2);
   EXPECT_EQ(scenario->emitters[3].platform, 1);
@@ -113,7 +113,7 @@ TEST_F(ScenarioYaml, ReadsWhatModelsAreTold) {
   EXPECT_EQ(jammer.propagation.itm.service, ItmService::broadcast);
   EXPECT_EQ(jammer.propagation.itm.irregularity_m, 30);
   EXPECT_EQ(jammer.propagation.diffraction.method, DiffractionMethod::deygout);
-  EXPECT_GT(jammer.propagation.place.line, jammer.place.line);
+  EXPECT_GT(jammer.propagation.location.line, jammer.location.line);
 
   scenario = load(replaced(valid_, model,
                            "    propagation: two_ray\n"
@@ -207,7 +207,7 @@ receivers:)");
 TEST_F(ScenarioYaml, WindowsLineEndsAndByteOrderMarkChangeNothing) {
   std::string text = "\xEF\xBB\xBF";
   for (const char c : valid_) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
-  EXPECT_EQ(load(text)->emitters[0].place.column, 5);
+  EXPECT_EQ(load(text)->emitters[0].location.column, 5);
 }
 
 TEST_F(ScenarioYaml, HashFollowsTheScenarioAndEveryNamedFile) {
@@ -228,8 +228,8 @@ TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
   ASSERT_TRUE(result.scenario);
   ASSERT_EQ(result.problems.size(), 1u);
   EXPECT_EQ(result.problems[0].severity, Severity::warning);
-  EXPECT_EQ(result.problems[0].message, "emitter 'array radar' (9000000000 Hz) lies in none of the bands");
-  EXPECT_EQ(result.problems[0].place.line, 39);
+  EXPECT_EQ(result.problems[0].message, "emitter 'array radar' (9000000000 Hz) is in none of the bands");
+  EXPECT_EQ(result.problems[0].location.line, 39);
 }
 
 TEST_F(ScenarioYaml, WarnsOfAJammerOutsideEveryRadarsBand) {
@@ -242,7 +242,7 @@ TEST_F(ScenarioYaml, WarnsOfAJammerOutsideEveryRadarsBand) {
   ASSERT_EQ(result.problems.size(), 1u);
   EXPECT_EQ(result.problems[0].severity, Severity::warning);
   EXPECT_EQ(result.problems[0].message,
-            "jammer 'jammer' (3100000000 Hz, 20000000 Hz wide) lies outside the band of every radar: it jams "
+            "jammer 'jammer' (3100000000 Hz, 20000000 Hz wide) is outside the band of every radar: it jams "
             "none");
 }
 

@@ -40,7 +40,7 @@ Scenario oneEmitter(const SitePosition& position) {
   scenario.clock.epoch_utc = "2026-06-01T06:00:00Z";
   Platform platform;
   platform.name = "site";
-  platform.place = {"s.yaml", 12, 5};
+  platform.location = {"s.yaml", 12, 5};
   platform.track.resize(1);
   platform.track[0].position = position;
   scenario.platforms = {platform};
@@ -71,7 +71,7 @@ void expectVector(const Vec3d& actual, const Vec3d& expected) {
 void expectMessage(const Scenario& scenario, const Terrain* terrain, double t_s, const std::string& message) {
   const Error error = test::thrownBy([&] { snap(scenario, t_s, terrain); });
   EXPECT_EQ(error.code(), ErrorCode::bad_input);
-  EXPECT_EQ(error.place().line, 12);
+  EXPECT_EQ(error.location().line, 12);
   EXPECT_NE(error.message().find(message), std::string::npos) << error.message();
 }
 
@@ -99,11 +99,11 @@ TEST(Snapshot, PlatformBelowGroundIsAnErrorWithTimeAndDepth) {
   scenario.terrain.emplace();
   const FlatTerrain terrain(250, -90);
   expectMessage(scenario, &terrain, 7.5,
-                "platform 'site' at t = 7.5 s (36.000000, -84.000000 deg) lies 12.0 m below ground");
+                "platform 'site' at t = 7.5 s (36.000000, -84.000000 deg) is 12.0 m below ground");
   scenario = oneEmitter(atMsl(250));
   scenario.terrain.emplace();
   EXPECT_NO_THROW(snap(scenario, 0, &terrain));
-  expectMessage(oneEmitter(atMsl(-3)), nullptr, 0, "lies 3.0 m below the smooth earth");
+  expectMessage(oneEmitter(atMsl(-3)), nullptr, 0, "is 3.0 m below the smooth earth");
 }
 
 TEST(Snapshot, HeightAboveMissingGroundIsAnError) {

@@ -36,12 +36,12 @@ class TerrainFileTest : public testing::Test {
   }
 
   /// The message of loading a file over a box; nothing may be printed meanwhile.
-  std::string problemOf(const std::string& file, const SourceLocation& place = {}) const {
+  std::string problemOf(const std::string& file, const SourceLocation& location = {}) const {
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
     const std::string message = test::errorOf(
         [&] {
-          Terrain::load({{file}, {place}, VerticalDatum::egm96}, {49, 50, 10, 11});
+          Terrain::load({{file}, {location}, VerticalDatum::egm96}, {49, 50, 10, 11});
         },
         ErrorCode::bad_input);
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
@@ -312,14 +312,14 @@ TEST_F(TerrainFileTest, WhatIsNoRasterIsRefused) {
 TEST_F(TerrainFileTest, AbsurdPositionsAreRefused) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
   file.transform[0] = 6e282;
-  EXPECT_THAT(problemOf(write("far.tif", file)), HasSubstr("its posts lie nowhere on the earth"));
+  EXPECT_THAT(problemOf(write("far.tif", file)), HasSubstr("its posts are not on the earth"));
   file.transform[0] = 5000;
   EXPECT_THAT(
       problemOf(write("round.tif", file)),
       HasSubstr("its longitudes run from 5000.05 to 5000.95 deg, outside the allowed -1080 to 1080 deg"));
   file.transform[0] = 10;
   file.transform[1] = 1e300;
-  EXPECT_THAT(problemOf(write("wide.tif", file)), HasSubstr("its posts lie nowhere on the earth"));
+  EXPECT_THAT(problemOf(write("wide.tif", file)), HasSubstr("its posts are not on the earth"));
 }
 
 TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {

@@ -7,7 +7,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const scenario::SitePosition& placeOf(const Session& session, std::size_t platform) {
+const scenario::SitePosition& positionOf(const Session& session, std::size_t platform) {
   return session.scenario()->platforms[platform].track.front().position;
 }
 
@@ -55,16 +55,16 @@ TEST(SessionEdits, ANewKeyOfASectionThatIsNotGivenIsAdded) {
 TEST(SessionEdits, MovePutsAPlatformElsewhereInOneStep) {
   SessionSample sample("quick.yaml");
   sample.perform(R"({"do":"move","platform":"mast","latitude_deg":52.01,"longitude_deg":5.02})");
-  EXPECT_EQ(placeOf(*sample, 1).latitude_deg, 52.01);
-  EXPECT_EQ(placeOf(*sample, 1).longitude_deg, 5.02);
-  EXPECT_EQ(placeOf(*sample, 1).height_agl_m, 50);
+  EXPECT_EQ(positionOf(*sample, 1).latitude_deg, 52.01);
+  EXPECT_EQ(positionOf(*sample, 1).longitude_deg, 5.02);
+  EXPECT_EQ(positionOf(*sample, 1).height_agl_m, 50);
   sample.perform(R"({"do":"undo"})");
-  EXPECT_EQ(placeOf(*sample, 1).latitude_deg, 52.05);
+  EXPECT_EQ(positionOf(*sample, 1).latitude_deg, 52.05);
   sample.perform(R"({"do":"move","platform":"tower","latitude_deg":52,"longitude_deg":5})");
   EXPECT_EQ(sample.error(), "there is no platform 'tower'; the scenario has 'radar site', 'mast'");
   sample.perform(R"({"do":"move","platform":"mast","latitude_deg":95,"longitude_deg":5})");
   EXPECT_THAT(sample.error(), HasSubstr("'latitude_deg' is 95"));
-  EXPECT_EQ(placeOf(*sample, 1).latitude_deg, 52.05);
+  EXPECT_EQ(positionOf(*sample, 1).latitude_deg, 52.05);
 }
 
 TEST(SessionEdits, TheShownQuantityFollowsTheScenarioUnlessItWasChosen) {

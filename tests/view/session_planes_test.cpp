@@ -30,7 +30,7 @@ TEST_F(Planes, AreAddedMovedFlippedSwitchedAndRemoved) {
 
 TEST_F(Planes, FaultsAreTold) {
   perform(R"({"do":"plane","flip":true})");
-  EXPECT_EQ(error(), "plane: there is none; `spec` or `kind` adds one");
+  EXPECT_EQ(error(), "plane: there is no plane; `spec` or `kind` adds one");
   perform(R"({"do":"plane","kind":"slanted"})");
   EXPECT_EQ(error(), "plane: kind 'slanted': expected horizontal or vertical");
   for (int n = 0; n < 3; ++n) perform(R"({"do":"plane","spec":"vertical"})");

@@ -81,7 +81,7 @@ TEST(SessionProbe, FollowsTheCursorUntilItIsHeld) {
 TEST(SessionProbe, CopiesTheCommandThatExplainsThePath) {
   SessionSample sample("quick.yaml");
   sample.perform(R"({"do":"copy_profile","emitter":"radar"})");
-  EXPECT_EQ(sample.error(), "there is no path to explain: the probe holds no point of a scenario");
+  EXPECT_EQ(sample.error(), "there is no path to explain: the probe has no point of a scenario");
   sample.perform(kProbe);
   sample.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"5"})");
   sample.settle();

@@ -10,7 +10,7 @@
 namespace emscape::volume {
 namespace {
 
-/// Whether a sample in the air takes in a voxel: it or a neighbour is not masked.
+/// True if a sample in the air takes in a voxel: it or a neighbour is not masked.
 bool isReached(const DenseVolume& volume, int i, int j, int k) {
   const Dims& dims = volume.grid.dims;
   for (int w = std::max(k - 1, 0); w <= std::min(k + 1, dims.z - 1); ++w) {

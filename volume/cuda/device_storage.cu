@@ -12,7 +12,7 @@ using emscape::cuda::Buffer;
 using emscape::cuda::check;
 using emscape::cuda::checkLaunch;
 
-/// Values on their way between host and device are held in slabs of layers of about this size.
+/// Size (bytes) of the slabs of layers in which values are copied between host and device.
 constexpr std::size_t kSlabBytes = std::size_t{64} << 20;
 constexpr int kThreads = 128;
 constexpr int kWarp = 32;
@@ -27,13 +27,13 @@ std::string dimsText(const Dims& dims) {
 
 void checkFits(const Dims& dims, VoxelPrecision precision) {
   checkDims(dims, {});
-  if (precision == VoxelPrecision::sparse32) return;  // setSparse() knows what it needs
+  if (precision == VoxelPrecision::sparse32) return;  // setSparse() allocates
   const bool half = precision == VoxelPrecision::float16;
   const std::string who =
       "GPU: a volume of " + dimsText(dims) + " voxels in " + (half ? "16" : "32") + " bit";
-  constexpr int kMostAlong = 16384;
-  if (std::max({dims.x, dims.y, dims.z}) > kMostAlong) {
-    throw Error(ErrorCode::device, who + ": at most " + std::to_string(kMostAlong) + " along each axis");
+  constexpr int kMaxAlong = 16384;
+  if (std::max({dims.x, dims.y, dims.z}) > kMaxAlong) {
+    throw Error(ErrorCode::device, who + ": at most " + std::to_string(kMaxAlong) + " along each axis");
   }
   std::size_t free_bytes = 0, total_bytes = 0;
   check(cudaMemGetInfo(&free_bytes, &total_bytes), "cudaMemGetInfo");
@@ -45,7 +45,7 @@ void checkFits(const Dims& dims, VoxelPrecision precision) {
   throw Error(ErrorCode::device, message);
 }
 
-/// Layers begin_k .. end_k of each column, from the top down; the layer above end_k is written already.
+/// Layers begin_k .. end_k of each column, from the top down; the layer above end_k has already been written.
 __global__ void storeSlab(const float* values, const std::int32_t* first_valid_k, VoxelWriter voxels,
                           int begin_k, int end_k) {
   const int columns = voxels.dims.x * voxels.dims.y;
@@ -71,7 +71,7 @@ struct PointTexels {
   }
 };
 
-/// What kernels that read make a thread's voxels of.
+/// Converts a thread's voxels to the values that readers expect.
 struct TexelSource {
   cudaTextureObject_t texture;
   __device__ PointTexels voxels() const { return {texture}; }
@@ -204,15 +204,14 @@ cudaTextureObject_t DeviceStorage::makeTexture(cudaTextureFilterMode filter) con
 }
 
 void DeviceStorage::release() {
-  // What fails here failed before, or the device is lost: there is nothing left to be told. Freeing waits for
-  // those who still read.
+  // Errors are ignored: the failure was reported before, or the device is lost. Freeing waits for readers.
   if (point_ != 0) cudaDestroyTextureObject(point_);
   if (linear_ != 0) cudaDestroyTextureObject(linear_);
   if (surface_ != 0) cudaDestroySurfaceObject(surface_);
   if (array_ != nullptr) cudaFreeArray(array_);
 }
 
-/// Calls `use` with where kernels read voxels from.
+/// Calls `use` with the accessor from which kernels read voxels.
 template <class Use>
 void DeviceStorage::withSource(const Use& use) const {
   if (precision_ == VoxelPrecision::sparse32) {
@@ -264,7 +263,7 @@ void DeviceStorage::beginReading(cudaStream_t stream) const {
 
 void DeviceStorage::endReading(cudaStream_t stream) const {
   const std::lock_guard<std::mutex> lock(order_);
-  // The event stands for the readers before this one too.
+  // The event also covers the readers before this one.
   read_.holdBack(stream);
   read_.record(stream);
 }
@@ -305,7 +304,7 @@ void DeviceStorage::writeFrom(const float* host_values, cudaStream_t stream) {
                                                            end_k);
     checkLaunch("storeSlab");
   }
-  check(cudaStreamSynchronize(stream), "upload of a volume");  // the slab goes away
+  check(cudaStreamSynchronize(stream), "upload of a volume");  // before the slab is freed
 }
 
 void DeviceStorage::readTo(float* host_values, float floor, cudaStream_t stream) const {

@@ -17,7 +17,7 @@
 
 namespace emscape::volume {
 
-/// Voxels as a kernel writes them. Each masked voxel takes the value of the first above it that is not.
+/// Voxels for kernels to write. Each masked voxel takes the value of the first above it that is not.
 struct VoxelWriter {
   cudaSurfaceObject_t surface = 0;
   Dims dims;
@@ -41,8 +41,8 @@ struct VoxelWriter {
 #endif
 };
 
-/// The memory of a DeviceVolume, and who may use it when: all calls below only order work on streams, they do
-/// not wait. Several threads may read at a time, one writes.
+/// The memory of a DeviceVolume, and the order of its readers and writers: the calls below only order work on
+/// streams, they do not wait. Several threads may read at a time; one writes.
 class DeviceStorage {
  public:
   /// @throws Error (device) that names the bytes needed and free
@@ -51,36 +51,38 @@ class DeviceStorage {
   DeviceStorage(const DeviceStorage&) = delete;
   DeviceStorage& operator=(const DeviceStorage&) = delete;
 
-  /// Kernels launched on the stream from here on may write: they wait for those that read. Kernels write
-  /// every voxel, masked ones too; of a sparse volume none.
+  /// Kernels launched on the stream after this call may write: they wait for readers. Kernels write every
+  /// voxel, masked ones too; no voxel of a sparse volume.
   VoxelWriter beginWriting(cudaStream_t stream);
-  /// All kernels that write are launched: the bricks follow, then those who read may begin.
+  /// All writing kernels are launched: computes the bricks, then readers may begin.
   void endWriting(cudaStream_t stream);
 
-  /// Kernels launched on the stream from here on may read: they wait for what is being written.
+  /// Kernels launched on the stream after this call may read: they wait for the writer.
   void beginReading(cudaStream_t stream) const;
   void endReading(cudaStream_t stream) const;
 
-  /// Positions are those of voxel centres plus 0.5; beyond the outer centres their values go on.
-  cudaTextureObject_t linearTexture() const { return linear_; }  ///< fractions of 8 bits, as the GPU filters
+  /// Positions are those of voxel centres plus 0.5; beyond the outer centres their values are repeated.
+  cudaTextureObject_t linearTexture() const {
+    return linear_;
+  }  ///< interpolated by the GPU, with 8-bit fractions
   cudaTextureObject_t pointTexture() const { return point_; }
-  /// In device memory; of what endWriting() found.
+  /// In device memory; computed by endWriting().
   BricksView bricks() const;
-  /// In device memory; null but for a sparse volume.
+  /// In device memory; null unless the volume is sparse.
   const SparseBlock* sparseBlocks() const { return sparse_blocks_.data(); }
   std::size_t sparseBytes() const { return sparse_.size() + sparse_blocks_.size() * sizeof(SparseBlock); }
-  /// In device memory, one a column; null where no voxel is masked.
+  /// In device memory, one per column; null if no voxel is masked.
   const std::int32_t* firstValidK() const { return masked_below_ > 0 ? first_valid_k_.data() : nullptr; }
   int maskedBelow() const { return masked_below_; }
 
-  /// Waits for those who read. @param first_valid_k  one a column, or none
+  /// Waits for readers. @param first_valid_k  one per column, or none
   void setMask(const std::vector<std::uint16_t>& first_valid_k);
-  /// On the stream: writes all voxels from values in dense order, masked ones not looked at.
+  /// On the stream: writes all voxels from values in dense order, masked ones are not read.
   void writeFrom(const float* host_values, cudaStream_t stream);
-  /// Of a sparse volume: all voxels anew, on the stream. @param grid  as readyForSampling() has it.
+  /// Of a sparse volume: replaces all voxels, on the stream. @param grid  as returned by readyForSampling()
   /// @throws Error (device) that names the bytes needed and free
   void setSparse(const std::uint8_t* grid, std::size_t bytes, cudaStream_t stream);
-  /// On the stream; waits for it. Masked voxels are given the floor.
+  /// On the stream; waits for it. Masked voxels get the floor.
   void readTo(float* host_values, float floor, cudaStream_t stream) const;
 
  private:

@@ -1,4 +1,4 @@
-/// Which processor does the work: what was requested, and what that resolves to on this machine.
+/// Backends: the one that was requested, and the one that the request resolves to on this machine.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace emscape {
 
 enum class Backend {
-  automatic,  ///< the GPU if there is one that can, else the CPU
+  automatic,  ///< the GPU if there is a usable one, else the CPU
   cpu,
   cuda
 };
@@ -23,7 +23,7 @@ Backend parseBackend(const std::string& name);
 struct ResolvedBackend {
   Backend backend = Backend::cpu;  ///< cpu or cuda
   std::string device = "cpu";      ///< for reports: "cpu", or the name of the GPU
-  std::string note;                ///< automatic was requested: one line, what was taken and why
+  std::string note;  ///< automatic was requested: one line that names the chosen backend and the reason
 };
 
 /// @param device  what findDevice() found
@@ -33,8 +33,8 @@ ResolvedBackend resolveBackend(Backend requested, const Device& device);
 /// Calls findDevice(), unless the CPU is requested.
 ResolvedBackend resolveBackend(Backend requested);
 
-/// Constructs something on the requested backend. With Backend::automatic, where the GPU fails for lack of
-/// memory or otherwise, constructs the same on the CPU.
+/// Calls open() for the requested backend. With Backend::automatic, calls it for the CPU if it fails on the
+/// GPU.
 /// @param open  (ResolvedBackend) -> the result
 /// @param tell  (std::string): receives one line for the user; called for Backend::automatic only
 /// @throws as resolveBackend() and `open`

@@ -1,4 +1,4 @@
-/// The GPU that computes, if there is one.
+/// The GPU that this program uses, if there is one.
 #pragma once
 
 #include <cstddef>
@@ -6,19 +6,20 @@
 
 namespace emscape {
 
-/// A GPU that answers.
+/// A GPU, and whether it is usable.
 struct Device {
   bool usable = false;
-  std::string why_not;  ///< where it is not: as half a sentence
-  std::string name;     ///< of the product
+  std::string why_not;  ///< reason why it is not usable; empty if it is. A phrase to follow a colon
+  std::string name;     ///< product name, as the driver reports it
   std::size_t total_bytes = 0;
-  std::size_t free_bytes = 0;  ///< when it was asked
+  std::size_t free_bytes = 0;  ///< at the time of the call
 };
 
-/// What of CUDA is in this build: "CUDA 13.0 for 80-real, 90"; empty for nothing.
+/// CUDA version and target architectures of this build: "CUDA 13.0 for 80-real, 90"; empty without CUDA.
 std::string cudaOfBuild();
 
-/// The first GPU of the system that this program can use. Cheap after the first call but for free_bytes.
+/// The first GPU of the system that this program can use. After the first call only free_bytes is queried
+/// again.
 Device findDevice();
 
 }  // namespace emscape

@@ -1,4 +1,4 @@
-/// Geodetic positions (WGS84) and the local frames in which volumes lie. The truth, by GeographicLib;
+/// Geodetic positions (WGS84) and the local frames of volumes. The exact form, by GeographicLib;
 /// fast_geodesy.h has the approximation used per voxel.
 #pragma once
 
@@ -23,13 +23,12 @@ enum class FrameKind { altitude, enu };
 
 const char* toString(FrameKind kind);
 
-/// Where a frame lies: enough to build it again from a file's metadata.
+/// Definition of a frame: enough to build it again from a file's metadata.
 struct FrameOrigin {
   FrameKind kind = FrameKind::altitude;
   double latitude_deg = 0;
   double longitude_deg = 0;
-  /// enu: the origin's height. altitude: the height where the region begins; z itself counts from mean sea
-  /// level.
+  /// enu: the origin's height. altitude: the lowest height of the region; z is measured from mean sea level.
   double height_msl_m = 0;
 };
 

@@ -1,4 +1,4 @@
-/// Marks of functions that run on the host and, compiled by nvcc, on the device, and of their loops.
+/// Macros for functions that run on the host and, compiled by nvcc, on the device, and for their loops.
 #pragma once
 
 #if defined(__CUDACC__)
@@ -7,7 +7,8 @@
 #define EMSCAPE_HD
 #endif
 
-/// Put before a loop of few turns: on the device it is unrolled, so that what it indexes stays in registers.
+/// Put before a loop of few iterations: on the device it is unrolled, so that arrays it indexes stay in
+/// registers.
 #if defined(__CUDA_ARCH__)
 #define EMSCAPE_UNROLL _Pragma("unroll")
 #else

@@ -1,4 +1,4 @@
-/// Messages of the libraries. A library never prints: the program sets where they go (nowhere by default).
+/// Messages of the libraries. A library never prints: the program sets a sink (none by default).
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-/// How libraries tell of long work without printing, and how they are asked to stop.
+/// Progress reports and cancellation of long work.
 #pragma once
 
 #include <atomic>
@@ -7,7 +7,8 @@
 
 namespace emscape {
 
-/// Called with the step's name and the part done, 0..1. May be called from any thread, one call at a time.
+/// Called with the step's name and the fraction done, 0..1. May be called from any thread, one call at a
+/// time.
 using ProgressSink = std::function<void(const std::string& step, double fraction)>;
 
 /// Set from another thread (or a signal) to abort long work at its next checkpoint.

@@ -1,4 +1,4 @@
-/// What is wrong in a document and the files it names.
+/// Problems of a document and of the files that it names.
 #pragma once
 
 #include <string>
@@ -11,23 +11,23 @@ namespace emscape::document {
 enum class Severity { warning, error };
 
 struct Problem {
-  SourceLocation place;
+  SourceLocation location;
   Severity severity = Severity::error;
   std::string message;
 };
 
-/// Collects problems, so that all of them can be told at once. At most 1000 are kept, and one that says so.
-/// Those of another file stand in the order of the place where the scenario names that file.
+/// Collects problems, so that all of them can be reported at once. At most 1000 are kept, and one that says
+/// so. Problems of another file are sorted by the location at which the scenario names that file.
 class ProblemList {
  public:
-  void addError(const SourceLocation& place, const std::string& message);
-  void addWarning(const SourceLocation& place, const std::string& message);
+  void addError(const SourceLocation& location, const std::string& message);
+  void addWarning(const SourceLocation& location, const std::string& message);
   /// A fault in a file that the scenario names at `named_at`.
-  void addErrorElsewhere(const SourceLocation& named_at, const SourceLocation& place,
+  void addErrorElsewhere(const SourceLocation& named_at, const SourceLocation& location,
                          const std::string& message);
 
   bool hasErrors() const;
-  /// In the order of the scenario file; problems of one place in the order in which they were found.
+  /// In the order of the scenario file; problems of one location in the order in which they were found.
   std::vector<Problem> inOrder() const;
 
  private:

@@ -1,7 +1,7 @@
-/// The budget of one path: from the transmitter's power to what arrives at a point, term by term.
+/// The link budget of one path: from the transmitter's power to the power density at a point, term by term.
 ///
-/// It answers "why is there no coverage here?" and gives what a voxel of the field at that point holds for
-/// this emitter, by the same functions.
+/// It explains missing coverage, and gives the value of a voxel of the field at that point for this emitter,
+/// by the same functions.
 #pragma once
 
 #include <optional>
@@ -14,17 +14,17 @@
 
 namespace emscape::emfield {
 
-/// How the path lies.
+/// Geometry of the path.
 struct PathGeometry {
   double slant_range_m = 0;
   double straight_elevation_rad = 0;  ///< of the straight line, at the emitter
   double launch_elevation_rad = 0;    ///< of the refracted ray's start
   double begin_ground_msl_m = 0, end_ground_msl_m = 0;
-  double horizon_range_m = 0;  ///< to where a smooth earth at mean sea level cuts off the end's height
+  double horizon_range_m = 0;  ///< distance beyond which a smooth earth at mean sea level hides the end
   double far_field_m = 0;      ///< 2 D^2 / lambda
 };
 
-/// Where the point lies in the antenna's pattern.
+/// Direction of the point in the antenna's pattern.
 struct PathPointing {
   double off_axis_rad = 0;  ///< between the ray's start and the beam's axis
   double azimuth_rad = 0;   ///< in the antenna's frame, clockwise from its boresight
@@ -39,7 +39,7 @@ struct BudgetTerm {
   std::string label;  ///< for people
   double value = 0;
   std::string unit;
-  std::string note;  ///< where the value comes from; may be empty
+  std::string note;  ///< origin of the value; may be empty
   Kind kind = Kind::part;
 };
 
@@ -64,7 +64,7 @@ struct PathBudget {
 };
 
 /// @param emitter  index into the snapshot
-/// @param point    where the budget ends
+/// @param point    the far end of the path
 /// @param terrain  null: a smooth earth at mean sea level
 /// @throws Error (bad_input) as readPathProfile and pathExcess do
 PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,

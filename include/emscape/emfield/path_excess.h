@@ -1,4 +1,4 @@
-/// What a propagation model says of one path, and what its loss is made of.
+/// A propagation model's excess loss on one path, and its parts.
 #pragma once
 
 #include <string>
@@ -14,11 +14,12 @@ struct PathExcess : propagation::Explanation {
   std::vector<std::string> warnings;
 };
 
-/// By the functions that fill the field's voxels; p528 by its curve itself instead of the field's table.
-/// @param emitter     with the model to take; it stands where the profile begins
+/// By the functions that fill the field's voxels; except p528, which computes its curve instead of reading
+/// the field's table.
+/// @param emitter     with the model to use, at the begin of the profile
 /// @param terrain     null: none
 /// @param resolution  of profiles
-/// @throws Error (bad_input) for what the model refuses
+/// @throws Error (bad_input) if the model refuses an input
 PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                       const PathProfile& profile, const scenario::Terrain* terrain,
                       const FanResolution& resolution);

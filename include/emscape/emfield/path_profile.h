@@ -1,4 +1,4 @@
-/// The terrain under one path, the ray over it, and what stands in the ray's way.
+/// The terrain under one path, the ray above it, and the obstacles.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ struct PathEnd {
   double height_msl_m = 0;
 };
 
-/// A path from a station: the vertical plane that holds both ends, on the effective earth, on which the ray
+/// A path from a station: the vertical plane through both ends, on the effective earth, on which the ray
 /// is straight. Arrays run from the station (range 0) to below the far end.
 struct PathProfile {
   double k_factor = 0;                  ///< effective earth radius over earth radius
@@ -30,9 +30,9 @@ struct PathProfile {
   bool has_terrain = false;       ///< false: a smooth earth at mean sea level
 
   int count() const { return static_cast<int>(ranges_m.size()); }
-  /// Of the ray over the ground, negative where the ground stands above it.
+  /// Clearance (m) of the ray above the ground; negative where the ground is above it.
   double clearance_m(int i) const { return ray_msl_m[i] - static_cast<double>(ground_msl_m[i]); }
-  /// How far the effective earth bulges over the chord between the ends.
+  /// Height (m) of the effective earth's bulge above the chord between the ends.
   double bulge_m(int i) const {
     return ranges_m[i] * (range_m - ranges_m[i]) / (2 * effective_earth_radius_m);
   }
@@ -40,32 +40,32 @@ struct PathProfile {
   double fresnelRadius_m(int i, double wavelength_m) const;
 };
 
-/// Reads the terrain as the field does: at the ranges of a fan, and at the path's end.
+/// Reads the terrain at the ranges of a fan, as the field does, and at the path's end.
 /// @param terrain  null: a smooth earth at mean sea level
-/// @throws Error (bad_input) that names the first place where the terrain is missing, and for ends that lie
-/// above one another (nearer than 1 m along the ground) or more than a quarter of the earth apart
+/// @throws Error (bad_input) that names the first position without terrain, and for ends that are above one
+/// another (nearer than 1 m along the ground) or more than a quarter of the earth apart
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
                             const scenario::Terrain* terrain, const FanResolution& resolution);
 
-/// A place where the ground enters the ray's first Fresnel zone, or comes nearest to it.
+/// A point where the ground enters the ray's first Fresnel zone, or comes nearest to it.
 struct PathObstacle {
   int post = 0;  ///< of the profile
   double range_m = 0;
   double ground_msl_m = 0;
-  double clearance_m = 0;  ///< negative: the ground stands above the ray
+  double clearance_m = 0;  ///< negative: the ground is above the ray
   double fresnel_radius_m = 0;
   double nu = 0;                ///< P.526-15 eq. (26)
-  double knife_edge_db = 0;     ///< J(nu): what it would cost alone, as a sharp edge
-  bool is_earth_bulge = false;  ///< stands above the ray only because the earth curves
+  double knife_edge_db = 0;     ///< J(nu): the loss of this obstacle alone, as a knife edge
+  bool is_earth_bulge = false;  ///< above the ray only because of the earth's curvature
   bool decides = false;         ///< the largest nu of all
 
   double clearanceInFresnelRadii() const { return clearance_m / fresnel_radius_m; }
 };
 
-/// The separate obstacles that leave less than 0.6 Fresnel radii, from the station outwards, no more than the
-/// eight largest; where there is none, the one place that comes nearest. Two crests are separate if the
-/// ground between them falls away from the ray by half a Fresnel radius, or by a third of what the lesser one
-/// obstructs. Empty without a post between the ends.
+/// The separate obstacles that leave less than 0.6 Fresnel radii, from the station outwards, at most the
+/// eight largest; if there is none, the point with the smallest clearance. Two crests are separate if the
+/// ground between them falls below the ray by half a Fresnel radius, or by a third of the smaller one's
+/// obstruction. Empty without a post between the ends.
 std::vector<PathObstacle> pathObstacles(const PathProfile& profile, double wavelength_m);
 
 }  // namespace emscape::emfield

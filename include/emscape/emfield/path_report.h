@@ -1,4 +1,4 @@
-/// The budget of a path in words: what `emscape profile` prints and the window's probe shows.
+/// The budget of a path as text, for `emscape profile` and the window's probe.
 #pragma once
 
 #include <string>
@@ -8,22 +8,22 @@
 
 namespace emscape::emfield {
 
-/// One line: a name and what is to be said of it.
+/// One line: a name and its text.
 struct ReportLine {
   std::string name;
   std::string text;
 };
 
-/// Where the ends are and how the path lies between them.
+/// The ends of the path and its geometry.
 std::vector<ReportLine> geometryLines(const PathBudget& budget);
 
-/// A term's value with two decimals: "none" and "all" for infinities, without a sign what rounds to nothing.
+/// A term's value with two decimals; "no field" for -infinity, "infinite" for +infinity; 0.00 without a sign.
 std::string valueText(double value);
 
-/// What an obstacle is besides its figures: "earth's bulge", "decides", both or nothing.
+/// Remark on an obstacle: "earth's bulge", "decides", both or empty.
 std::string remarkOf(const PathObstacle& obstacle);
 
-/// Whether ground or the earth's bulge stands above the ray.
+/// True if ground or the earth's bulge is above the ray.
 bool isBlocked(const PathBudget& budget);
 
 }  // namespace emscape::emfield

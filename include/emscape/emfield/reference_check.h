@@ -1,6 +1,6 @@
-/// Compares the models with a folder of reference figures: what `emscape check DIR` runs.
+/// Compares the models with a folder of reference figures, for `emscape check DIR`.
 ///
-/// A dataset is a line in the table of reference_check.cpp and a function in one of this folder's files.
+/// A dataset is a row in the table of reference_check.cpp and a function in one of this folder's files.
 #pragma once
 
 #include <filesystem>
@@ -19,13 +19,13 @@ struct FigureCheck {
 
   bool pass() const { return max_abs_error <= tolerance; }
 
-  /// Takes one case in. A value that is not a number counts as infinitely wrong.
+  /// Adds one case. A value that is not a number has an infinite difference.
   void compare(double computed, double expected, int line);
   /// The difference relative to `expected` (absolute where that is 0).
   void compareRelative(double computed, double expected, int line);
 };
 
-/// What became of one dataset. The first figure is the dataset's own; others stand beside it.
+/// Result of one dataset. The first figure is the dataset's main one; others are additional.
 struct DatasetCheck {
   int cases = 0;
   std::vector<FigureCheck> figures;
@@ -33,26 +33,26 @@ struct DatasetCheck {
   bool pass() const;
 };
 
-/// A dataset that is known by name.
+/// A known dataset.
 struct ReferenceDataset {
   std::string name;  ///< of its folder or file below DIR: "itm_p2p", "radar/knife_edge_J_nu_derived.csv"
   /// @param path  DIR/name
   /// @throws Error (bad_input) with file:line for a file that is malformed
-  /// Null where no model answers to it.
+  /// Null if there is no model for it.
   DatasetCheck (*check)(const std::filesystem::path& path) = nullptr;
 };
 
 /// All datasets that are known, in the order in which they are checked.
 const std::vector<ReferenceDataset>& referenceDatasets();
 
-/// What a folder holds.
+/// The datasets of a folder.
 struct ReferenceFolder {
   std::vector<const ReferenceDataset*> present;  ///< known, with a model or without one
   std::vector<std::string> absent;               ///< known, not in the folder
   std::vector<std::string> unknown;              ///< in the folder, not known
 };
 
-/// @throws Error (bad_input) if it is no folder, or if no dataset that is known lies in it
+/// @throws Error (bad_input) if it is not a folder, or if it contains no known dataset
 ReferenceFolder lookInto(const std::filesystem::path& folder);
 
 }  // namespace emscape::emfield

@@ -1,4 +1,4 @@
-/// One piece of work at a time on a thread of its own, and an event that says when it is done.
+/// One task at a time on its own thread, and an event that is signalled on completion.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@
 
 namespace emscape::playback {
 
-/// Wakes the one thread that waits for several others. Any thread may set it.
+/// An auto-reset event, on which one thread waits for several others. Any thread may set it.
 class Event {
  public:
   void set() {
@@ -23,21 +23,21 @@ class Event {
     }
     changed_.notify_one();
   }
-  /// Returns when it was set since the last wait.
+  /// Waits until it is set; returns at once if it was set since the last wait.
   void wait() {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [this] { return set_; });
     set_ = false;
   }
-  /// The same, or at `time`.
+  /// The same, at most until `time`.
   void waitUntil(std::chrono::steady_clock::time_point time) {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait_until(lock, time, [this] { return set_; });
     set_ = false;
   }
 
-  /// Tells that work has begun at whose end finish() is called: a clock that is not the wall's can ask
-  /// whether there is anything to wait for.
+  /// Reports the begin of work that ends with finish(), so that a simulated clock knows whether there is
+  /// anything to wait for.
   void begin() { ++begun_; }
   /// set(), at the end of work.
   void finish() {
@@ -53,7 +53,7 @@ class Event {
   std::atomic<int> begun_{0};
 };
 
-/// The owner starts work, asks whether it is done, and takes the result. One thread owns it.
+/// The owner starts a task, polls it, and takes the result. One thread owns it.
 template <class Result>
 class AsyncTask {
  public:
@@ -66,7 +66,7 @@ class AsyncTask {
   AsyncTask(const AsyncTask&) = delete;
   AsyncTask& operator=(const AsyncTask&) = delete;
 
-  /// Only when the last result was taken.
+  /// Only after the last result was taken.
   void start(std::function<Result()> work) {
     done_ = false;
     event_.begin();
@@ -80,10 +80,10 @@ class AsyncTask {
       event_.finish();
     });
   }
-  /// Whether there is work that runs, or a result that was not taken.
+  /// True if the task runs or its result was not taken.
   bool active() const { return thread_.joinable(); }
   bool done() const { return active() && done_; }
-  /// Waits for the end. Rethrows what the work threw.
+  /// Waits for the end. Rethrows an exception of the work.
   Result take() {
     thread_.join();
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));

@@ -1,4 +1,4 @@
-/// Views that were not saved, kept for the case that their program ends before its time.
+/// Autosaves of unsaved views, for recovery after a crash.
 #pragma once
 
 #include <filesystem>
@@ -16,39 +16,39 @@ class FolderLock;
 
 namespace emscape::playback {
 
-/// Where programs keep what is to outlive them: $XDG_STATE_HOME/emscape if that is an absolute path, else
-/// $HOME/.local/state/emscape. It need not exist. @throws Error (other) if neither variable says where
+/// The folder for persistent state: $XDG_STATE_HOME/emscape if that is an absolute path, else
+/// $HOME/.local/state/emscape. It need not exist. @throws Error (other) if neither variable is set
 std::filesystem::path stateFolder();
 
-/// Of an input (scenario, volume, folder), wherever it is called from: its absolute path counts.
-/// @param number  1 for the first program that keeps a view of the input, 2 for another one beside it, ...
+/// The file for an input (scenario, volume, folder), identified by its absolute path.
+/// @param number  1 for the first program with a view of the input, 2 for a second one at the same time, ...
 std::filesystem::path autosaveFileOf(const std::string& input, int number = 1);
 
-/// A view that was kept.
+/// A stored view.
 struct AutosavedView {
   std::filesystem::path file;
-  std::string written_utc;     ///< when, ISO 8601
-  bool input_changed = false;  ///< the input was written after it
+  std::string written_utc;     ///< ISO 8601
+  bool input_changed = false;  ///< the input was modified later
   ViewState state;
 };
 
-/// The views that one program keeps, one per input. Programs that run at the same time have a file each,
-/// locked as long as they run. Any thread.
+/// The stored views of one program, one per input. Programs that run at the same time have separate files,
+/// locked while they run. Any thread may call it.
 class Autosaves {
  public:
   Autosaves();
-  /// The files stay; their locks go.
+  /// Releases the locks; the files are kept.
   ~Autosaves();
   Autosaves(const Autosaves&) = delete;
   Autosaves& operator=(const Autosaves&) = delete;
 
-  /// Keeps a view with its edits, in place of the one that was kept or found before. The folder is made if
-  /// need be. @throws Error (bad_input, other) as writeViewState(), or if no file is free
+  /// Stores a view with its edits, in place of the one that was stored or found before. The folder is created
+  /// if necessary. @throws Error (bad_input, other) as writeViewState(), or if no file is free
   void keep(const std::string& input, const ViewState& state);
-  /// The view of an input that this program keeps; else the newest one of a program that has ended, which is
-  /// this program's from now on. None if there is neither. @throws Error (bad_input) if it cannot be read
+  /// This program's stored view of an input; else the newest one of a program that has ended, which this
+  /// program takes over. None if there is neither. @throws Error (bad_input) if it cannot be read
   std::optional<AutosavedView> find(const std::string& input);
-  /// Removes the view that was kept or found: it was saved, or is not wanted.
+  /// Removes the view that was stored or found.
   void remove(const std::string& input);
 
  private:
@@ -56,7 +56,7 @@ class Autosaves {
     std::filesystem::path file;
     std::unique_ptr<FolderLock> lock;
   };
-  /// Makes a file this program's. @return whether it could be locked
+  /// Takes over a file. @return true if it could be locked
   bool claim(const std::string& input, const std::filesystem::path& file);
 
   std::mutex mutex_;

@@ -1,4 +1,4 @@
-/// Time for playing, and waiting in it, so that tests need no clock on the wall.
+/// An abstract clock for playing, so that tests can use simulated time.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@ class Clock {
   virtual ~Clock() = default;
   /// Milliseconds since any fixed instant; does not go back.
   virtual double now_ms() const = 0;
-  /// Returns at `time_ms`, or as soon as `event` is set; the event is then not set any more.
+  /// Returns at `time_ms`, or as soon as `event` is set; the event is then reset.
   virtual void waitUntil(double time_ms, Event& event) = 0;
 };
 

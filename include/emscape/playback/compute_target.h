@@ -1,4 +1,4 @@
-/// Where fields are computed and pictures are cast.
+/// The processor on which fields are computed and pictures are cast.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace emscape::playback {
 
-/// A processor, and how a GPU keeps volumes.
+/// A processor, and the storage of volumes on a GPU.
 struct ComputeTarget {
   ResolvedBackend choice;
   volume::VoxelPrecision precision = volume::VoxelPrecision::float32;
@@ -18,7 +18,7 @@ struct ComputeTarget {
   bool onGpu() const { return choice.backend == Backend::cuda; }
   /// For reports: "cpu", or the name of the GPU.
   const std::string& device() const { return choice.device; }
-  /// Options with this target in them. A field with sparse voxels is computed with dense ones.
+  /// Options for this target. A field with sparse voxels is computed with dense ones.
   emfield::FieldOptions fieldOptions() const;
   render::RendererOptions rendererOptions() const;
 };

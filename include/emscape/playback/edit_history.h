@@ -12,32 +12,32 @@ namespace emscape::playback {
 
 using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 
-/// A scenario with values changed, checked together; the same object where the edits change no text. Any
+/// A scenario with values changed, checked together; the same object if the edits change no text. Any
 /// thread may call it. @throws Error (bad_input) as Scenario::set()
 ScenarioPtr edited(const ScenarioPtr& scenario, const std::vector<scenario::Edit>& edits);
 
-/// Every state is a scenario of its own that nobody changes, so that a solver may still read one that was
-/// undone. One thread uses it.
+/// Every state is an immutable scenario, so that a solver may still read one that was undone. One thread uses
+/// it.
 class EditHistory {
  public:
   /// @param scenario  not null
   explicit EditHistory(ScenarioPtr scenario);
 
   const ScenarioPtr& scenario() const { return stack_.state(); }
-  /// What leads from the scenario's file to scenario(), as Scenario::edits().
+  /// The edits from the scenario's file to scenario(), as Scenario::edits().
   std::vector<scenario::Edit> edits() const { return scenario()->edits(); }
 
   /// Changes values, checked together, in one step; edits that change no text are none.
   /// @throws Error (bad_input) as Scenario::set(); nothing is changed then
   void set(const std::vector<scenario::Edit>& edits);
   void set(const std::string& path, const std::string& value) { set({{path, value}}); }
-  /// The same with what edited() made of scenario().
+  /// The same with the result of edited() for scenario().
   void adopt(ScenarioPtr edited);
 
   /// From here to endDrag() all edits are one step; none if the drag ends where it began.
   void beginDrag() { stack_.beginDrag(); }
   void endDrag();
-  /// Back to where the drag began.
+  /// Reverts to the state at the begin of the drag.
   void cancelDrag() { stack_.cancelDrag(); }
 
   /// As UndoStack::stepsMade().
@@ -47,9 +47,9 @@ class EditHistory {
   void undo();
   void redo();
 
-  /// Whether scenario() differs from what was given to the constructor or marked last.
+  /// True if scenario() differs from the scenario of the constructor or of the last markSaved().
   bool isModified() const;
-  /// scenario() is saved now.
+  /// Marks scenario() as saved.
   void markSaved() { saved_hash_ = scenario()->hash; }
 
  private:
@@ -57,7 +57,7 @@ class EditHistory {
   std::string saved_hash_;
 };
 
-/// A word as a POSIX shell takes it unchanged: in single quotes where it needs them.
+/// A word quoted for a POSIX shell, with single quotes if necessary.
 std::string shellWord(const std::string& text);
 /// A command line that makes the same edits: `emscape render scenarios/a.yaml --set
 /// 'emitters.jammer.power_w=5'`, quoted for a POSIX shell.

@@ -16,11 +16,11 @@ namespace emscape::playback {
 
 using volume::ValueRange;
 
-/// Each volume's own range.
+/// The range of each volume.
 std::vector<ValueRange> rangesOf(const std::vector<volume::Volume>& volumes);
-/// Sets info().range_* of each volume; to its floor where the range is empty. @param ranges  one per volume
+/// Sets info().range_* of each volume; to its floor if the range is empty. @param ranges  one per volume
 void setRanges(std::vector<volume::Volume>& volumes, const std::vector<ValueRange>& ranges);
-/// Every so many-th step of a series is searched for the range of its colours: at most 24 of them.
+/// Stride of the search for the range of the colours of a series: at most 24 steps are searched.
 int rangeSearchStride(int steps);
 
 /// One thread uses it.
@@ -44,36 +44,36 @@ class FieldSeries {
   const emfield::FieldOptions& options() const { return options_; }
   scenario::Snapshot snapshot(int step) const;
 
-  /// Another scenario from now on: what an edit left as it was is not computed again. Faults that show only
-  /// in computing are told by the next compute().
+  /// Changes the scenario: results that an edit does not invalidate are kept. Faults that only the
+  /// computation detects are thrown by the next compute().
   /// @param times_s  ascending
   void setScenario(LoadedScenario input, std::vector<double> times_s);
 
-  /// Volumes are from now on the differences (volume::difference()) to those of a reference at the same
-  /// times, and channels have the names of differences. Not to be followed by setScenario().
+  /// Changes the volumes to differences (volume::difference()) to those of a reference at the same times,
+  /// with their names. setScenario() must not be called after it.
   /// @param name  of the reference, for legends
   /// @throws Error (bad_input) for another grid, other channels and indices, (device)
   void compareWith(const LoadedScenario& reference, const std::string& name);
   /// Null without one.
   const LoadedScenario* reference() const { return reference_ ? &reference_->input() : nullptr; }
 
-  /// Computes the first step, so that what it lacks is told now. @throws Error, Stopped
+  /// Computes the first step, so that its errors are thrown here. @throws Error, Stopped
   void rehearse();
 
-  /// Computes every `stride`-th step to learn the range of each channel over them; not with a reference.
+  /// Computes every `stride`-th step to find the range of each channel; not with a reference.
   /// @param progress  may be empty
   /// @throws Error, Stopped
   std::vector<ValueRange> findRanges(int stride, const ProgressSink& progress);
 
-  /// The channels' volumes at a step, or their differences; info().range_* are each volume's own. The step
-  /// that was computed last is not computed again. @throws Error, Stopped
+  /// The channels' volumes at a step, or their differences; info().range_* are each volume's own. The last
+  /// computed step is not recomputed. @throws Error, Stopped
   std::vector<volume::Volume> compute(int step);
 
-  /// Whether the volumes that compute() gave last differ from those that it gave before.
+  /// True if the volumes that compute() gave last differ from those of the call before.
   bool changed() const { return changed_; }
-  /// Updates of the solver so far.
+  /// Number of updates of the solver.
   long long updates() const { return updates_; }
-  /// Those of the solver so far.
+  /// Warnings of the solver.
   std::vector<std::string> warnings() const;
 
  private:

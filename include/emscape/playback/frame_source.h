@@ -1,4 +1,4 @@
-/// What is drawn, one instant after another: a scenario as it is computed, or volumes from files.
+/// A sequence of instants to draw: a computed scenario, or volumes from files.
 #pragma once
 
 #include <memory>
@@ -18,32 +18,32 @@ namespace emscape::playback {
 struct Frame {
   volume::Volume volume;
   std::vector<render::Marker> markers;
-  std::vector<render::Track> tracks;  ///< of the platforms that move
-  bool changed = true;                ///< false: the volume's values are those of the frame asked for before
+  std::vector<render::Track> tracks;  ///< of moving platforms
+  bool changed = true;                ///< false: the volume's values are those of the previous call
 };
 
-/// What to draw of an input.
+/// The selection of an input to draw.
 struct FrameSelection {
   std::string input;                ///< scenario or volume file, .pvd, folder of volumes
   std::string quantity;             ///< empty: the first
   std::string times;                ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
-  bool first_only = false;          ///< without times: the first alone
+  bool first_only = false;          ///< without times: only the first
   std::optional<ValueRange> range;  ///< of the colours; none: that of the series
-  std::string scenario;             ///< beside volumes: whose ground and emitters are drawn; may be empty
+  std::string scenario;             ///< for volumes: the scenario of the ground and emitters; may be empty
   bool allow_missing_terrain = false;
   std::vector<scenario::Edit> edits;  ///< to the scenario
   /// Frames are differences to this one: kOriginal, the scenario without the edits, or a scenario (or
-  /// volumes) on the same grid. Empty: no comparison, but setComparison() can begin one with the original.
+  /// volumes) on the same grid. Empty: no comparison, but setComparison() can start one with the original.
   std::string compare;
-  /// Frames of a scenario that do not depend on any other ones: the range of each is that of its own values,
-  /// and emitters have moved however little they did. For frames in any order.
+  /// Frames of a scenario are independent of each other, for any order: the range of each is that of its own
+  /// values, and there is no tolerance for the movement of emitters.
   bool independent = false;
 };
 
 constexpr const char* kOriginal = "original";
 
-/// Instants in order of time. One thread at a time calls frame(); the other functions are safe beside it, but
-/// for warnings().
+/// Instants in order of time. One thread at a time calls frame(); the other functions except warnings() may
+/// be called at the same time.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -54,15 +54,15 @@ class FrameSource {
   /// The frame with index 0..count() - 1. @throws Error, Stopped
   virtual Frame frame(int index) = 0;
 
-  /// For titles and names of files.
+  /// For titles and file names.
   virtual std::string name() const = 0;
   /// The scenario that the pictures show; null without one.
   virtual const LoadedScenario* scene() const = 0;
-  /// What the models have to say about the frames so far.
+  /// The models' warnings on the frames so far.
   virtual std::vector<std::string> warnings() const = 0;
 
-  /// Another scenario: an edit of that of scene(). Frames show it from now on; their number and times may be
-  /// others than before. The thread that calls frame() calls it, while no other one uses the source.
+  /// Changes the scenario to an edit of that of scene(). The number and times of frames may change. Called by
+  /// the thread that calls frame(), while no other one uses the source.
   /// @throws Error (bad_input) if its ground cannot be read, (usage) without a scenario; nothing is changed
   /// then
   virtual void setScenario(std::shared_ptr<const scenario::Scenario> scenario);
@@ -70,19 +70,19 @@ class FrameSource {
   /// @throws Error (bad_input, usage, device); nothing is changed then
   virtual void setQuantity(const std::string& quantity);
 
-  /// Whether frames show what differs from the reference (FrameSelection::compare) instead of the field; for
-  /// independent frames. As setScenario(); what cannot be compared is told by frame().
-  /// @throws Error (usage) where there is nothing to compare with
+  /// Shows the difference to the reference (FrameSelection::compare) instead of the field; for independent
+  /// frames. As setScenario(); frame() throws if the two cannot be compared. @throws Error (usage) if there
+  /// is no reference
   virtual void setComparison(bool on);
 
-  /// The index whose time is nearest; the earlier of two as near. @param time_s  any, beyond the ends too
+  /// The index whose time is nearest; the earlier of two equally near. @param time_s any, beyond the ends too
   int nearestIndex(double time_s) const;
   /// The frame nearest to a time. @throws Error, Stopped
   Frame frameAt(double time_s) { return frame(nearestIndex(time_s)); }
 };
 
-/// @param target    where a scenario's field is computed
-/// @param progress  told while the range of the colours is searched; may be empty
+/// @param target    the processor for a scenario's field
+/// @param progress  called while the range of the colours is searched; may be empty
 /// @param stop      ends the work of this call and of frame() with Stopped; may be null, else outlives the
 /// source
 /// @throws Error (usage, bad_input, device), Stopped

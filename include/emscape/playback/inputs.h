@@ -1,4 +1,4 @@
-/// Input files: what kind a file is, and scenarios with their ground.
+/// Input files: their kind, and scenarios with their terrain.
 #pragma once
 
 #include <memory>
@@ -12,20 +12,20 @@ namespace emscape::playback {
 
 enum class InputKind { scenario, volume, elevation, antenna };
 
-/// Guesses by the file's ending; a folder holds volumes.
-/// @throws Error (bad_input) if there is no such file or its ending is not known
+/// The kind by the file's extension; a folder is a series of volumes.
+/// @throws Error (bad_input) if there is no such file or its extension is unknown
 InputKind inputKindOf(const std::string& file);
 
-/// A scenario and the ground that it names; terrain is null if it names none.
+/// A scenario and its terrain; terrain is null if it names none.
 struct LoadedScenario {
   std::shared_ptr<const scenario::Scenario> scenario;
   scenario::TerrainPtr terrain;
 };
-/// @throws Error (bad_input) that lists all that is wrong
+/// @throws Error (bad_input) that lists all faults
 LoadedScenario loadScenarioWithTerrain(const std::string& file,
                                        const std::vector<scenario::Edit>& edits = {});
-/// An edited scenario with its ground: the ground that is there where the scenario names the same elevation
-/// files and needs the same box of them, else the files are read.
+/// An edited scenario with its terrain: the present terrain if the scenario names the same elevation files
+/// and needs the same box of them, else the files are read.
 /// @throws Error (bad_input) naming the file
 LoadedScenario withScenario(const LoadedScenario& loaded, std::shared_ptr<const scenario::Scenario> edited);
 

@@ -1,4 +1,4 @@
-/// Opacity curves that an editor of a transfer function starts from.
+/// Predefined opacity curves for an editor of transfer functions.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct OpacityPreset {
 const std::vector<OpacityPreset>& opacityPresets();
 
 /// The points of one, from `lowest` to `highest`.
-/// @param at  where a threshold or a shell lies; clamped to the inner part of the interval
+/// @param at  position of a threshold or a shell; clamped to the inner part of the interval
 /// @throws Error (bad_input) for an unknown name, which lists them
 std::vector<render::TransferFunction::OpacityPoint> opacityPreset(const std::string& name, double lowest,
                                                                   double highest, double at);

@@ -15,7 +15,7 @@
 
 namespace emscape::playback {
 
-/// How pictures look.
+/// Style of pictures.
 struct PictureStyle {
   render::ImageSize size;
   render::CameraSpec camera;
@@ -23,14 +23,14 @@ struct PictureStyle {
   render::RenderSettings settings;
   std::string transfer;  ///< file of the transfer function; empty: fitted to the first volume
   std::optional<render::TransferFunction> function;  ///< without such a file; not used for categories
-  bool colors_span_range = false;  ///< fitted to the range of its values alone, not to how frequent they are
+  bool colors_span_range = false;  ///< fitted to the range of its values, not to their histogram
   bool show_terrain = true;
   bool show_emitters = true;
 };
 
-/// Draws frames; colours stay as they were fitted to the first, the camera as long as frames have the same
-/// grid. Casting a picture and writing its labels are apart: who draws labels of its own takes image() or
-/// fetch(), annotations() and renderer(). One thread at a time uses it.
+/// Draws frames; colours are those fitted to the first, the camera is kept as long as frames have the same
+/// grid. Casting and labelling are separate: a program with its own labels uses image() or fetch(),
+/// annotations() and renderer(). One thread at a time uses it.
 class Painter {
  public:
   /// Draws frames of one source. @throws Error (device)
@@ -38,17 +38,17 @@ class Painter {
   /// The same without title and scene, until setScene(). @throws Error (bad_input) for settings, (device)
   Painter(const PictureStyle& style, const ComputeTarget& target);
 
-  /// What the next frames show besides the field. Another terrain object is another ground.
+  /// Sets the scene of the next frames. Another terrain object is another ground.
   /// @param scene  null: volumes without a scenario
   void setScene(const std::string& title, const LoadedScenario* scene);
-  /// What the next pictures show.
+  /// Sets the frame of the next pictures.
   /// @throws Error (bad_input) for a transfer file, nothing is changed then; or for an isosurface that shows
-  /// nothing of the first frame, which is set all the same. Error (device)
+  /// nothing of the first frame, which is set anyway. Error (device)
   void setFrame(const Frame& frame);
   /// Turns an orbiting camera to another azimuth. A frame must be set.
   void setAzimuth(double azimuth_deg);
   /// Another camera, fitted to the box of the volume. A frame must be set.
-  /// @throws Error (usage) if eye and target coincide; the camera is then as before
+  /// @throws Error (usage) if eye and target coincide; the camera is then unchanged
   void setCamera(const render::CameraSpec& spec);
 
   /// The functions below change the style of the next pictures, before or after the first frame.
@@ -56,52 +56,51 @@ class Painter {
   void setSize(render::ImageSize size);
   render::ImageSize size() const { return style_.size; }
   /// An isosurface is not checked against the volume. @throws Error (bad_input) for a value out of its range;
-  /// the settings are then as before
+  /// the settings are then unchanged
   void setSettings(const render::RenderSettings& settings);
-  /// This function in place of a file or a fitted one.
+  /// Sets the function, in place of a file or a fitted one.
   void setTransferFunction(const render::TransferFunction& function);
-  /// A function fitted to the frame, or to the next one if there is none yet: to how frequent its values are.
+  /// Fits the function to the histogram of the frame, or of the next one if there is none yet.
   void fitColors();
-  /// The same, spread over a range of values. A frame must be set.
+  /// Fits the function to a range of values. A frame must be set.
   void fitColors(const volume::ValueRange& range);
-  /// Whether they have been fitted, read or set.
+  /// True if they have been fitted, read or set.
   bool hasColors() const { return has_colors_; }
   void showTerrain(bool show);
   void showEmitters(bool show);
   void setTheme(render::Theme theme) { annotations_.theme = theme; }
 
   render::FrameReport draw(const render::FramePlan& plan, const StopFlag* stop = nullptr);
-  /// Casts what the last draw() left out.
+  /// Casts the pixels that the last draw() interpolated.
   render::FrameReport restore(const StopFlag* stop = nullptr);
-  /// What was drawn last, bare: premultiplied, no background, no labels.
+  /// The last picture: premultiplied, without background and labels.
   const render::Image& image();
-  /// The same in 8 bits a channel; a GPU quantises it, which makes it the cheaper one.
+  /// The same in 8 bits per channel; quantised on the GPU, hence cheaper.
   void fetch(render::Image8& picture);
-  /// A full cast of what draw() and restore() show, beside it.
+  /// A separate full cast of the picture of draw() and restore().
   render::Image fullCast();
 
-  /// The ground that is drawn; null where none is.
+  /// The ground that is drawn; null if there is none.
   const std::shared_ptr<const render::HeightField>& heightField() const { return height_field_; }
-  /// What is written on a picture of the frame.
+  /// The annotations of a picture of the frame.
   const render::Annotations& annotations() const { return annotations_; }
   /// Its camera, box and hidden positions are those of the picture. Colours and settings may be changed after
   /// the first frame was set.
   render::Renderer& renderer() { return renderer_; }
 
-  /// What was drawn last on its background, with its labels. @param note  small, at the bottom
+  /// The last picture with background and labels. @param note  small, at the bottom
   render::Image8 picture(const std::string& note);
-  /// A picture that was fetched, on the same background with the same labels; at most one level apart.
+  /// The same for a fetched picture; differs by at most one level.
   render::Image8 annotated(const render::Image8& fetched, const std::string& note);
-  /// The picture that annotated() gives, made and kept by the GPU; at most two levels apart. Null with the
-  /// CPU.
+  /// The picture of annotated() in GPU memory; differs by at most two levels. Null with the CPU.
   std::shared_ptr<const render::DevicePicture> annotatedOnDevice(const std::string& note);
 
  private:
-  /// That of the scene below the grid of the frame, if it is to be shown.
+  /// The ground of the scene below the grid of the frame, if it is to be shown.
   void setGround();
   void setGround(const scenario::TerrainPtr& ground);
   void setMarkers();
-  /// Fits the camera anew where the legend takes more or less space than before.
+  /// Fits the camera again if the width of the legend has changed.
   void setLegend();
   render::Camera cameraOf(const render::CameraSpec& spec) const;
   void fitCamera();
@@ -116,7 +115,7 @@ class Painter {
   render::Annotations annotations_;
   render::OverlayLayers layers_;
   render::Image image_;
-  bool fetched_ = false;  ///< image_ is what was drawn last
+  bool fetched_ = false;  ///< image_ is the last picture
   bool has_colors_ = false;
   double legend_space_ = 0;  ///< part of the width
 };

@@ -1,4 +1,4 @@
-/// Positions under points of a picture.
+/// Positions in space under points of a picture.
 #pragma once
 
 #include <optional>
@@ -18,41 +18,41 @@ namespace emscape::playback {
 struct PickedPoint {
   enum class On {
     ground,     ///< the ray meets the ground
-    section,    ///< before that it meets a plane that cuts the volume, where there is a value
-    strongest,  ///< neither; the largest value on its way through what the planes leave of the volume
-    box         ///< there is no value either: where the ray enters the box
+    section,    ///< before that, a cutting plane at a point with a value
+    strongest,  ///< otherwise, the largest value along the ray in the volume that the planes leave
+    box         ///< without any value: where the ray enters the box
   };
   Vec3d position_m;  ///< frame metres
   On on = On::ground;
 };
 
 /// The position under a pixel.
-/// @param camera, box  those of the picture; the vertical exaggeration of the box counts
+/// @param camera, box  those of the picture; with the vertical exaggeration of the box
 /// @param x, y     pixel, may be fractions; (0, 0) is the centre of the first one
-/// @param volume   that the picture shows; of categories no value is the strongest
+/// @param volume   that the picture shows; for categories there is no largest value
 /// @param ground   as it is drawn; null without one
-/// @param planes   that cut the volume, and the ground where they are vertical
-/// @return none where the ray passes the box by
+/// @param planes   that cut the volume and, if vertical, the ground
+/// @return none if the ray misses the box
 std::optional<PickedPoint> pick(const render::Camera& camera, const render::SceneBox& box,
                                 render::ImageSize size, double x, double y, const volume::DenseVolume& volume,
                                 const render::HeightField* ground,
                                 const std::vector<render::CutPlane>& planes = {});
 
 /// The position of the ground under a pixel; parameters as for pick().
-/// @return none where the ray passes the ground by
+/// @return none if the ray misses the ground
 std::optional<Vec3d> pickGround(const render::Camera& camera, const render::SceneBox& box,
                                 render::ImageSize size, double x, double y, const render::HeightField& ground,
                                 const std::vector<render::CutPlane>& planes = {});
 /// The position at a height (frame z, m) under a pixel, within the sides of the box.
-/// @return none where there is none before the camera
+/// @return none if there is none in front of the camera
 std::optional<Vec3d> pickLevel(const render::Camera& camera, const render::SceneBox& box,
                                render::ImageSize size, double x, double y, double z_m);
 
-/// A position above a point of the ground, where a receiver would stand: as drawn, the ground differs from
-/// the terrain by some metres.
+/// The position of a receiver above a point of the ground: the drawn ground differs from the terrain by some
+/// metres.
 /// @param ground_m      frame metres; of PickedPoint::On::ground
-/// @param height_agl_m  above the terrain; more where the voxel at that height is masked
-/// @return `ground_m` where the terrain is not known
+/// @param height_agl_m  above the terrain; more if the voxel at that height is masked
+/// @return `ground_m` if the terrain is not known
 Vec3d aboveGround(const Vec3d& ground_m, double height_agl_m, const volume::DenseVolume& volume,
                   const scenario::Terrain* terrain);
 

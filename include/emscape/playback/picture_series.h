@@ -1,4 +1,4 @@
-/// The pictures of a source, one after another, into files.
+/// Draws the pictures of a source into files.
 #pragma once
 
 #include <functional>
@@ -22,7 +22,7 @@ std::string pictureNote(const render::RenderSettings& settings, render::Pattern 
 /// @param sinks    each gets every picture; finished at the end
 /// @param done     called after each picture with the number of pictures so far; may be empty
 /// @param stop     ends the work with Stopped; may be null
-/// @return milliseconds that casting took
+/// @return casting time (ms)
 /// @throws Error, Stopped; the sinks are then not finished
 double drawPictures(FrameSource& source, Painter& painter, const render::FramePlan& plan,
                     const std::string& note, const std::vector<std::unique_ptr<PictureSink>>& sinks,

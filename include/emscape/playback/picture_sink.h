@@ -1,4 +1,4 @@
-/// Where pictures go: one PNG, a folder of them, a video.
+/// Outputs of pictures: one PNG, a folder of them, a video.
 #pragma once
 
 #include <filesystem>
@@ -14,14 +14,14 @@ class PictureSink {
  public:
   virtual ~PictureSink() = default;
   /// @param number  counts from 1
-  /// @param frames  of a video: for so many the picture is seen
+  /// @param frames  of a video: number of frames that show the picture
   virtual void add(int number, const render::Image8& picture, int frames) = 0;
-  /// After the last picture: what was written lies under its final name.
+  /// After the last picture: gives the output its final name.
   virtual void finish() = 0;
 };
 
-/// By the ending of `output`: .png (one picture), .mp4, or a folder (no ending) of NAME_0001.png, ....
-/// @throws Error (usage) for another ending, or a .png for several pictures
+/// By the extension of `output`: .png (one picture), .mp4, or a folder (no extension) of NAME_0001.png, ....
+/// @throws Error (usage) for another extension, or a .png for several pictures
 std::unique_ptr<PictureSink> makePictureSink(const std::filesystem::path& output, const std::string& name,
                                              int pictures, render::ImageSize size, double frames_per_s);
 

@@ -1,4 +1,4 @@
-/// Frames of a source, computed ahead on a thread of its own, for a window whose time slider never waits.
+/// Frames of a source, computed ahead on a separate thread, for a window whose time slider never waits.
 #pragma once
 
 #include <cstddef>
@@ -19,9 +19,9 @@ class FrameCache;
 
 struct PrefetchOptions {
   std::size_t cache_bytes = std::size_t{1} << 30;  ///< of volumes; one frame is kept even if it is larger
-  int steps_ahead = 4;  ///< so many after the requested one are computed without being asked for
-  /// At least so long between the beginnings of two frames that are requested out of order (ms): of the many
-  /// requests of a slider that is dragged, the last counts.
+  int steps_ahead = 4;                             ///< number of frames computed after the requested one
+  /// Minimum interval (ms) between the starts of two frames that are requested out of order, as by dragging a
+  /// slider; only the last request is served.
   double min_seek_interval_ms = 60;
 };
 
@@ -32,46 +32,45 @@ struct IndexedFrame {
 };
 
 /// Computes requested frames of a source and the ones after them, on one thread. There is one request at a
-/// time: a new one replaces one that is not begun. Any thread calls the functions; none of them waits for a
-/// frame, but for the destructor and those that say so.
+/// time: a new one replaces a pending one. Any thread may call the functions; none waits for a frame, except
+/// the destructor and where stated.
 class PrefetchingSource {
  public:
   /// @param source  frame() is called on the thread of this object alone; outlives this, as the clock
-  /// @param ready   called on that thread after each frame, with its index, and once after a failure, with
-  /// -1; may be
-  ///                empty. Must not destroy this object
+  /// @param ready called on that thread after each frame, with its index, and with -1 after a failure; may be
+  /// empty. Must not destroy this object
   PrefetchingSource(FrameSource& source, const PrefetchOptions& options, Clock& clock,
                     std::function<void(int index)> ready = {});
-  /// Waits for the frame that is being computed; to shorten it, set the stop flag that the source was given.
+  /// Waits for the frame in progress; to shorten the wait, set the source's stop flag first.
   ~PrefetchingSource();
   PrefetchingSource(const PrefetchingSource&) = delete;
   PrefetchingSource& operator=(const PrefetchingSource&) = delete;
 
-  /// Asks for a frame. @param index  0..count() - 1
-  /// @throws what the source threw for an earlier request, once; that request is then over
+  /// Requests a frame. @param index  0..count() - 1
+  /// @throws the source's exception for an earlier request, once; that request is then removed
   void request(int index);
-  /// Asks for the frame nearest to a time. @return its index
+  /// Requests the frame nearest to a time. @return its index
   int requestTime(double time_s);
-  /// The index asked for last; -1 before the first request and after a failure.
+  /// The last requested index; -1 before the first request and after a failure.
   int requested() const;
 
-  /// What is to be shown: the requested frame if it is there, else the one that was requested before and is
-  /// the newest. None before the first is there. @throws as request()
+  /// The frame to show: the requested one if it is ready, else the newest one that was requested before. None
+  /// before the first is ready. @throws as request()
   std::optional<IndexedFrame> latest() const;
   /// Requests a frame and waits for it. @throws as request(); Error (other) if another thread requests
   /// another meanwhile
   Frame wait(int index);
 
-  /// Indices of the frames that need not be computed, ascending.
+  /// Indices of the cached frames, ascending.
   std::vector<int> cached() const;
-  /// Frames computed so far.
+  /// Number of frames computed.
   long long computed() const;
 
  private:
   void run();
   /// The frame to compute next; -1: none.
   int nextIndex() const;
-  /// How soon a frame may be of use again: the smaller the sooner.
+  /// Distance of a frame from the next expected one; the frame with the largest is dropped first.
   long long distance(int index) const;
   void keep(int index, Frame frame);
   void rethrowFailure() const;
@@ -89,7 +88,7 @@ class PrefetchingSource {
   std::optional<IndexedFrame> latest_;
   long long computed_ = 0;
   bool closing_ = false;
-  mutable std::exception_ptr failure_;  // not told yet
+  mutable std::exception_ptr failure_;  // not rethrown yet
 
   std::thread thread_;
 };

@@ -1,4 +1,4 @@
-/// What the volume of a picture holds at a position, and why.
+/// The value of a volume at a position, and its explanation.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace emscape::playback {
 
-/// What a volume holds at a position.
+/// The value of a volume at a position.
 struct VolumeSample {
   enum class Kind {
     value,     ///< a value
@@ -27,32 +27,32 @@ struct VolumeSample {
   Dims voxel;       ///< index of the voxel that holds the position; not of Kind::outside
 };
 
-/// Trilinear between voxel centres that all hold a field; else the value of the voxel that holds the
-/// position, as always for categories.
+/// Trilinear if all voxels around have a field; else, and for categories, the value of the voxel that
+/// contains the position.
 VolumeSample sampleVolume(const volume::DenseVolume& volume, const Vec3d& position_m);
 
-/// What one emitter contributes at a position.
+/// Contribution of one emitter at a position.
 struct EmitterProbe {
   std::string emitter;
   std::optional<emfield::PathBudget> budget;
-  std::string refusal;  ///< why there is no budget: missing terrain, or a position at the emitter
+  std::string refusal;  ///< reason for a missing budget: missing terrain, or a position at the emitter
 };
 
 struct ProbeReading {
   Vec3d position_m;  ///< frame metres
   VolumeSample sample;
-  /// "-63.2 dBW/m2", or why there is no value.
+  /// "-63.2 dBW/m2", or the reason for a missing value.
   std::string text;
-  // Only of volumes that lie on the earth:
+  // Only for volumes with a position on the earth:
   std::optional<GeodeticPosition> position;
   std::optional<double> height_msl_m;
-  std::optional<double> height_agl_m;  ///< none where the ground is not known
-  /// One per emitter, as `emscape profile` gives it for the emitter's own model; empty without a scenario.
+  std::optional<double> height_agl_m;  ///< none if the ground is not known
+  /// One per emitter, as in `emscape profile` with the emitter's model; empty without a scenario.
   std::vector<EmitterProbe> emitters;
 };
 
 /// Reads a position at the volume's time. Pure; some milliseconds, by the number of emitters.
-/// @param scenario  whose emitters are asked; may be null
+/// @param scenario  of the emitters; may be null
 /// @param terrain   may be null: heights above ground are then not known, and paths run over a smooth earth
 ProbeReading probe(const Vec3d& position_m, const volume::DenseVolume& volume,
                    const std::shared_ptr<const scenario::Scenario>& scenario,

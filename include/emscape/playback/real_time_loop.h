@@ -1,4 +1,4 @@
-/// Playing against a clock, without a window: field -> busy frame -> settled picture.
+/// Real-time playback without a window: field -> busy frame -> settled picture.
 #pragma once
 
 #include <functional>
@@ -16,31 +16,31 @@
 namespace emscape::playback {
 
 struct RealTimeOptions {
-  double frames_per_s = 25;          ///< slots: at the start of each, what is new is shown
-  double speed = 1;                  ///< scenario seconds in a second
+  double frames_per_s = 25;          ///< slots per second; changes are shown at the start of a slot
+  double speed = 1;                  ///< scenario seconds per second
   std::optional<double> duration_s;  ///< of the clock; none: until one step after the last
-  double orbit_rate_deg_s = 0;       ///< the camera goes round, clockwise from above
-  bool verify = false;  ///< compare each settled picture with a full cast; the clock stands still meanwhile
+  double orbit_rate_deg_s = 0;       ///< of the camera, clockwise from above
+  bool verify = false;  ///< compare each settled picture with a full cast; the clock is stopped meanwhile
   render::ControllerOptions controller;
 };
 
-/// Takes each picture that was on display, in order, once it is known for how many slots.
+/// Receives each displayed picture, in order, with its number of slots.
 using Display = std::function<void(const render::Image8& picture, int slots)>;
 
 /// Plays a source. Every step of the source is an event, due when its time has come; a moving camera is one
-/// in every slot. A frame is begun at the start of a slot, or later in it as soon as the field is there. The
-/// next field is computed on a thread of its own from the end of one busy frame on; restorations run on
-/// another, so that an event can stop them.
+/// in every slot. A frame begins at the start of a slot, or later in it as soon as the field is ready. The
+/// next field is computed on its own thread after the end of a busy frame; restorations run on another
+/// thread, so that an event can stop them.
 class RealTimeLoop {
  public:
   /// @param painter    draws the source in this style; outlives this, as style, source and clock
-  /// @param display    empty: pictures get no labels and go nowhere
-  /// @param clock      tests give one of their own
+  /// @param display    empty: pictures are not labelled and not displayed
+  /// @param clock      tests use a simulated one
   /// @param interrupt  ends play() with Stopped; may be null, else outlives this
   /// @throws Error (usage) for an orbit rate with a camera that does not orbit
   RealTimeLoop(const RealTimeOptions& options, const PictureStyle& style, FrameSource& source,
                Painter& painter, Display display, Clock& clock, const StopFlag* interrupt = nullptr);
-  /// Stops what still runs.
+  /// Stops the work in progress.
   ~RealTimeLoop();
   RealTimeLoop(const RealTimeLoop&) = delete;
   RealTimeLoop& operator=(const RealTimeLoop&) = delete;
@@ -74,7 +74,7 @@ class RealTimeLoop {
   void raiseEvents();
   void raise(render::SceneEvent event);
 
-  // What the controller asks for
+  // Requests of the controller
   void act(const render::ControllerAction& action);
   void drawFrame(const render::FramePlan& plan);
   void beginRestoration();
@@ -101,22 +101,22 @@ class RealTimeLoop {
   double stood_still_ms_ = 0;
   double period_ms_;
 
-  std::optional<NewField> computed_;  // waits until it is due
-  std::optional<NewField> pending_;   // is due, will be seen in the next frame
+  std::optional<NewField> computed_;  // until it is due
+  std::optional<NewField> pending_;   // due, for the next frame
   int shown_step_ = 0;
   std::set<int> unchanged_steps_;
   double field_ms_ = 0;  // of the last update
 
-  long long begun_slot_ = -1;       // in which the last frame was begun
-  long long accounted_slot_ = -1;   // up to here, slots with something new are counted
-  long long view_slot_ = -1;        // whose camera was told to the controller
+  long long begun_slot_ = -1;       // of the last frame
+  long long accounted_slot_ = -1;   // slots with changes are counted up to here
+  long long view_slot_ = -1;        // whose camera the controller has
   std::optional<double> event_ms_;  // that stopped a restoration for the next frame
   render::FrameReport drawn_;
-  std::optional<render::Pattern> told_pattern_;  // whose reason was reported last
+  std::optional<render::Pattern> told_pattern_;  // whose reason was last reported
   bool settled_ = true;
 
   std::optional<render::Image8> displayed_;
-  long long displayed_since_ = 0;  // slot; the first picture stands for the time before it too
+  long long displayed_since_ = 0;  // slot; the first picture covers the time before it too
 
   StopFlag stop_{false};
   Event event_;

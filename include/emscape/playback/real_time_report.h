@@ -1,4 +1,4 @@
-/// What a real-time loop did, frame by frame.
+/// Report of a real-time loop, frame by frame.
 #pragma once
 
 #include <optional>
@@ -24,22 +24,22 @@ struct RealTimeEvent {
   std::optional<double>
       abort_latency_ms;             ///< from the event that stopped a restoration to this frame's begin
   bool late = false;                ///< shown after the slot that it was due in
-  bool restored = false;            ///< all that was interpolated has been cast
+  bool restored = false;            ///< all interpolated pixels have been cast
   std::optional<bool> equals_full;  ///< settled, and compared with a full cast
-  std::string reason;               ///< if the pattern is another one than before: why
+  std::string reason;               ///< reason for a change of the pattern
 };
 
 struct RealTimeReport {
   double frames_per_s = 0;  ///< asked for
   double seconds = 0;
   double epsilon_ms = 0;  ///< at the end
-  long long due = 0;      ///< slots of 1 / frames_per_s in which there was something new to show
+  long long due = 0;      ///< slots of 1 / frames_per_s with a change to show
   int field_updates = 0;
-  int field_steps_skipped = 0;  ///< they came faster than they could be computed
+  int field_steps_skipped = 0;  ///< steps that could not be computed in time
   std::vector<RealTimeEvent> events;
 
   int count(render::ControllerState state) const;
-  /// Settled pictures that are not what a full cast gives.
+  /// Settled pictures that differ from a full cast.
   int unequal() const;
 };
 

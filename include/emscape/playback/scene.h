@@ -1,4 +1,4 @@
-/// What of a scenario is drawn besides the field: the ground and the emitters.
+/// The ground and the emitters of a scenario, for drawing.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace emscape::playback {
 
-/// The ground below a grid, at about the spacing of the elevation posts (at most 1500 posts a side).
+/// The ground below a grid, at about the spacing of the elevation posts (at most 1500 posts per side).
 std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
                                                          const volume::Grid& grid);
 

@@ -1,20 +1,17 @@
 /// A scenario's field over time, written as volume files into a folder.
 ///
-/// The folder holds, beside the volumes,
-///   series.json   what was asked for (the recipe); at the end also the value range of each channel over the
-///   series.
+/// Besides the volumes, the folder contains
+///   series.json   the recipe; at the end also the value range of each channel over the series.
 ///                 Written at the beginning and at the end.
-///   series.steps  the journal: a line of JSON for each step whose files are whole, with the range of its
-///   values, the
-///                 range that its files state, and size and CRC-32 of each file. A later line replaces an
+///   series.steps  the journal: a line of JSON for each step whose files are complete, with the range of its
+///   values, the range in its files, and size and CRC-32 of each file. A later line replaces an
 ///                 earlier one.
-///   NAME.pvd      with .vti files: the list for ParaView. Brought up to date each time that the number of
-///   steps has
-///                 grown by half, at the end, and when the work is stopped.
-/// Each step is computed once. Its files are whole at once and state the range over the steps so far; at the
-/// end the range over the series is put into all of them (volume::setStoredRange). A folder whose work was
-/// interrupted is then the same to the byte (but for FieldOptions::move_tolerance_m, which counts from the
-/// step at which the work began again).
+///   NAME.pvd      with .vti files: the list for ParaView. Updated each time the number of steps has grown by
+///   half, at the end, and when the work is stopped.
+/// Each step is computed once. Its files are complete at once, with the range over the steps so far; at the
+/// end the range over the series is written into all of them (volume::setStoredRange). An interrupted and
+/// resumed series is then identical to the byte (except for FieldOptions::move_tolerance_m, which counts from
+/// the step of the resumption).
 #pragma once
 
 #include <filesystem>
@@ -30,12 +27,12 @@ namespace emscape::playback {
 struct SeriesOptions {
   enum class Existing {
     refuse,  ///< a folder that holds a series is an error
-    resume,  ///< only what is missing is computed
-    replace  ///< the files of the series that was there are removed
+    resume,  ///< only missing steps are computed
+    replace  ///< the files of the present series are removed
   };
-  std::filesystem::path folder;             ///< made if need be
+  std::filesystem::path folder;             ///< created if necessary
   std::vector<std::string> formats{"vdb"};  ///< of writableFormats()
-  std::optional<ValueRange> range;          ///< of the values, where it is known; for one channel
+  std::optional<ValueRange> range;          ///< of the values, if it is known; for one channel
   Existing existing = Existing::refuse;
 };
 
@@ -49,26 +46,26 @@ struct SeriesResult {
 /// Names of the formats that can be written.
 std::vector<std::string> writableFormats();
 
-/// Computes and writes what the folder lacks. Files are written on a thread of their own while the next step
-/// is computed.
+/// Computes and writes the missing steps. Files are written on a separate thread while the next step is
+/// computed.
 ///
-/// With Existing::resume a finished step is believed if its files have the size and the CRC-32 that the
-/// journal says; otherwise it is computed again. Recipe and elevation files (by their CRC-32) must be those
-/// of the beginning; trusted is what a .vrt elevation file refers to.
-/// @param progress  told the part of the steps that are done; may be empty
-/// @throws Error (usage) for a series that is in the way, or a range for several channels; (bad_input) for a
+/// With Existing::resume a finished step is accepted if its files have the size and the CRC-32 in the
+/// journal; otherwise it is recomputed. The recipe and the elevation files (by their CRC-32) must be
+/// unchanged; files that a .vrt elevation file refers to are not checked.
+/// @param progress  receives the fraction of steps that are done; may be empty
+/// @throws Error (usage) if the folder has a series, or for one range for several channels; (bad_input) for a
 /// series.json or series.steps that is damaged or of another recipe; (other) where writing fails or another
 /// process writes the folder; (device); Stopped, after which the folder can be resumed
 SeriesResult writeSeries(FieldSeries& series, const SeriesOptions& options,
                          const ProgressSink& progress = {});
 
-/// How far the series of a folder is.
+/// Progress of the series of a folder.
 struct SeriesStatus {
   int steps = 0;
-  int finished_steps = 0;  ///< by the journal; the files are not looked at
+  int finished_steps = 0;  ///< by the journal; the files are not read
   bool complete = false;   ///< all of them, with their final range
 };
-/// None where the folder holds no series. @throws Error (bad_input) if what describes it is damaged
+/// None if the folder has no series. @throws Error (bad_input) if its description is damaged
 std::optional<SeriesStatus> findSeries(const std::filesystem::path& folder);
 
 }  // namespace emscape::playback

@@ -1,4 +1,4 @@
-/// How long work of this module ends before its time.
+/// Cancellation of long work of this module.
 #pragma once
 
 #include <exception>
@@ -7,7 +7,7 @@
 
 namespace emscape::playback {
 
-/// Thrown between two steps of the work once its StopFlag is set. What is finished stays.
+/// Thrown between two steps of the work once its StopFlag is set. Finished steps are kept.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "stopped"; }

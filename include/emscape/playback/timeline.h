@@ -1,4 +1,4 @@
-/// Model of a time line: what is on it, where the hand is, and how it moves. No drawing, no clock.
+/// Model of a time line: its contents, the position of the hand and its motion. No drawing, no clock.
 #pragma once
 
 #include <optional>
@@ -16,13 +16,13 @@ struct TimelineTick {
   std::string utc_text;      ///< "06:00:12.5", with as many decimals; empty without an epoch
 };
 
-/// When an emitter radiates, within the span of the steps.
+/// The active intervals of an emitter within the span of the steps.
 struct ActivityBar {
   std::string emitter;
   std::vector<scenario::TimeInterval> intervals;  ///< ascending, without overlap; one for always
 };
 
-/// The usual rates, ascending, in scenario seconds in a second; negative ones (backwards) are the same.
+/// The usual rates, ascending, in scenario seconds per second; negative rates (backwards) are not listed.
 const std::vector<double>& playRates();
 /// The nearest of them by ratio, with the sign of `rate`; the slowest for 0.
 double snappedRate(double rate);
@@ -39,28 +39,29 @@ class Timeline {
   /// Steps of a source that shows a scenario.
   Timeline(std::vector<double> times_s, const scenario::Scenario& scenario);
 
-  /// Other steps, ascending. The hand, the playing range and the visible part stay as far as they lie within.
+  /// Sets other steps, ascending. The hand, the playing range and the visible part are kept as far as they
+  /// are within.
   void setSteps(std::vector<double> times_s);
-  /// Another scenario: its epoch, and when its emitters radiate.
+  /// Sets the epoch and the emitters' active intervals.
   void setScenario(const scenario::Scenario& scenario);
 
   const std::vector<double>& times_s() const { return times_s_; }
   double begin_s() const { return times_s_.empty() ? 0 : times_s_.front(); }
   double end_s() const { return times_s_.empty() ? 0 : times_s_.back(); }
   const std::vector<ActivityBar>& bars() const { return bars_; }
-  /// Whether there is time to move in.
+  /// True if there are at least two times.
   bool hasSpan() const { return begin_s() < end_s(); }
 
   /// About `count` ticks at round times (1, 2, 5, 10, 15, 30 s, min, h, ...) within an interval.
   /// @param from_s, to_s  from_s < to_s
   std::vector<TimelineTick> ticks(double from_s, double to_s, int count) const;
 
-  /// Reads "49.5" (s) or, with an epoch, a time of day (UTC): "06:00:49.5", "06:00"; of several days the
-  /// first at which it is that time from begin_s() on.
-  /// @throws Error (bad_input) that says what is expected
+  /// Reads "49.5" (s) or, with an epoch, a time of day (UTC): "06:00:49.5", "06:00"; the first such time
+  /// after begin_s().
+  /// @throws Error (bad_input) that names the expected form
   double parseTime_s(const std::string& text) const;
 
-  /// Steps that need not be computed, as spans of times that reach halfway to the steps around.
+  /// Cached steps, as intervals that reach halfway to the neighbouring steps.
   /// @param steps  indices, ascending
   std::vector<scenario::TimeInterval> cachedSpans(const std::vector<int>& steps) const;
 
@@ -74,20 +75,20 @@ class Timeline {
   void zoom(double factor, double about_s);
   void pan(double by_s);
   void showAll() { visible_.reset(); }
-  /// What was set; none: all of the steps' span.
+  /// The value that was set; none: the span of all steps.
   const std::optional<scenario::TimeInterval>& visiblePart() const { return visible_; }
 
   // The hand
   double time_s() const { return time_s_; }
-  /// Clamped to the steps' span; of a time that is not a number nothing happens. Playing goes on from there.
+  /// Clamped to the steps' span; NaN has no effect. Playing continues from there.
   void seek(double time_s);
-  /// The index of the step nearest to a time; the earlier of two as near.
+  /// The index of the step nearest to a time; the earlier of two equally near.
   int nearestStep(double time_s) const;
   /// The step that is shown.
   int step() const { return nearestStep(time_s_); }
   /// Its time; that of the hand without steps.
   double step_s() const { return times_s_.empty() ? time_s_ : times_s_[static_cast<std::size_t>(step())]; }
-  /// To the step that lies so many after the one shown (before: negative), at most to the last or first.
+  /// Moves by a number of steps from the one shown (backwards: negative), at most to the last or first.
   /// Stops playing.
   void stepBy(int steps);
   void goToFirst() { goToStep(0); }
@@ -95,11 +96,11 @@ class Timeline {
 
   // Playing
   bool playing() const { return playing_; }
-  /// At the end that the rate leads to, and outside the playing range, playing begins anew from the other
-  /// end.
+  /// At the end in the direction of the rate, and outside the playing range, playing starts again from the
+  /// other end.
   void play();
   void pause() { playing_ = false; }
-  /// Playing stays within; all of the steps' span at first.
+  /// Range of playing; the span of all steps at first.
   scenario::TimeInterval playRange() const;
   /// Moved to the nearest steps, two at least.
   void setPlayRange(double begin_s, double end_s);
@@ -107,10 +108,10 @@ class Timeline {
   void setPlayBegin(double time_s);
   void setPlayEnd(double time_s);
   void playAll() { play_range_.reset(); }
-  /// What was set; none: all of the steps' span.
+  /// The value that was set; none: the span of all steps.
   const std::optional<scenario::TimeInterval>& playPart() const { return play_range_; }
   double rate() const { return rate_; }
-  /// Any rate but 0, which is not taken; negative: backwards.
+  /// Any rate except 0, which is ignored; negative: backwards.
   void setRate(double rate);
   /// To the next of the usual rates above (1) or below (-1). Below the slowest are those backwards.
   void changeRate(int direction);
@@ -118,8 +119,8 @@ class Timeline {
   bool loop() const { return loop_; }
   void setLoop(bool loop) { loop_ = loop; }
 
-  /// Lets time pass while it plays. At an end of the playing range it goes on from the other one in a loop,
-  /// else it stops there. The visible part follows the hand.
+  /// Lets time pass while it plays. At an end of the playing range it continues from the other one in a loop,
+  /// else it stops. The visible part follows the hand.
   /// @param dt_s  of the user's clock, >= 0
   /// @return time_s()
   double advance(double dt_s);
@@ -142,7 +143,7 @@ class Timeline {
   bool loop_ = false;
 };
 
-/// When each emitter of a scenario radiates between two times.
+/// The active intervals of each emitter of a scenario between two times.
 std::vector<ActivityBar> activityBarsOf(const scenario::Scenario& scenario, double from_s, double to_s);
 
 }  // namespace emscape::playback

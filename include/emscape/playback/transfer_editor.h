@@ -12,15 +12,15 @@
 
 namespace emscape::playback {
 
-/// How an editor's vertical axis, 0..1 from the bottom, shows opacities. The logarithmic one has fine control
-/// where volumes need it: its lowest part is opacity 0, above are kMinOpacity to 1 in equal ratios.
+/// Scale of an editor's vertical axis, 0..1 from the bottom. The logarithmic one resolves small opacities:
+/// its lowest part is opacity 0, above it kMinOpacity to 1.
 struct OpacityAxis {
   static constexpr double kMinOpacity = 1e-4;
   static constexpr double kZeroPart = 0.05;
 
   bool logarithmic = true;
 
-  /// @param opacity  0..1, clamped; on the logarithmic axis what is below kMinOpacity is shown as 0
+  /// @param opacity  0..1, clamped; on the logarithmic axis values below kMinOpacity are shown as 0
   double position(double opacity) const;
   /// @param position  0..1, clamped
   double opacity(double position) const;
@@ -34,7 +34,7 @@ class TransferEditor {
   explicit TransferEditor(const render::TransferFunction& function);
 
   const render::TransferFunction& function() const { return stack_.state(); }
-  /// Counts its changes, undo and redo included.
+  /// Number of changes, undo and redo included.
   long long changes() const { return changes_; }
   /// Another function, in one step: a file, or the default of a volume. @throws as the constructor
   void setFunction(const render::TransferFunction& function);
@@ -51,14 +51,14 @@ class TransferEditor {
   std::optional<int> pointNear(double value, double position, double value_scale, double radius) const;
   /// Adds a point within the interval and selects it. @return its index; after points at the same value
   int add(double value, double opacity);
-  /// Moves the selected point between its neighbours, within the interval. Nothing happens without one.
+  /// Moves the selected point between its neighbours, within the interval. No effect without one.
   void moveSelected(double value, double opacity);
   /// Deletes the selected point; the one that takes its index becomes selected, or the last. The last two,
   /// and points without which no interval would be left, stay.
   void removeSelected();
 
   /// All points of one of opacityPresets() over the interval, as a step.
-  /// @param at  where a threshold or a shell lies; none: the middle
+  /// @param at  position of a threshold or a shell; none: the middle
   /// @throws Error (bad_input) for an unknown name
   void setOpacityPreset(const std::string& name, std::optional<double> at = std::nullopt);
   /// Multiplies all opacities; those above 1 become 1. @param factor  >= 0
@@ -69,7 +69,7 @@ class TransferEditor {
   void setColorMap(const std::string& name);
   /// The name of the map that the colours are; empty: none of them.
   std::string colorMap() const;
-  /// What setColorMap() takes.
+  /// The names for setColorMap().
   static std::vector<std::string> presets() { return render::colorMapNames(); }
 
   /// Colours and opacities together, stretched from the function's interval to another one. Nothing happens
@@ -77,8 +77,8 @@ class TransferEditor {
   void fit(const volume::ValueRange& range);
   /// The same in double precision.
   void setInterval(double lowest, double highest);
-  /// The ends of the interval, each by itself. Within a drag they are moved from where it began, so that
-  /// nothing is lost on the way.
+  /// The ends of the interval, each by itself. Within a drag they are moved relative to its begin, so that
+  /// points are not lost.
   void setLowest(double value);
   void setHighest(double value);
 
@@ -95,7 +95,7 @@ class TransferEditor {
 
  private:
   void set(render::TransferFunction function);
-  /// What a drag of the ends starts from.
+  /// The function at the begin of a drag of the ends.
   const render::TransferFunction& base() const { return stack_.dragged() ? *stack_.dragged() : function(); }
   void checkSelection();
 

@@ -8,8 +8,8 @@
 
 namespace emscape::playback {
 
-/// A state and those before and after it. State is copied at every step: a small value or a shared pointer.
-/// One thread uses it.
+/// The current state and those before and after it. State is copied at every step: use a small value or a
+/// shared pointer. One thread uses it.
 template <class State>
 class UndoStack {
  public:
@@ -18,7 +18,7 @@ class UndoStack {
 
   const State& state() const { return state_; }
 
-  /// Makes a step; what was undone cannot be redone any more. Within a drag, the step is the whole drag.
+  /// Adds a step; undone steps are discarded. Within a drag, the step is the whole drag.
   void set(State next) {
     if (!drag_) push(state_);
     state_ = std::move(next);
@@ -39,17 +39,16 @@ class UndoStack {
   /// The state at the beginning of the drag; null if there is none.
   const State* dragged() const { return drag_ ? &*drag_ : nullptr; }
 
-  /// How many steps were ever made: tells who keeps the order of several stacks whether this one has made
-  /// one.
+  /// Number of steps ever made, by which the owner of several stacks keeps their order.
   long long stepsMade() const { return steps_made_; }
   bool canUndo() const { return !past_.empty() || drag_; }
   bool canRedo() const { return !future_.empty() && !drag_; }
-  /// One step back; an open drag is that step. Nothing happens where there is none.
+  /// One step back; an open drag is that step. No effect if there is none.
   void undo() {
     endDrag();
     move(past_, future_);
   }
-  /// One step forward again. Nothing happens where there is none.
+  /// One step forward. No effect if there is none.
   void redo() {
     endDrag();
     move(future_, past_);

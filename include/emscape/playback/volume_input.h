@@ -14,7 +14,7 @@ struct VolumeFile {
 };
 
 /// One volume file, the steps of a .pvd, or the volumes of a folder, in the order of time.
-/// @param quantity  only files that hold it; empty: becomes the first quantity of the first file
+/// @param quantity  only files with it; empty: set to the first quantity of the first file
 /// @throws Error (bad_input)
 std::vector<VolumeFile> volumeFilesOf(const std::filesystem::path& path, std::string& quantity);
 

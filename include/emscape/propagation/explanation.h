@@ -1,4 +1,4 @@
-/// What a propagation model says of one path: the parts of its loss, and how it came to them.
+/// A propagation model's explanation of one path: the parts of its loss and their reason.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace emscape::propagation {
 
-/// A share of a path's excess over free space.
+/// One part of a path's excess over free space.
 struct ExcessPart {
   std::string key;    ///< stable, for programs: "terrain_edge"
   std::string label;  ///< for people: "terrain as one edge (Bullington)"
@@ -14,9 +14,9 @@ struct ExcessPart {
 };
 
 struct Explanation {
-  double loss_db = 0;             ///< sum of the parts; infinite where the model knows no field
-  std::vector<ExcessPart> parts;  ///< none: free space
-  std::string why;                ///< how the model came to it, one clause
+  double loss_db = 0;             ///< sum of the parts; infinite if the model gives no field
+  std::vector<ExcessPart> parts;  ///< empty: free space
+  std::string why;                ///< reason, one clause
 
   void add(const std::string& key, const std::string& label, double part_db) {
     parts.push_back({key, label, part_db});

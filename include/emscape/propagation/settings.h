@@ -1,5 +1,5 @@
-/// What propagation models are told: the choice of a model, the settings of each, and the wave, ground and
-/// air that all of them share. propagation/registry says which values each model takes.
+/// Inputs of propagation models: the choice of a model, the settings of each, and the wave, ground and air
+/// that all of them share. propagation/registry lists the values that each model takes.
 #pragma once
 
 #include <optional>
@@ -8,16 +8,16 @@
 
 namespace emscape::propagation {
 
-/// Direction of a wave's electric field, seen along its way.
+/// Direction of a wave's electric field, seen in the direction of propagation.
 enum class Polarization { horizontal, vertical, slant_45, slant_135, circular_right, circular_left };
 const char* toString(Polarization polarization);
 
 enum class PropagationModel { free_space, horizon, diffraction, two_ray, itm, p528 };
 const char* toString(PropagationModel model);
 
-/// How terrain diffracts.
+/// Method of diffraction over terrain.
 enum class DiffractionMethod {
-  delta_bullington,  ///< terrain as one edge, and what that lacks of the earth's bulge
+  delta_bullington,  ///< terrain as one edge, with the smooth-earth correction (P.526 section 4.5.3)
   single_edge,       ///< the largest edge alone
   deygout            ///< three edges
 };
@@ -27,14 +27,14 @@ struct DiffractionSettings {
   DiffractionMethod method = DiffractionMethod::delta_bullington;
 };
 
-/// What of the interference of two rays is kept.
+/// Treatment of the interference of two rays.
 enum class TwoRaySum {
   coherent,  ///< lobes and nulls
-  envelope,  ///< the lobes' tops: |1| + |reflected|
+  envelope,  ///< maxima of the lobes: 1 + |reflected|
 };
 const char* toString(TwoRaySum sum);
 
-/// How roughness takes from the coherent reflection, with z = 8 pi^2 (sigma sin psi / lambda)^2.
+/// Reduction of the coherent reflection by roughness, with z = 8 pi^2 (sigma sin psi / lambda)^2.
 enum class RoughnessModel {
   ament,         ///< exp(-z): heights Gaussian (Ament 1953)
   miller_brown,  ///< exp(-z) I0(z): waves as sines of random phase (Miller, Brown, Vegh 1984); fits the sea
@@ -46,19 +46,19 @@ struct TwoRaySettings {
   RoughnessModel roughness_model = RoughnessModel::miller_brown;
 };
 
-/// What ITM knows of the terrain.
+/// ITM's terrain input.
 enum class ItmForm { point_to_point, area };
 const char* toString(ItmForm form);
-/// What ITM's statistics are of: how the loss varies for whoever uses the link.
+/// ITM's mode of variability.
 enum class ItmService { single_message, individual, mobile, broadcast };
 const char* toString(ItmService service);
-/// How the places of antennas are chosen in ITM's area mode.
+/// Siting criteria of the antennas in ITM's area mode.
 enum class ItmSiting { random = 0, careful = 1, very_careful = 2 };
 const char* toString(ItmSiting siting);
 
 struct ItmSettings {
   ItmForm form = ItmForm::point_to_point;
-  /// The loss is not exceeded in so many percent of the time, of the places, of such links.
+  /// The loss is not exceeded in this percentage of the time, of locations, of situations.
   double time_percent = 50, location_percent = 50, situation_percent = 50;
   ItmService service = ItmService::mobile;
   double irregularity_m = 90;                        ///< of the terrain; area mode
@@ -67,10 +67,10 @@ struct ItmSettings {
 };
 
 struct P528Settings {
-  double time_percent = 50;  ///< the loss is not exceeded in so many percent of the time
+  double time_percent = 50;  ///< the loss is not exceeded in this percentage of the time
 };
 
-/// The model of an emitter, and the settings of all models: those of others than the chosen one have no
+/// The model of an emitter, and the settings of all models; settings of models that are not used have no
 /// effect.
 struct ModelSettings {
   PropagationModel model = PropagationModel::diffraction;
@@ -78,27 +78,26 @@ struct ModelSettings {
   TwoRaySettings two_ray;
   ItmSettings itm;
   P528Settings p528;
-  SourceLocation place;  ///< of the chosen model's settings
+  SourceLocation location;  ///< of the chosen model's settings
 };
 
 enum class GroundKind { sea, fresh_water, wet_ground, average_ground, dry_ground, concrete };
 const char* toString(GroundKind kind);
 
-/// The ground as the waves see it.
+/// The electrical properties of the ground.
 struct Ground {
   GroundKind kind = GroundKind::average_ground;
   std::optional<double> relative_permittivity;  ///< none: that of the kind
   std::optional<double> conductivity_s_m;
   double roughness_m = 0;  ///< standard deviation of the surface's height
-  /// Height of the smooth surface that models without terrain stand on; none: of the ground below each
-  /// emitter.
+  /// Height of the smooth surface of models without terrain; none: that of the ground below each emitter.
   std::optional<double> surface_msl_m;
-  SourceLocation place;
+  SourceLocation location;
 };
 
-/// Which emitters' paths lose to oxygen and water vapour.
+/// Emitters to whose paths the attenuation by oxygen and water vapour is added.
 enum class GasLosses {
-  automatic,  ///< those of models that are no bounds: all but free_space and horizon
+  automatic,  ///< those whose model is not a bound: all except free_space and horizon
   always,
   never
 };
@@ -123,9 +122,9 @@ struct Atmosphere {
   double temperature_k = 288.15;
   double vapour_g_m3 = 7.5;
   double rain_mm_h = 0;
-  std::optional<double> rain_height_m;  ///< above mean sea level, up to where it rains; none: by latitude
+  std::optional<double> rain_height_m;  ///< above mean sea level, upper limit of the rain; none: by latitude
   GasLosses gases = GasLosses::automatic;
-  double sea_level_refractivity = 301;  ///< N-units, for itm, which takes the rays' curvature from it
+  double sea_level_refractivity = 301;  ///< N-units, for itm, which derives the curvature of rays from it
   RadioClimate climate = RadioClimate::continental_temperate;
 };
 

@@ -8,26 +8,26 @@
 
 namespace emscape::scenario {
 
-/// How a pattern is stored for the loops.
+/// Storage of a pattern for the loops.
 ///
 /// Directions are (forward, right, up) in the antenna's frame. Azimuth = atan2(right, forward), clockwise
 /// seen from above, -pi..pi; elevation = atan2(up, hypot(forward, right)), -pi/2..pi/2: the spherical angles
-/// of pattern cuts in 3GPP TR 38.901, 7.3, and of most measurements. An azimuth cut keeps its width in
-/// azimuth at every elevation, so that it narrows across the sky by cos(elevation), and towards +-pi/2, where
-/// azimuth means nothing (0 is taken), a separable pattern or a grid may differ from azimuth to azimuth.
-/// Planar apertures are kept in direction cosines instead, which have no such pole: their beams widen in
-/// azimuth by 1/cos(elevation).
+/// of pattern cuts in 3GPP TR 38.901, 7.3, and of most measurements. An azimuth cut has the same width in
+/// azimuth at every elevation, so that its angular width on the sphere falls with cos(elevation). At +-pi/2
+/// azimuth is undefined (0 is used), and a separable pattern or a grid may depend on azimuth there. Planar
+/// apertures are stored in direction cosines instead, which have no such pole: their beams widen in azimuth
+/// by 1/cos(elevation).
 enum class PatternKind {
   isotropic,     ///< 1 everywhere
   gaussian,      ///< exp of a quadratic form in azimuth and elevation, not below side_lobe_amplitude
   separable,     ///< azimuth_table(azimuth) * elevation_table(elevation), not below side_lobe_amplitude
-  phased_array,  ///< planar aperture, lit evenly or of elements: azimuth_table(u - u0) * elevation_table(v -
-                 ///< v0) * element pattern, side_lobe_amplitude behind it; u = right, v = up (direction
-                 ///< cosines)
+  phased_array,  ///< planar aperture, evenly illuminated or of elements: azimuth_table(u - u0) *
+                 ///< elevation_table(v - v0) * element pattern, side_lobe_amplitude behind it; u = right, v =
+                 ///< up (direction cosines)
   grid,          ///< bilinear in azimuth and elevation
 };
 
-/// A pattern as plain data: what the host and device loops read. Amplitudes are relative voltages: 1 at the
+/// A pattern as plain data, for host and device loops. Amplitudes are relative voltages: 1 at the
 /// maximum; table entries are signed, so that they pass smoothly through nulls. Tables are uniform with both
 /// ends included and an odd number of entries, the middle one at 0: azimuth from -pi to pi, elevation from
 /// -pi/2 to pi/2; those of phased_array run from -2 to 2 (a steered array reaches |u - u0| = 2).
@@ -38,7 +38,7 @@ struct PatternView {
   float gaussian_elevation = 0;
   float side_lobe_amplitude = 0;
   /// Where |right| > lobe_tangent * forward, the amplitude is side_lobe_amplitude at every elevation, so that
-  /// loops may pass over what lies there; 0: no such azimuths are known. See depthInLobe().
+  /// loops may skip these directions; 0: there are none. See depthInLobe().
   float lobe_tangent = 0;
   /// separable, phased_array, grid. Grid: row-major, elevation rows, azimuth fastest, azimuth_count x
   /// elevation_count.
@@ -65,13 +65,13 @@ class Antenna {
   double gain_dbi = 0;            ///< at the maximum of the pattern
   double beamwidth_az_deg = 360;  ///< between the half-power points; 360: there are none
   double beamwidth_el_deg = 180;  ///< 180: there are none
-  /// Beamwidth (rad) times aperture over wavelength: 0.886 for even lighting, 1.2 for the usual tapered one.
+  /// Beamwidth (rad) times aperture over wavelength: 0.886 for even illumination, 1.2 for a typical taper.
   double aperture_factor = 1.2;
   std::string description;  ///< one line for `emscape info`
 
   /// Gain (dBi) towards a direction (forward, right, up; unit), in double; -infinity in a null. For tests,
   /// tables and reports, not for loops.
-  /// @param steer_azimuth_rad, steer_elevation_rad  phased_array: where the beam is steered to; else ignored
+  /// @param steer_azimuth_rad, steer_elevation_rad phased_array: steering direction of the beam; else ignored
   double gainTowards_dbi(const Vec3d& direction, double steer_azimuth_rad = 0,
                          double steer_elevation_rad = 0) const;
   /// Largest side D (m) of an aperture with the narrower of the two beamwidths, D = aperture_factor * lambda

@@ -8,9 +8,9 @@ namespace emscape::scenario {
 /// One change: the value at `path` becomes `value`.
 ///
 /// path: keys of the scenario format (docs/scenario-format.md) with points between them; items of a list by
-/// their name, or by their index from 0 where they have none: `emitters.search radar.antenna.gain_dbi`,
-/// `region.dims.2`, `terrain.files.0`. Names may hold blanks and points: the longest name in the scenario
-/// that fits is meant. A name in double quotes is taken as it is, with \" and \\ for a quote and a backslash:
+/// their name, or by their index from 0 if they have none: `emitters.search radar.antenna.gain_dbi`,
+/// `region.dims.2`, `terrain.files.0`. Names may contain blanks and points: the longest matching name in the
+/// scenario is used. A name in double quotes is taken literally, with \" and \\ for a quote and a backslash:
 /// `emitters."a=b".power_w`.
 ///
 /// value: YAML or JSON: a number, a text, a list, a set of keys. `null` removes an optional key, which then

@@ -1,4 +1,4 @@
-/// What radiates, and how a receiver is described.
+/// Emitters and receivers.
 #pragma once
 
 #include <optional>
@@ -17,19 +17,18 @@ enum class EmitterKind { radar, transmitter, jammer };
 
 const char* toString(EmitterKind kind);
 
-/// How far (dB) an antenna keeps the orthogonal polarisation down unless a receiver says otherwise: what
-/// antennas of one nominal polarisation reach off their axis.
+/// Cross-polarisation isolation (dB) of antennas unless a receiver states another one: a typical value off
+/// the axis.
 /// @see D. L. Adamy, EW 101, 2001, chapter 3: about 25 dB between orthogonal linear, and between circular
 /// senses
 constexpr double kCrossPolarIsolation_db = 25;
 
-/// Part of the power (0..1) that passes between two polarisations: |<e_t, e_r>|^2, at least what a real
-/// antenna lets through of the orthogonal one.
+/// Polarisation match (0..1, in power): |<e_t, e_r>|^2, at least the isolation of a real antenna.
 /// @param isolation_db  >= 0; infinity: ideal antennas
 double polarizationFactor(propagation::Polarization transmit, propagation::Polarization receive,
                           double isolation_db = kCrossPolarIsolation_db);
 
-/// How the probability of detection is found from the signal-to-noise ratio.
+/// Relation of the probability of detection to the signal-to-noise ratio.
 enum class DetectionMethod {
   exact,       ///< Marcum's and Swerling's statistics
   albersheim,  ///< Albersheim's formula: steady targets alone
@@ -37,20 +36,20 @@ enum class DetectionMethod {
 };
 const char* toString(DetectionMethod method);
 
-/// A radar's own receiver: what turns power density into signal-to-noise and into detections.
+/// A radar's own receiver, for signal-to-noise ratio and detection.
 struct RadarReceiver {
   double noise_figure_db = 0;
-  double antenna_temperature_k = 290;  ///< what the antenna sees of sky and ground
+  double antenna_temperature_k = 290;  ///< noise from sky and ground
   double bandwidth_hz = 1e6;
-  double losses_db = 0;           ///< between antenna and receiver, one way: echo and jamming alike
-  double processing_gain_db = 0;  ///< of echoes over noise and jamming, less the losses of processing
+  double losses_db = 0;           ///< between antenna and receiver, one way; for echo and jamming
+  double processing_gain_db = 0;  ///< of echoes over noise and jamming, net of processing losses
   std::optional<propagation::Polarization> polarization;  ///< none: that of the transmitted wave
   double cross_polar_isolation_db = kCrossPolarIsolation_db;
   int pulses = 1;
   double pfa = 1e-6;
   int swerling = 1;  ///< 0..4
   DetectionMethod detection = DetectionMethod::exact;
-  /// For burn-through; none: what a probability of detection of 1/2 takes against noise.
+  /// For burn-through; none: the ratio for a probability of detection of 1/2 in noise.
   std::optional<double> required_signal_to_jammer_db;
   double target_rcs_m2 = 1;
 };
@@ -62,7 +61,7 @@ struct ReceiverProfile {
   double losses_db = 0;
   std::optional<propagation::Polarization> polarization;  ///< none: matched to every emitter
   double center_frequency_hz = 0;                         ///< 0: tuned to every emitter
-  double bandwidth_hz = 0;                                ///< 0: as wide as the emitter's signal
+  double bandwidth_hz = 0;                                ///< 0: that of the emitter's signal
   double cross_polar_isolation_db = kCrossPolarIsolation_db;
 };
 
@@ -86,8 +85,8 @@ struct Emitter {
   propagation::ModelSettings propagation;
   RadarReceiver receiver;              ///< radars only
   std::vector<TimeInterval> active_s;  ///< empty: always
-  SourceLocation place;                ///< where the scenario describes it
-  SourceLocation frequency_place;      ///< and its frequency
+  SourceLocation location;             ///< in the scenario
+  SourceLocation frequency_location;   ///< of its frequency
 };
 
 }  // namespace emscape::scenario

@@ -1,4 +1,4 @@
-/// The values of a scenario that can be changed, as rows of a form.
+/// The editable values of a scenario, as rows of a form.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace emscape::scenario {
 
-/// One value: what it is called, what it may be, what it is. From the table of the format.
+/// One value: name, type, limits and current text, from the table of the format.
 struct Parameter {
   enum class Type { number, integer, choice, text, list };
   std::string path;  ///< as an Edit takes it
@@ -19,9 +19,9 @@ struct Parameter {
   Type type = Type::text;
   double minimum = 0, maximum = 0;   ///< number, integer
   std::vector<std::string> choices;  ///< choice
-  bool required = false;             ///< else null takes it away
+  bool required = false;             ///< else null removes it
   bool is_given = false;             ///< in the text of the scenario
-  /// As it is given, on one line; else its default; empty where there is none.
+  /// The given text on one line; else the default; empty if there is none.
   std::string value;
 };
 
@@ -33,14 +33,15 @@ struct ParameterGroup {
   std::vector<ParameterGroup> groups;
 };
 
-/// What of an object can be changed as it stands: keys of other antenna patterns, scans or propagation models
-/// than those chosen are left out, and of keys that exclude each other those that are not given.
+/// The editable values of an object. Left out: keys of antenna patterns, scans and propagation models that
+/// are not chosen, and keys that a given key excludes.
 /// @param path  of an object, "emitters.jammer" or "atmosphere", that need not be given
-/// @throws Error (bad_input) if the path leads to no object, or the scenario was not read from a file
+/// @throws Error (bad_input) if the path does not lead to an object, or the scenario was not read from a file
 ParameterGroup parametersOf(const Scenario& scenario, const std::string& path);
 
-/// The edits that choose another antenna pattern, scan, propagation model or the like: what the new choice
-/// does not know is removed, what it needs is given a common value. Of other choices the one edit.
+/// The edits that choose another antenna pattern, scan, propagation model or the like: keys that the new
+/// choice does not have are removed, keys that it requires get a common value. For other choices, that single
+/// edit.
 /// @param path    of a choice
 /// @throws Error (bad_input) for a choice that needs files
 std::vector<Edit> editsForChoice(const Scenario& scenario, const std::string& path,

@@ -1,4 +1,4 @@
-/// What carries emitters: a fixed site or a track.
+/// Platforms: a fixed site or a track.
 #pragma once
 
 #include <optional>
@@ -40,15 +40,14 @@ struct Platform {
   std::string name;
   /// One point: a fixed site. More: strictly increasing t_s; held at the ends outside the track's time.
   std::vector<TrackPoint> track;
-  Attitude attitude;       ///< of a fixed site
-  std::string track_file;  ///< empty for a fixed site
-  SourceLocation place;    ///< where the scenario describes it
+  Attitude attitude;        ///< of a fixed site
+  std::string track_file;   ///< empty for a fixed site
+  SourceLocation location;  ///< in the scenario
 };
 
-/// Where a platform is and how it lies at t_s: the position along the geodesic between the points before and
-/// after, height (above the datum that the track gives) and attitude linear in time, heading over the shorter
-/// arc. Heading, where the track gives none, is the course; a platform that stands still keeps the last
-/// course it had.
+/// Position and attitude of a platform at t_s: position along the geodesic between the points before and
+/// after, height (above the datum of the track) and attitude linear in time, heading along the shorter arc.
+/// Without a heading in the track it is the course; a stationary platform keeps its last course.
 /// @return a point with all of heading, pitch and roll set (heading 0..360)
 TrackPoint pointAt(const Platform& platform, double t_s);
 

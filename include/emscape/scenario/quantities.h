@@ -1,4 +1,4 @@
-/// The quantities that a scenario can ask for: what emfield computes and volumes hold.
+/// The quantities that a scenario can request, emfield computes and volumes hold.
 #pragma once
 
 #include <string>
@@ -18,28 +18,28 @@ enum class Quantity {
   dominant_emitter,
 };
 
-/// Whose signals enter a quantity.
+/// The signals that a quantity depends on.
 enum class QuantityKind {
   of_emitters,
   of_receiver,  ///< all emitters, at the scenario's first receiver
-  of_radars,    ///< radars and their targets; the other emitters do not enter
-  of_jamming    ///< the same, and jammers count
+  of_radars,    ///< radars and their targets; no other emitters
+  of_jamming    ///< radars, their targets and jammers
 };
 
 struct QuantityInfo {
   Quantity quantity;
-  const char* name;  ///< as in scenario files and volumes
+  const char* name;  ///< in scenario files and volumes
   const char* unit;  ///< for colour bars; empty for counts and indices
   QuantityKind kind;
   const char* description;    ///< one line
   bool categorical = false;   ///< indices: nearest sampling, integer grids
-  bool needs_jammer = false;  ///< a scenario without a jammer cannot ask for it
+  bool needs_jammer = false;  ///< the scenario must have a jammer
 };
 
-/// Quantities of radars and their targets, with jamming or without.
-bool isOfRadars(Quantity quantity);
-/// Those of them in which jamming counts.
-bool isOfJamming(Quantity quantity);
+/// True for quantities of radars and their targets, with or without jamming.
+bool needsRadar(Quantity quantity);
+/// True for those that depend on jamming.
+bool needsJammer(Quantity quantity);
 
 /// All quantities, in the order of the enum.
 const std::vector<QuantityInfo>& quantityTable();

@@ -1,4 +1,4 @@
-/// How an antenna's beam moves.
+/// Motion of an antenna's beam.
 #pragma once
 
 #include <vector>
@@ -29,9 +29,9 @@ struct ScanSpec {
   std::vector<Dwell> dwells;      ///< dwell_list, repeated for ever
 };
 
-/// Where a beam looks (deg): relative to the platform's axes where the antenna turns; relative to the mount's
-/// boresight, which azimuth_deg and elevation_deg of the scan have turned, where the beam is steered
-/// (dwell_list).
+/// Direction of a beam (deg): relative to the platform's axes if the antenna turns; if the beam is steered
+/// (dwell_list), relative to the mount's boresight, which azimuth_deg and elevation_deg of the scan have
+/// turned.
 struct BeamDirection {
   double azimuth_deg = 0;
   double elevation_deg = 0;
@@ -39,10 +39,10 @@ struct BeamDirection {
   bool electronic = false;
 };
 
-/// The beam at t_s seconds since the epoch. Pure: the same t gives the same beam; no error adds up over time.
-/// rotate: azimuth in 0..360. sector: back and forth, from the left end at t = 0. raster: the same sweeps,
-/// each one bar higher than the last, then again from the lowest. dwell_list: durations and t count in whole
-/// nanoseconds, so that a dwell ends exactly where the next begins.
+/// The beam at t_s seconds since the epoch. Pure: the same t gives the same beam; no error accumulates over
+/// time. rotate: azimuth in 0..360. sector: back and forth, from the left end at t = 0. raster: the same
+/// sweeps, each one bar higher than the last, then again from the lowest. dwell_list: durations and t count
+/// in whole nanoseconds, so that a dwell ends exactly where the next begins.
 BeamDirection beamAt(const ScanSpec& scan, double t_s);
 
 }  // namespace emscape::scenario

@@ -1,4 +1,4 @@
-/// A scenario as it is written in a file: what is on the battlefield, where and when.
+/// A scenario: the objects on the battlefield, their positions and times.
 #pragma once
 
 #include <limits>
@@ -35,10 +35,10 @@ struct Band {
 enum class CombineMode { sum, max, per_emitter, per_band };
 const char* toString(CombineMode mode);
 
-/// Where a radar's beam is for the probability of detection and the signal-to-noise ratio.
+/// Direction of a radar's beam for the probability of detection and the signal-to-noise ratio.
 enum class RadarLook {
-  scan,   ///< where its scan has it at the time
-  target  ///< on each voxel in turn, as nearly as its scan lets it
+  scan,   ///< the direction of its scan at the time
+  target  ///< towards each voxel, as nearly as its scan permits
 };
 const char* toString(RadarLook look);
 
@@ -52,11 +52,10 @@ struct OutputSpec {
 
 struct ScenarioSource;  // scenario/source.h
 
-/// Plain values; a copy is a scenario of its own. Reading it from several threads is safe, set() is a change
-/// like any other.
+/// Plain values; a copy is a scenario of its own. Reading it from several threads is safe; set() is a write.
 struct Scenario {
   std::string name;
-  std::string file;  ///< where it was read
+  std::string file;  ///< from which it was read
   /// FNV-1a (64 bits, hex) of the text of the file with its edits and of the hashes of the track and antenna
   /// files it names; of elevation files, only of the name and the size.
   std::string hash;
@@ -72,23 +71,23 @@ struct Scenario {
   OutputSpec output;
 
   /// Changes a value: edits the text of the scenario's file, in memory, and reads the scenario again from it,
-  /// so that the checks are those of a file. Files that it names are not read again: what they held when the
-  /// scenario was loaded holds; antennas that the edit does not touch stay the same objects. Members that
-  /// were changed by hand, and not by set(), are lost.
-  /// @throws Error (bad_input) that lists all faults as loadScenario() does, with the edit as the place of
-  /// what it brought; or if the scenario was not read from a file. The scenario is then unchanged.
+  /// so that the checks are those of a file. The files that it names are not read again; their content is
+  /// that of the first reading. Antennas that the edit does not change stay the same objects. Changes of
+  /// members by other means than set() are lost.
+  /// @throws Error (bad_input) that lists all faults as loadScenario() does, with the edit as the location of
+  /// its faults; or if the scenario was not read from a file. The scenario is then unchanged.
   void set(const std::string& path, const std::string& value);
   /// Several edits in order, checked only when all are made: for values that depend on each other.
   void set(const std::vector<Edit>& edits);
-  /// The edits since the file was read, in an order in which they can be made again; of several to one path,
-  /// the last.
+  /// The edits since the file was read, in an order in which they can be repeated; only the last of several
+  /// to one path.
   std::vector<Edit> edits() const;
 
   std::shared_ptr<const ScenarioSource> source;  ///< null if it was not read from a file
 };
 
-/// Where terrain is needed: the region, every platform's way and the ground between them, with a margin of 2
-/// km. A box that holds a pole spans all longitudes.
+/// The area for which terrain is needed: the region, every platform's track and the ground between them, with
+/// a margin of 2 km. A box that contains a pole spans all longitudes.
 GeoBox terrainBox(const Scenario& scenario);
 
 /// The terrain that a scenario names, within terrainBox(); null if it names none.

@@ -13,22 +13,23 @@ namespace emscape::scenario {
 using document::Problem;
 using document::Severity;
 
-/// A scenario, or all that is wrong with it.
+/// A scenario, or all its problems.
 struct ParseResult {
   std::shared_ptr<const Scenario> scenario;  ///< null if any problem is an error
   std::vector<Problem> problems;             ///< in the order of the file
 };
 
-/// Reads a scenario and every file it names (tracks, antennas; elevation files are opened, not read). Never
-/// throws for what is wrong in the files: everything found is in the result, each with file, line and column.
-/// @param edits  made before the check; the place of a fault that one brought is the edit, as "PATH=VALUE"
+/// Reads a scenario and every file it names (tracks, antennas; elevation files are opened, not read). Faults
+/// in the files do not throw: all are in the result, each with file, line and column.
+/// @param edits  applied before the check; the location of a fault that one causes is the edit, as
+/// "PATH=VALUE"
 ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {});
 
-/// The same, or one Error (bad_input) that lists all problems, one a line. Warnings go to the log.
+/// The same, or one Error (bad_input) that lists all problems, one per line. Warnings go to the log.
 std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits = {});
 
-/// A scenario with further edits: what Scenario::set() does, for who wants the warnings too or no exception.
-/// The scenario itself is not changed.
+/// A scenario with further edits, as by Scenario::set(), with the warnings and without an exception. The
+/// given scenario is not changed.
 /// @throws Error (bad_input) if the scenario was not read from a file
 ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits);
 
@@ -36,13 +37,13 @@ ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edit
 /// working folder.
 std::vector<std::string> filesOf(const Scenario& scenario);
 
-/// Writes the text of a scenario with its edits: comments, order and everything that was not edited stay.
+/// Writes the text of a scenario with its edits: comments, order and everything that was not edited are kept.
 /// Files that it names relative to its folder are named relative to the new one.
 /// @throws Error (bad_input) if the scenario was not read from a file, or a name cannot be changed in the
 /// text; (other) if the file cannot be written
 void saveScenario(const Scenario& scenario, const std::string& file);
 
-/// The JSON Schema (draft 2020-12) of the format, made from the table that the parser reads by.
+/// The JSON Schema (draft 2020-12) of the format, made from the table that the parser uses.
 std::string scenarioJsonSchema();
 
 }  // namespace emscape::scenario

@@ -1,4 +1,4 @@
-/// Everything on the battlefield at one instant: what emfield computes from.
+/// The scenario at one instant: the input of emfield.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace emscape::scenario {
 
-/// Where a platform is.
+/// Position of a platform.
 struct PlatformState {
   GeodeticPosition position;
   double height_msl_m = 0;
@@ -30,7 +30,7 @@ struct EmitterState {
   double height_msl_m = 0;
   BeamPose beam;
   /// The frame in which the beam can be turned onto a target: the platform's axes, turned to the centre of a
-  /// sector or raster scan in azimuth; of an array that is steered its boresight.
+  /// sector or raster scan in azimuth; for a steered array, its boresight.
   BeamPose mount;
 };
 
@@ -43,13 +43,13 @@ struct Snapshot {
   std::vector<EmitterState> emitters;
 };
 
-/// Whether an emitter looks about without turning: a phased array that dwells or stands.
+/// True if an emitter's beam is steered electronically: a phased array with dwells or a fixed scan.
 bool isSteered(const Emitter& emitter);
 
 /// The scenario at t_s seconds since its epoch. Pure. Thread-safe.
 /// @param terrain  for heights above ground; may be null if no platform uses them
 /// @throws Error (bad_input) if a height above ground is asked for where the terrain is missing, or a
-/// platform lies below ground
+/// platform is below ground
 Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s);
 
 }  // namespace emscape::scenario

@@ -11,8 +11,7 @@
 
 namespace emscape::volume {
 
-/// What the values mean. Every file that holds a volume holds these too, as `emscape:*` where it has
-/// metadata.
+/// Description of the values. Every volume file contains it, as `emscape:*` if the format has metadata.
 struct VolumeInfo {
   std::string
       quantity;       ///< name with its unit as suffix, for example power_density_dbwm2; names the .vdb grid
@@ -28,11 +27,11 @@ struct VolumeInfo {
 
 bool operator==(const VolumeInfo& a, const VolumeInfo& b);
 
-/// Key of VolumeInfo::extra that says what the values' scale is, where colours should know: one of these.
+/// Key of VolumeInfo::extra for the scale of the values, if it matters for colours; one of these:
 constexpr const char* kScaleKey = "scale";
 constexpr const char* kProbabilityScale = "probability";  ///< 0..1
-constexpr const char* kRatioBelowScale = "ratio, below";  ///< dB about 0; what lies below 0 is looked for
-constexpr const char* kRatioAboveScale = "ratio, above";  ///< dB about 0; what lies above 0 is looked for
+constexpr const char* kRatioBelowScale = "ratio, below";  ///< dB about 0; values below 0 are of interest
+constexpr const char* kRatioAboveScale = "ratio, above";  ///< dB about 0; values above 0 are of interest
 constexpr const char* kDifferenceScale = "difference";    ///< of two fields, about 0
 
 /// Values in dense order. Voxels below ground or without a known field are masked: they hold `info.floor`,
@@ -41,7 +40,7 @@ struct DenseVolume {
   Grid grid;
   VolumeInfo info;
   std::vector<float> values;  ///< grid.dims.count() values
-  /// For each column (i, j), i fastest: the lowest k that holds a field; dims.z where none does. Empty: no
+  /// For each column (i, j), i fastest: the lowest k that holds a field; dims.z if none does. Empty: no
   /// voxel is masked.
   std::vector<std::uint16_t> first_valid_k;
 
@@ -53,16 +52,17 @@ struct DenseVolume {
 constexpr int kMaxVoxelsPerAxis = 65535;     ///< first_valid_k counts in 16 bits
 constexpr long long kMaxVoxels = 1LL << 32;  ///< 16 GiB of values
 
-/// @throws Error (bad_input) at `place` unless each of the dims and their product is within the limits above
-void checkDims(const Dims& dims, const SourceLocation& place);
+/// @throws Error (bad_input) at `location` unless each of the dims and their product is within the limits
+/// above
+void checkDims(const Dims& dims, const SourceLocation& location);
 
 /// Checks that a volume has a name, as many values as voxels and a mask, if any, of as many columns.
-/// @throws Error (bad_input) at `place`, which is the file that it comes from or goes to
-void checkVolume(const DenseVolume& volume, const SourceLocation& place);
+/// @throws Error (bad_input) at `location`, the file that is read or written
+void checkVolume(const DenseVolume& volume, const SourceLocation& location);
 
 /// The values of a categorical volume as whole numbers; NaN becomes the floor.
-/// @throws Error (bad_input) at `place` for values that are not whole or beyond 2^24, above which floats skip
-/// some
-std::vector<std::int32_t> toIndices(const DenseVolume& volume, const SourceLocation& place);
+/// @throws Error (bad_input) at `location` for values that are not whole, or above 2^24, where floats are not
+/// exact
+std::vector<std::int32_t> toIndices(const DenseVolume& volume, const SourceLocation& location);
 
 }  // namespace emscape::volume

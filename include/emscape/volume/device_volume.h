@@ -11,25 +11,25 @@
 
 namespace emscape::volume {
 
-/// How a GPU keeps voxels.
+/// Storage of voxels on a GPU.
 enum class VoxelPrecision {
   float32,
   float16,  ///< half the memory; 11 significant bits, -65504..65504
-  sparse32  ///< as a NanoVDB grid without what is at the floor; written by upload() alone
+  sparse32  ///< a NanoVDB grid without the voxels at the floor; written only by upload()
 };
 
-/// Memory of the GPU that a volume of these dims takes, what is derived from its values included. Of a sparse
-/// one this is the least: the rest depends on its values.
+/// Memory of the GPU for a volume of these dims, derived data included. For a sparse one it is a lower bound:
+/// the rest depends on its values.
 std::size_t deviceBytes(const Dims& dims, VoxelPrecision precision);
 
 class DeviceStorage;  // volume/cuda/device_storage.h
 
-/// Values where a ray caster on the GPU samples them and where kernels write them. Masked voxels hold the
-/// value of the first voxel above them that is not masked, so that nothing of what lies below the ground
-/// reaches into the air; uploading and downloading translate from and to the floor of DenseVolume.
+/// Values in GPU memory, which kernels write and the ray caster samples. Masked voxels repeat the first value
+/// above them that is not masked, so that interpolation near the ground does not blend in the floor;
+/// uploading and downloading convert from and to the floor of DenseVolume.
 ///
-/// Kernels get at it through storage(), whose begin and end calls order writers and readers on their streams:
-/// a picture never shows half an update. A build without CUDA has the type, but cannot make one.
+/// Kernels access it through storage(), whose begin and end calls order writers and readers on their streams:
+/// a picture never shows half an update. A build without CUDA has the type, but cannot construct one.
 class DeviceVolume {
  public:
   /// Values are undefined until they are written.
@@ -39,14 +39,14 @@ class DeviceVolume {
 
   const Grid& grid() const { return grid_; }
   VoxelPrecision precision() const { return precision_; }
-  /// Memory of the GPU that it takes.
+  /// Memory of the GPU that it uses.
   std::size_t bytes() const;
 
-  /// What the values mean. Set by whoever writes them.
+  /// Description of the values. Set by the code that writes them.
   VolumeInfo info;
 
-  /// The columns' first voxels with a field, as in DenseVolume. Cheap where they stay the same; else waits
-  /// for those who read. @throws Error (bad_input) unless there is one a column, or none at all
+  /// The columns' first voxels with a field, as in DenseVolume. Cheap if they do not change; else waits for
+  /// readers. @throws Error (bad_input) unless there is one per column, or none at all
   void setMask(const std::vector<std::uint16_t>& first_valid_k);
   const std::vector<std::uint16_t>& firstValidK() const { return first_valid_k_; }
 
@@ -67,12 +67,12 @@ class DeviceVolume {
   std::unique_ptr<DeviceStorage> storage_;
 };
 
-/// Volumes in turn: while one is shown the next is written. One thread uses it; the volumes may be read by
-/// others.
+/// Ring of buffers: one is displayed while the next is written. One thread uses it; the volumes may be read
+/// by others.
 class DeviceVolumeRing {
  public:
-  /// A volume of this grid that nobody but the ring holds: one that was given before and let go since, else a
-  /// new one. @throws as DeviceVolume's constructor
+  /// A volume of this grid that only the ring holds: one that was returned before and has been released, else
+  /// a new one. @throws as DeviceVolume's constructor
   std::shared_ptr<DeviceVolume> next(const Grid& grid, VoxelPrecision precision);
 
  private:

@@ -1,4 +1,4 @@
-/// What has changed from one volume to another.
+/// Difference of two volumes.
 #pragma once
 
 #include <string>
@@ -8,14 +8,13 @@
 namespace emscape::volume {
 
 /// a - b, voxel by voxel, in the unit of differences of the quantity: dB for all decibels, else the
-/// quantity's own. A voxel without a field has the value of the quantity's floor: where only one of the
-/// volumes has a field the difference is to the floor, where neither has, it is 0. What is masked in either
-/// is masked. info.floor is 0, info.range_* the range of the values other than 0 (0 both where there are
-/// none).
+/// quantity's own. A voxel without a field has the value of the quantity's floor: if only one of the volumes
+/// has a field the difference is to the floor; if neither has, it is 0. Voxels masked in either are masked.
+/// info.floor is 0, info.range_* the range of the values other than 0 (0 both where there are none).
 /// @throws Error (bad_input) for other grids, quantities or units, and for indices
 DenseVolume difference(const DenseVolume& a, const DenseVolume& b);
 
-/// What the difference of two volumes of a quantity says of itself: name and unit, kDifferenceScale, no
+/// Description of the difference of two volumes of a quantity: name and unit, kDifferenceScale, no
 /// range. power_density_dbwm2 becomes power_density_difference_db.
 VolumeInfo differenceInfo(const VolumeInfo& of);
 bool isDifference(const VolumeInfo& info);

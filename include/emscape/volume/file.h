@@ -1,4 +1,4 @@
-/// One door to all volume files: the format follows from the name's ending.
+/// Reads and writes all volume formats, chosen by the file name's extension.
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace emscape::volume {
 
-/// A format and what it can do.
+/// A format and its capabilities.
 struct FileFormat {
-  std::string name;  ///< as on the command line, for example "vdb"; files end in "." and the name
+  std::string name;  ///< on the command line, and the extension: "vdb"
   bool writable = true;
   bool several = false;   ///< holds several volumes
-  bool one_grid = false;  ///< ... which must lie on one grid
+  bool one_grid = false;  ///< ... on one common grid
 };
 
 /// All of them; folders are searched in this order.
@@ -27,8 +27,8 @@ const FileFormat& formatOf(const std::filesystem::path& path);
 /// True for names that end as volume files do.
 bool isVolumeFile(const std::filesystem::path& path);
 
-/// Writes volumes into one file, whole or not at all.
-/// @throws Error (bad_input) for a format that is not written or does not hold as many, (other) where writing
+/// Writes volumes into one file, atomically.
+/// @throws Error (bad_input) for a format that cannot be written or cannot hold as many, (other) if writing
 /// fails
 void writeVolumes(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes);
 
@@ -36,23 +36,23 @@ void writeVolumes(const std::filesystem::path& path, const std::vector<const Den
 /// @throws Error (bad_input)
 DenseVolume readVolume(const std::filesystem::path& path, const std::string& name = "");
 
-/// The range that the volume of one quantity is to state.
+/// The range to write for the volume of one quantity.
 struct StoredRange {
   std::string quantity;
   float min = 0, max = 0;
 };
 
 /// Changes info.range_min and range_max of volumes in a file that writeVolumes() wrote; the values are not
-/// touched. The result is byte-equal to a file that was written with these ranges. A .raw or .nvdb file's
-/// JSON beside it is written anew, whole; .vdb and .vti are patched where they lie (8 bytes a grid, or one
-/// text of fixed length a volume), so that a reader sees the old or the new range, and a file that was cut
-/// short by a crash of the machine is completed by the same call again.
-/// @param ranges  volumes that are not named keep theirs
-/// @throws Error (bad_input) for a format that is not written, a quantity that the file does not hold, or a
-/// file that states no range; (other) where writing fails
+/// touched. The result is byte-equal to a file that was written with these ranges. For .raw and .nvdb the
+/// JSON sidecar is rewritten, atomically; .vdb and .vti are patched in place (8 bytes per grid, or one text
+/// of fixed length per volume), so that a reader sees the old or the new range. After a crash of the machine
+/// the same call completes the file.
+/// @param ranges  volumes that are not named keep their range
+/// @throws Error (bad_input) for a format that cannot be written, a quantity that is not in the file, or a
+/// file without a range; (other) if writing fails
 void setStoredRange(const std::filesystem::path& path, const std::vector<StoredRange>& ranges);
 
-/// What a file holds.
+/// Description of a file.
 struct FileListing {
   std::string format;
   std::uintmax_t bytes = 0;
@@ -64,10 +64,10 @@ FileListing listVolume(const std::filesystem::path& path);
 std::filesystem::path seriesFile(const std::filesystem::path& folder, const std::string& name, int number,
                                  const std::string& format);
 
-/// The steps of a series: of a .pvd the files that it lists, in the order of their times; of a folder its
-/// volume files, of the first of fileFormats() that it has; of NAME_NNNN.EXT all with that name and ending;
-/// these in the order of their numbers. Of any other volume file itself.
-/// @throws Error (bad_input) where there is none
+/// The steps of a series: for a .pvd the files that it lists, in the order of their times; for a folder its
+/// volume files in the first of fileFormats() that occurs; for NAME_NNNN.EXT all files with that name and
+/// extension; these in the order of their numbers. For any other volume file, the file itself.
+/// @throws Error (bad_input) if there is none
 std::vector<std::filesystem::path> seriesOf(const std::filesystem::path& path);
 
 }  // namespace emscape::volume

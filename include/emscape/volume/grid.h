@@ -7,13 +7,13 @@
 namespace emscape::volume {
 
 /// Voxel (i, j, k) has its centre at first_center_m + (i, j, k) * spacing_m in the frame of `frame`, which
-/// says where on the earth it lies. Dense order everywhere: x fastest, then y, then z.
+/// defines its position on the earth. Dense order everywhere: x fastest, then y, then z.
 struct Grid {
   Dims dims;
   Vec3d spacing_m;
   Vec3d first_center_m;
   FrameOrigin frame;
-  /// False for a volume that lies nowhere on the earth (a scan, a raw file): frame then says nothing.
+  /// False for a volume without a position on the earth (a scan, a raw file): frame is then undefined.
   bool georeferenced = false;
 
   long long index(int i, int j, int k) const { return (static_cast<long long>(k) * dims.y + j) * dims.x + i; }
@@ -21,7 +21,7 @@ struct Grid {
     return {first_center_m.x + i * spacing_m.x, first_center_m.y + j * spacing_m.y,
             first_center_m.z + k * spacing_m.z};
   }
-  /// Corners of the box that the voxels fill (half a voxel beyond the outer centres).
+  /// Corners of the box of the voxels (half a voxel beyond the outer centres).
   Vec3d lower_m() const { return first_center_m - spacing_m * 0.5; }
   Vec3d upper_m() const {
     return lower_m() + Vec3d{spacing_m.x * dims.x, spacing_m.y * dims.y, spacing_m.z * dims.z};

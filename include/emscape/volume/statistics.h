@@ -1,4 +1,4 @@
-/// What the values of a volume look like.
+/// Statistics of the values of a volume.
 #pragma once
 
 #include <vector>
@@ -13,7 +13,7 @@ struct Statistics {
   long long valid = 0;
   long long masked = 0;
   long long nan = 0;       ///< of those not masked
-  long long at_floor = 0;  ///< of the valid ones: those that hold no field
+  long long at_floor = 0;  ///< valid ones without a field
   float min = 0;           ///< over the valid voxels; 0 without any
   float max = 0;
   double mean = 0;
@@ -31,12 +31,12 @@ struct Histogram {
   long long above = 0;  ///< greater than upper
 };
 
-/// @param bins 1..65536, @param lower, @param upper finite, lower < upper
+/// @param bins  1..65536, @param lower, @param upper  finite, lower < upper
 /// @throws Error (bad_input) outside these
 Histogram histogramOf(const DenseVolume& volume, int bins, float lower, float upper);
 
-/// Sets info.range_min and range_max to the least and greatest valid finite value that is not the floor; to
-/// the floor both where there is none.
+/// Sets info.range_min and range_max to the smallest and largest valid finite value that is not the floor;
+/// both to the floor if there is none.
 void setRangeFromValues(DenseVolume& volume);
 
 }  // namespace emscape::volume

@@ -5,7 +5,7 @@
 
 namespace emscape::volume {
 
-/// Smallest and largest value; empty (min > max) where there is none.
+/// Smallest and largest value; empty (min > max) if there is none.
 struct ValueRange {
   float min = 0;
   float max = -1;

@@ -1,4 +1,4 @@
-/// One handle for a volume, whether its values are in the host's memory or on a GPU.
+/// A handle of a volume, whose values are in host memory or on a GPU.
 #pragma once
 
 #include <memory>
@@ -8,12 +8,11 @@
 
 namespace emscape::volume {
 
-/// Shares the values with whoever else holds them; they do not change while it lives. info() is the handle's
-/// own, so that the values of one instant can serve several. Copies are cheap; threads may share one that
-/// nobody changes.
+/// Shares ownership of the values, which do not change during its lifetime. info() belongs to the handle, so
+/// that several handles can share values. Copies are cheap; threads may share a handle that is not changed.
 class Volume {
  public:
-  /// Holds nothing: of its functions only isEmpty() may be called.
+  /// Empty: only isEmpty() may be called.
   Volume() = default;
   /// @param volume  not null
   Volume(std::shared_ptr<const DenseVolume> volume);
@@ -31,13 +30,13 @@ class Volume {
   void setInfo(VolumeInfo info) { info_ = std::move(info); }
   bool isOnDevice() const { return device_ != nullptr; }
 
-  /// The volume in the host's memory, with info(). From a GPU every call copies the values (4 bytes a voxel
-  /// over the bus); in the host's memory they are copied only where setInfo() was called.
+  /// The volume in the host's memory, with info(). From a GPU every call copies the values (4 bytes per voxel
+  /// over the bus); in host memory they are copied only after setInfo().
   /// @throws Error (device)
   std::shared_ptr<const DenseVolume> host() const;
-  /// The volume on the GPU, as it was made, without info(); null if it is in the host's memory.
+  /// The volume on the GPU, with its original info; null if it is in host memory.
   const std::shared_ptr<const DeviceVolume>& device() const { return device_; }
-  /// The volume in the host's memory, as it was made, without info(); null if it is on a GPU.
+  /// The volume in host memory, with its original info; null if it is on a GPU.
   const std::shared_ptr<const DenseVolume>& dense() const { return host_; }
 
  private:

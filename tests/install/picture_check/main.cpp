@@ -1,4 +1,4 @@
-// Whether a picture shows more than its background: picture_check PICTURE.png. A field over terrain has
+// True if a picture shows more than its background: picture_check PICTURE.png. A field over terrain has
 // tens of thousands of colours, background and labels alone have five thousand.
 #include <emscape/render/image.h>
 
