@@ -266,39 +266,55 @@ FileDigest digestOf(const fs::path& path) {
   return digest;
 }
 
-FolderLock::FolderLock(const fs::path& folder, const std::string& name) : file_(folder / name) {
+FolderLock::FolderLock(const fs::path& folder, const std::string& name) : FolderLock(folder / name) {
+  std::string holder;
+  if (!lock(holder)) {
+    throw Error(ErrorCode::other, {folder.string()}, "another process writes this folder: " + holder);
+  }
+}
+
+std::unique_ptr<FolderLock> FolderLock::tryLock(const fs::path& folder, const std::string& name) {
+  std::unique_ptr<FolderLock> result(new FolderLock(folder / name));
+  std::string holder;
+  if (!result->lock(holder)) return nullptr;
+  return result;
+}
+
+bool FolderLock::lock(std::string& holder) {
   for (;;) {
-    descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) failWriting(file_, causeOf(errno));
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    const int descriptor = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0) failWriting(file_, causeOf(errno));
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
       const int cause = errno;
-      char holder[64] = {};
-      const ssize_t bytes = ::pread(descriptor_, holder, sizeof holder - 1, 0);
-      ::close(descriptor_);
+      char text[64] = {};
+      const ssize_t bytes = ::pread(descriptor, text, sizeof text - 1, 0);
+      ::close(descriptor);
       if (cause != EWOULDBLOCK) failWriting(file_, causeOf(cause));
-      throw Error(
-          ErrorCode::other, {folder.string()},
-          std::string("another process writes this folder: ") + (bytes > 0 ? holder : "not known which"));
+      holder = bytes > 0 ? text : "not known which";
+      return false;
     }
     // The holder before may have removed the file between the two calls.
     struct stat held {
     }, named{};
-    if (::fstat(descriptor_, &held) == 0 && ::stat(file_.c_str(), &named) == 0 &&
+    if (::fstat(descriptor, &held) == 0 && ::stat(file_.c_str(), &named) == 0 &&
         held.st_ino == named.st_ino && held.st_dev == named.st_dev) {
+      descriptor_ = descriptor;
       break;
     }
-    ::close(descriptor_);
+    ::close(descriptor);
   }
   char host[256] = "?";
   ::gethostname(host, sizeof host - 1);
-  const std::string holder = "process " + std::to_string(::getpid()) + " on " + host;
+  const std::string own = "process " + std::to_string(::getpid()) + " on " + host;
   // Only a message depends on this text.
   if (::ftruncate(descriptor_, 0) == 0) {
-    static_cast<void>(::pwrite(descriptor_, holder.data(), holder.size(), 0) == 0);
+    static_cast<void>(::pwrite(descriptor_, own.data(), own.size(), 0) == 0);
   }
+  return true;
 }
 
 FolderLock::~FolderLock() {
+  if (descriptor_ < 0) return;
   std::error_code ignored;
   fs::remove(file_, ignored);
   ::close(descriptor_);

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <ostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace emscape {
@@ -77,11 +79,17 @@ class FolderLock {
   /// Creates FOLDER/NAME, which says who holds the lock and is removed with it.
   /// @throws Error (other) that names the process that holds it, or the cause of another failure
   FolderLock(const std::filesystem::path& folder, const std::string& name);
+  /// The same, but null if another process holds the lock.
+  static std::unique_ptr<FolderLock> tryLock(const std::filesystem::path& folder, const std::string& name);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
+  explicit FolderLock(std::filesystem::path file) : file_(std::move(file)) {}
+  /// @return false if another process holds the lock, named in `holder`
+  bool lock(std::string& holder);
+
   std::filesystem::path file_;
   int descriptor_ = -1;
 };

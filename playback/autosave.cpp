@@ -55,13 +55,10 @@ Autosaves::Autosaves() = default;
 Autosaves::~Autosaves() = default;
 
 bool Autosaves::claim(const std::string& input, const fs::path& file) {
-  try {
-    auto lock = std::make_unique<FolderLock>(file.parent_path(), file.filename().string() + ".lock");
-    claims_[autosaveFileOf(input)] = {file, std::move(lock)};
-    return true;
-  } catch (const Error&) {  // another program's
-    return false;
-  }
+  auto lock = FolderLock::tryLock(file.parent_path(), file.filename().string() + ".lock");
+  if (lock == nullptr) return false;
+  claims_[autosaveFileOf(input)] = {file, std::move(lock)};
+  return true;
 }
 
 void Autosaves::keep(const std::string& input, const ViewState& state) {

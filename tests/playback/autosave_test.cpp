@@ -151,6 +151,21 @@ TEST_F(Autosave, IsNotReplacedByAProgramThatWasNotOfferedIt) {
   EXPECT_EQ(next.find(input)->state.time_s, 3);
 }
 
+TEST_F(Autosave, AFileThatCannotBeLockedIsAnErrorAndNotAnotherProgram) {
+  const std::string input = quickScenario(folder_);
+  OtherProgram(input, {}).end();
+  const fs::path lock = autosaveFileOf(input).string() + ".lock";
+  fs::remove(lock);
+  fs::create_directory(lock);
+  try {
+    saves_.find(input);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr(lock.string()));
+  }
+  EXPECT_TRUE(fs::exists(autosaveFileOf(input)));
+}
+
 TEST_F(Autosave, RelativeStateFoldersAreIgnored) {
   setenv("XDG_STATE_HOME", "state", 1);
   const char* home = std::getenv("HOME");
