@@ -128,9 +128,11 @@ const ObjectSpec& atmosphereSpec() {
               "upper limit of the rain, above mean sea level; by default by latitude, 5000 in the tropics"),
           byDefault("gases", choiceUpTo(GasLosses::never), toString(Atmosphere{}.gases),
                     "attenuation by oxygen and water vapour; auto: with every model except free_space and "
-                    "horizon; p528 includes its own"),
-          byDefault("sea_level_refractivity", number().from(200).to(450), Atmosphere{}.sea_level_refractivity,
-                    "N-units; for itm, whose rays are bent by it, not by k_factor"),
+                    "horizon; p528 and p452 include their own"),
+          byDefault(
+              "sea_level_refractivity", number().from(200).to(450), Atmosphere{}.sea_level_refractivity,
+              "N-units; for itm, whose rays are bent by it, not by k_factor, and for the troposcatter of "
+              "p1812 and p452"),
           byDefault("climate", choiceUpTo(RadioClimate::maritime_temperate_over_sea),
                     toString(Atmosphere{}.climate), "for itm's statistics"),
       }};
