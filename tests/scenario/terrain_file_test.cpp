@@ -339,7 +339,7 @@ TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {
                              "<SourceFilename>/etc/hostname</SourceFilename>",
                              "<SourceFilename>/vsicurl/http://127.0.0.1:1/x.tif</SourceFilename>",
                              "<SourceFilename>&lt;VRTDataset/></SourceFilename>"}) {
-    EXPECT_THAT(vrt(source), HasSubstr("does not lie in its own folder")) << source;
+    EXPECT_THAT(vrt(source), HasSubstr("is not in its own folder")) << source;
   }
   EXPECT_THAT(vrt("<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>", "2147483647"),
               HasSubstr("more than the allowed 4194304 in a row or column"));

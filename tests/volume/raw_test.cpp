@@ -71,7 +71,7 @@ TEST(Raw, NamesWhatIsWrongInAHeader) {
   EXPECT_THAT(with("{\"dims\": [2, 1"),
               HasSubstr("a.raw.json: [json.exception.parse_error.101] parse error at line 1"));
   EXPECT_THAT(with("[]"), HasSubstr("no JSON object"));
-  EXPECT_THAT(with("{\"dims\": [2, 1, -1]}"), HasSubstr("key dims: -1 is no whole number"));
+  EXPECT_THAT(with("{\"dims\": [2, 1, -1]}"), HasSubstr("key dims: -1 is not a whole number"));
   EXPECT_THAT(with("{\"dims\": [2, 1, 0]}"), HasSubstr("each must be 1..65535"));
   EXPECT_THAT(with("{\"dims\": [2, 1, 1], \"unit\": 3}"), HasSubstr("key unit:"));
   EXPECT_THAT(with("{\"dims\": [2, 1, 1], \"frame\": {\"kind\": \"moon\"}}"),

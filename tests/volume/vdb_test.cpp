@@ -249,7 +249,7 @@ TEST(Vdb, RefusesCategoricalValuesThatAreNoIndices) {
   TemporaryFolder folder;
   DenseVolume volume = categoricalVolume();
   volume.values[5] = 0.5F;
-  EXPECT_THAT(errorOf([&] { writeVdb(folder / "a.vdb", {&volume}); }), HasSubstr("0.500000 is no index"));
+  EXPECT_THAT(errorOf([&] { writeVdb(folder / "a.vdb", {&volume}); }), HasSubstr("0.500000 is not an index"));
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

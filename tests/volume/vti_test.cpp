@@ -43,7 +43,7 @@ TEST(Vti, HoldsSeveralQuantitiesOnOneGrid) {
   EXPECT_THAT(errorOf([&] {
                 writeVti(folder / "b.vti", {&power, &other});
               }),
-              HasSubstr("lie on different grids"));
+              HasSubstr("are on different grids"));
 }
 
 TEST(Vti, QuantitiesMayHaveNamesThatXmlMustEscape) {
