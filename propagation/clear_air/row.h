@@ -29,8 +29,8 @@ std::vector<Setting> clearAirSettings(const ModelLimit& time) {
           "coastal land up to 100 m high within 50 km of it"),
       numberSetting<group, &ClearAirSettings::clutter_height_m>(
           "clutter_height_m", "m", 0, 100,
-          "of what stands on the land along the paths: 0 open, 10 suburban, 15 urban or forest, 20 dense "
-          "urban"),
+          "of buildings and trees on land along the paths: 0 open, 10 suburban, 15 urban or forest, 20 "
+          "dense urban"),
   };
 }
 
