@@ -112,7 +112,7 @@ TEST(EditsForChoice, ChangeToEveryPatternScanModelAndKindAndBack) {
          {"isotropic", "gaussian", "sinc", "cosecant2", "phased_array", "gaussian", "cosecant2"}) {
       choose(path + ".antenna.pattern", pattern);
     }
-    for (const char* scan : {"fixed", "rotate", "sector", "raster", "dwell_list", "rotate"}) {
+    for (const char* scan : {"fixed", "rotate", "sector", "raster", "dwell_list", "track", "rotate"}) {
       choose(path + ".scan.kind", scan);
     }
     for (const char* model :
