@@ -156,7 +156,9 @@ const std::vector<Edit>& emitterEdits() {
       {"p452.time_percent",
        [](Scenario&, Emitter& e, Random& r) { e.propagation.p452.time_percent = between(r, 0.01, 50); }},
       {"p452.refractivity_lapse_rate",
-       [](Scenario&, Emitter& e, Random& r) { e.propagation.p452.refractivity_lapse_rate = between(r, 20, 80); }},
+       [](Scenario&, Emitter& e, Random& r) {
+         e.propagation.p452.refractivity_lapse_rate = between(r, 20, 80);
+       }},
       {"receiver.noise_figure_db",
        [](Scenario&, Emitter& e, Random& r) { e.receiver.noise_figure_db = between(r, 1, 9); }},
       {"receiver.antenna_temperature_k",
