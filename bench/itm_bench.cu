@@ -38,7 +38,7 @@ __global__ void evaluate(const float* heights_msl_m, const propagation::ItmLink<
   const int i = blockIdx.x * blockDim.x + threadIdx.x;
   if (i >= kCases) return;
   const propagation::ItmProfile<float> profile{heights_msl_m + static_cast<std::size_t>(i) * (kIntervals + 1),
-                                           kIntervals, kStep_m};
+                                               kIntervals, kStep_m};
   loss_db[i] = propagation::itmPointToPoint(profile, links[i], propagation::ItmQuantiles<Real>()).loss_db;
 }
 
@@ -69,7 +69,8 @@ void measure(const char* name, const bench::ItmCases& cases) {
 
   double largest_db = 0;
   for (int i = 0; i < kCases; ++i) {
-    const propagation::ItmProfile<float> profile{cases.profile(static_cast<std::size_t>(i)), kIntervals, kStep_m};
+    const propagation::ItmProfile<float> profile{cases.profile(static_cast<std::size_t>(i)), kIntervals,
+                                                 kStep_m};
     const double expected_db =
         propagation::itmPointToPoint(profile, cases.links[i], propagation::ItmQuantiles<double>()).loss_db;
     largest_db = std::max(largest_db, std::fabs(static_cast<double>(loss_db[i]) - expected_db));

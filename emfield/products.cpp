@@ -26,10 +26,12 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Out
     case Quantity::jammer_to_signal_db:
       task.measure = RadarMeasure::signal_to_jamming;
       task.factor = static_cast<float>(1 / processing);
+      task.lowest = 1 / kMaxJammerToSignal;
       break;
     case Quantity::burn_through_margin_db:
       task.measure = RadarMeasure::signal_to_jamming;
       task.factor = static_cast<float>(dbToRatio(-requiredSignalToJammerDb(radar.receiver)));
+      task.lowest = 1 / kMaxMargin;
       task.ceiling = kMaxMargin;
       break;
     default:
@@ -58,6 +60,17 @@ const char* scaleOf(Quantity quantity) {
       return volume::kRatioBelowScale;
     case Quantity::burn_through_margin_db:
       return volume::kRatioAboveScale;
+    default:
+      return nullptr;
+  }
+}
+
+const char* legendNoteOf(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::jammer_to_signal_db:
+      return "no echo: 100";
+    case Quantity::burn_through_margin_db:
+      return "no echo: -60";
     default:
       return nullptr;
   }

@@ -30,11 +30,17 @@ EMSCAPE_HD inline float decibelsOf(const ProductScale& product, float accumulato
   return (accumulator > 0) & (value > product.floor) ? value : product.floor;
 }
 
-/// Largest burn-through margin (60 dB): also that of a radar without jamming.
+/// Burn-through margins are within 60 dB of 0: the largest is that of a radar without jamming, the smallest
+/// that of a jammed radar without an echo.
 constexpr float kMaxMargin = 1e6f;
+/// Largest jammer-to-signal ratio (100 dB): that of a jammed radar without an echo.
+constexpr float kMaxJammerToSignal = 1e10f;
 
 /// The scale of a quantity's colours (a value of volume::kScaleKey); null: none.
 const char* scaleOf(scenario::Quantity quantity);
+
+/// Line for the legend on the quantity's bounds (volume::kLegendNoteKey); null: none.
+const char* legendNoteOf(scenario::Quantity quantity);
 
 /// Computation of a channel: its reduction, each emitter's weight, and its scale.
 struct ChannelPlan {

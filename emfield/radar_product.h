@@ -20,8 +20,8 @@ namespace emscape::emfield {
 /// The measure that a radar adds to a channel.
 enum class RadarMeasure {
   root_of_signal_to_noise,
-  signal_to_jamming,  ///< S / J, times a factor, at most a ceiling, which is its value without jamming; 0
-                      ///< without echo
+  signal_to_jamming,  ///< S / J, times a factor, within RadarTask::lowest..ceiling: the ceiling without
+                      ///< jamming, the lowest without echo; 0 (nothing) without both
   detection,          ///< probability of detection from S / (N + J); 0 without echo
 };
 
@@ -38,7 +38,7 @@ struct RadarTask {
   RadarLook look;
   float echo_root = 0;  ///< (m2/W)
   float factor = 1;     ///< of signal_to_jamming
-  float ceiling = 1e30f;
+  float lowest = 0, ceiling = 1e30f;
   DetectionCurveView curve;  ///< detection
   const JammerAtRadar* jammers = nullptr;
   int jammer_count = 0;
@@ -74,8 +74,9 @@ EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root
   if constexpr (measure == RadarMeasure::signal_to_jamming) {
     const float ratio = task.factor * echo_to_noise;
     const bool is_jammed = ratio < task.ceiling * jamming_to_noise;
+    const bool is_bounded = ratio < task.lowest * jamming_to_noise;
     const float unjammed = echo_to_noise > 0 ? task.ceiling : 0.0f;
-    value = is_jammed ? ratio / jamming_to_noise : unjammed;
+    value = is_jammed ? (is_bounded ? task.lowest : ratio / jamming_to_noise) : unjammed;
   } else if constexpr (measure == RadarMeasure::detection) {
     const float probability = task.curve(fastRatioToDb(echo_to_noise / (1 + jamming_to_noise)));
     value = echo_to_noise > 0 ? probability : 0.0f;

@@ -1,5 +1,5 @@
-// Computes a scenario's field every ten seconds of its first minute and writes it for ParaView; what an earlier run
-// has finished is not computed again.
+// Computes a scenario's field every ten seconds of its first minute and writes it for ParaView; what an
+// earlier run has finished is not computed again.
 //   series SCENARIO FOLDER
 #include <emscape/emscape.h>
 

@@ -16,7 +16,7 @@ const char* toString(Polarization polarization) {
 }
 
 const char* toString(PropagationModel model) {
-  return nameOf(model, {"free_space", "horizon", "diffraction", "two_ray", "itm", "p528"});
+  return nameOf(model, {"free_space", "horizon", "diffraction", "two_ray", "itm", "p528", "p1812", "p452"});
 }
 
 const char* toString(DiffractionMethod method) {
@@ -41,6 +41,10 @@ const char* toString(ItmService service) {
 
 const char* toString(ItmSiting siting) {
   return nameOf(siting, {"random", "careful", "very_careful"});
+}
+
+const char* toString(ClearAirZone zone) {
+  return nameOf(zone, {"by_height", "inland", "coastal_land", "sea"});
 }
 
 const char* toString(GroundKind kind) {

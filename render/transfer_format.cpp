@@ -84,7 +84,7 @@ class Reader {
     }
     if (before != nullptr && (may_repeat ? at < *before : at <= *before)) {
       problems_.addError(point.locationOf("at"), fmt::format("at {}: points must {}", given,
-                                                          may_repeat ? "not decrease" : "increase"));
+                                                             may_repeat ? "not decrease" : "increase"));
     }
     return at;
   }

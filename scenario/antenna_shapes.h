@@ -5,6 +5,7 @@
 #include <string>
 
 #include "emscape/scenario/antenna.h"
+#include "scenario/antenna/taper.h"
 
 namespace emscape::scenario {
 
@@ -18,14 +19,14 @@ AntennaPtr makeIsotropic(double gain_dbi = 0);
 AntennaPtr makeGaussian(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg,
                         double side_lobe_db);
 
-/// Evenly illuminated rectangular aperture: sinc(D u / lambda) sinc(H v / lambda) in the direction cosines u
-/// (right) and v (up), with D and H such that the half-power points are at half of each beamwidth (D = 0.886
-/// lambda / beamwidth if it is narrow). First side lobes at -13.26 dB; true nulls. Can be steered
-/// electronically.
+/// Rectangular aperture: taper.pattern(D u / lambda) taper.pattern(H v / lambda) in the direction cosines u
+/// (right) and v (up), with D and H such that the half-power points are at half of each beamwidth (evenly
+/// illuminated: D = 0.886 lambda / beamwidth if it is narrow). It is turned, not steered electronically.
 /// @param beamwidth_az_deg, beamwidth_el_deg  0..180
-/// @param side_lobe_db      -200..0: level everywhere behind the aperture
+/// @param side_lobe_db      -200..0: level under which the pattern does not fall, in its nulls and behind it
 /// @see Balanis, Antenna Theory, 4th ed., table 12.1
-AntennaPtr makeSinc(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg, double side_lobe_db);
+AntennaPtr makeSinc(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg, double side_lobe_db,
+                    const Taper& taper = Taper());
 
 /// Gaussian in azimuth. In elevation Gaussian up to the nose's upper half-power point (half the beamwidth),
 /// from there csc^2(elevation) / csc^2(beamwidth / 2), 3 dB below the maximum where they meet, and beyond
@@ -39,23 +40,28 @@ AntennaPtr makeSinc(double gain_dbi, double beamwidth_az_deg, double beamwidth_e
 AntennaPtr makeCosecant2(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg,
                          double max_elevation_deg, double side_lobe_db);
 
-/// Planar array of evenly weighted elements. The pattern is the array factor, with its grating lobes, times
-/// an element's cos(angle off boresight)^element_exponent in amplitude; nothing behind the array. A steered
-/// beam is reduced by the element's pattern.
+/// Planar array of elements whose weights are the taper's in columns times the taper's in rows. The pattern
+/// is the array factor, with its grating lobes, times an element's cos(angle off boresight)^element_exponent
+/// in amplitude, not below side_lobe_db. Steered electronically; a steered beam is reduced by the element's
+/// pattern.
 /// @param gain_dbi             of the unsteered array
 /// @param columns, rows        1..1024
 /// @param spacing_wavelengths  0.1..1, both ways
 /// @param element_exponent     0..10
-/// @see Balanis, Antenna Theory, 4th ed., 6.10
+/// @param side_lobe_db  -200..0: the floor that errors of the elements' amplitudes and phases leave, in nulls
+///                      and behind the face too
+/// @see Balanis, Antenna Theory, 4th ed., 6.10; Mailloux, Phased Array Antenna Handbook, 2nd ed., ch. 7
+/// (errors)
 AntennaPtr makePhasedArray(double gain_dbi, int columns, int rows, double spacing_wavelengths,
-                           double element_exponent);
+                           double element_exponent, double side_lobe_db = -200, const Taper& taper = Taper());
 
 /// Gain of a directive antenna by its half-power beamwidths, 26000 / (az el) with losses and side lobes of
 /// practical antennas; not below 0 dBi.
 /// @see Stutzman and Thiele, Antenna Theory and Design, 3rd ed., 5.4 (G = 26,000 / (HP_E HP_H))
 double gainFromBeamwidths_dbi(double beamwidth_az_deg, double beamwidth_el_deg);
-/// Gain of a planar array by its area, 4 pi A / lambda^2; not below 0 dBi.
-double gainFromArray_dbi(int columns, int rows, double spacing_wavelengths);
+/// Gain of a planar array by its area, 4 pi A / lambda^2 times the taper's efficiency in columns and rows;
+/// not below 0 dBi.
+double gainFromArray_dbi(int columns, int rows, double spacing_wavelengths, const Taper& taper = Taper());
 
 /// MSI/Planet (.msi, .pln): horizontal and vertical cuts, attenuations below the maximum. GAIN is in dBd
 /// unless the file says dBi. Azimuth runs clockwise, the vertical angle downwards from the horizon ahead, so

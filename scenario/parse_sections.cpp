@@ -17,14 +17,20 @@ namespace emscape::scenario {
 
 namespace {
 
+Taper taperOf(const Section& section) {
+  return Taper(section.choice<TaperKind>("taper"), section.number("taper_side_lobe_db"));
+}
+
 constexpr std::size_t kMaxNamedFileBytes = std::size_t{64} << 20;
 
-AntennaPtr makeAntenna(const Section& section, const ParseContext& context) {
+/// @param default_dbi  in place of the formula where the section has no gain; NaN: the formula
+AntennaPtr makeAntenna(const Section& section, const ParseContext& context,
+                       double default_dbi = std::numeric_limits<double>::quiet_NaN()) {
   const double azimuth_deg = section.number("beamwidth_az_deg"),
                elevation_deg = section.number("beamwidth_el_deg");
   const double side_lobe_db = section.number("side_lobe_db");
-  const auto gainOr = [&](double fallback_dbi) {
-    return section.optionalNumber("gain_dbi").value_or(fallback_dbi);
+  const auto gainOr = [&](double formula_dbi) {
+    return section.optionalNumber("gain_dbi").value_or(std::isnan(default_dbi) ? formula_dbi : default_dbi);
   };
   switch (section.choice<AntennaForm>("pattern")) {
     case AntennaForm::isotropic:
@@ -34,15 +40,17 @@ AntennaPtr makeAntenna(const Section& section, const ParseContext& context) {
                           elevation_deg, side_lobe_db);
     case AntennaForm::sinc:
       return makeSinc(gainOr(gainFromBeamwidths_dbi(azimuth_deg, elevation_deg)), azimuth_deg, elevation_deg,
-                      side_lobe_db);
+                      side_lobe_db, taperOf(section));
     case AntennaForm::cosecant2:
       return makeCosecant2(section.number("gain_dbi"), azimuth_deg, elevation_deg,
                            section.number("max_elevation_deg"), side_lobe_db);
     case AntennaForm::phased_array: {
       const int columns = section.integer("columns"), rows = section.integer("rows");
       const double spacing_wavelengths = section.number("spacing_wavelengths");
-      return makePhasedArray(gainOr(gainFromArray_dbi(columns, rows, spacing_wavelengths)), columns, rows,
-                             spacing_wavelengths, section.number("element_exponent"));
+      const Taper taper = taperOf(section);
+      return makePhasedArray(gainOr(gainFromArray_dbi(columns, rows, spacing_wavelengths, taper)), columns,
+                             rows, spacing_wavelengths, section.number("element_exponent"), side_lobe_db,
+                             taper);
     }
     case AntennaForm::file:
       return readAntenna(context.resolve(section.text("file")),
@@ -52,6 +60,15 @@ AntennaPtr makeAntenna(const Section& section, const ParseContext& context) {
                          context.resolve(section.text("elevation_file")), section.number("gain_dbi"));
   }
   return nullptr;
+}
+
+/// An antenna whose gain, where it is a formula's, is at most the pattern's directivity.
+AntennaPtr makeConsistentAntenna(const Section& section, const ParseContext& context) {
+  AntennaPtr antenna = makeAntenna(section, context);
+  const bool has_formula =
+      !section.has("gain_dbi") && section.choice<AntennaForm>("pattern") != AntennaForm::file;
+  if (!has_formula || antenna->gain_dbi <= antenna->directivity_dbi()) return antenna;
+  return makeAntenna(section, context, antenna->directivity_dbi());
 }
 
 ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context) {
@@ -228,13 +245,18 @@ AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
     readable = (!section.has(key) || context.addNamed(section, key)) && readable;
   }
   if (!readable || !section.sound()) return nullptr;
+  if (section.has("taper_side_lobe_db") && section.choice<TaperKind>("taper") != TaperKind::taylor) {
+    context.problems.addError(section.locationOf("taper_side_lobe_db"),
+                              "'taper_side_lobe_db' is the design level of taper: taylor; 'taper' is " +
+                                  std::string(toString(section.choice<TaperKind>("taper"))));
+  }
   const std::string description = document::flowText(*section.node(), true);
   AntennaPtr& antenna = context.files.antennas[description];
   if (!antenna && context.before != nullptr && context.before->antennas.count(description) != 0) {
     antenna = context.before->antennas.at(description);
   }
   try {
-    if (!antenna) antenna = makeAntenna(section, context);
+    if (!antenna) antenna = makeConsistentAntenna(section, context);
   } catch (const Error& error) {
     const SourceLocation location = error.location().file.empty() ? section.location() : error.location();
     context.problems.addErrorElsewhere(section.location(), location, error.message());
@@ -267,8 +289,14 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   emitter.frequency_location = section.locationOf("frequency_hz");
   emitter.propagation = parsePropagation(section, context);
   if (section.has("antenna")) emitter.antenna = parseAntenna(section.section("antenna"), context);
-  const bool steers = emitter.antenna && emitter.antenna->view().kind == PatternKind::phased_array;
+  const bool steers = emitter.antenna && emitter.antenna->is_array;
   emitter.scan = parseScan(section.section("scan"), steers, context);
+  if (emitter.scan.kind == ScanKind::track && emitter.kind != EmitterKind::radar) {
+    context.problems.addWarning(
+        section.section("scan").locationOf("kind"),
+        fmt::format("'kind' is track, which turns a radar onto its targets; '{}' is a {}: its beam stays",
+                    emitter.name, toString(emitter.kind)));
+  }
   if (section.has("receiver")) emitter.receiver = parseReceiver(section.section("receiver"), context);
   emitter.active_s = parseActive(section, context);
   return emitter;

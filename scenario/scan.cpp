@@ -45,7 +45,7 @@ BeamDirection dwellAt(const ScanSpec& scan, double t_s) {
 }  // namespace
 
 const char* toString(ScanKind kind) {
-  static constexpr const char* kNames[] = {"fixed", "rotate", "sector", "raster", "dwell_list"};
+  static constexpr const char* kNames[] = {"fixed", "rotate", "sector", "raster", "dwell_list", "track"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -62,6 +62,7 @@ BeamDirection beamAt(const ScanSpec& scan, double t_s) {
     case ScanKind::dwell_list:
       return dwellAt(scan, t_s);
     case ScanKind::fixed:
+    case ScanKind::track:
       break;
   }
   return {scan.azimuth_deg, scan.elevation_deg, false};

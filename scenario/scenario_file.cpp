@@ -14,6 +14,7 @@
 #include "emscape/base/log.h"
 #include "emscape/scenario/quantities.h"
 #include "scenario/parse_sections.h"
+#include "scenario/scan_sampling.h"
 
 namespace emscape::scenario {
 
@@ -211,6 +212,55 @@ void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseConte
   }
 }
 
+/// Antennas whose gain is more than their pattern can have.
+void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& context) {
+  constexpr double kTolerance_db = 0.5;
+  const std::vector<Section> sections = root.sections("emitters");
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Antenna& antenna = *scenario.emitters[i].antenna;
+    const double directivity_dbi = antenna.directivity_dbi();
+    if (antenna.gain_dbi <= directivity_dbi + kTolerance_db) continue;
+    const Section section = sections[i].section("antenna");
+    context.problems.addWarning(
+        section.has("gain_dbi") ? section.locationOf("gain_dbi") : section.location(),
+        fmt::format(
+            "the gain of {:.2f} dBi is {:.2f} dB above the pattern's directivity, {:.2f} dBi: the antenna "
+            "would radiate more power than it is fed; lower the gain, the beamwidths or the side lobes",
+            antenna.gain_dbi, antenna.gain_dbi - directivity_dbi, directivity_dbi));
+  }
+}
+
+/// Whether the output holds a radar's beam, or any other's, where its scan has it at the time.
+bool showsScans(const OutputSpec& output) {
+  return std::any_of(output.quantities.begin(), output.quantities.end(), [&](const std::string& name) {
+    const Quantity quantity = quantityFromName(name);
+    const bool is_of_target = quantity == Quantity::jammer_to_signal_db ||
+                              quantity == Quantity::burn_through_margin_db ||
+                              (needsRadar(quantity) && output.radar_look == RadarLook::target);
+    return !is_of_target;
+  });
+}
+
+/// Beams that sweep further in a time step than they are wide, so that the series never shows some azimuths.
+void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  for (std::size_t i = 0; i < sections.size() && showsScans(scenario.output); ++i) {
+    const Emitter& emitter = scenario.emitters[i];
+    const double width_deg = emitter.antenna->beamwidth_az_deg;
+    const auto sampling = scanSampling(emitter.scan, width_deg, scenario.clock);
+    if (!sampling || !leavesGaps(*sampling, width_deg)) continue;
+    const bool rotates = emitter.scan.kind == ScanKind::rotate;
+    context.problems.addWarning(
+        sections[i].section("scan").locationOf(rotates ? "rate_rpm" : "rate_deg_s"),
+        fmt::format(
+            "the beam of '{}', {:.3g} deg wide, sweeps {:.4g} deg in a step of {} s: of its azimuths {:.0f} "
+            "% "
+            "are ever lit. A smaller step_s, or a rate whose steps fall between those of earlier turns, "
+            "lights the others",
+            emitter.name, width_deg, sampling->step_deg, scenario.clock.step_s, 100 * sampling->lit_share));
+  }
+}
+
 Scenario parseRoot(const Section& root, ParseContext& context) {
   Scenario scenario;
   scenario.name = root.text("name");
@@ -232,6 +282,8 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
   if (!context.problems.hasErrors()) {
     warnOfEmittersWithoutBand(scenario, root, context);
     warnOfIdleJammers(scenario, root, context);
+    warnOfGains(scenario, root, context);
+    warnOfCoarseSteps(scenario, root, context);
   }
   scenario.hash = context.hash.hex();
   return scenario;

@@ -5,6 +5,7 @@
 #include "emscape/scenario/quantities.h"
 #include "emscape/scenario/scenario.h"
 #include "propagation/registry/model_info.h"
+#include "scenario/antenna/taper.h"
 
 namespace emscape::scenario {
 
@@ -104,7 +105,10 @@ const ObjectSpec& terrainSpec() {
       {
           required("files", listOf(kFile, 1, kMaxItems),
                    "elevation files (HGT, DTED, GeoTIFF, VRT), relative to the scenario's folder"),
-          byDefault("vertical_datum", choice({"egm96", "ellipsoid"}), "egm96", "datum of the files' heights"),
+          byDefault(
+              "vertical_datum", choice({"egm96", "ellipsoid", "egm2008"}), "egm96",
+              "datum of the files' heights; egm2008 (Copernicus): taken as egm96, from which it differs by "
+              "about a metre"),
       }};
   return spec;
 }
@@ -128,9 +132,11 @@ const ObjectSpec& atmosphereSpec() {
               "upper limit of the rain, above mean sea level; by default by latitude, 5000 in the tropics"),
           byDefault("gases", choiceUpTo(GasLosses::never), toString(Atmosphere{}.gases),
                     "attenuation by oxygen and water vapour; auto: with every model except free_space and "
-                    "horizon; p528 includes its own"),
-          byDefault("sea_level_refractivity", number().from(200).to(450), Atmosphere{}.sea_level_refractivity,
-                    "N-units; for itm, whose rays are bent by it, not by k_factor"),
+                    "horizon; p528 and p452 include their own"),
+          byDefault(
+              "sea_level_refractivity", number().from(200).to(450), Atmosphere{}.sea_level_refractivity,
+              "N-units; for itm, whose rays are bent by it, not by k_factor, and for the troposcatter of "
+              "p1812 and p452"),
           byDefault("climate", choiceUpTo(RadioClimate::maritime_temperate_over_sea),
                     toString(Atmosphere{}.climate), "for itm's statistics"),
       }};
@@ -248,7 +254,7 @@ const ObjectSpec& platformSpec() {
 }
 
 const ObjectSpec& antennaSpec() {
-  const Variants beams{"gaussian", "sinc", "cosecant2"};
+  const Variants beams{"gaussian", "sinc", "cosecant2"}, apertures{"sinc", "phased_array"};
   static const ObjectSpec spec{
       "antenna",
       "pattern",
@@ -256,19 +262,31 @@ const ObjectSpec& antennaSpec() {
           required("pattern", choiceUpTo(AntennaForm::cuts),
                    "shape of the beam; file: MSI/PLN or a CSV grid; cuts: two CSV cuts"),
           byDefault("gain_dbi", kGain, 0.0, "at the maximum", {"isotropic"}),
-          optional("gain_dbi", kGain,
-                   "at the maximum; by default 26000 / (beamwidths in degrees), at least 0 dBi",
-                   {"gaussian", "sinc"}),
-          optional("gain_dbi", kGain,
-                   "at the maximum; by default 4 pi times the aperture in square wavelengths",
-                   {"phased_array"}),
+          optional(
+              "gain_dbi", kGain,
+              "at the maximum; by default 26000 / (beamwidths in degrees), within 0 dBi and the pattern's "
+              "directivity",
+              {"gaussian", "sinc"}),
+          optional(
+              "gain_dbi", kGain,
+              "at the maximum; by default 4 pi times the aperture in square wavelengths times the taper's "
+              "efficiency, at most the pattern's directivity",
+              {"phased_array"}),
           optional("gain_dbi", kGain, "at the maximum; by default the file's own, which only MSI/PLN has",
                    {"file"}),
           required("gain_dbi", kGain, "at the maximum", {"cosecant2", "cuts"}),
           required("beamwidth_az_deg", number("deg").above(0).to(360), "between half-power points", beams),
           required("beamwidth_el_deg", number("deg").above(0).to(180), "between half-power points", beams),
-          byDefault("side_lobe_db", number("dB").from(-100).to(0), -40.0,
-                    "lower limit of the pattern, relative to the maximum", beams),
+          byDefault(
+              "side_lobe_db", number("dB").from(-100).to(0), -40.0,
+              "lower limit of the pattern, relative to the maximum; in nulls and behind the antenna too",
+              {"gaussian", "sinc", "cosecant2", "phased_array"}),
+          byDefault("taper", choiceUpTo(TaperKind::cosine), toString(TaperKind::uniform),
+                    "amplitude over the aperture, in both planes: first side lobes at -13.3 dB (uniform), "
+                    "-23 dB (cosine) or taper_side_lobe_db (taylor)",
+                    apertures),
+          byDefault("taper_side_lobe_db", number("dB").from(-60).to(-15), -30.0,
+                    "design level of the first side lobes; taper: taylor alone", apertures),
           byDefault("max_elevation_deg", number("deg").above(0).to(90), 40.0,
                     "end of the cosecant-squared part", {"cosecant2"}),
           required("columns", kInteger.from(1).to(1024), "elements in azimuth", {"phased_array"}),
@@ -303,7 +321,8 @@ const ObjectSpec& scanSpec() {
       "scan",
       "kind",
       {
-          required("kind", choiceUpTo(ScanKind::dwell_list), "motion of the beam"),
+          required("kind", choiceUpTo(ScanKind::track),
+                   "motion of the beam; track: a radar's antenna that turns onto its target"),
           byDefault(
               "azimuth_deg", kAngle, 0.0,
               "off the platform's heading, clockwise: boresight; rotate: at t = 0; sector, raster: centre"),

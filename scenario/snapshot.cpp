@@ -83,7 +83,7 @@ BeamPose axesOf(const Attitude& attitude) {
 }
 
 bool isArray(const Emitter& emitter) {
-  return emitter.antenna && emitter.antenna->view().kind == PatternKind::phased_array;
+  return emitter.antenna && emitter.antenna->is_array;
 }
 
 BeamPose beamPose(BeamPose pose, const Emitter& emitter, double t_s) {

@@ -13,6 +13,8 @@
 #include "propagation/air/rain.h"
 #include "propagation/diffraction/excess.h"
 #include "propagation/itm/itm.h"
+#include "propagation/p1812/excess.h"
+#include "propagation/p452/excess.h"
 #include "propagation/p528/p528.h"
 #include "propagation/two_ray/two_ray.h"
 
@@ -178,6 +180,45 @@ void timeP528(int repeats, std::vector<ModelTiming>& timings) {
                      ""});
 }
 
+/// A column of 100 heights to 6 km at the end of the hills.
+template <class Excess>
+void timeClearAirColumn(const char* name, int repeats, const Excess& excess,
+                        std::vector<ModelTiming>& timings) {
+  constexpr int kPosts = 300;
+  const Hills hills(kPosts, 1);
+  std::vector<double> memory(ExcessScratch::bytes(kPosts, kColumnHeights) / sizeof(double) + 1);
+  const ExcessScratch scratch = ExcessScratch::in(memory.data(), kPosts, kColumnHeights);
+  for (int k = 0; k < kColumnHeights; ++k)
+    scratch.height_msl_m[k] = 6000.0f * static_cast<float>(k + 1) / kColumnHeights;
+  ExcessColumn column;
+  column.range_m = kProfileLength_m;
+  column.ground_msl_m = hills.height_msl_m.back();
+  column.profile = hills.profile();
+  column.height_msl_m = scratch.height_msl_m;
+  column.count = kColumnHeights;
+  const double columns_per_s = perSecond(repeats, 200, [&](int i) {
+    Excess of_column = excess;
+    of_column.tx_msl_m = hills.height_msl_m.front() + 15 + static_cast<float>(i % 20);
+    of_column(column, scratch, scratch.excess_db);
+    return scratch.excess_db[i % kColumnHeights];
+  });
+  timings.push_back({name, "a point of a column, 100 heights to 6 km, 300 posts, float",
+                     columns_per_s * kColumnHeights, 0, ""});
+}
+
+void timeClearAir(int repeats, std::vector<ModelTiming>& timings) {
+  P452Parameters parameters;
+  parameters.clear_air.frequency_hz = 1e9;
+  parameters.clear_air.time_percent = 10;
+  parameters.clear_air.latitude_deg = 45;
+  P1812Excess p1812;
+  p1812.model.clear_air = clearAirModel<float>(parameters.clear_air);
+  timeClearAirColumn("p1812", repeats, p1812, timings);
+  P452Excess p452;
+  p452.model = p452Model<float>(parameters);
+  timeClearAirColumn("p452", repeats, p452, timings);
+}
+
 void timeAtmosphere(int repeats, std::vector<ModelTiming>& timings) {
   const AirState air = standardAtmosphere(0);
   timings.push_back(
@@ -211,6 +252,7 @@ std::vector<ModelTiming> timeModels(int repeats) {
   timeItm(repeats, timings);
   timeTwoRay(repeats, timings);
   timeP528(repeats, timings);
+  timeClearAir(repeats, timings);
   timeAtmosphere(repeats, timings);
   return timings;
 }

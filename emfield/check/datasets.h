@@ -27,6 +27,12 @@ DatasetCheck checkItmPointToPoint(const std::filesystem::path& folder);
 DatasetCheck checkItmPublished(const std::filesystem::path& folder);
 DatasetCheck checkItmArea(const std::filesystem::path& folder);
 
+// check_p1812.cpp
+DatasetCheck checkP1812(const std::filesystem::path& folder);
+
+// check_p452.cpp
+DatasetCheck checkP452(const std::filesystem::path& folder);
+
 // check_p528.cpp
 DatasetCheck checkP528(const std::filesystem::path& folder);
 

@@ -47,8 +47,9 @@ const std::vector<ReferenceDataset>& referenceDatasets() {
       {"radar/two_ray_flat_pec_derived.csv", checkTwoRay},
       {"radar/freespace_conversions_derived.csv", checkFreeSpaceConversions},
       {"geoid", checkGeoid},
-      {"p1812", nullptr},
-      {"p452", nullptr},
+      {"p1812", checkP1812},
+      {"p452", checkP452},
+      {"pe", nullptr},
   };
   return datasets;
 }

@@ -52,7 +52,7 @@ ReferenceTable::ReferenceTable(const std::filesystem::path& file,
   }
   names_ = lines.front().cells;
   for (const std::string_view column : columns) {
-    if (std::find(names_.begin(), names_.end(), column) == names_.end()) {
+    if (!hasColumn(column)) {
       throw Error(ErrorCode::bad_input, {file_, lines.front().number, 0},
                   fmt::format("column '{}' is missing", column));
     }
@@ -69,6 +69,10 @@ ReferenceTable::ReferenceTable(const std::filesystem::path& file,
 
 double ReferenceTable::number(int row, std::string_view column) const {
   return parseNumber(text(row, column), location(row), column);
+}
+
+bool ReferenceTable::hasColumn(std::string_view column) const {
+  return std::find(names_.begin(), names_.end(), column) != names_.end();
 }
 
 int ReferenceTable::integer(int row, std::string_view column) const {

@@ -18,6 +18,7 @@ class ReferenceTable {
   /// cells, or there is no row
   ReferenceTable(const std::filesystem::path& file, const std::vector<std::string_view>& columns);
 
+  bool hasColumn(std::string_view column) const;
   int rows() const { return static_cast<int>(rows_.size()); }
   /// @param row     0..rows() - 1
   /// @param column  one of the names in the first line

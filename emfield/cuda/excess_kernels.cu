@@ -366,8 +366,8 @@ void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const 
 
 }  // namespace
 
-void fillDiffraction(const DiffractionTask* tasks, const SectorExtent& extent, const ExcessGrid& grid, int row,
-                     bool tilted, const std::uint16_t* first_valid_k, cudaStream_t stream) {
+void fillDiffraction(const DiffractionTask* tasks, const SectorExtent& extent, const ExcessGrid& grid,
+                     int row, bool tilted, const std::uint16_t* first_valid_k, cudaStream_t stream) {
   const auto count = static_cast<unsigned>(extent.sectors);
   const dim3 blocks(blocksFor(extent.azimuths),
                     static_cast<unsigned>(DiffractionTask::blockCount(extent.ranges)), count);

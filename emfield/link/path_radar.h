@@ -11,7 +11,7 @@ namespace emscape::emfield {
 /// The values of a voxel at that point, without the volume's floor.
 struct RadarAtPoint {
   double snr_db = 0;                 ///< -infinity without an echo
-  double jammer_to_signal_db = 0;    ///< -infinity without jamming
+  double jammer_to_signal_db = 0;    ///< -infinity without jamming; 100 without an echo that is jammed
   double detection_probability = 0;  ///< against noise and jamming
 };
 

@@ -76,7 +76,12 @@ RadarLook lookOf(const Emitter& radar, scenario::RadarLook look) {
   const scenario::ScanSpec& scan = radar.scan;
   RadarLook result;
   if (look == scenario::RadarLook::scan) return result;
-  result.kind = scenario::isSteered(radar) ? LookKind::steered : LookKind::turned;
+  if (scenario::isSteered(radar)) {
+    result.kind = LookKind::steered;
+    return result;
+  }
+  if (scan.kind == ScanKind::fixed) return result;  // held
+  result.kind = LookKind::turned;
   const bool sweeps = scan.kind == ScanKind::sector || scan.kind == ScanKind::raster;
   if (sweeps && scan.width_deg < 360) {
     result.cos_azimuth = static_cast<float>(std::cos(degToRad(scan.width_deg / 2)));

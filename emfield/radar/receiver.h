@@ -29,7 +29,8 @@ double requiredSignalToJammerDb(const scenario::RadarReceiver& receiver);
 /// Received power (W) of a receiver for a power density of 1 W/m2 of an emitter.
 double receivingArea_m2(const scenario::Emitter& emitter, const scenario::ReceiverProfile& receiver);
 
-/// The radar's look at targets; `held` for RadarLook::scan.
+/// The radar's look at targets; `held` for RadarLook::scan, and for a fixed scan of an antenna that is no
+/// array.
 RadarLook lookOf(const scenario::Emitter& radar, scenario::RadarLook look);
 
 }  // namespace emscape::emfield

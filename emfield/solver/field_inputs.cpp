@@ -51,9 +51,10 @@ bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
 
 bool sameTask(const RadarTask& a, const RadarTask& b) {
   // The jammers are in RadarShare.
-  const auto& [measure, reduction, look, echo_root, factor, ceiling, curve, jammers, jammer_count] = a;
+  const auto& [measure, reduction, look, echo_root, factor, lowest, ceiling, curve, jammers, jammer_count] =
+      a;
   return measure == b.measure && reduction == b.reduction && same(look, b.look) && echo_root == b.echo_root &&
-         factor == b.factor && ceiling == b.ceiling && same(curve, b.curve);
+         factor == b.factor && lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve);
 }
 
 bool sameShare(const RadarShare& a, const RadarShare& b) {

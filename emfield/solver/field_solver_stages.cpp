@@ -202,6 +202,7 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   out.floor = setup.channel_plans[c].product.floor;
   out.categorical = quantity.categorical;
   if (const char* const scale = scaleOf(channel.quantity)) out.extra[volume::kScaleKey] = scale;
+  if (const char* const note = legendNoteOf(channel.quantity)) out.extra[volume::kLegendNoteKey] = note;
   out.extra["scenario"] = setup.scenario->name;
   out.extra["scenario_hash"] = setup.scenario->hash;
   std::string names, near_field;

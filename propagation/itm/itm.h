@@ -239,9 +239,9 @@ EMSCAPE_HD void finish(const ItmLink<Real>& link, const ItmQuantiles<Real>& quan
   result.mode = reference.mode;
   result.free_space_db =
       Real(32.45) + 20 * std::log10(path.frequency_mhz) + 20 * std::log10(path.distance_m / 1000);
-  ItmDeviates<Real> deviates{itmNormalDeviate(quantiles.time_percent / 100),
-                             itmNormalDeviate(quantiles.location_percent / 100),
-                             itmNormalDeviate(quantiles.situation_percent / 100)};
+  ItmDeviates<Real> deviates{normalDeviate(quantiles.time_percent / 100),
+                             normalDeviate(quantiles.location_percent / 100),
+                             normalDeviate(quantiles.situation_percent / 100)};
   result.loss_db = result.free_space_db + itmQuantileDb(path, reference.attenuation_db, link.climate,
                                                         link.variability_mode, deviates);
   if (!holds<kItmDeviate>(deviates.time) || !holds<kItmDeviate>(deviates.location) ||

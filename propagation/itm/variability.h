@@ -5,6 +5,7 @@
 
 #include "emscape/base/host_device.h"
 #include "propagation/itm/path.h"
+#include "propagation/normal_deviate.h"
 
 namespace emscape::propagation {
 
@@ -97,17 +98,6 @@ EMSCAPE_HD ClimateStatistics<Real> statisticsOf(ItmClimate climate) {
 }
 
 }  // namespace itm_detail
-
-/// Standard normal deviate that is exceeded with a probability [Abramowitz and Stegun 26.2.23].
-/// @param probability  0..1, exclusive
-template <class Real>
-EMSCAPE_HD Real itmNormalDeviate(Real probability) {
-  const Real tail = probability > Real(0.5) ? 1 - probability : probability;
-  const Real t = std::sqrt(-2 * std::log(tail));
-  const Real deviate = t - ((Real(0.010328) * t + Real(0.802853)) * t + Real(2.515516698)) /
-                               (((Real(0.001308) * t + Real(0.189269)) * t + Real(1.432788)) * t + 1);
-  return probability > Real(0.5) ? -deviate : deviate;
-}
 
 /// Deviates of the three quantiles.
 template <class Real>

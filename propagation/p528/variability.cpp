@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "base/device_math.h"
-#include "propagation/itm/variability.h"
+#include "propagation/normal_deviate.h"
 
 namespace emscape::propagation {
 namespace {
@@ -100,9 +100,9 @@ P528Slow p528SlowVariability(double horizons_km, double distance_km, double freq
   if (rare) {
     above_median_db = rareValue(kRareFactor) * spread_10_db;
   } else if (time_percent < 50) {
-    above_median_db = itmNormalDeviate(time_percent / 100) / itmNormalDeviate(0.1) * spread_10_db;
+    above_median_db = normalDeviate(time_percent / 100) / normalDeviate(0.1) * spread_10_db;
   } else if (time_percent > 50) {
-    above_median_db = -itmNormalDeviate(time_percent / 100) / itmNormalDeviate(0.9) * spread_90_db;
+    above_median_db = -normalDeviate(time_percent / 100) / normalDeviate(0.9) * spread_90_db;
   }
 
   // (14-20) to (14-25)

@@ -17,12 +17,14 @@
 #include "propagation/diffraction/excess.h"
 #include "propagation/free_space/excess.h"
 #include "propagation/itm/excess.h"
+#include "propagation/p1812/excess.h"
+#include "propagation/p452/excess.h"
 #include "propagation/p528/excess.h"
 #include "propagation/two_ray/excess.h"
 
 namespace emscape::propagation {
 
-using ExcessModel =
-    std::variant<NoExcess, DiffractionExcess, EdgeExcess, TwoRayExcess, ItmExcess, P528Excess>;
+using ExcessModel = std::variant<NoExcess, DiffractionExcess, EdgeExcess, TwoRayExcess, ItmExcess, P528Excess,
+                                 P1812Excess, P452Excess>;
 
 }  // namespace emscape::propagation

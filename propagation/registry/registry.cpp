@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <iterator>
 
+#include "propagation/clear_air/row.h"
 #include "propagation/diffraction/model.h"
 #include "propagation/horizon/model.h"
 #include "propagation/itm/model.h"
+#include "propagation/p1812/model.h"
+#include "propagation/p452/model.h"
 #include "propagation/p528/model.h"
 #include "propagation/p528/p528.h"
 #include "propagation/registry/model_info.h"
@@ -112,11 +115,44 @@ ModelInfo p528Row() {
   return row;
 }
 
+ModelInfo p1812Row() {
+  ModelInfo row = rowOf(PropagationModel::p1812, "ITU-R P.1812-8");
+  row.settings = p1812Settings();
+  row.settings_description = "how";
+  row.limits = listOf(kP1812Limits);
+  row.reference_datasets = {"p1812"};
+  row.check = checkP1812;
+  row.pathWarnings = p1812PathWarnings;
+  row.warningMessages = clearAirWarningMessages;
+  row.explain = explainP1812;
+  row.excess = [](const PathInputs& inputs, std::vector<float>&) -> ExcessModel {
+    return p1812Excess(inputs);
+  };
+  return row;
+}
+
+ModelInfo p452Row() {
+  ModelInfo row = rowOf(PropagationModel::p452, "ITU-R P.452-18");
+  row.settings = p452Settings();
+  row.settings_description = "how";
+  row.limits = listOf(kP452Limits);
+  row.reference_datasets = {"p452"};
+  row.gases = GasRole::included;
+  row.check = checkP452;
+  row.pathWarnings = p452PathWarnings;
+  row.warningMessages = clearAirWarningMessages;
+  row.explain = explainP452;
+  row.excess = [](const PathInputs& inputs, std::vector<float>&) -> ExcessModel {
+    return p452Excess(inputs);
+  };
+  return row;
+}
+
 }  // namespace
 
 const std::vector<ModelInfo>& models() {
-  static const std::vector<ModelInfo> rows{freeSpaceRow(), horizonRow(), diffractionRow(),
-                                           twoRayRow(),    itmRow(),     p528Row()};
+  static const std::vector<ModelInfo> rows{freeSpaceRow(), horizonRow(), diffractionRow(), twoRayRow(),
+                                           itmRow(),       p528Row(),    p1812Row(),       p452Row()};
   return rows;
 }
 

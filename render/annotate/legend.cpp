@@ -118,6 +118,7 @@ double contentWidth(const Style& style, const Legend& legend) {
     content =
         (kOpacityWidth + kBarWidth + 14) * style.unit + widestText(ticksOf(legend, 8).texts, style.small_px);
   }
+  if (!legend.note.empty()) content = std::max(content, widestText({legend.note}, 0.85 * style.small_px));
   return std::max(content, widestText(headingOf(legend), style.text_px) * 1.08);
 }
 
@@ -176,6 +177,8 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
   drawHeading(canvas, style, legend, left, top - 10 * style.unit);
   canvas.textWithRim("opacity", {left, bottom + 12 * style.unit}, 0.85 * style.small_px, style.mutedInk(0.9),
                      style.rimInk());
+  canvas.textWithRim(legend.note, {left, bottom + 32 * style.unit}, 0.85 * style.small_px,
+                     style.mutedInk(0.9), style.rimInk());
 }
 
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
@@ -251,6 +254,8 @@ Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function
   legend.quantity = quantityTitle(info.quantity, info.unit);
   legend.unit = unitText(info.unit);
   legend.function = function;
+  const auto note = info.extra.find(volume::kLegendNoteKey);
+  if (note != info.extra.end()) legend.note = note->second;
   legend.whole_numbers = info.quantity.find("count") != std::string::npos;
   return legend;
 }

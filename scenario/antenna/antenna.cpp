@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
+#include "scenario/antenna/directivity.h"
 
 namespace emscape::scenario {
 
@@ -17,6 +18,12 @@ double Antenna::gainTowards_dbi(const Vec3d& direction, double steer_azimuth_rad
 double Antenna::apertureDimension_m(double wavelength_m) const {
   const double narrower_deg = std::min(beamwidth_az_deg, beamwidth_el_deg);
   return narrower_deg < 180 ? aperture_factor * wavelength_m / degToRad(narrower_deg) : 0;
+}
+
+double Antenna::directivity_dbi() const {
+  std::call_once(directivity_once_,
+                 [this] { directivity_dbi_ = ratioToDb(4 * kPi / patternIntegral_sr(view())); });
+  return directivity_dbi_;
 }
 
 }  // namespace emscape::scenario

@@ -70,7 +70,7 @@ EMSCAPE_HD inline float phasedArrayAmplitude(const PatternView& pattern, const V
   const TableCell v = cellInTable(direction.z - steer_v, 2.0f, pattern.elevation_count);
   const float array = std::fabs(atCell(pattern.azimuth_table, u) * atCell(pattern.elevation_table, v));
   const float element = fastExp2(pattern.element_exponent * fastLog2(direction.x));
-  return direction.x > 0.0f ? array * element : pattern.side_lobe_amplitude;
+  return larger(direction.x > 0.0f ? array * element : 0.0f, pattern.side_lobe_amplitude);
 }
 
 EMSCAPE_HD inline float gridAmplitude(const PatternView& pattern, const Vec3f& direction) {

@@ -7,15 +7,13 @@
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "scenario/antenna/tables.h"
+#include "scenario/antenna/taper.h"
 #include "scenario/antenna_shapes.h"
 
 namespace emscape::scenario {
 namespace {
 
-/// x where (sin x / x)^2 = 1/2.
-constexpr double kHalfPowerOfSinc = 1.3915573782515103;
-/// Beamwidth (rad) times side over wavelength of a narrow evenly illuminated aperture: 2 kHalfPowerOfSinc /
-/// pi.
+/// Beamwidth (rad) times side over wavelength of a narrow evenly illuminated aperture.
 constexpr double kEvenApertureFactor = 0.885892941;
 /// Table steps as fractions of the beamwidth: within 1e-3 dB down to -40 dB, where the error of linear
 /// interpolation is largest relative to the amplitude; finer where the shape has a corner.
@@ -77,18 +75,16 @@ constexpr float kHalfSpaceTangent = 1e30f;
 /// A planar aperture in direction cosines, continuous or of elements.
 class PlanarAntenna : public Antenna {
  public:
-  PlanarAntenna(ShapeTable u, ShapeTable v, double element_exponent, double back_amplitude)
+  PlanarAntenna(ShapeTable u, ShapeTable v, double element_exponent, double side_lobe_amplitude)
       : u_(std::move(u)),
         v_(std::move(v)),
         element_exponent_(element_exponent),
-        back_amplitude_(back_amplitude) {
-    aperture_factor = kEvenApertureFactor;
-  }
+        side_lobe_amplitude_(side_lobe_amplitude) {}
 
   PatternView view() const override {
     PatternView view;
     view.kind = PatternKind::phased_array;
-    view.side_lobe_amplitude = static_cast<float>(back_amplitude_);
+    view.side_lobe_amplitude = static_cast<float>(side_lobe_amplitude_);
     view.lobe_tangent = kHalfSpaceTangent;
     view.azimuth_table = u_.values.data();
     view.elevation_table = v_.values.data();
@@ -98,42 +94,37 @@ class PlanarAntenna : public Antenna {
     return view;
   }
   double amplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override {
-    if (!(direction.x > 0)) return back_amplitude_;
-    return std::abs(u_.shape(direction.y - steer_u) * v_.shape(direction.z - steer_v)) *
-           std::pow(direction.x, element_exponent_);
+    if (!(direction.x > 0)) return side_lobe_amplitude_;
+    return std::max(std::abs(u_.shape(direction.y - steer_u) * v_.shape(direction.z - steer_v)) *
+                        std::pow(direction.x, element_exponent_),
+                    side_lobe_amplitude_);
   }
 
  private:
   ShapeTable u_, v_;
-  double element_exponent_, back_amplitude_;
+  double element_exponent_, side_lobe_amplitude_;
 };
 
 /// Largest |u - u0| of a steered aperture.
 constexpr double kDirectionCosineSpan = 2;
 
-/// sinc of a direction cosine with half power at the sine of half the beamwidth.
-ShapeTable sincTable(double beamwidth_deg) {
-  const double half_power_cosine = std::sin(degToRad(beamwidth_deg / 2));
-  const double scale = kHalfPowerOfSinc / half_power_cosine;
-  const auto sinc = [scale](double cosine) {
-    const double x = scale * cosine;
-    return std::abs(x) < 1e-8 ? 1.0 : std::sin(x) / x;
+/// Pattern of a continuous aperture by direction cosine, with half power at the sine of half the beamwidth.
+ShapeTable apertureTable(const Taper& taper, double beamwidth_deg) {
+  const double side_wavelengths = taper.halfPower() / std::sin(degToRad(beamwidth_deg / 2));
+  const auto pattern = [taper, side_wavelengths](double cosine) {
+    return taper.pattern(side_wavelengths * cosine);
   };
-  return tabulate(sinc, kDirectionCosineSpan, 2 * half_power_cosine / kStepsPerBeamwidth);
+  return tabulate(pattern, kDirectionCosineSpan, kEvenApertureFactor / side_wavelengths / kStepsPerBeamwidth);
 }
 
-/// Half-power width in direction cosine of an unsteered array.
+/// Half-power width in direction cosine of an unsteered array of even weights.
 double arrayWidth(int elements, double spacing_wavelengths) {
   return kEvenApertureFactor / (elements * spacing_wavelengths);
 }
 
-/// Array factor sin(N x) / (N sin x), x = pi spacing u, of N evenly weighted elements.
-ShapeTable arrayTable(int elements, double spacing_wavelengths) {
-  const auto factor = [elements, spacing_wavelengths](double cosine) {
-    const double x = kPi * spacing_wavelengths * cosine;
-    // At the main and the grating lobes the limit is the ratio of the derivatives.
-    if (std::abs(std::sin(x)) < 1e-9) return std::cos(elements * x) / std::cos(x);
-    return std::sin(elements * x) / (elements * std::sin(x));
+ShapeTable arrayTable(const Taper& taper, int elements, double spacing_wavelengths) {
+  const auto factor = [taper, elements, spacing_wavelengths](double cosine) {
+    return taper.arrayPattern(elements, kPi * spacing_wavelengths * cosine);
   };
   return tabulate(factor, kDirectionCosineSpan,
                   arrayWidth(elements, spacing_wavelengths) / kStepsPerBeamwidth);
@@ -171,14 +162,18 @@ AntennaPtr makeGaussian(double gain_dbi, double beamwidth_az_deg, double beamwid
                           gain_dbi, beamwidth_az_deg, beamwidth_el_deg, "Gaussian beam");
 }
 
-AntennaPtr makeSinc(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg, double side_lobe_db) {
+AntennaPtr makeSinc(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg, double side_lobe_db,
+                    const Taper& taper) {
   requireGain(gain_dbi);
   requireBeamwidth("beamwidth_az_deg of a sinc pattern", beamwidth_az_deg, 180);
   requireBeamwidth("beamwidth_el_deg", beamwidth_el_deg, 180);
   requireSideLobe(side_lobe_db);
-  auto antenna = std::make_shared<PlanarAntenna>(sincTable(beamwidth_az_deg), sincTable(beamwidth_el_deg),
-                                                 0.0, amplitudeOfDb(side_lobe_db));
-  return describedAntenna(antenna, gain_dbi, beamwidth_az_deg, beamwidth_el_deg, "evenly lit aperture");
+  auto antenna = std::make_shared<PlanarAntenna>(apertureTable(taper, beamwidth_az_deg),
+                                                 apertureTable(taper, beamwidth_el_deg), 0.0,
+                                                 amplitudeOfDb(side_lobe_db));
+  antenna->aperture_factor = 2 * taper.halfPower();
+  return describedAntenna(antenna, gain_dbi, beamwidth_az_deg, beamwidth_el_deg,
+                          fmt::format("aperture, {} taper", toString(taper.kind())));
 }
 
 AntennaPtr makeCosecant2(double gain_dbi, double beamwidth_az_deg, double beamwidth_el_deg,
@@ -209,29 +204,36 @@ AntennaPtr makeCosecant2(double gain_dbi, double beamwidth_az_deg, double beamwi
 }
 
 AntennaPtr makePhasedArray(double gain_dbi, int columns, int rows, double spacing_wavelengths,
-                           double element_exponent) {
+                           double element_exponent, double side_lobe_db, const Taper& taper) {
   requireGain(gain_dbi);
   requireWithin("columns", columns, 1, 1024, "elements");
   requireWithin("rows", rows, 1, 1024, "elements");
   requireWithin("spacing_wavelengths", spacing_wavelengths, 0.1, 1, "wavelengths");
   requireWithin("element_exponent", element_exponent, 0, 10, "");
-  ShapeTable u = arrayTable(columns, spacing_wavelengths);
-  ShapeTable v = arrayTable(rows, spacing_wavelengths);
+  requireSideLobe(side_lobe_db);
+  ShapeTable u = arrayTable(taper, columns, spacing_wavelengths);
+  ShapeTable v = arrayTable(taper, rows, spacing_wavelengths);
   const double azimuth_deg =
       arrayBeamwidth_deg(u.shape, arrayWidth(columns, spacing_wavelengths), element_exponent);
   const double elevation_deg =
       arrayBeamwidth_deg(v.shape, arrayWidth(rows, spacing_wavelengths), element_exponent);
-  return describedAntenna(std::make_shared<PlanarAntenna>(std::move(u), std::move(v), element_exponent, 0.0),
-                          gain_dbi, azimuth_deg, elevation_deg,
-                          fmt::format("phased array of {} x {} elements", columns, rows));
+  auto antenna = std::make_shared<PlanarAntenna>(std::move(u), std::move(v), element_exponent,
+                                                 amplitudeOfDb(side_lobe_db));
+  antenna->aperture_factor = 2 * taper.halfPower();
+  antenna->is_array = true;
+  return describedAntenna(
+      antenna, gain_dbi, azimuth_deg, elevation_deg,
+      fmt::format("phased array of {} x {} elements, {} taper", columns, rows, toString(taper.kind())));
 }
 
 double gainFromBeamwidths_dbi(double beamwidth_az_deg, double beamwidth_el_deg) {
   return std::max(ratioToDb(26000 / (beamwidth_az_deg * beamwidth_el_deg)), 0.0);
 }
 
-double gainFromArray_dbi(int columns, int rows, double spacing_wavelengths) {
-  return std::max(ratioToDb(4 * kPi * columns * rows * spacing_wavelengths * spacing_wavelengths), 0.0);
+double gainFromArray_dbi(int columns, int rows, double spacing_wavelengths, const Taper& taper) {
+  return std::max(ratioToDb(4 * kPi * columns * rows * spacing_wavelengths * spacing_wavelengths *
+                            taper.arrayEfficiency(columns) * taper.arrayEfficiency(rows)),
+                  0.0);
 }
 
 }  // namespace emscape::scenario

@@ -125,7 +125,7 @@ TEST(BenchModels, HasTheKeysThatOthersRelyOn) {
     models.push_back(timing["model"]);
     EXPECT_GT(timing["evaluations_per_s"], 0) << timing["what"];
   }
-  for (const char* model : {"diffraction", "itm", "two_ray", "p528", "gases", "rain"})
+  for (const char* model : {"diffraction", "itm", "two_ray", "p528", "p1812", "p452", "gases", "rain"})
     EXPECT_THAT(models, testing::Contains(model));
   ASSERT_FALSE(report["diffraction_columns"].empty());
   for (const json& timing : report["diffraction_columns"]) {

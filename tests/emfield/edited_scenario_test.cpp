@@ -91,9 +91,10 @@ const std::vector<Edit>& emitterEdits() {
        [](Scenario&, Emitter& e, Random& r) { e.scan.elevation_deg = between(r, -5, 20); }},
       {"propagation",
        [](Scenario&, Emitter& e, Random& r) {
-         e.propagation.model = oneOf(r, std::vector{PropagationModel::free_space, PropagationModel::horizon,
-                                                    PropagationModel::diffraction, PropagationModel::two_ray,
-                                                    PropagationModel::itm, PropagationModel::p528});
+         e.propagation.model = oneOf(
+             r, std::vector{PropagationModel::free_space, PropagationModel::horizon,
+                            PropagationModel::diffraction, PropagationModel::two_ray, PropagationModel::itm,
+                            PropagationModel::p528, PropagationModel::p1812, PropagationModel::p452});
        }},
       {"diffraction.method",
        [](Scenario&, Emitter& e, Random& r) {
@@ -140,6 +141,24 @@ const std::vector<Edit>& emitterEdits() {
        }},
       {"p528.time_percent",
        [](Scenario&, Emitter& e, Random& r) { e.propagation.p528.time_percent = between(r, 0, 99); }},
+      {"p1812.time_percent",
+       [](Scenario&, Emitter& e, Random& r) { e.propagation.p1812.time_percent = between(r, 1, 50); }},
+      {"p1812.location_percent",
+       [](Scenario&, Emitter& e, Random& r) { e.propagation.p1812.location_percent = between(r, 1, 99); }},
+      {"p1812.clutter_height_m",
+       [](Scenario&, Emitter& e, Random& r) { e.propagation.p1812.clutter_height_m = between(r, 0, 30); }},
+      {"p1812.zone",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.propagation.p1812.zone =
+             oneOf(r, std::vector{propagation::ClearAirZone::by_height, propagation::ClearAirZone::inland,
+                                  propagation::ClearAirZone::sea});
+       }},
+      {"p452.time_percent",
+       [](Scenario&, Emitter& e, Random& r) { e.propagation.p452.time_percent = between(r, 0.01, 50); }},
+      {"p452.refractivity_lapse_rate",
+       [](Scenario&, Emitter& e, Random& r) {
+         e.propagation.p452.refractivity_lapse_rate = between(r, 20, 80);
+       }},
       {"receiver.noise_figure_db",
        [](Scenario&, Emitter& e, Random& r) { e.receiver.noise_figure_db = between(r, 1, 9); }},
       {"receiver.antenna_temperature_k",
@@ -421,7 +440,8 @@ TEST(EditedScenario, EqualsANewSolverOverTerrainInAllModels) {
   Random random(2);
   checkEdits(battlefield(random, FrameKind::altitude,
                          {PropagationModel::diffraction, PropagationModel::horizon, PropagationModel::itm,
-                          PropagationModel::p528, PropagationModel::two_ray}),
+                          PropagationModel::p528, PropagationModel::two_ray, PropagationModel::p1812,
+                          PropagationModel::p452}),
              hills(), 50, editValue, random);
 }
 

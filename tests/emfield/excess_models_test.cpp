@@ -144,11 +144,27 @@ TEST(ExcessModels, HeightsBetweenEvaluationsOfItmAreWithinATenthOfADecibelButFor
   EXPECT_LT(spread.largest(), 1);
 }
 
+TEST(ExcessModels, HeightsBetweenEvaluationsOfP1812AndP452AreWithinATenthOfADecibel) {
+  const scenario::TerrainPtr terrain = whiteMountainsTile();
+  const auto scenario = whiteMountains(1e9, 15);
+  scenario::Emitter& emitter = scenario->emitters[0];
+  for (const double time_percent : {1.0, 50.0}) {
+    emitter.propagation.p1812.time_percent = emitter.propagation.p452.time_percent = time_percent;
+    for (const auto model : {PropagationModel::p1812, PropagationModel::p452}) {
+      emitter.propagation.model = model;
+      Spread spread = bisectionErrors(*scenario, *terrain, 60);
+      EXPECT_LT(spread.quantile(0.99), 0.1) << toString(model) << ", " << time_percent << " %";
+      EXPECT_LT(spread.largest(), 1) << toString(model) << ", " << time_percent << " %";
+    }
+  }
+}
+
 TEST(ExcessModels, AColumnInPartsIsTheColumn) {
   std::mt19937 random(12);
   const auto scenario = whiteMountains(4e8, 15);
   scenario::Emitter& emitter = scenario->emitters[0];
-  for (const auto propagation : {PropagationModel::diffraction, PropagationModel::itm}) {
+  for (const auto propagation : {PropagationModel::diffraction, PropagationModel::itm,
+                                 PropagationModel::p1812, PropagationModel::p452}) {
     emitter.propagation.model = propagation;
     emitter.propagation.diffraction.method = propagation::DiffractionMethod::deygout;
     for (int p = 0; p < 20; ++p) {
@@ -451,7 +467,7 @@ TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
     EXPECT_LT(solver.volumes().front().host()->info.range_min, -70);
     ++count;
   }
-  EXPECT_EQ(count, 8);
+  EXPECT_EQ(count, 10);
 }
 
 TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {

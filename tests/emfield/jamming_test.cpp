@@ -61,6 +61,17 @@ TEST(JammerToSignal, EntersThroughThePatternAtTheAngleBetweenTargetAndJammer) {
   }
 }
 
+TEST(JammerToSignal, EntersAPhasedArrayFromBehindThroughItsErrorFloor) {
+  scenario::Emitter radar = radarOf(scenario::makePhasedArray(kGain_dbi, 16, 16, 0.5, 0.5, -35));
+  radar.scan.azimuth_deg = 90;
+  const scenario::Emitter jammer = jammerOf(500);
+  for (const double range_m : {5e3, 20e3}) {
+    const double expected = jammerToSignalDb(linkTowardsTarget(radar), 5, range_m,
+                                             linkTowardsRadar(jammer, kGain_dbi - 35), 60e3);
+    EXPECT_NEAR(east(duel(radar, jammer, -60e3, 0), "jammer_to_signal_db", range_m), expected, 1e-3);
+  }
+}
+
 TEST(JammerToSignal, KnowsTheJammersOwnAntenna) {
   const scenario::Emitter radar = trackingRadar();
   scenario::Emitter jammer = jammerOf(100);
@@ -191,6 +202,39 @@ TEST(BurnThrough, AsksByDefaultForWhatHalfTheDetectionsTake) {
   scenario->emitters[1].power_w *= dbToRatio(margin_db);
   EXPECT_NEAR(east(scenario, "burn_through_margin_db", 10e3), 0, 1e-3);
   EXPECT_NEAR(east(scenario, "detection_probability", 10e3), 0.5, 0.01);
+}
+
+/// A radar whose targets low in the west lie behind the horizon, and a jammer high above it.
+std::shared_ptr<scenario::Scenario> beyondTheHorizon() {
+  auto scenario = emptyScenario(FrameKind::altitude, 44, -71, {300e3, 10e3, 4000}, {60, 2, 4});
+  scenario::Emitter radar = trackingRadar(), jammer = jammerOf(1e3);
+  radar.propagation.model = propagation::PropagationModel::horizon;
+  addEmitter(*scenario, {44, -71, 30}, radar);
+  jammer.active_s = {{0, 5}};
+  addEmitter(*scenario, {44.2, -71, 5000}, jammer);
+  return scenario;
+}
+
+TEST(JammerToSignal, WhereNoEchoComesIsItsCeilingUnderJammingAndNothingWithout) {
+  const auto scenario = beyondTheHorizon();
+  scenario->output.quantities = {"jammer_to_signal_db", "burn_through_margin_db"};
+  FieldSolver solver(scenario, nullptr, {});
+  const auto at = [&](int channel, int i, int k) {
+    return valueAt(*solver.volumes()[static_cast<std::size_t>(channel)].host(), i, 1, k);
+  };
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  EXPECT_NEAR(at(0, 0, 0), 100, 1e-3) << "500 m above the sea at 147 km: no echo";
+  EXPECT_NEAR(at(1, 0, 0), -60, 1e-3);
+  EXPECT_LT(at(0, 25, 3), 60);
+  EXPECT_GT(at(1, 29, 3), -60);
+  EXPECT_EQ(solver.volumes()[0].info().extra.at(volume::kLegendNoteKey), "no echo: 100");
+  EXPECT_EQ(solver.volumes()[1].info().extra.at(volume::kLegendNoteKey), "no echo: -60");
+
+  solver.update(scenario::snapshotAt(scenario, nullptr, 7));
+  EXPECT_EQ(at(0, 0, 0), -300) << "no echo and no jamming: nothing";
+  EXPECT_EQ(at(1, 0, 0), -300);
+  EXPECT_EQ(at(0, 29, 3), -300) << "not jammed";
+  EXPECT_NEAR(at(1, 29, 3), 60, 1e-3);
 }
 
 TEST(BurnThrough, OfAnUnjammedRadarIsItsCeiling) {

@@ -26,7 +26,14 @@ using ::testing::HasSubstr;
 constexpr GeodeticPosition kSite{44.43, -71.47, 700};
 constexpr PropagationModel kModels[] = {PropagationModel::free_space,  PropagationModel::horizon,
                                         PropagationModel::diffraction, PropagationModel::two_ray,
-                                        PropagationModel::itm,         PropagationModel::p528};
+                                        PropagationModel::itm,         PropagationModel::p528,
+                                        PropagationModel::p1812,       PropagationModel::p452};
+
+/// The field takes p528 from a table, and these others at some heights only.
+bool isInterpolated(PropagationModel model) {
+  return model == PropagationModel::p528 || model == PropagationModel::itm ||
+         model == PropagationModel::p1812 || model == PropagationModel::p452;
+}
 
 std::shared_ptr<scenario::Scenario> whiteMountains(PropagationModel model) {
   auto scenario = emptyScenario(FrameKind::altitude, 44.4, -71.5, {40e3, 40e3, 4000}, {50, 50, 40});
@@ -106,8 +113,7 @@ TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverASmoothEarth) {
     scenario->atmosphere.gases = propagation::GasLosses::always;
     Compared compared = compareWithField(scenario, nullptr, 200);
     EXPECT_EQ(compared.other_shadow, 0);
-    // The field takes p528 from a table, and itm at some heights only.
-    const bool is_table = model == PropagationModel::p528 || model == PropagationModel::itm;
+    const bool is_table = isInterpolated(model);
     EXPECT_LT(compared.quantile(0.95), is_table ? 0.1 : 0.02);
     EXPECT_LT(compared.quantile(1), is_table ? 0.5 : 0.02);
   }
@@ -119,7 +125,7 @@ TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverRealTerrain) {
     SCOPED_TRACE(toString(model));
     Compared compared = compareWithField(whiteMountains(model), terrain, 200);
     // The field's terrain stands on azimuths a post apart: what is left is the terrain between them.
-    const bool is_table = model == PropagationModel::p528 || model == PropagationModel::itm;
+    const bool is_table = isInterpolated(model);
     EXPECT_LE(compared.other_shadow, 2);
     EXPECT_LT(compared.quantile(0.9), is_table ? 0.1 : 0.02);
     EXPECT_LT(compared.quantile(0.97), is_table ? 1 : 0.2);

@@ -32,7 +32,9 @@ inline scenario::Emitter radarOf(scenario::AntennaPtr antenna) {
 }
 
 inline scenario::Emitter trackingRadar() {
-  return radarOf(scenario::makeGaussian(kGain_dbi, 3, 4, -35));
+  scenario::Emitter radar = radarOf(scenario::makeGaussian(kGain_dbi, 3, 4, -35));
+  radar.scan.kind = scenario::ScanKind::track;
+  return radar;
 }
 
 /// Noise over 20 MHz from an isotropic antenna.

@@ -68,7 +68,26 @@ TEST(Look, OfARasterStaysBetweenItsBars) {
   EXPECT_NEAR(lookGain_db(radar, 10e3, 0), 4 * 10 * std::log10(0.5), 1e-3) << "4 degrees below";
 }
 
-TEST(Look, OfARadarWithoutAScanIsOnEveryTarget) {
+TEST(Look, OfAFixedAntennaStaysWhereItPoints) {
+  scenario::Emitter radar = trackingRadar();
+  radar.scan.kind = scenario::ScanKind::fixed;
+  radar.scan.azimuth_deg = 88.5;
+  EXPECT_NEAR(lookGain_db(radar, 10e3, 0), 10 * std::log10(0.5), 1e-3) << "half a beamwidth beside it";
+  EXPECT_NEAR(lookGain_db(radar, -10e3, 0), -35, 1e-3);
+  EXPECT_NEAR(lookGain_db(radar, 10e3, 10e3), -35, 1e-3);
+}
+
+TEST(Look, OfAnApertureThatIsNoArrayIsNotSteered) {
+  scenario::Emitter radar = radarOf(scenario::makeSinc(kGain_dbi, 3, 3, -35));
+  radar.scan.kind = scenario::ScanKind::track;
+  EXPECT_NEAR(lookGain_db(radar, 10e3, 10e3), 0, 1e-3);
+  EXPECT_NEAR(lookGain_db(radar, -10e3, 2e3), 0, 1e-3) << "behind, as far as any turned antenna sees";
+  radar.scan.kind = scenario::ScanKind::fixed;
+  radar.scan.azimuth_deg = 90;
+  EXPECT_NEAR(lookGain_db(radar, -10e3, 0), -35, 1e-3);
+}
+
+TEST(Look, OfATrackingRadarIsOnEveryTarget) {
   const scenario::Emitter radar = trackingRadar();
   EXPECT_NEAR(lookGain_db(radar, 10e3, 10e3), 0, 1e-3);
   EXPECT_NEAR(lookGain_db(radar, -10e3, 2e3), 0, 1e-3);

@@ -157,8 +157,7 @@ TEST(LiveFields, AFailureOfTheDeviceSaysWhatToDo) {
   live.wait();
   live.ask([](FieldRequest& request) { request.scenario = scenarioNamed("too large"); });
   live.wait();
-  EXPECT_EQ(live.fields->status().error,
-            "cudaMalloc: out of memory; --backend cpu computes without the GPU");
+  EXPECT_EQ(live.fields->status().error, "cudaMalloc: out of memory; --backend cpu computes without the GPU");
 }
 
 TEST(LiveFields, AStepThatFailsLeavesTheOthers) {

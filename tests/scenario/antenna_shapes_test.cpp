@@ -127,7 +127,7 @@ TEST(SincPattern, IsHalfPowerAtHalfItsBeamwidths) {
 TEST(SincPattern, HasTheNullsAndSideLobesOfAnEvenlyLitAperture) {
   // Side D = 20 wavelengths: nulls at sin(angle) = n / 20, first side lobe -13.26 dB near 1.43 / 20.
   const double width_deg = 2 * radToDeg(std::asin(1.3915573782515103 / (kPi * 20)));
-  const AntennaPtr antenna = makeSinc(36, width_deg, width_deg, -60);
+  const AntennaPtr antenna = makeSinc(36, width_deg, width_deg, -200);
   for (int n = 1; n <= 5; ++n) EXPECT_GT(lossAt_db(antenna, radToDeg(std::asin(n / 20.0)), 0), 150) << n;
   double highest_db = -100;
   for (double u = 1.0 / 20; u < 2.0 / 20; u += 1e-5) {
@@ -137,10 +137,28 @@ TEST(SincPattern, HasTheNullsAndSideLobesOfAnEvenlyLitAperture) {
   EXPECT_NEAR(antenna->apertureDimension_m(0.1), 2.0, 1e-3);
 }
 
-TEST(SincPattern, HasItsSideLobeLevelBehind) {
+TEST(SincPattern, DoesNotFallBelowItsSideLobeLevelInItsNullsOrBehind) {
   const AntennaPtr antenna = makeSinc(36, 3, 3, -45);
   EXPECT_NEAR(lossAt_db(antenna, 180, 0), 45, 1e-9);
   EXPECT_NEAR(lossAt_db(antenna, 120, 30), 45, 1e-9);
+  EXPECT_NEAR(lossAt_db(antenna, 25, 25), 45, 1e-9);
+  const double first_null_deg = radToDeg(std::asin(std::sin(degToRad(1.5)) / 0.4429464695));
+  EXPECT_NEAR(lossAt_db(antenna, first_null_deg, 0), 45, 1e-9);
+  const Vec3f null = vecCast<float>(towards(first_null_deg, 0));
+  EXPECT_FLOAT_EQ(patternAmplitude(antenna->view(), null, 0, 0), std::pow(10.0f, -45 / 20.0f));
+}
+
+TEST(SincPattern, KeepsItsBeamwidthsWithATaperAndTakesALargerAperture) {
+  for (const Taper& taper : {Taper(TaperKind::cosine), Taper(TaperKind::taylor, -30)}) {
+    const AntennaPtr antenna = makeSinc(36, 2, 5, -60, taper);
+    EXPECT_NEAR(lossAt_db(antenna, 1, 0), kHalfPower_db, 1e-9);
+    EXPECT_NEAR(lossAt_db(antenna, 0, -2.5), kHalfPower_db, 1e-9);
+    EXPECT_NEAR(antenna->apertureDimension_m(0.1), 2 * taper.halfPower() * 0.1 / degToRad(2.0), 1e-9);
+    for (double azimuth_deg = 3.5; azimuth_deg < 90; azimuth_deg += 0.01) {
+      EXPECT_GT(lossAt_db(antenna, azimuth_deg, 0), 22.9) << azimuth_deg;
+    }
+    EXPECT_LT(worstOfView_db(antenna, 8, 20), 1e-3);
+  }
 }
 
 TEST(SincPattern, OfTheLoopsIsWithin1e3DbOfTheClosedForm) {
@@ -231,11 +249,37 @@ TEST(PhasedArray, HasGratingLobesWhereTheSpacingPutsThem) {
   }
 }
 
-TEST(PhasedArray, RadiatesNothingBehind) {
-  const AntennaPtr antenna = makePhasedArray(27, 16, 12, 0.5, 0);
-  EXPECT_EQ(antenna->gainTowards_dbi({-1, 0, 0}), -std::numeric_limits<double>::infinity());
-  EXPECT_EQ(patternAmplitude(antenna->view(), {-1, 0, 0}, 0, 0), 0.0f);
-  EXPECT_EQ(patternAmplitude(antenna->view(), {0, 1, 0}, 0, 0), 0.0f);
+TEST(PhasedArray, DoesNotFallBelowItsErrorFloorInNullsOrBehind) {
+  const AntennaPtr antenna = makePhasedArray(27, 16, 12, 0.5, 0.5, -35);
+  const auto floor = std::pow(10.0f, -35 / 20.0f);
+  const Vec3d null = towards(radToDeg(std::asin(1 / (16 * 0.5))), 0);
+  for (const Vec3d& direction : {null, Vec3d{-1, 0, 0}, Vec3d{0, 1, 0}, towards(100, 40), towards(40, 40)}) {
+    EXPECT_NEAR(antenna->gainTowards_dbi(direction), 27 - 35, 1e-9);
+    EXPECT_FLOAT_EQ(patternAmplitude(antenna->view(), vecCast<float>(direction), 0, 0), floor);
+  }
+  // Steered, the floor stays relative to the maximum of the unsteered array.
+  EXPECT_NEAR(antenna->gainTowards_dbi({-1, 0, 0}, degToRad(50.0), 0), 27 - 35, 1e-9);
+}
+
+TEST(PhasedArray, TaperedHasLowerSideLobesAWiderBeamAndLessGain) {
+  const Taper taylor(TaperKind::taylor, -30), cosine(TaperKind::cosine);
+  const AntennaPtr even = makePhasedArray(0, 32, 32, 0.5, 0);
+  for (const Taper& taper : {taylor, cosine}) {
+    const AntennaPtr antenna = makePhasedArray(0, 32, 32, 0.5, 0, -200, taper);
+    const double first_null_deg =
+        radToDeg(std::asin(taper.kind() == TaperKind::cosine ? 1.5 / 16 : 1.8 / 16));
+    double highest_db = -100;
+    for (double azimuth_deg = first_null_deg; azimuth_deg < 90; azimuth_deg += 0.01) {
+      highest_db = std::max(highest_db, -lossAt_db(antenna, azimuth_deg, 0));
+    }
+    EXPECT_NEAR(highest_db, taper.kind() == TaperKind::cosine ? -23 : -30, 0.5);
+    EXPECT_NEAR(antenna->beamwidth_az_deg / even->beamwidth_az_deg, taper.halfPower() / 0.44294647, 2e-3);
+    EXPECT_NEAR(directivity_dbi(antenna, 0.2) - directivity_dbi(even, 0.2),
+                20 * std::log10(taper.arrayEfficiency(32)), 0.1);
+    EXPECT_NEAR(gainFromArray_dbi(32, 32, 0.5, taper) - gainFromArray_dbi(32, 32, 0.5),
+                20 * std::log10(taper.arrayEfficiency(32)), 1e-9);
+    EXPECT_LT(worstOfView_db(antenna, 60, 60), 1e-3);
+  }
 }
 
 TEST(PhasedArray, OfTheLoopsIsWithin1e3DbOfTheClosedForm) {

@@ -430,7 +430,7 @@ TEST(EditEveryKey, EqualsAFileWithThatValue) {
       }
     });
   }
-  EXPECT_GT(sound, all / 2) << "of " << all;
+  EXPECT_GT(sound, all * 2 / 5) << "of " << all;  // settings of models that are not chosen are refused
 }
 
 TEST(EditAtRandom, NeverCrashesAndKeepsTheTextInStep) {

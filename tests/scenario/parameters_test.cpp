@@ -112,13 +112,15 @@ TEST(EditsForChoice, ChangeToEveryPatternScanModelAndKindAndBack) {
          {"isotropic", "gaussian", "sinc", "cosecant2", "phased_array", "gaussian", "cosecant2"}) {
       choose(path + ".antenna.pattern", pattern);
     }
-    for (const char* scan : {"fixed", "rotate", "sector", "raster", "dwell_list", "rotate"}) {
+    for (const char* scan : {"fixed", "rotate", "sector", "raster", "dwell_list", "track", "rotate"}) {
       choose(path + ".scan.kind", scan);
     }
-    for (const char* model : {"free_space", "horizon", "diffraction", "two_ray", "itm", "p528", "itm"}) {
+    for (const char* model :
+         {"free_space", "horizon", "diffraction", "two_ray", "itm", "p528", "p1812", "p452", "itm"}) {
       choose(path + ".propagation", model);
-      for (const char* settings : {"diffraction.method=deygout", "two_ray.sum=envelope",
-                                   "itm.time_percent=90", "p528.time_percent=90"}) {
+      for (const char* settings :
+           {"diffraction.method=deygout", "two_ray.sum=envelope", "itm.time_percent=90",
+            "p528.time_percent=90", "p1812.time_percent=10", "p452.zone=sea"}) {
         const Edit edit = parseEdit(settings);
         if (find(parametersOf(edited, path), path + "." + edit.path)) {
           edited.set(path + "." + edit.path, edit.value);

@@ -14,6 +14,8 @@ namespace {
 using namespace propagation;
 
 using test::replaced;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
 
 class ScenarioYaml : public ::testing::Test {
  protected:
@@ -62,7 +64,7 @@ TEST_F(ScenarioYaml, ReadsEverySection) {
   EXPECT_EQ(radar.propagation.model, PropagationModel::diffraction);
   EXPECT_EQ(radar.antenna->gain_dbi, 34);
   EXPECT_EQ(radar.scan.kind, ScanKind::rotate);
-  EXPECT_EQ(radar.scan.rate_rpm, 12);
+  EXPECT_EQ(radar.scan.rate_rpm, 11.95);
   EXPECT_EQ(radar.losses_db, 3);
   EXPECT_EQ(radar.receiver.losses_db, 0) << "those of transmission do not count again";
   EXPECT_EQ(radar.receiver.target_rcs_m2, 5);
@@ -122,6 +124,19 @@ TEST_F(ScenarioYaml, ReadsWhatModelsAreTold) {
   EXPECT_EQ(scenario->emitters[3].propagation.two_ray.roughness_model, RoughnessModel::ament);
 }
 
+TEST(ShippedScenarios, HaveNeitherFaultsNorWarnings) {
+  const std::filesystem::path folder =
+      std::filesystem::path(test::shippedScenario("quick.yaml")).parent_path();
+  int count = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml") continue;
+    const ParseResult result = parseScenario(entry.path().string());
+    EXPECT_TRUE(result.problems.empty()) << entry.path() << ": " << result.problems.front().message;
+    ++count;
+  }
+  EXPECT_GT(count, 10);
+}
+
 TEST_F(ScenarioYaml, GivesNoProblemForAValidScenario) {
   EXPECT_TRUE(parseScenario(folder_.write("scenario.yaml", valid_)).problems.empty());
 }
@@ -129,8 +144,13 @@ TEST_F(ScenarioYaml, GivesNoProblemForAValidScenario) {
 TEST_F(ScenarioYaml, DerivesGainFromBeamwidthsAndAperture) {
   const auto scenario = load(valid_);
   EXPECT_NEAR(scenario->emitters[3].antenna->gain_dbi, 10 * std::log10(26000.0 / (60 * 30)), 1e-9);
-  // 4 pi A / lambda^2 of 32 x 16 elements half a wavelength apart is pi times their number.
-  EXPECT_NEAR(scenario->emitters[1].antenna->gain_dbi, 10 * std::log10(kPi * 32 * 16), 1e-9);
+  // 4 pi A / lambda^2 of 32 x 16 elements half a wavelength apart is pi times their number; the floor of -40
+  // dB all round takes 0.6 dB of it.
+  const Antenna& array = *scenario->emitters[1].antenna;
+  EXPECT_DOUBLE_EQ(array.gain_dbi, array.directivity_dbi());
+  EXPECT_NEAR(array.gain_dbi, 10 * std::log10(1 / (1 / (kPi * 32 * 16) + 1e-4)), 0.1);
+  const std::string deep = replaced(valid_, "rows: 16}", "rows: 16, side_lobe_db: -90}");
+  EXPECT_NEAR(load(deep)->emitters[1].antenna->gain_dbi, 10 * std::log10(kPi * 32 * 16), 0.03);
   EXPECT_NEAR(scenario->emitters[2].antenna->gain_dbi, 12 + kDipoleGain_dbi, 1e-9) << "dBd of the file";
 }
 
@@ -230,6 +250,78 @@ TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
   EXPECT_EQ(result.problems[0].severity, Severity::warning);
   EXPECT_EQ(result.problems[0].message, "emitter 'array radar' (9000000000 Hz) is in none of the bands");
   EXPECT_EQ(result.problems[0].location.line, 39);
+}
+
+TEST_F(ScenarioYaml, WarnsOfAGainAboveThePatternsDirectivity) {
+  const std::string text =
+      replaced(valid_, "{pattern: gaussian, beamwidth_az_deg: 60, beamwidth_el_deg: 30}",
+               "{pattern: gaussian, gain_dbi: 20, beamwidth_az_deg: 60, beamwidth_el_deg: 30}");
+  const ParseResult result = parseScenario(folder_.write("scenario.yaml", text));
+  ASSERT_NE(result.scenario, nullptr);
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].severity, Severity::warning);
+  EXPECT_THAT(result.problems[0].message,
+              AllOf(HasSubstr("the gain of 20.00 dBi is 6.8"), HasSubstr("directivity, 13.1")));
+  EXPECT_EQ(result.problems[0].location.line, 62);
+  // Without it the gain is the formula's, at most the directivity.
+  EXPECT_NEAR(load(valid_)->emitters[3].antenna->gain_dbi, 10 * std::log10(26000 / 1800.0), 1.6);
+  const std::string flat =
+      replaced(valid_, "beamwidth_el_deg: 30}", "beamwidth_el_deg: 30, side_lobe_db: -6}");
+  const AntennaPtr antenna = load(flat)->emitters[3].antenna;
+  EXPECT_DOUBLE_EQ(antenna->gain_dbi, antenna->directivity_dbi());
+}
+
+TEST_F(ScenarioYaml, WarnsOfABeamThatStepsOverAzimuths) {
+  const std::string text = replaced(valid_, "rate_rpm: 11.95", "rate_rpm: 12");
+  const ParseResult result = parseScenario(folder_.write("scenario.yaml", text));
+  ASSERT_NE(result.scenario, nullptr);
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].severity, Severity::warning);
+  EXPECT_THAT(result.problems[0].message,
+              AllOf(HasSubstr("'search radar', 1.6 deg wide, sweeps 36 deg in a step of 0.5 s"),
+                    HasSubstr("4 % are ever lit")));
+  EXPECT_EQ(result.problems[0].location.line, 32);
+  // Where radars look at each voxel in turn their scans do not show.
+  const std::string coverage =
+      replaced(replaced(text, "[power_density_dbwm2, received_power_dbm, snr_db]", "[snr_db]"),
+               "combine: per_band", "combine: per_band\n  radar_look: target");
+  EXPECT_TRUE(parseScenario(folder_.write("scenario.yaml", coverage)).problems.empty());
+}
+
+TEST_F(ScenarioYaml, TapersArraysAndApertures) {
+  const auto antennaOf = [&](const std::string& keys) {
+    return load(replaced(valid_, "{pattern: phased_array, columns: 32, rows: 16}",
+                         "{pattern: phased_array, columns: 32, rows: 16" + keys + "}"))
+        ->emitters[1]
+        .antenna;
+  };
+  const AntennaPtr even = antennaOf(""),
+                   taylor = antennaOf(", side_lobe_db: -70, taper: taylor, taper_side_lobe_db: -35"),
+                   low = antennaOf(", side_lobe_db: -70");
+  EXPECT_GT(taylor->beamwidth_az_deg, 1.3 * even->beamwidth_az_deg);
+  EXPECT_NEAR(taylor->gain_dbi - low->gain_dbi, 20 * std::log10(0.8089), 0.1);
+  EXPECT_NEAR(even->amplitudeTowards({-1, 0, 0}, 0, 0), 0.01, 1e-12) << "-40 dB unless it says otherwise";
+  EXPECT_NEAR(antennaOf(", side_lobe_db: -30")->amplitudeTowards({-1, 0, 0}, 0, 0), std::pow(10, -1.5),
+              1e-12);
+  const std::string text =
+      replaced(valid_, "columns: 32, rows: 16}", "columns: 32, rows: 16, taper_side_lobe_db: -35}");
+  const ParseResult result = parseScenario(folder_.write("scenario.yaml", text));
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].message,
+            "'taper_side_lobe_db' is the design level of taper: taylor; 'taper' is uniform");
+}
+
+TEST_F(ScenarioYaml, TrackIsAScanOfRadars) {
+  const std::string radar =
+      replaced(valid_, "{kind: rotate, rate_rpm: 11.95}", "{kind: track, azimuth_deg: 20}");
+  EXPECT_EQ(load(radar)->emitters[0].scan.kind, ScanKind::track);
+  const std::string jammer =
+      replaced(valid_, "{kind: raster, width_deg: 40, rate_deg_s: 20, elevation_step_deg: 5, bars: 3}",
+               "{kind: track}");
+  const ParseResult result = parseScenario(folder_.write("scenario.yaml", jammer));
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].message,
+            "'kind' is track, which turns a radar onto its targets; 'jammer' is a jammer: its beam stays");
 }
 
 TEST_F(ScenarioYaml, WarnsOfAJammerOutsideEveryRadarsBand) {

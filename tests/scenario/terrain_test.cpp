@@ -419,6 +419,8 @@ TEST_F(TerrainTest, AGlobalFileGoesOnAcrossItsOwnSeam) {
 
 TEST_F(TerrainTest, EllipsoidalHeightsBecomeHeightsAboveMeanSeaLevel) {
   const auto file = write("a.tif", geographicPointDem(10, 50, 0.1, 11, 11, flat));
+  EXPECT_EQ(load({file}, {49, 50, 10, 11}, VerticalDatum::egm2008)->heightMsl_m(49.5, 10.5),
+            load({file}, {49, 50, 10, 11}, VerticalDatum::egm96)->heightMsl_m(49.5, 10.5));
   const TerrainPtr terrain = load({file}, {49, 50, 10, 11}, VerticalDatum::ellipsoid);
   EXPECT_NEAR(terrain->heightMsl_m(49.3, 10.4), 100 - geoidUndulation_m(49.3, 10.4), 1e-3);
 }

@@ -12,7 +12,7 @@ namespace emscape::propagation {
 enum class Polarization { horizontal, vertical, slant_45, slant_135, circular_right, circular_left };
 const char* toString(Polarization polarization);
 
-enum class PropagationModel { free_space, horizon, diffraction, two_ray, itm, p528 };
+enum class PropagationModel { free_space, horizon, diffraction, two_ray, itm, p528, p1812, p452 };
 const char* toString(PropagationModel model);
 
 /// Method of diffraction over terrain.
@@ -70,6 +70,33 @@ struct P528Settings {
   double time_percent = 50;  ///< the loss is not exceeded in this percentage of the time
 };
 
+/// Radio-climatic zones of a path.
+enum class ClearAirZone {
+  by_height,     ///< sea where the terrain is at or below mean sea level; land by height and distance from it
+  inland,        ///< all of the path
+  coastal_land,  ///< all of it: up to 100 m high, within 50 km of the sea
+  sea            ///< all of it
+};
+const char* toString(ClearAirZone zone);
+
+/// Settings that p1812 and p452 have in common.
+struct ClearAirSettings {
+  double time_percent = 50;             ///< the loss is not exceeded in this percentage of the time
+  double refractivity_lapse_rate = 40;  ///< of the refractivity through the lowest km (Delta N), positive
+  ClearAirZone zone = ClearAirZone::by_height;
+  double clutter_height_m = 0;  ///< of buildings and trees on land along the path
+};
+
+struct P1812Settings : ClearAirSettings {
+  double location_percent = 50;   ///< the loss is not exceeded in this percentage of locations
+  double location_width_m = 100;  ///< width of the square of the locations
+};
+
+struct P452Settings : ClearAirSettings {
+  /// Antenna gains toward the horizons, for the coupling into troposcatter.
+  double transmitter_gain_dbi = 0, receiver_gain_dbi = 0;
+};
+
 /// The model of an emitter, and the settings of all models; settings of models that are not used have no
 /// effect.
 struct ModelSettings {
@@ -78,6 +105,8 @@ struct ModelSettings {
   TwoRaySettings two_ray;
   ItmSettings itm;
   P528Settings p528;
+  P1812Settings p1812;
+  P452Settings p452;
   SourceLocation location;  ///< of the chosen model's settings
 };
 

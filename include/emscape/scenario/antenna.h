@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "emscape/base/vec.h"
@@ -21,8 +22,8 @@ enum class PatternKind {
   isotropic,     ///< 1 everywhere
   gaussian,      ///< exp of a quadratic form in azimuth and elevation, not below side_lobe_amplitude
   separable,     ///< azimuth_table(azimuth) * elevation_table(elevation), not below side_lobe_amplitude
-  phased_array,  ///< planar aperture, evenly illuminated or of elements: azimuth_table(u - u0) *
-                 ///< elevation_table(v - v0) * element pattern, side_lobe_amplitude behind it; u = right, v =
+  phased_array,  ///< planar aperture, continuous or of elements: azimuth_table(u - u0) * elevation_table(v -
+                 ///< v0) * element pattern, not below side_lobe_amplitude, which it is behind; u = right, v =
                  ///< up (direction cosines)
   grid,          ///< bilinear in azimuth and elevation
 };
@@ -65,8 +66,9 @@ class Antenna {
   double gain_dbi = 0;            ///< at the maximum of the pattern
   double beamwidth_az_deg = 360;  ///< between the half-power points; 360: there are none
   double beamwidth_el_deg = 180;  ///< 180: there are none
-  /// Beamwidth (rad) times aperture over wavelength: 0.886 for even illumination, 1.2 for a typical taper.
+  /// Beamwidth (rad) times aperture over wavelength: 0.886 for a uniform taper, 1.2 for a typical one.
   double aperture_factor = 1.2;
+  bool is_array = false;    ///< steered electronically; others turn
   std::string description;  ///< one line for `emscape info`
 
   /// Gain (dBi) towards a direction (forward, right, up; unit), in double; -infinity in a null. For tests,
@@ -77,6 +79,15 @@ class Antenna {
   /// Largest side D (m) of an aperture with the narrower of the two beamwidths, D = aperture_factor * lambda
   /// / beamwidth: for the far-field distance 2 D^2 / lambda. 0 (no near field) without a beam.
   double apertureDimension_m(double wavelength_m) const;
+  /// Directivity (dBi): 4 pi over the integral of the unsteered pattern's power over the sphere. No passive
+  /// antenna of this pattern has a larger gain. Found at the first call, in milliseconds; threads may share
+  /// it.
+  /// @accuracy 0.1 dB for beamwidths of 0.05 degree and more
+  double directivity_dbi() const;
+
+ private:
+  mutable std::once_flag directivity_once_;
+  mutable double directivity_dbi_ = 0;
 };
 
 using AntennaPtr = std::shared_ptr<const Antenna>;

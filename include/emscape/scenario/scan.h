@@ -5,7 +5,9 @@
 
 namespace emscape::scenario {
 
-enum class ScanKind { fixed, rotate, sector, raster, dwell_list };
+/// fixed: the beam stays. track: a radar whose antenna turns onto its target, anywhere; where no target is
+/// asked about (power density, radar_look: scan) it points as if fixed.
+enum class ScanKind { fixed, rotate, sector, raster, dwell_list, track };
 const char* toString(ScanKind kind);
 
 /// One position of an electronically steered beam, held for duration_s.
@@ -19,7 +21,7 @@ struct Dwell {
 /// north-referenced), turned by azimuth_deg and elevation_deg.
 struct ScanSpec {
   ScanKind kind = ScanKind::fixed;
-  double azimuth_deg = 0;         ///< fixed: boresight; rotate: at t = 0; sector, raster: centre
+  double azimuth_deg = 0;         ///< fixed, track: boresight; rotate: at t = 0; sector, raster: centre
   double elevation_deg = 0;       ///< boresight elevation, upwards; raster: centre of the bars
   double rate_rpm = 0;            ///< rotate: clockwise if positive
   double width_deg = 0;           ///< sector, raster: full width of the azimuth sweep

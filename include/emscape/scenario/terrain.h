@@ -12,8 +12,9 @@ namespace emscape::scenario {
 
 struct TerrainView;  // scenario/terrain/view.h
 
-/// Datum of the heights in the elevation files.
-enum class VerticalDatum { egm96, ellipsoid };
+/// Datum of the heights in the elevation files. EGM2008's are taken as EGM96's, from which they differ by
+/// about a metre.
+enum class VerticalDatum { egm96, ellipsoid, egm2008 };
 
 /// A box of latitude and longitude (deg). east may exceed 180 where the box crosses the antimeridian; west is
 /// in -180..180.

@@ -34,6 +34,9 @@ constexpr const char* kRatioBelowScale = "ratio, below";  ///< dB about 0; value
 constexpr const char* kRatioAboveScale = "ratio, above";  ///< dB about 0; values above 0 are of interest
 constexpr const char* kDifferenceScale = "difference";    ///< of two fields, about 0
 
+/// Key of VolumeInfo::extra: a line for the legend, about values at the end of the range.
+constexpr const char* kLegendNoteKey = "legend_note";
+
 /// Values in dense order. Voxels below ground or without a known field are masked: they hold `info.floor`,
 /// are inactive in .vdb and are never drawn.
 struct DenseVolume {

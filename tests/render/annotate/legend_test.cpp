@@ -36,5 +36,14 @@ TEST(Legend, NamesQuantitiesAndUnitsAsPeopleWriteThem) {
   EXPECT_EQ(unitText("dBuV/m"), "dBµV/m");
 }
 
+TEST(Legend, HasTheNoteThatAVolumeBrings) {
+  volume::VolumeInfo info;
+  info.quantity = "jammer_to_signal_db";
+  info.unit = "dB";
+  EXPECT_EQ(legendOf(info, {}).note, "");
+  info.extra[volume::kLegendNoteKey] = "no echo: 100";
+  EXPECT_EQ(legendOf(info, {}).note, "no echo: 100");
+}
+
 }  // namespace
 }  // namespace emscape::render

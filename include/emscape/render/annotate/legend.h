@@ -27,6 +27,7 @@ struct Legend {
   TransferFunction function;
   std::optional<double> iso_value;   ///< marked on the colour bar
   bool whole_numbers = false;        ///< counts: no ticks between
+  std::string note;                  ///< a line below the colour bar; may be empty
   std::vector<Category> categories;  ///< categorical volumes: those to be listed
 };
 

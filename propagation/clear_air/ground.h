@@ -1,0 +1,69 @@
+/// Zones and clutter along a path, from an emitter's settings and the heights of the terrain.
+#pragma once
+
+#include "emscape/base/host_device.h"
+#include "emscape/propagation/settings.h"
+#include "propagation/clear_air/zones.h"
+#include "propagation/terrain_profile.h"
+
+namespace emscape::propagation {
+
+/// Max height of coastal land above the sea, and max distance from it.
+constexpr float kCoastalHeight_m = 100;
+constexpr double kCoastalDistance_m = 50e3;
+
+/// Zones by the terrain's heights: posts at or below mean sea level are sea; land up to kCoastalHeight_m high
+/// and within kCoastalDistance_m of a sea post of the path is coastal land; the rest is inland.
+EMSCAPE_HD inline PathZones zonesByHeight(const TerrainProfile& profile) {
+  int next_sea = 0;
+  double last_sea_m = -2 * kCoastalDistance_m;
+  return sumZones(profile, [&](int i) {
+    const auto isSea = [&](int post) { return profile.height_msl_m[post] <= 0; };
+    const double range_m = profile.range_m[i];
+    if (isSea(i)) {
+      last_sea_m = range_m;
+      return PathZone::sea;
+    }
+    if (profile.height_msl_m[i] > kCoastalHeight_m) return PathZone::inland;
+    if (range_m - last_sea_m <= kCoastalDistance_m) return PathZone::coastal_land;
+    next_sea = next_sea > i ? next_sea : i;
+    while (next_sea < profile.count && profile.range_m[next_sea] - range_m <= kCoastalDistance_m) {
+      if (isSea(next_sea)) return PathZone::coastal_land;
+      ++next_sea;
+    }
+    return PathZone::inland;
+  });
+}
+
+/// Zones of a path by the setting.
+EMSCAPE_HD inline PathZones zonesOf(ClearAirZone setting, const TerrainProfile& profile) {
+  if (setting == ClearAirZone::by_height) return zonesByHeight(profile);
+  const double length_m = profile.range_m[profile.count - 1];
+  PathZoneSums sums(length_m);
+  sums.add(setting == ClearAirZone::sea            ? PathZone::sea
+           : setting == ClearAirZone::coastal_land ? PathZone::coastal_land
+                                                   : PathZone::inland,
+           0, length_m);
+  return sums.zones();
+}
+
+/// Whether a post is nearer than a distance to either end of a path.
+EMSCAPE_HD inline bool isNearTerminal(const TerrainProfile& profile, int post, double distance_m) {
+  const double range_m = profile.range_m[post];
+  return range_m < distance_m || profile.range_m[profile.count - 1] - range_m < distance_m;
+}
+
+/// Zone setting and clutter of the paths of an emitter.
+struct ClearAirGround {
+  ClearAirZone zone = ClearAirZone::by_height;
+  float clutter_height_m = 0;     ///< on land
+  double clutter_distance_m = 0;  ///< min distance of clutter from either antenna
+
+  EMSCAPE_HD float clutterAt(const TerrainProfile& profile, int post) const {
+    const bool is_sea =
+        zone == ClearAirZone::sea || (zone == ClearAirZone::by_height && profile.height_msl_m[post] <= 0);
+    return is_sea || isNearTerminal(profile, post, clutter_distance_m) ? 0 : clutter_height_m;
+  }
+};
+
+}  // namespace emscape::propagation

@@ -1,0 +1,11 @@
+/// Excess of the model `p452` over columns.
+#pragma once
+
+#include "propagation/clear_air/excess.h"
+#include "propagation/p452/p452.h"
+
+namespace emscape::propagation {
+
+using P452Excess = ClearAirExcess<P452Model<float>>;
+
+}  // namespace emscape::propagation

@@ -1,0 +1,60 @@
+#include "scenario/scan_sampling.h"
+
+#include <gtest/gtest.h>
+
+namespace emscape::scenario {
+namespace {
+
+ScanSpec rotating(double rate_rpm) {
+  ScanSpec scan;
+  scan.kind = ScanKind::rotate;
+  scan.rate_rpm = rate_rpm;
+  return scan;
+}
+
+Clock clockOf(double duration_s, double step_s) {
+  return {"", duration_s, step_s};
+}
+
+TEST(ScanSampling, OfStepsThatDivideATurnIsTheSameSpokesForEver) {
+  // 15 degrees a step, 24 steps a turn: 24 spokes of 3 degrees.
+  const ScanSampling sampling = *scanSampling(rotating(5), 3, clockOf(120, 0.5));
+  EXPECT_DOUBLE_EQ(sampling.step_deg, 15);
+  EXPECT_NEAR(sampling.lit_share, 24 * 3 / 360.0, 1e-9);
+  EXPECT_TRUE(leavesGaps(sampling, 3));
+}
+
+TEST(ScanSampling, OfStepsThatDriftLightsAllAzimuthsInTime) {
+  const ScanSampling whole = *scanSampling(rotating(5.02), 3, clockOf(120, 0.5));
+  EXPECT_DOUBLE_EQ(whole.lit_share, 1);
+  EXPECT_FALSE(leavesGaps(whole, 3));
+  EXPECT_NEAR(scanSampling(rotating(5.02), 3, clockOf(5, 0.5))->lit_share, 11 * 3 / 360.0, 1e-9);
+}
+
+TEST(ScanSampling, OfSmallStepsLeavesNoGaps) {
+  // Three quarters of a turn.
+  const ScanSampling sampling = *scanSampling(rotating(-15), 8, clockOf(3, 0.01));
+  EXPECT_NEAR(sampling.lit_share, 0.75 + 8 / 360.0, 1e-9);
+  EXPECT_FALSE(leavesGaps(sampling, 8)) << "the rest of the turn is beyond the end, not between steps";
+}
+
+TEST(ScanSampling, OfASectorCountsWithinItsWidth) {
+  ScanSpec scan;
+  scan.kind = ScanKind::sector;
+  scan.azimuth_deg = 300;
+  scan.width_deg = 70;
+  scan.rate_deg_s = 15;
+  // Back and forth at multiples of 2.5 degrees, 29 of them; half a beam at each end.
+  const ScanSampling sampling = *scanSampling(scan, 2, clockOf(120, 0.5));
+  EXPECT_DOUBLE_EQ(sampling.step_deg, 7.5);
+  EXPECT_NEAR(sampling.lit_share, 28 * 2 / 70.0, 1e-9);
+}
+
+TEST(ScanSampling, IsOfSweepingBeamsAndSeriesAlone) {
+  EXPECT_FALSE(scanSampling(ScanSpec{}, 3, clockOf(120, 0.5)));
+  EXPECT_FALSE(scanSampling(rotating(5), 3, clockOf(0, 0.5)));
+  EXPECT_DOUBLE_EQ(scanSampling(rotating(5), 360, clockOf(120, 0.5))->lit_share, 1);
+}
+
+}  // namespace
+}  // namespace emscape::scenario
