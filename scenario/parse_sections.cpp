@@ -11,7 +11,7 @@
 #include "document/schema_check.h"
 #include "document/text_edit.h"
 #include "propagation/registry/model_info.h"
-#include "scenario/antenna_shapes.h"
+#include "scenario/antenna/shapes.h"
 
 namespace emscape::scenario {
 

@@ -13,7 +13,7 @@
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/volume/file.h"
 #include "emscape/volume/statistics.h"
-#include "scenario/antenna_shapes.h"
+#include "scenario/antenna/shapes.h"
 
 namespace emscape::app {
 namespace {

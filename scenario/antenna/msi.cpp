@@ -23,9 +23,9 @@
 #include "emscape/base/log.h"
 #include "emscape/base/units.h"
 #include "scenario/antenna/cut.h"
+#include "scenario/antenna/shapes.h"
 #include "scenario/antenna/tables.h"
 #include "scenario/antenna/text.h"
-#include "scenario/antenna_shapes.h"
 
 namespace emscape::scenario {
 namespace {

@@ -1,3 +1,5 @@
+#include "scenario/antenna/shapes.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +10,6 @@
 #include "emscape/base/units.h"
 #include "scenario/antenna/tables.h"
 #include "scenario/antenna/taper.h"
-#include "scenario/antenna_shapes.h"
 
 namespace emscape::scenario {
 namespace {

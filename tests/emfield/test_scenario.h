@@ -8,7 +8,7 @@
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/scenario.h"
 #include "emscape/scenario/snapshot.h"
-#include "scenario/antenna_shapes.h"
+#include "scenario/antenna/shapes.h"
 
 namespace emscape::emfield::testing {
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "scenario/antenna/pattern.h"
-#include "scenario/antenna_shapes.h"
+#include "scenario/antenna/shapes.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/scenario/antenna_files.h"
 

@@ -6,7 +6,7 @@
 
 #include "emscape/base/log.h"
 #include "scenario/antenna/pattern.h"
-#include "scenario/antenna_shapes.h"
+#include "scenario/antenna/shapes.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/scenario/antenna_files.h"
 

@@ -1,5 +1,3 @@
-#include "scenario/antenna_shapes.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 
 #include "emscape/base/units.h"
 #include "scenario/antenna/pattern.h"
+#include "scenario/antenna/shapes.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/support/errors.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
-#include "scenario/antenna_shapes.h"
+#include "scenario/antenna/shapes.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/support/files.h"
 

@@ -7,7 +7,7 @@
 
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
-#include "scenario/antenna_shapes.h"
+#include "scenario/antenna/shapes.h"
 #include "scenario/terrain/view.h"
 #include "tests/support/errors.h"
 
