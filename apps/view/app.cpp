@@ -29,6 +29,8 @@ constexpr double kCursorBlink_s = 0.4;
 constexpr double kOpeningPoll_s = 0.03;
 
 constexpr int kWindowFits = 8;
+/// Time (s) from the start after which a window that does not take the size asked for keeps its own.
+constexpr double kFitLimit_s = 5;
 constexpr render::ImageSize kUsualSize{1200, 900};
 
 std::string titleOf(const ViewOptions& options) {
@@ -151,12 +153,17 @@ void App::fitWindowToPicture() {
   constexpr float kRounding = 0.01F;  // of the search
   const render::ImageSize fitting{static_cast<int>(std::ceil(width - kRounding)),
                                   static_cast<int>(std::ceil(height - kRounding))};
-  if (fitting != size) {
+  if (fitting != size && fitting != fitting_) {  // the same size again: the window is still to take it
     --window_fits_;
+    fitting_ = fitting;
     window_.resize(fitting.width, fitting.height);
-  } else if (session_->picture()) {
-    window_fits_ = 0;
   }
+  if (session_->picture() && (fitting == size || log_.now_s() > kFitLimit_s)) window_fits_ = 0;
+}
+
+/// True until the window has the size of the first picture, or cannot have it: scripts wait for that.
+bool App::isFitting() const {
+  return window_fits_ > 0 && session_->picture();
 }
 
 void App::handleRequests() {
@@ -186,7 +193,7 @@ void App::run() {
     if (session_->update()) frames_left_ = std::max(frames_left_, 1);
     failIfNothingOpens();
     if (ImGui::GetIO().WantTextInput) frames_left_ = std::max(frames_left_, 1);
-    if (!quits_ && !script_.finished()) script_.run(*session_, *this, log_.now_s());
+    if (!quits_ && !script_.finished() && !isFitting()) script_.run(*session_, *this, log_.now_s());
     if (panelsChanged()) frames_left_ = kFramesAfterEvent;  // the layout needs more than one frame
     const bool script_waits_for_frames = script_.nextRun_s(log_.now_s()) == 0.0;
     if (!window_.input().empty() || screenshot_ || script_waits_for_frames || flies_) {

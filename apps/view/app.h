@@ -53,6 +53,7 @@ class App : private WindowControl {
   bool panelsChanged();
   void showTitle();
   void fitWindowToPicture();
+  bool isFitting() const;
 
   EventLog log_;
   Script script_;
@@ -75,7 +76,8 @@ class App : private WindowControl {
   long long shown_picture_ = 0;  // number of the picture in texture_; 0: none
   std::optional<std::string> screenshot_;
   std::string open_panels_;
-  int window_fits_;  // remaining attempts to give the picture the size of the first view
+  int window_fits_;            // remaining attempts to give the picture the size of the first view
+  render::ImageSize fitting_;  // the size that was asked for last
 };
 
 }  // namespace emscape::view
