@@ -49,8 +49,8 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(DiffractionModel<Real> earth,
   int clear = last < 1 ? 1 : lastBefore(d * heights.tx_m / (heights.tx_m + heights.rx_m));
   const Real nu = smoothEarthNu(earth, rangeOf, lastBefore, last, d, heights, clear);
   result.smooth_db = bullingtonLossDb(nu, d);
-  const Real lacking_db = result.spherical_db - result.smooth_db;
-  result.loss_db += lacking_db > 0 ? lacking_db : Real(0);
+  const Real correction_db = result.spherical_db - result.smooth_db;
+  result.loss_db += correction_db > 0 ? correction_db : Real(0);
   return result;
 }
 

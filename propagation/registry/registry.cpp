@@ -118,7 +118,7 @@ ModelInfo p528Row() {
 ModelInfo p1812Row() {
   ModelInfo row = rowOf(PropagationModel::p1812, "ITU-R P.1812-8");
   row.settings = p1812Settings();
-  row.settings_description = "how";
+  row.settings_description = "settings of the model";
   row.limits = listOf(kP1812Limits);
   row.reference_datasets = {"p1812"};
   row.check = checkP1812;
@@ -134,7 +134,7 @@ ModelInfo p1812Row() {
 ModelInfo p452Row() {
   ModelInfo row = rowOf(PropagationModel::p452, "ITU-R P.452-18");
   row.settings = p452Settings();
-  row.settings_description = "how";
+  row.settings_description = "settings of the model";
   row.limits = listOf(kP452Limits);
   row.reference_datasets = {"p452"};
   row.gases = GasRole::included;
