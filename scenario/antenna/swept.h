@@ -1,0 +1,22 @@
+/// The pattern of an antenna over an interval in which its beam moves.
+#pragma once
+
+#include "emscape/scenario/antenna.h"
+#include "scenario/scan_sweep.h"
+
+namespace emscape::scenario {
+
+enum class SweptPattern {
+  largest,  ///< the largest amplitude of the interval
+  mean      ///< the root of the mean power of the interval
+};
+
+/// The pattern in the frame about whose up the beam turns (arcs), or in that of the array (dwells); forward
+/// is azimuth 0 of the sweep. Its gain is the antenna's, so that amplitudes are relative to the beam's
+/// maximum and a mean contains the part of the interval in which the emitter is active.
+/// @param sweep  not empty; azimuths of arcs relative to the frame
+/// @accuracy 0.1 dB down to 20 dB below the maximum for beamwidths of 0.5 degree and more: rows of elevation
+/// are a sixteenth of the beamwidth apart or 0.05 degree, azimuths the same, 0.1 degree where they are many
+AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern);
+
+}  // namespace emscape::scenario
