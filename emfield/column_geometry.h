@@ -8,6 +8,7 @@
 #include "emfield/fan_coordinates.h"
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
+#include "emfield/two_rays.h"
 #include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
@@ -32,6 +33,8 @@ struct ColumnGeometryView {
   const float* shadow_edge_m = nullptr;
   /// Excess loss of each voxel, dense order; null: none.
   const ExcessCode* excess = nullptr;
+  /// Reflected ray of each voxel, dense order; null: the model has none.
+  const ReflectedRayCode* reflected = nullptr;
 };
 
 /// Numbers that columnGeometry() gives, in the order of ColumnGeometryView.
@@ -39,11 +42,11 @@ constexpr int kColumnNumbers = 9;
 
 /// @param numbers  kColumnNumbers x columns, as columnGeometry() fills them
 EMSCAPE_HD inline ColumnGeometryView columnGeometryView(const float* numbers, std::size_t columns,
-                                                        const float* shadow_edge_m,
-                                                        const ExcessCode* excess) {
+                                                        const float* shadow_edge_m, const ExcessCode* excess,
+                                                        const ReflectedRayCode* reflected) {
   const auto array = [&](std::size_t n) { return numbers + n * columns; };
   return {array(0), array(1), array(2), array(3),      array(4), array(5),
-          array(6), array(7), array(8), shadow_edge_m, excess};
+          array(6), array(7), array(8), shadow_edge_m, excess,   reflected};
 }
 
 /// @param coordinates  of the column's foot below its middle

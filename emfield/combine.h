@@ -38,21 +38,37 @@ struct VoxelRay {
                         ///< is unknown
 };
 
+/// Start of the direct refracted ray, east-north-up at the emitter; not a unit vector.
 /// @param t_m  z of the voxel in the grid's frame
-EMSCAPE_HD inline VoxelRay voxelRay(const EmitterBeam& emitter, std::size_t column, float t_m) {
-  const ColumnGeometryView& g = emitter.geometry;
+EMSCAPE_HD inline Vec3f directRay(const ColumnGeometryView& g, std::size_t column, float t_m) {
   const float east = g.base_east_m[column] + t_m * g.axis_east[column];
   const float north = g.base_north_m[column] + t_m * g.axis_north[column];
   const float up = g.base_up_m[column] + t_m * g.axis_up[column] + g.lift_m[column];
-  const Vec3f ray{east, north, up};
+  return {east, north, up};
+}
+
+/// A direction of the emitter's east-north-up axes in the antenna's frame.
+EMSCAPE_HD inline Vec3f inAntennaFrame(const EmitterBeam& emitter, const Vec3f& direction) {
+  return {dot(direction, emitter.forward), dot(direction, emitter.right), dot(direction, emitter.up)};
+}
+
+/// @param t_m  z of the voxel in the grid's frame
+EMSCAPE_HD inline VoxelRay voxelRay(const EmitterBeam& emitter, std::size_t column, float t_m) {
+  const ColumnGeometryView& g = emitter.geometry;
+  const Vec3f ray = directRay(g, column, t_m);
 
   const float along_m = t_m - g.nearest_t_m[column];
   const float distance2 = g.offset2_m2[column] + along_m * along_m;
   constexpr float kMin2 = kMinDistance_m * kMinDistance_m;
   const float lit_w = t_m >= g.shadow_edge_m[column] ? emitter.eirp_over_4pi_w : 0.0f;
-  return {{dot(ray, emitter.forward), dot(ray, emitter.right), dot(ray, emitter.up)},
-          dot(ray, ray),
-          lit_w / (distance2 > kMin2 ? distance2 : kMin2)};
+  return {inAntennaFrame(emitter, ray), dot(ray, ray), lit_w / (distance2 > kMin2 ? distance2 : kMin2)};
+}
+
+/// Direction of a voxel's reflected ray in the antenna's frame, a unit vector.
+EMSCAPE_HD inline Vec3f reflectedDirection(const EmitterBeam& emitter, const ReflectedRay& reflected,
+                                           std::size_t column, float t_m) {
+  const Vec3f direct = directRay(emitter.geometry, column, t_m);
+  return inAntennaFrame(emitter, reflectedDirection(direct, reflected.depression_sine));
 }
 
 /// Power density (W/m2) of one emitter at the voxel at z = t_m of a column, without the excess loss of its
@@ -71,7 +87,27 @@ EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, std::size_t
   return ray.isotropic_wm2 * amplitude * amplitude;
 }
 
-/// The same for a voxel outside the pattern's lobe.
+/// The same of the direct and the reflected ray.
+template <scenario::PatternKind kind>
+EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, const ReflectedRayCode& code,
+                                         std::size_t column, float t_m) {
+  const VoxelRay ray = voxelRay(emitter, column, t_m);
+  const ReflectedRay reflected = reflectedRay(code);
+  const auto amplitude = [&](const Vec3f& direction) {
+    return scenario::amplitudeOf<kind, true>(emitter.pattern, direction, emitter.steer_u, emitter.steer_v);
+  };
+  const float direct = amplitude(ray.direction * (1 / std::sqrt(ray.length2_m2 + 1e-12f)));
+  return ray.isotropic_wm2 *
+         powerOfBothRays(reflected, direct, amplitude(reflectedDirection(emitter, reflected, column, t_m)));
+}
+
+/// True if an emitter's power density depends on the pattern along the reflected ray: between isotropic
+/// antennas the excess contains it.
+EMSCAPE_HD inline bool weighsReflectedRays(const EmitterBeam& emitter) {
+  return emitter.geometry.reflected != nullptr && emitter.pattern.kind != scenario::PatternKind::isotropic;
+}
+
+/// The power density of the direct ray to a voxel outside the pattern's lobe.
 /// @param depth  below 0 where it does (scenario::depthInLobe)
 EMSCAPE_HD inline float sideLobePowerDensity_wm2(const EmitterBeam& emitter, std::size_t column, float t_m,
                                                  float& depth) {

@@ -31,18 +31,21 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   locateColumns(station, columns, coordinates);
   shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
   excess_.clear();
+  reflected_.clear();
   unknown_columns_ = 0;
   warnings_ = 0;
-  const bool has_shadow = propagation::modelInfo(emitter.propagation.model).casts_shadow;
+  const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+  const bool has_shadow = model.casts_shadow;
   std::optional<EmitterExcess> excess;
   if (hasExcess(scenario, emitter)) {
     excess = makeExcess(scenario, emitter, station, terrain, columns, resolution);
     excess_.resize(column_count_ * columns.t_m.size());
+    if (model.has_reflected_ray) reflected_.resize(excess_.size());
   }
   times.fan_ms += watch.lap_ms();
   const double tilt_m = tiltOf(columns);
   const ExcessGrid grid = excessGrid(columns, resolution);
-  const ExcessOutput out{excess_.data(), shadow_edge_m_.data()};
+  const ExcessOutput out{excess_.data(), reflected_.data(), shadow_edge_m_.data()};
   const bool needs_terrain = excess && excess->needsTerrain();
   if (excess && !needs_terrain) {
     warnings_ |= fillExcessCpu(*excess, station, grid, {}, out);
@@ -72,9 +75,10 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
 
 std::size_t EmitterGeometry::bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                      std::size_t columns, int layers) {
-  const std::size_t of_voxels =
-      hasExcess(scenario, emitter) ? static_cast<std::size_t>(layers) * sizeof(ExcessCode) : 0;
-  return columns * (kBytesPerColumn + of_voxels);
+  std::size_t of_voxel = hasExcess(scenario, emitter) ? sizeof(ExcessCode) : 0;
+  if (propagation::modelInfo(emitter.propagation.model).has_reflected_ray)
+    of_voxel += sizeof(ReflectedRayCode);
+  return columns * (kBytesPerColumn + static_cast<std::size_t>(layers) * of_voxel);
 }
 
 void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns,
@@ -92,7 +96,8 @@ void EmitterGeometry::locateColumns(const Station& station, const GridColumns& c
 
 ColumnGeometryView EmitterGeometry::view() const {
   return columnGeometryView(arrays_.data(), column_count_, shadow_edge_m_.data(),
-                            excess_.empty() ? nullptr : excess_.data());
+                            excess_.empty() ? nullptr : excess_.data(),
+                            reflected_.empty() ? nullptr : reflected_.data());
 }
 
 bool EmitterGeometry::isUnknown(std::size_t column) const {

@@ -37,7 +37,8 @@ class EmitterGeometry {
   static std::size_t bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                              std::size_t columns, int layers);
   std::size_t bytes() const {
-    return (arrays_.size() + shadow_edge_m_.size()) * sizeof(float) + excess_.size() * sizeof(ExcessCode);
+    return (arrays_.size() + shadow_edge_m_.size()) * sizeof(float) + excess_.size() * sizeof(ExcessCode) +
+           reflected_.size() * sizeof(ReflectedRayCode);
   }
 
  private:
@@ -47,7 +48,8 @@ class EmitterGeometry {
   std::size_t column_count_ = 0;
   std::vector<float> arrays_;  ///< kColumnNumbers x column_count_
   std::vector<float> shadow_edge_m_;
-  std::vector<ExcessCode> excess_;  ///< columns x layers, or empty
+  std::vector<ExcessCode> excess_;           ///< columns x layers, or empty
+  std::vector<ReflectedRayCode> reflected_;  ///< the same
   long long unknown_columns_ = 0;
   unsigned warnings_ = 0;
 };

@@ -30,7 +30,8 @@ unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
       bool is_filled[kBlock];
       for (int i = 0; i < count; ++i) {
         unsigned of_column = 0;
-        is_filled[i] = task.fillColumn(static_cast<std::size_t>(first + i), scratch, of_column);
+        is_filled[i] =
+            task.fillColumn(static_cast<std::size_t>(first + i), scratch, out.reflected, of_column);
         if (!is_filled[i]) continue;
         if (of_column & kMissingTerrain) out.markUnknown(static_cast<std::size_t>(first + i));
         warnings |= of_column;

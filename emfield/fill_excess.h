@@ -9,6 +9,7 @@
 #include "emfield/fan_heights.h"
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
+#include "emfield/two_rays.h"
 #include "emscape/base/host_device.h"
 
 namespace emscape::emfield {
@@ -85,13 +86,23 @@ struct ExcessTask {
   }
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
+  /// @param reflected  dense order; receives the column's reflected rays if the model has any
   /// @return false if the column is outside the fan's intervals; `warnings` receives the bits of the model
-  EMSCAPE_HD bool fillColumn(std::size_t c, const ExcessScratch& scratch, unsigned& warnings) const {
+  EMSCAPE_HD bool fillColumn(std::size_t c, const ExcessScratch& scratch, ReflectedRayCode* reflected,
+                             unsigned& warnings) const {
     for (int segment = 0; segment < grid.segments; ++segment) {
       ExcessColumn part;
       if (!readSegment(c, segment, scratch, part)) return false;
-      float* const excess_db = scratch.excess_db + grid.firstLayer(segment);
-      warnings |= model(part, scratch, excess_db);
+      const int first = grid.firstLayer(segment);
+      float* const excess_db = scratch.excess_db + first;
+      if constexpr (propagation::Reflects<Model>::value) {
+        for (int k = 0; k < part.count; ++k) {
+          reflected[static_cast<std::size_t>(first + k) * grid.column_count + c] =
+              reflectedRayCode(model.reflectedRay(part.range_m, part.height_msl_m[k], excess_db[k]));
+        }
+      } else {
+        warnings |= model(part, scratch, excess_db);
+      }
       addAir(part, 0, part.count, excess_db);
     }
     return true;
@@ -101,7 +112,8 @@ struct ExcessTask {
 /// Arrays of the results: dense order, the columns of a layer one after another.
 struct ExcessOutput {
   ExcessCode* codes = nullptr;
-  float* shadow_edge_m = nullptr;  ///< set to NaN where terrain is missing: the column is unknown
+  ReflectedRayCode* reflected = nullptr;  ///< of models with a reflected ray
+  float* shadow_edge_m = nullptr;         ///< set to NaN where terrain is missing: the column is unknown
 
   EMSCAPE_HD void markUnknown(std::size_t column) const { shadow_edge_m[column] = NAN; }
 };

@@ -29,6 +29,12 @@ enum class RadarMeasure {
 struct JammerAtRadar {
   Vec3f direction;               ///< unit vector along the ray's start, in the frame of the radar's look
   float boresight_to_noise = 0;  ///< jamming over noise at the receiver if the beam pointed there
+  /// True if the jammer's model has a reflected ray. Then boresight_to_noise has the jammer's largest gain
+  /// along both rays, and its pattern's amplitudes along them are those below.
+  bool has_reflected_ray = false;
+  ReflectedRay reflected = {};
+  Vec3f reflected_direction = {};  ///< as `direction`
+  float direct_amplitude = 1, reflected_amplitude = 1;
 };
 
 /// A radar's part in a channel, as plain data.
@@ -56,6 +62,20 @@ EMSCAPE_HD inline float echoToNoiseRoot(const RadarTask& task, const EmitterBeam
   return task.echo_root * ray.isotropic_wm2 * amplitude * amplitude;
 }
 
+/// The same with the reflected ray, which the echo takes too: with both rays' amplitude F there and F back.
+template <scenario::PatternKind kind>
+EMSCAPE_HD inline float echoToNoiseRoot(const RadarTask& task, const EmitterBeam& beam,
+                                        const ReflectedRayCode& code, std::size_t column, float t_m) {
+  const VoxelRay ray = voxelRay(beam, column, t_m);
+  const ReflectedRay reflected = reflectedRay(code);
+  const Aim aim = aimAt(task.look, ray.direction);
+  const Vec3f unit = ray.direction * (1 / std::sqrt(ray.length2_m2 + 1e-12f));
+  const Vec3f below = reflectedDirection(beam, reflected, column, t_m);
+  const float power = powerOfBothRays(reflected, amplitudeTowards<kind, true>(beam.pattern, aim, unit),
+                                      amplitudeTowards<kind, true>(beam.pattern, aim, below));
+  return task.echo_root * ray.isotropic_wm2 * power;
+}
+
 /// One jammer's power over the noise while the radar looks at the voxel.
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline float jammingToNoise(const RadarTask& task, const EmitterBeam& beam,
@@ -63,6 +83,17 @@ EMSCAPE_HD inline float jammingToNoise(const RadarTask& task, const EmitterBeam&
   const Aim aim = aimAt(task.look, voxelRay(beam, column, t_m).direction);
   const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, jammer.direction);
   return jammer.boresight_to_noise * amplitude * amplitude;
+}
+
+/// The same of a jammer with a reflected ray.
+template <scenario::PatternKind kind>
+EMSCAPE_HD inline float jammingOfBothRaysToNoise(const RadarTask& task, const EmitterBeam& beam,
+                                                 const JammerAtRadar& jammer, std::size_t column, float t_m) {
+  const Aim aim = aimAt(task.look, voxelRay(beam, column, t_m).direction);
+  const float direct = amplitudeTowards<kind, true>(beam.pattern, aim, jammer.direction);
+  const float reflected = amplitudeTowards<kind, true>(beam.pattern, aim, jammer.reflected_direction);
+  return jammer.boresight_to_noise * powerOfBothRays(jammer.reflected, jammer.direct_amplitude * direct,
+                                                     jammer.reflected_amplitude * reflected);
 }
 
 /// Adds a radar's echo to a channel's accumulator. Without branches, for SIMD.
@@ -110,19 +141,29 @@ struct RadarPass {
   const float* t_m = nullptr;        ///< z of each layer
   const int* first_row_k = nullptr;  ///< for each y the lowest layer with a voxel above ground; null: 0
   float* accumulator = nullptr;      ///< dense order
+  bool has_reflected_rays = false;   ///< some ray, also of a jammer, has a reflected one that is weighed
 };
 
 /// One voxel of a pass. The CPU does the same row by row.
-template <scenario::PatternKind kind>
+/// @tparam kReflected  false: for passes without reflected rays
+template <scenario::PatternKind kind, bool kReflected = true>
 EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k) {
   const RadarTask& task = pass.task;
   const std::size_t voxel = static_cast<std::size_t>(k) * pass.dims.x * pass.dims.y + column;
   const float t_m = pass.t_m[k];
-  float root = echoToNoiseRoot<kind>(task, pass.beam, column, t_m);
+  float root;
+  if (kReflected && weighsReflectedRays(pass.beam)) {
+    root = echoToNoiseRoot<kind>(task, pass.beam, pass.beam.geometry.reflected[voxel], column, t_m);
+  } else {
+    root = echoToNoiseRoot<kind>(task, pass.beam, column, t_m);
+  }
   if (pass.beam.geometry.excess != nullptr) root *= excessFactor(pass.beam.geometry.excess[voxel]);
   float jamming = 0;
   for (int n = 0; n < task.jammer_count; ++n) {
-    jamming += jammingToNoise<kind>(task, pass.beam, task.jammers[n], column, t_m);
+    const JammerAtRadar& jammer = task.jammers[n];
+    jamming += kReflected && jammer.has_reflected_ray
+                   ? jammingOfBothRaysToNoise<kind>(task, pass.beam, jammer, column, t_m)
+                   : jammingToNoise<kind>(task, pass.beam, jammer, column, t_m);
   }
   pass.accumulator[voxel] = withRadar(task, root, jamming, pass.accumulator[voxel]);
 }
@@ -143,7 +184,9 @@ struct RadarShare {
 /// @param task  the pass over the other emitters
 inline RadarPass radarPass(const RadarShare& share, const EmitterBeam& beam, const CombineTask& task,
                            float* accumulator) {
-  RadarPass pass{share.task, beam, task.dims, task.t_m, task.first_row_k, accumulator};
+  RadarPass pass{
+      share.task, beam, task.dims, task.t_m, task.first_row_k, accumulator, weighsReflectedRays(beam)};
+  for (const JammerAtRadar& jammer : share.jammers) pass.has_reflected_rays |= jammer.has_reflected_ray;
   pass.beam.forward = share.forward;
   pass.beam.right = share.right;
   pass.beam.up = share.up;

@@ -18,14 +18,24 @@ RadarShare radarShare(const scenario::Scenario& scenario, int radar, const Emitt
   share.forward = vecCast<float>(frame.forward);
   share.right = vecCast<float>(frame.right);
   share.up = vecCast<float>(frame.up);
+  const auto inFrame = [&frame](const Vec3d& ray) {
+    return vecCast<float>(Vec3d{dot(ray, frame.forward), dot(ray, frame.right), dot(ray, frame.up)});
+  };
   for (const JammerPath& jammer : jammers) {
-    const Vec3d& ray = jammer.direction;
     const double to_noise = jammer.power_density_wm2 *
                             jammingToNoise_m2_w(scenario.emitters[radar], scenario.emitters[jammer.jammer]);
     if (!(to_noise > 0)) continue;
-    share.jammers.push_back(
-        {vecCast<float>(Vec3d{dot(ray, frame.forward), dot(ray, frame.right), dot(ray, frame.up)}),
-         static_cast<float>(to_noise)});
+    JammerAtRadar received;
+    received.direction = inFrame(jammer.direction);
+    received.boresight_to_noise = static_cast<float>(to_noise);
+    if (const auto& reflected = jammer.reflected) {
+      received.has_reflected_ray = true;
+      received.reflected = reflected->ray;
+      received.reflected_direction = inFrame(reflected->direction);
+      received.direct_amplitude = static_cast<float>(reflected->direct_amplitude);
+      received.reflected_amplitude = static_cast<float>(reflected->reflected_amplitude);
+    }
+    share.jammers.push_back(received);
   }
   return share;
 }

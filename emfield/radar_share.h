@@ -1,6 +1,7 @@
 /// A radar's part in a channel from the state of its beam and the jammers that it receives.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "emfield/radar_product.h"
@@ -14,8 +15,18 @@ struct JammerPath {
   int jammer = 0;  ///< index of the emitter
   /// Unit vector from the radar along the start of the refracted ray to the jammer, east-north-up.
   Vec3d direction;
-  double power_density_wm2 =
-      0;  ///< at the radar, with the jammer's antenna gain, propagation model and losses
+  /// At the radar, with the jammer's antenna gain, propagation model and losses; with `reflected` the gain is
+  /// the largest of the pattern along both rays.
+  double power_density_wm2 = 0;
+
+  /// The reflected ray of models that have one.
+  struct Reflected {
+    ReflectedRay ray;
+    Vec3d direction;  ///< from the radar, as that of the direct ray
+    /// Amplitudes of the jammer's pattern, with the field's sign.
+    double direct_amplitude = 1, reflected_amplitude = 1;
+  };
+  std::optional<Reflected> reflected;
 };
 
 /// A radar's part in a channel at one instant.

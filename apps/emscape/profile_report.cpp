@@ -34,18 +34,25 @@ Json toJson(const PathEnd& end, double ground_msl_m) {
 
 Json geometryJson(const PathBudget& budget) {
   const emfield::PathGeometry& geometry = budget.geometry;
-  return {{"range_m", budget.profile.range_m},
-          {"slant_range_m", geometry.slant_range_m},
-          {"azimuth_deg", radToDeg(budget.profile.azimuth_rad)},
-          {"straight_elevation_deg", radToDeg(geometry.straight_elevation_rad)},
-          {"launch_elevation_deg", radToDeg(geometry.launch_elevation_rad)},
-          {"k_factor", budget.k_factor},
-          {"effective_earth_radius_m", budget.profile.effective_earth_radius_m},
-          {"smooth_horizon_m", geometry.horizon_range_m},
-          {"far_field_m", geometry.far_field_m},
-          {"off_axis_deg", radToDeg(budget.pointing.off_axis_rad)},
-          {"antenna_azimuth_deg", radToDeg(budget.pointing.azimuth_rad)},
-          {"antenna_elevation_deg", radToDeg(budget.pointing.elevation_rad)}};
+  Json json{{"range_m", budget.profile.range_m},
+            {"slant_range_m", geometry.slant_range_m},
+            {"azimuth_deg", radToDeg(budget.profile.azimuth_rad)},
+            {"straight_elevation_deg", radToDeg(geometry.straight_elevation_rad)},
+            {"launch_elevation_deg", radToDeg(geometry.launch_elevation_rad)},
+            {"k_factor", budget.k_factor},
+            {"effective_earth_radius_m", budget.profile.effective_earth_radius_m},
+            {"smooth_horizon_m", geometry.horizon_range_m},
+            {"far_field_m", geometry.far_field_m},
+            {"off_axis_deg", radToDeg(budget.pointing.off_axis_rad)},
+            {"antenna_azimuth_deg", radToDeg(budget.pointing.azimuth_rad)},
+            {"antenna_elevation_deg", radToDeg(budget.pointing.elevation_rad)}};
+  if (const auto& reflected = budget.pointing.reflected) {
+    const auto depression_sine = static_cast<double>(budget.excess.reflection->depression_sine);
+    json["reflected_launch_elevation_deg"] = -radToDeg(std::asin(depression_sine));
+    json["reflected_off_axis_deg"] = radToDeg(reflected->off_axis_rad);
+    json["reflected_pattern_db"] = number(reflected->pattern_db);
+  }
+  return json;
 }
 
 Json toJson(const PathObstacle& obstacle) {

@@ -24,7 +24,7 @@ DatasetCheck checkTwoRay(const std::filesystem::path& file) {
         reflectedPath(parameters.effective_earth_radius_m, cases.number(i, "d_m"), cases.number(i, "h1_m"),
                       cases.number(i, "h2_m"));
     const int line = cases.location(i).line;
-    factor.compare(20 * std::log10(interferenceFactor(model, path, 1.0)),
+    factor.compare(20 * std::log10(interferenceFactor(model, path)),
                    cases.number(i, "F_dB_gamma_minus1_exact"), line);
     difference.compare(path.path_difference_m, cases.number(i, "R2_m") - cases.number(i, "R1_m"), line);
   }

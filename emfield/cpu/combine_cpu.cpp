@@ -18,6 +18,19 @@ __attribute__((always_inline)) inline void fillPiece(const EmitterBeam& emitter,
   for (int i = 0; i < row.count; ++i) out[i] = powerDensity_wm2<kind>(local, row.column + i, row.t_m);
 }
 
+/// Row of an emitter whose reflected rays are weighed.
+/// @param reflected  of the row's first voxel
+template <PatternKind kind>
+__attribute__((always_inline)) inline void fillBothRays(const EmitterBeam& emitter,
+                                                        const ReflectedRayCode* reflected, const Row& row,
+                                                        float* out) {
+  const EmitterBeam local = emitter;
+#pragma omp simd
+  for (int i = 0; i < row.count; ++i) {
+    out[i] = powerDensity_wm2<kind>(local, reflected[i], row.column + i, row.t_m);
+  }
+}
+
 /// Number of voxels tested together for being outside the lobe, where the pattern need not be evaluated: most
 /// are with a narrow beam.
 constexpr int kPiece = 64;
@@ -37,8 +50,12 @@ __attribute__((always_inline)) inline bool fillBesideLobe(const EmitterBeam& emi
   return inside > 0;
 }
 
+/// @param reflected  of the row's first voxel; null: reflected rays are not weighed
 template <PatternKind kind>
-__attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter, const Row& row, float* out) {
+__attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter,
+                                                   const ReflectedRayCode* reflected, const Row& row,
+                                                   float* out) {
+  if (reflected != nullptr) return fillBothRays<kind>(emitter, reflected, row, out);
   if (kind == PatternKind::isotropic || emitter.pattern.lobe_tangent == 0)
     return fillPiece<kind>(emitter, row, out);
   for (int first = 0; first < row.count; first += kPiece) {
@@ -47,34 +64,42 @@ __attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter, c
   }
 }
 
-EMSCAPE_SIMD_CLONES void isotropicRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::isotropic>(emitter, row, out);
+EMSCAPE_SIMD_CLONES void isotropicRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
+                                      const Row& row, float* out) {
+  fillRow<PatternKind::isotropic>(emitter, reflected, row, out);
 }
-EMSCAPE_SIMD_CLONES void gaussianRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::gaussian>(emitter, row, out);
+EMSCAPE_SIMD_CLONES void gaussianRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
+                                     const Row& row, float* out) {
+  fillRow<PatternKind::gaussian>(emitter, reflected, row, out);
 }
-EMSCAPE_SIMD_CLONES void separableRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::separable>(emitter, row, out);
+EMSCAPE_SIMD_CLONES void separableRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
+                                      const Row& row, float* out) {
+  fillRow<PatternKind::separable>(emitter, reflected, row, out);
 }
-EMSCAPE_SIMD_CLONES void phasedArrayRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::phased_array>(emitter, row, out);
+EMSCAPE_SIMD_CLONES void phasedArrayRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
+                                        const Row& row, float* out) {
+  fillRow<PatternKind::phased_array>(emitter, reflected, row, out);
 }
-EMSCAPE_SIMD_CLONES void gridRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::grid>(emitter, row, out);
+EMSCAPE_SIMD_CLONES void gridRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
+                                 const Row& row, float* out) {
+  fillRow<PatternKind::grid>(emitter, reflected, row, out);
 }
 
-void powerDensityRow(const EmitterBeam& emitter, const Row& row, float* out) {
+/// @param first  index of the row's first voxel
+void powerDensityRow(const EmitterBeam& emitter, const Row& row, std::size_t first, float* out) {
+  const ReflectedRayCode* const reflected =
+      weighsReflectedRays(emitter) ? emitter.geometry.reflected + first : nullptr;
   switch (emitter.pattern.kind) {
     case PatternKind::isotropic:
-      return isotropicRow(emitter, row, out);
+      return isotropicRow(emitter, reflected, row, out);
     case PatternKind::gaussian:
-      return gaussianRow(emitter, row, out);
+      return gaussianRow(emitter, reflected, row, out);
     case PatternKind::separable:
-      return separableRow(emitter, row, out);
+      return separableRow(emitter, reflected, row, out);
     case PatternKind::phased_array:
-      return phasedArrayRow(emitter, row, out);
+      return phasedArrayRow(emitter, reflected, row, out);
     case PatternKind::grid:
-      return gridRow(emitter, row, out);
+      return gridRow(emitter, reflected, row, out);
   }
 }
 
@@ -128,7 +153,7 @@ void startRow(const CombineTask& task, std::size_t channel, std::size_t first) {
 const float* powerOf(const CombineEmitter& emitter, const Row& row, std::size_t first, float* buffer) {
   float* const power_wm2 = emitter.power_wm2 != nullptr ? emitter.power_wm2 + first : buffer;
   if (emitter.power_is_known) return power_wm2;
-  powerDensityRow(emitter.beam, row, power_wm2);
+  powerDensityRow(emitter.beam, row, first, power_wm2);
   if (emitter.beam.geometry.excess != nullptr)
     applyExcess(emitter.beam.geometry.excess + first, row.count, power_wm2);
   return power_wm2;

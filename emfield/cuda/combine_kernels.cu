@@ -57,13 +57,42 @@ __device__ void fillLayers(const EmitterBeam& beam, std::size_t column, const fl
   }
 }
 
+/// The same of both rays.
+/// @param first   index of the lowest voxel of the column's layers
+/// @param stride  from one layer to the next
+/// @param count   layers that are in the grid
+template <PatternKind kind, int kLayers>
+__device__ void fillBothRays(const EmitterBeam& beam, std::size_t column, long long first, long long stride,
+                             int count, const float (&t_m)[kLayers], float (&power_density_wm2)[kLayers]) {
+#pragma unroll
+  for (int l = 0; l < kLayers; ++l) {
+    if (l >= count) break;
+    power_density_wm2[l] =
+        powerDensity_wm2<kind>(beam, beam.geometry.reflected[first + l * stride], column, t_m[l]);
+  }
+}
+
+template <bool kReflected, PatternKind kind, int kLayers>
+__device__ void fill(const EmitterBeam& beam, std::size_t column, long long first, long long stride,
+                     int count, const float (&t_m)[kLayers], float (&power_density_wm2)[kLayers]) {
+  if constexpr (kReflected && kind != PatternKind::isotropic) {
+    if (weighsReflectedRays(beam)) {
+      fillBothRays<kind>(beam, column, first, stride, count, t_m, power_density_wm2);
+      return;
+    }
+  }
+  fillLayers<kind>(beam, column, t_m, power_density_wm2);
+}
+
 /// A warp of a block processes neighbouring columns, the next one the layers above: they share the columns'
 /// numbers in the first-level cache. Few layers per thread also keep the code of the patterns short.
 constexpr int kWarp = 32;
 constexpr int kWarps = 8;
 
 /// A thread processes kLayers layers of a column.
-template <int kChannels, int kLayers, bool kDominant>
+/// @tparam kReflected  some members' reflected rays are weighed; a kernel of its own, because of its
+/// registers
+template <int kChannels, int kLayers, bool kDominant, bool kReflected>
 __global__ void __launch_bounds__(kWarp* kWarps)
     combineKernel(const __grid_constant__ Launch<kChannels> launch) {
   const int columns = launch.dims.x * launch.dims.y;
@@ -103,19 +132,24 @@ __global__ void __launch_bounds__(kWarp* kWarps)
     } else {
       switch (member.beam.pattern.kind) {
         case PatternKind::isotropic:
-          fillLayers<PatternKind::isotropic>(member.beam, column, t_m, power_density_wm2);
+          fill<kReflected, PatternKind::isotropic>(member.beam, column, first, columns, launch.dims.z - begin,
+                                                   t_m, power_density_wm2);
           break;
         case PatternKind::gaussian:
-          fillLayers<PatternKind::gaussian>(member.beam, column, t_m, power_density_wm2);
+          fill<kReflected, PatternKind::gaussian>(member.beam, column, first, columns, launch.dims.z - begin,
+                                                  t_m, power_density_wm2);
           break;
         case PatternKind::separable:
-          fillLayers<PatternKind::separable>(member.beam, column, t_m, power_density_wm2);
+          fill<kReflected, PatternKind::separable>(member.beam, column, first, columns, launch.dims.z - begin,
+                                                   t_m, power_density_wm2);
           break;
         case PatternKind::phased_array:
-          fillLayers<PatternKind::phased_array>(member.beam, column, t_m, power_density_wm2);
+          fill<kReflected, PatternKind::phased_array>(member.beam, column, first, columns,
+                                                      launch.dims.z - begin, t_m, power_density_wm2);
           break;
         case PatternKind::grid:
-          fillLayers<PatternKind::grid>(member.beam, column, t_m, power_density_wm2);
+          fill<kReflected, PatternKind::grid>(member.beam, column, first, columns, launch.dims.z - begin, t_m,
+                                              power_density_wm2);
           break;
       }
       if (member.beam.geometry.excess != nullptr) {
@@ -175,11 +209,15 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
   constexpr int kBlockLayers = kLayers * kWarps;
   const dim3 blocks(static_cast<unsigned>((task.dims.x * task.dims.y + kWarp - 1) / kWarp),
                     static_cast<unsigned>((task.dims.z + kBlockLayers - 1) / kBlockLayers));
+  bool has_reflected = false;
   const auto run = [&] {
-    combineKernel<kChannels, kLayers, kDominant><<<blocks, dim3(kWarp, kWarps), 0, stream>>>(launch);
+    const auto kernel = has_reflected ? combineKernel<kChannels, kLayers, kDominant, true>
+                                      : combineKernel<kChannels, kLayers, kDominant, false>;
+    kernel<<<blocks, dim3(kWarp, kWarps), 0, stream>>>(launch);
     checkLaunch("combine");
     launch.keep = true;
     launch.member_count = 0;
+    has_reflected = false;
   };
   for (const CombineEmitter& emitter : task.emitters) {
     Member<kChannels> member{
@@ -194,6 +232,7 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
     }
     if (!takes_part) continue;
     launch.members[launch.member_count++] = member;
+    has_reflected = has_reflected || weighsReflectedRays(emitter.beam);
     if (launch.member_count == Launch<kChannels>::kMembers) run();
   }
   if (launch.member_count > 0 || !launch.keep) run();

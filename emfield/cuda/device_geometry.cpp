@@ -73,7 +73,8 @@ ColumnGeometryView DeviceGeometry::view(int slot) const {
   const float* numbers = slots_[slot].numbers.data();
   const std::size_t columns = static_cast<std::size_t>(columns_.count);
   return columnGeometryView(numbers, columns, numbers + kColumnNumbers * columns,
-                            slots_[slot].has_excess ? slots_[slot].excess.data() : nullptr);
+                            slots_[slot].has_excess ? slots_[slot].excess.data() : nullptr,
+                            slots_[slot].has_reflected ? slots_[slot].reflected.data() : nullptr);
 }
 
 /// The fan reaches every column as soon as it reaches those at the grid's border.
@@ -83,7 +84,9 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   work.station =
       makeStation(request.state.position, request.state.height_msl_m, scenario.atmosphere.k_factor);
   const scenario::Emitter& emitter = scenario.emitters[request.emitter];
-  work.has_shadow = propagation::modelInfo(emitter.propagation.model).casts_shadow;
+  const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+  work.has_shadow = model.casts_shadow;
+  work.has_reflected_ray = model.has_reflected_ray;
   if (hasExcess(scenario, emitter)) {
     work.model =
         makeExcess(scenario, emitter, work.station, setup_.terrain.get(), setup_.columns, setup_.resolution);
@@ -165,8 +168,11 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     task.numbers = atLeast(slot.numbers, (kColumnNumbers + 1) * columns);
     task.shadow_edge_m = task.numbers + kColumnNumbers * columns;
     slot.has_excess = works[r].model.has_value();
+    slot.has_reflected = works[r].has_reflected_ray;
     if (!slot.has_excess) continue;
-    works[r].excess.out = {atLeast(slot.excess, columns * static_cast<std::size_t>(columns_.layers)),
+    const std::size_t voxels = columns * static_cast<std::size_t>(columns_.layers);
+    works[r].excess.out = {atLeast(slot.excess, voxels),
+                           slot.has_reflected ? atLeast(slot.reflected, voxels) : nullptr,
                            task.shadow_edge_m};
   }
   clock.begin(stream);
@@ -321,7 +327,9 @@ std::size_t DeviceGeometry::bytes() const {
                       bytesOf(sectors_) + bytesOf(ranges_m_) + bytesOf(used_ranges_) + bytesOf(fan_indices_) +
                       bytesOf(terms_) + bytesOf(samples_) + bytesOf(diffraction_) + bytesOf(blocks_) +
                       bytesOf(sums_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) + bytesOf(model_tables_);
-  for (const Slot& slot : slots_) bytes += bytesOf(slot.numbers) + bytesOf(slot.excess);
+  for (const Slot& slot : slots_) {
+    bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.reflected);
+  }
   return bytes + (setup_.terrain == nullptr ? 0 : postBytes(setup_.terrain->view()));
 }
 

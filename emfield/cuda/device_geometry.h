@@ -39,7 +39,7 @@ class DeviceGeometry {
     LocateTask task;
     std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on
     ExcessOutputs excess;
-    bool has_shadow = false;
+    bool has_shadow = false, has_reflected_ray = false;
 
     bool needsFan() const { return has_shadow || (model && model->needsTerrain()); }
   };
@@ -70,7 +70,8 @@ class DeviceGeometry {
   struct Slot {
     emscape::cuda::Buffer<float> numbers;  ///< of the columns, then the shadow's edges
     emscape::cuda::Buffer<ExcessCode> excess;
-    bool has_excess = false;
+    emscape::cuda::Buffer<ReflectedRayCode> reflected;
+    bool has_excess = false, has_reflected = false;
   };
   std::vector<Slot> slots_;
 

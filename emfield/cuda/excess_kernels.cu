@@ -280,7 +280,7 @@ __global__ void __launch_bounds__(kThreads)
   const ExcessScratch scratch = memory.scratch(thread);
   for (std::size_t c = thread; c < grid.column_count; c += threads) {
     unsigned warnings = 0;
-    if (!task.fillColumn(c, scratch, warnings)) continue;
+    if (!task.fillColumn(c, scratch, to.out.reflected, warnings)) continue;
     note(to, static_cast<int>(c), warnings);
     for (int k = 0; k < grid.layers; ++k) {
       to.out.codes[k * grid.column_count + c] = excessCode(scratch.excess_db[k]);

@@ -30,8 +30,8 @@ __global__ void locateKernel(const LocateTask* tasks, DeviceColumns columns) {
   columnGeometry(task.station, column, point, columns.middle_m, task.numbers + c, columns.count);
   task.shadow_edge_m[c] = -HUGE_VALF;
 
-  const ColumnGeometryView numbers =
-      columnGeometryView(task.numbers, static_cast<std::size_t>(columns.count), task.shadow_edge_m, nullptr);
+  const ColumnGeometryView numbers = columnGeometryView(task.numbers, static_cast<std::size_t>(columns.count),
+                                                        task.shadow_edge_m, nullptr, nullptr);
   const int near = nearVoxels(numbers, c, columns.t_m, columns.layers, task.near2_m2);
   if (near > 0) atomicAdd(&task.counts->near_voxels, static_cast<unsigned long long>(near));
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "emfield/combine.h"
+#include "emfield/two_rays.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_budget.h"
@@ -50,7 +51,8 @@ std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int rada
     const Station jammer_station = makeStation(from.position, from.height_msl_m, k_factor);
     Vec3d ray = lineBetween(station, from.position);
     const double level_m = std::hypot(ray.x, ray.y);
-    JammerPath jammer{j, {}, 0};
+    JammerPath jammer;
+    jammer.jammer = j;
     const auto alone = [&] {
       return freeSpaceDensity_wm2(scenario.emitters[j], from.beam, lineBetween(jammer_station, at.position));
     };
@@ -62,6 +64,12 @@ std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int rada
                                              scenario.emitters[j].propagation.model, terrain, resolution);
         jammer.power_density_wm2 = dbToRatio(budget.find("power_density_dbwm2")->value);
         ray.z += refractionLift_m(station, budget.profile.range_m, level_m);
+        if (const auto& reflection = budget.excess.reflection) {
+          jammer.power_density_wm2 = dbToRatio(budget.boresight_dbwm2);
+          jammer.reflected = {
+              *reflection, vecCast<double>(reflectedDirection(vecCast<float>(ray), reflection->arrival_sine)),
+              budget.pointing.amplitude, budget.pointing.reflected->amplitude};
+        }
       } catch (const Error& error) {
         const std::string message = fmt::format("jammer '{}' to radar '{}': {}", scenario.emitters[j].name,
                                                 scenario.emitters[radar].name, error.message());

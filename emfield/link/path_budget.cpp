@@ -14,6 +14,7 @@
 #include "emfield/radar/receiver.h"
 #include "emfield/station.h"
 #include "emfield/terrain_fan.h"
+#include "emfield/two_rays.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/field_solver.h"
 
@@ -41,18 +42,31 @@ double elevationOf_rad(const Vec3d& direction) {
   return std::atan2(direction.z, std::hypot(direction.x, direction.y));
 }
 
-/// @param ray  start of the refracted ray, east-north-up
-PathPointing pointingOf(const Emitter& emitter, const scenario::BeamPose& beam, const Vec3d& ray) {
+/// @param ray  its start, east-north-up
+RayPointing pointingOf(const Emitter& emitter, const scenario::BeamPose& beam, const Vec3d& ray) {
   const Vec3d unit = ray * (1 / length(ray));
   const Vec3d direction{dot(unit, beam.forward), dot(unit, beam.right), dot(unit, beam.up)};
-  PathPointing pointing;
+  RayPointing pointing;
   pointing.azimuth_rad = std::atan2(direction.y, direction.x);
   pointing.elevation_rad = std::atan2(direction.z, std::hypot(direction.x, direction.y));
   const double level2 = 1 - beam.steer_u * beam.steer_u - beam.steer_v * beam.steer_v;
   const Vec3d axis{std::sqrt(std::max(level2, 0.0)), beam.steer_u, beam.steer_v};
   pointing.off_axis_rad = std::atan2(length(cross(direction, axis)), dot(direction, axis));
-  pointing.pattern_db =
-      20 * std::log10(emitter.antenna->amplitudeTowards(direction, beam.steer_u, beam.steer_v));
+  pointing.amplitude = emitter.antenna->signedAmplitudeTowards(direction, beam.steer_u, beam.steer_v);
+  pointing.pattern_db = 20 * std::log10(std::abs(pointing.amplitude));
+  return pointing;
+}
+
+/// The direct ray and, where there is one, the reflected ray.
+/// @param ray  start of the refracted direct ray, east-north-up
+PathPointing pointingOf(const Emitter& emitter, const scenario::BeamPose& beam, const Vec3d& ray,
+                        const std::optional<propagation::PathReflection>& reflection) {
+  PathPointing pointing;
+  static_cast<RayPointing&>(pointing) = pointingOf(emitter, beam, ray);
+  if (reflection) {
+    const Vec3f below = reflectedDirection(vecCast<float>(ray), reflection->depression_sine);
+    pointing.reflected = pointingOf(emitter, beam, vecCast<double>(below));
+  }
   return pointing;
 }
 
@@ -74,7 +88,7 @@ double spreading_dbm2(const PathGeometry& geometry) {
   return -ratioToDb(4 * kPi * distance_m * distance_m);
 }
 
-/// Power density at the path's end if the antenna radiated as on its boresight.
+/// Power density at the path's end if the antenna radiated as on its boresight along every ray.
 double boresightDensity_dbwm2(const Emitter& emitter, const PathBudget& budget) {
   return ratioToDb(emitter.power_w) - emitter.losses_db + emitter.antenna->gain_dbi +
          spreading_dbm2(budget.geometry) - budget.excess.loss_db;
@@ -164,6 +178,20 @@ std::vector<BudgetTerm> termsOf(const scenario::Snapshot& snapshot, int emitter_
     terms.push_back({part.key + "_db", part.label, -part.loss_db, "dB", toString(budget.model)});
     level_db -= part.loss_db;
   }
+  if (const auto& reflected = budget.pointing.reflected) {
+    const PathPointing& direct = budget.pointing;
+    const double both_rays =
+        static_cast<double>(powerOfBothRays(*budget.excess.reflection, static_cast<float>(direct.amplitude),
+                                            static_cast<float>(reflected->amplitude)));
+    const double weighed_db = ratioToDb(both_rays) - direct.pattern_db;
+    terms.push_back(
+        {"reflected_ray_db", "reflected ray weighed by the antenna pattern", weighed_db, "dB",
+         fmt::format("the interference with {:.2f} dB along the reflected ray, {:.2f} deg below the "
+                     "horizontal, in place of {:.2f} dB",
+                     reflected->pattern_db, radToDeg(std::asin(budget.excess.reflection->depression_sine)),
+                     direct.pattern_db)});
+    level_db += weighed_db;
+  }
   terms.push_back({"power_density_dbwm2", "power density", level_db, "dBW/m2", "", Kind::sum});
   terms.push_back({"field_strength_dbuvm", "field strength (RMS)",
                    quantityOf(Quantity::field_strength_dbuvm, scenario, emitter_index, level_db), "dBuV/m",
@@ -224,9 +252,10 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   const double aperture_m = emitter.antenna->apertureDimension_m(wavelength);
   geometry.far_field_m = 2 * aperture_m * aperture_m / wavelength;
 
-  budget.pointing = pointingOf(emitter, state.beam, ray);
   budget.obstacles = pathObstacles(profile, wavelength);
   budget.excess = pathExcess(scenario, by_model, profile, terrain, resolution);
+  budget.pointing = pointingOf(emitter, state.beam, ray, budget.excess.reflection);
+  budget.boresight_dbwm2 = boresightDensity_dbwm2(emitter, budget);
   budget.warnings = budget.excess.warnings;
   if (geometry.slant_range_m < geometry.far_field_m) {
     budget.warnings.push_back(
@@ -237,8 +266,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   }
   std::optional<RadarAtPoint> radar;
   if (emitter.kind == scenario::EmitterKind::radar && state.active) {
-    radar = radarAtPoint(snapshot, emitter_index, ray, boresightDensity_dbwm2(emitter, budget), terrain,
-                         resolution);
+    radar = radarAtPoint(snapshot, emitter_index, ray, budget, terrain, resolution);
   }
   budget.terms = termsOf(snapshot, emitter_index, budget, radar);
   budget.verdict = verdictOf(budget);

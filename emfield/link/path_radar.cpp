@@ -1,11 +1,13 @@
 #include "emfield/link/path_radar.h"
 
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "emfield/link/jammers.h"
 #include "emfield/products.h"
 #include "emfield/radar/receiver.h"
+#include "emfield/two_rays.h"
 #include "emscape/base/units.h"
 
 namespace emscape::emfield {
@@ -16,12 +18,13 @@ using scenario::Quantity;
 
 class RadarPoint {
  public:
-  RadarPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray, double boresight_dbwm2)
+  RadarPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray, const PathBudget& path)
       : snapshot_(snapshot),
         scenario_(*snapshot.scenario),
         radar_(radar),
         ray_(ray * (1 / length(ray))),
-        boresight_wm2_(dbToRatio(boresight_dbwm2)) {}
+        reflection_(path.excess.reflection),
+        boresight_wm2_(dbToRatio(path.boresight_dbwm2)) {}
 
   /// Accumulated value of a quantity's channel for this radar alone.
   double accumulated(const Channel& channel, const std::vector<JammerPath>& jammers) const {
@@ -33,39 +36,58 @@ class RadarPoint {
       task = plan.radars.front();
     }
     const RadarShare share = radarShare(scenario_, radar_, snapshot_.emitters[radar_], task, jammers);
-    const Vec3f direction =
-        vecCast<float>(Vec3d{dot(ray_, vecCast<double>(share.forward)),
-                             dot(ray_, vecCast<double>(share.right)), dot(ray_, vecCast<double>(share.up))});
+    const auto inFrame = [&share](const Vec3d& ray) {
+      return vecCast<float>(Vec3d{dot(ray, vecCast<double>(share.forward)),
+                                  dot(ray, vecCast<double>(share.right)),
+                                  dot(ray, vecCast<double>(share.up))});
+    };
+    const Vec3f direction = inFrame(ray_);
     const Aim aim = aimAt(share.task.look, direction);
     const double pattern = amplitude(aim, direction);
+    double pattern_power = pattern * pattern;
+    if (reflection_) {
+      const Vec3f below = reflectedDirection(vecCast<float>(ray_), reflection_->depression_sine);
+      pattern_power = ofBothRays(*reflection_, pattern, amplitude(aim, inFrame(vecCast<double>(below))));
+    }
     double jamming = 0;
     for (const JammerAtRadar& jammer : share.jammers) {
       const double toward_jammer = amplitude(aim, jammer.direction);
-      jamming += static_cast<double>(jammer.boresight_to_noise) * toward_jammer * toward_jammer;
+      const double received =
+          jammer.has_reflected_ray
+              ? ofBothRays(jammer.reflected, static_cast<double>(jammer.direct_amplitude) * toward_jammer,
+                           static_cast<double>(jammer.reflected_amplitude) *
+                               amplitude(aim, jammer.reflected_direction))
+              : toward_jammer * toward_jammer;
+      jamming += static_cast<double>(jammer.boresight_to_noise) * received;
     }
-    const double root = static_cast<double>(task.echo_root) * boresight_wm2_ * pattern * pattern;
+    const double root = static_cast<double>(task.echo_root) * boresight_wm2_ * pattern_power;
     return static_cast<double>(
         withRadar(share.task, static_cast<float>(root), static_cast<float>(jamming), 0));
   }
 
  private:
   double amplitude(const Aim& aim, const Vec3f& direction) const {
-    return scenario_.emitters[radar_].antenna->amplitudeTowards(vecCast<double>(turnedBy(aim, direction)),
-                                                                static_cast<double>(aim.steer_u),
-                                                                static_cast<double>(aim.steer_v));
+    return scenario_.emitters[radar_].antenna->signedAmplitudeTowards(
+        vecCast<double>(turnedBy(aim, direction)), static_cast<double>(aim.steer_u),
+        static_cast<double>(aim.steer_v));
+  }
+  static double ofBothRays(const ReflectedRay& ray, double direct, double reflected) {
+    return static_cast<double>(
+        powerOfBothRays(ray, static_cast<float>(direct), static_cast<float>(reflected)));
   }
 
   const scenario::Snapshot& snapshot_;
   const scenario::Scenario& scenario_;
   int radar_;
   Vec3d ray_;
+  std::optional<propagation::PathReflection> reflection_;
   double boresight_wm2_;
 };
 
 }  // namespace
 
 RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray,
-                          double boresight_dbwm2, const scenario::Terrain* terrain,
+                          const PathBudget& path, const scenario::Terrain* terrain,
                           const FanResolution& resolution) {
   Channel channel;
   channel.emitters = {radar};
@@ -75,7 +97,7 @@ RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const V
   }
   const std::vector<JammerPath> jammers =
       jammerPaths(snapshot, radar, channel.jammers, terrain, resolution, nullptr);
-  const RadarPoint point(snapshot, radar, ray, boresight_dbwm2);
+  const RadarPoint point(snapshot, radar, ray, path);
   RadarAtPoint result;
   channel.quantity = Quantity::snr_db;
   result.snr_db = 2 * ratioToDb(point.accumulated(channel, {}));

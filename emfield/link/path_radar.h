@@ -3,6 +3,7 @@
 
 #include "emfield/terrain_fan.h"
 #include "emscape/base/vec.h"
+#include "emscape/emfield/path_budget.h"
 #include "emscape/scenario/quantities.h"
 #include "emscape/scenario/snapshot.h"
 
@@ -15,11 +16,11 @@ struct RadarAtPoint {
   double detection_probability = 0;  ///< against noise and jamming
 };
 
-/// @param ray                start of the refracted ray to the point, east-north-up at the radar
-/// @param boresight_dbwm2    power density at the point if the beam pointed there
+/// @param ray    start of the refracted ray to the point, east-north-up at the radar
+/// @param path   to the point: its power density on boresight and its reflected ray
 /// @throws Error (bad_input) if a jammer's path to the radar crosses missing terrain
 RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray,
-                          double boresight_dbwm2, const scenario::Terrain* terrain,
+                          const PathBudget& path, const scenario::Terrain* terrain,
                           const FanResolution& resolution);
 
 }  // namespace emscape::emfield

@@ -29,7 +29,8 @@ std::string costText(double loss_db) {
 }
 
 std::string pathText(const PathBudget& budget) {
-  const double loss_db = budget.excess.loss_db;
+  const BudgetTerm* const reflected = budget.find("reflected_ray_db");
+  const double loss_db = budget.excess.loss_db - (reflected != nullptr ? reflected->value : 0);
   const auto decisive = std::find_if(budget.obstacles.begin(), budget.obstacles.end(),
                                      [](const PathObstacle& obstacle) { return obstacle.decides; });
   if (decisive == budget.obstacles.end()) return fmt::format("Clear: no obstacle, and {}", costText(loss_db));

@@ -73,10 +73,11 @@ EMSCAPE_HD inline Vec3f turnedBy(const Aim& aim, const Vec3f& direction) {
 
 /// Amplitude (relative voltage, 0..1) of an antenna so aimed.
 /// @param direction  in the look's frame, a unit vector
-template <scenario::PatternKind kind>
+/// @tparam kSigned   true: with the field's sign, -1..1
+template <scenario::PatternKind kind, bool kSigned = false>
 EMSCAPE_HD inline float amplitudeTowards(const scenario::PatternView& pattern, const Aim& aim,
                                          const Vec3f& direction) {
-  return scenario::amplitudeOf<kind>(pattern, turnedBy(aim, direction), aim.steer_u, aim.steer_v);
+  return scenario::amplitudeOf<kind, kSigned>(pattern, turnedBy(aim, direction), aim.steer_u, aim.steer_v);
 }
 
 }  // namespace emscape::emfield

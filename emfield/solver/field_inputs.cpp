@@ -33,6 +33,10 @@ auto membersOf(const RadarLook& look) {
   return std::tie(kind, cos_azimuth, sin_azimuth, sin_lowest, cos_lowest, sin_highest, cos_highest, steer_u,
                   steer_v);
 }
+auto membersOf(const propagation::ReflectedRay& ray) {
+  const auto& [re, im, weight, depression_sine, is_envelope] = ray;
+  return std::tie(re, im, weight, depression_sine, is_envelope);
+}
 auto membersOf(const DetectionCurveView& curve) {
   // Plans keep a curve as long as its detector stays the same: the address of the knots identifies it.
   const auto& [knots, count, first_snr_db, steps_per_db] = curve;
@@ -45,8 +49,12 @@ bool same(const T& a, const T& b) {
 }
 
 bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
-  const auto& [direction, boresight_to_noise] = a;
-  return direction == b.direction && boresight_to_noise == b.boresight_to_noise;
+  const auto& [direction, boresight_to_noise, has_reflected_ray, reflected, reflected_direction,
+               direct_amplitude, reflected_amplitude] = a;
+  return direction == b.direction && boresight_to_noise == b.boresight_to_noise &&
+         has_reflected_ray == b.has_reflected_ray && same(reflected, b.reflected) &&
+         reflected_direction == b.reflected_direction && direct_amplitude == b.direct_amplitude &&
+         reflected_amplitude == b.reflected_amplitude;
 }
 
 bool sameTask(const RadarTask& a, const RadarTask& b) {

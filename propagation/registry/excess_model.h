@@ -8,9 +8,14 @@
 /// On a device with more threads than columns that fit into its memory, begin() runs once per column, and
 /// fill(), which also takes a ColumnPart, in several threads per column, each for some of its heights.
 /// begin() returns 0, or kMissingTerrain with NaN for every voxel; then there is nothing to fill. A model
-/// with a member `tables` (const float*) has that point to its tables, on the host or on the device.
+/// with a member `tables` (const float*) has that point to its tables, on the host or on the device. A model
+/// with a reflected ray, whose row of the registry says so, also has
+///     static constexpr bool kReflects = true;
+///     EMSCAPE_HD ReflectedRay reflectedRay(double range_m, float height_msl_m, float& excess_db) const;
+/// for one voxel, which gives the ray and the excess between isotropic antennas.
 #pragma once
 
+#include <type_traits>
 #include <variant>
 
 #include "propagation/diffraction/edge_excess.h"
@@ -26,5 +31,11 @@ namespace emscape::propagation {
 
 using ExcessModel = std::variant<NoExcess, DiffractionExcess, EdgeExcess, TwoRayExcess, ItmExcess, P528Excess,
                                  P1812Excess, P452Excess>;
+
+/// True for models with a reflected ray.
+template <class Model, class = void>
+struct Reflects : std::false_type {};
+template <class Model>
+struct Reflects<Model, std::void_t<decltype(Model::kReflects)>> : std::true_type {};
 
 }  // namespace emscape::propagation

@@ -36,6 +36,7 @@ struct ModelInfo {
   GasRole gases = GasRole::added;
   bool casts_shadow = false;       ///< no field behind terrain
   bool on_smooth_surface = false;  ///< PathInputs::surface_msl_m is read
+  bool has_reflected_ray = false;  ///< its excess has one: Reflects in excess_model.h
   bool needs_extent = false;       ///< PathInputs::extent is read to make the excess
 
   /// Checks before anything is computed.

@@ -73,6 +73,7 @@ ModelInfo twoRayRow() {
   row.limits = listOf(kTwoRayLimits);
   row.reference_datasets = {"radar/two_ray_flat_pec_derived.csv"};
   row.on_smooth_surface = true;
+  row.has_reflected_ray = true;
   row.check = checkTwoRay;
   row.pathWarnings = twoRayPathWarnings;
   row.explain = explainTwoRay;

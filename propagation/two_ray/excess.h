@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "emscape/base/host_device.h"
+#include "emscape/propagation/reflected_ray.h"
 #include "propagation/column.h"
 #include "propagation/two_ray/two_ray.h"
 
@@ -13,6 +14,7 @@ namespace emscape::propagation {
 struct TwoRayExcess {
   static constexpr bool kNeedsTerrain = false;
   static constexpr bool kInParts = false;
+  static constexpr bool kReflects = true;
 
   TwoRayModel<double> model;  ///< of horizontal polarisation, if `both`
   TwoRayModel<double> vertical;
@@ -20,16 +22,36 @@ struct TwoRayExcess {
   double surface_msl_m = 0;
   double tx_msl_m = 0;
 
+  /// The reflected ray at a height, and the excess (dB) between isotropic antennas.
+  EMSCAPE_HD ReflectedRay reflectedRay(double range_m, float height_msl_m, float& excess_db) const {
+    return reflectedRay(range_m, tx_msl_m, static_cast<double>(height_msl_m), excess_db);
+  }
+  /// The same from any height to any other.
+  EMSCAPE_HD ReflectedRay reflectedRay(double range_m, double from_msl_m, double to_msl_m,
+                                       float& excess_db) const {
+    const double h1 = from_msl_m - surface_msl_m, h2 = to_msl_m - surface_msl_m;
+    const TwoRayPath<double> path = twoRayPath(model, range_m, h1, h2);
+    double excess = path.excess_db, re = path.reflected.re, im = path.reflected.im;
+    if (both) {
+      const TwoRayPath<double> other = twoRayPath(vertical, range_m, h1, h2);
+      excess = -10 * std::log10((std::pow(10.0, -excess / 10) + std::pow(10.0, -other.excess_db / 10)) / 2);
+      const double mean_square = (norm(path.reflected) + norm(other.reflected)) / 2;
+      re = (re + other.reflected.re) / 2;
+      im = std::sqrt(mean_square > re * re ? mean_square - re * re : 0);
+    }
+    excess_db = static_cast<float>(excess);
+    ReflectedRay ray;
+    ray.re = static_cast<float>(re);
+    ray.im = static_cast<float>(im);
+    ray.weight = static_cast<float>(path.weight);
+    ray.depression_sine = static_cast<float>(path.depression_sine);
+    ray.is_envelope = model.sum == TwoRaySum::envelope;
+    return ray;
+  }
+
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch&, float* excess_db) const {
     for (int k = 0; k < column.count; ++k) {
-      const double rx_m = static_cast<double>(column.height_msl_m[k]) - surface_msl_m;
-      const double tx_m = tx_msl_m - surface_msl_m;
-      double excess = twoRayExcessDb(model, column.range_m, tx_m, rx_m);
-      if (both) {
-        const double other = twoRayExcessDb(vertical, column.range_m, tx_m, rx_m);
-        excess = -10 * std::log10((std::pow(10.0, -excess / 10) + std::pow(10.0, -other / 10)) / 2);
-      }
-      excess_db[k] = static_cast<float>(excess);
+      reflectedRay(column.range_m, column.height_msl_m[k], excess_db[k]);
     }
     return 0;
   }

@@ -45,9 +45,16 @@ TwoRayExcess twoRayExcess(const PathInputs& inputs) {
 }
 
 Explanation explainTwoRay(const PathInputs& inputs, PathColumn& path) {
+  const TwoRayExcess excess = twoRayExcess(inputs);
+  const double range_m = path.column().range_m;
+  const auto end_msl_m = static_cast<double>(path.column().height_msl_m[0]);
+  float loss_db = 0, same_db = 0;
+  PathReflection reflection;
+  static_cast<ReflectedRay&>(reflection) = excess.reflectedRay(range_m, excess.tx_msl_m, end_msl_m, loss_db);
+  reflection.arrival_sine = excess.reflectedRay(range_m, end_msl_m, excess.tx_msl_m, same_db).depression_sine;
   Explanation explanation;
-  explanation.add("two_ray", "interference with the reflected ray, horizon",
-                  path.excess_db(twoRayExcess(inputs)));
+  explanation.add("two_ray", "interference with the reflected ray, horizon", static_cast<double>(loss_db));
+  if (reflection.weight > 0) explanation.reflection = reflection;
   explanation.why = fmt::format(
       "over a smooth surface {:.1f} m above mean sea level; terrain has no part in it", inputs.surface_msl_m);
   return explanation;

@@ -9,14 +9,16 @@
 /// which is P.526's interpolation (section 3.2) with the interference in place of 0 dB. It is continuous in
 /// range, heights and frequency.
 ///
-/// No terrain: heights are above one smooth surface. The antenna gain is the same along both rays, except for
-/// `reflected_gain`.
+/// No terrain: heights are above one smooth surface. The loss is that between isotropic antennas; TwoRayPath
+/// has the reflected ray's amplitude and direction, with which the field weighs the two rays by the antennas'
+/// gains (emfield/two_rays.h).
 #pragma once
 
 #include <cmath>
 
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
+#include "emscape/propagation/reflected_ray.h"
 #include "emscape/propagation/settings.h"
 #include "propagation/complex.h"
 #include "propagation/diffraction/spherical_earth.h"
@@ -131,6 +133,7 @@ struct ReflectedPath {
   Real length_ratio;       ///< direct over reflected, 0..1
   Real sine;               ///< of the grazing angle
   Real divergence;         ///< 0..1
+  Real point_m = 0;        ///< of the reflection, along the surface from end 1
 };
 
 /// @param distance_m            along the surface, > 0
@@ -163,54 +166,94 @@ EMSCAPE_HD ReflectedPath<Real> reflectedPath(Real earth_radius_m, Real distance_
   path.path_difference_m = 4 * r1 * r2 * path.sine * path.sine / (r1 + r2 + r);
   path.length_ratio = r / (r1 + r2);
   path.divergence = std::sqrt(path.sine / (path.sine + 2 * d1 * d2 / (earth_radius_m * distance_m)));
+  path.point_m = height1_m < height2_m ? d1 : d2;
   return path;
 }
 
-/// Pattern-propagation factor of the two rays: the field's amplitude over that in free space.
-/// @param reflected_gain  amplitude of the antennas' patterns along the reflected ray over that along the
-/// direct
+/// Sine of the angle below the horizontal at which the straight line from an antenna meets the surface.
+/// @param point_m  distance of the point along the surface
 template <class Real>
-EMSCAPE_HD Real interferenceFactor(const TwoRayModel<Real>& model, const ReflectedPath<Real>& path,
-                                   Real reflected_gain) {
-  const Complex<Real> reflection = fresnelReflection(model.permittivity, model.polarization, path.sine);
-  const Real amplitude =
-      reflected_gain * path.divergence * path.length_ratio *
-      roughnessFactor(model.roughness_model, model.roughness_m, path.sine, model.earth.wavelength_m);
-  if (model.sum == TwoRaySum::envelope) return 1 + amplitude * abs(reflection);
-  const Real cycles = path.path_difference_m / model.earth.wavelength_m;
-  const Real phase = Real(2 * kPi) * (cycles - std::floor(cycles));
-  const Complex<Real> late = Complex<Real>{std::cos(phase), -std::sin(phase)} * amplitude;
-  return abs(Complex<Real>{1, 0} + reflection * late);
+EMSCAPE_HD Real depressionSine(Real earth_radius_m, Real height_m, Real point_m) {
+  const Real half_sine = std::sin(point_m / (2 * earth_radius_m));
+  const Real drop_m = height_m + 2 * earth_radius_m * half_sine * half_sine;
+  const Real level_m = 2 * earth_radius_m * half_sine * std::sqrt(1 - half_sine * half_sine);
+  return drop_m / std::sqrt(drop_m * drop_m + level_m * level_m);
 }
 
-/// Loss (dB) over free space; negative in the lobes.
+/// Amplitude of the reflected ray over that of the direct one, both between isotropic antennas; for the
+/// envelope its magnitude.
+template <class Real>
+EMSCAPE_HD Complex<Real> reflectedAmplitude(const TwoRayModel<Real>& model, const ReflectedPath<Real>& path) {
+  const Complex<Real> reflection = fresnelReflection(model.permittivity, model.polarization, path.sine);
+  const Real amplitude =
+      path.divergence * path.length_ratio *
+      roughnessFactor(model.roughness_model, model.roughness_m, path.sine, model.earth.wavelength_m);
+  if (model.sum == TwoRaySum::envelope) return {amplitude * abs(reflection), 0};
+  const Real cycles = path.path_difference_m / model.earth.wavelength_m;
+  const Real phase = Real(2 * kPi) * (cycles - std::floor(cycles));
+  return reflection * (Complex<Real>{std::cos(phase), -std::sin(phase)} * amplitude);
+}
+
+/// Propagation factor of the two rays: the field's amplitude over that in free space.
+template <class Real>
+EMSCAPE_HD Real interferenceFactor(const TwoRayModel<Real>& model, const ReflectedPath<Real>& path) {
+  return abs(Complex<Real>{1, 0} + reflectedAmplitude(model, path));
+}
+
+/// Loss of a path, and its reflected ray.
+template <class Real>
+struct TwoRayPath {
+  Real excess_db = 0;        ///< loss over free space between isotropic antennas
+  Complex<Real> reflected;   ///< reflectedAmplitude(); 0 beyond the horizon
+  Real weight = 0;           ///< q: part of the interference in the loss, 0..1
+  Real depression_sine = 0;  ///< of the reflected ray at end 1
+};
+
+/// The loss and the reflected ray.
 /// @param distance_m            along the surface; below 1 m: 1 m
 /// @param height1_m, height2_m  above the surface; see kTwoRayHeight
-/// @return at most 60 dB, in the nulls
+/// @return a loss of at most 60 dB in the nulls, negative in the lobes
 /// @accuracy float within 0.05 dB of double outside the nulls, where F > -20 dB, up to 1e4 wavelengths of
 /// path difference
 template <class Real>
-EMSCAPE_HD Real twoRayExcessDb(const TwoRayModel<Real>& model, Real distance_m, Real height1_m,
-                               Real height2_m, Real reflected_gain = 1) {
-  constexpr Real kMinFieldFactor = Real(1e-3);
+EMSCAPE_HD TwoRayPath<Real> twoRayPath(const TwoRayModel<Real>& model, Real distance_m, Real height1_m,
+                                       Real height2_m) {
   const Real lowest = Real(kTwoRayHeight.min);
   const Real h1 = height1_m > lowest ? height1_m : lowest, h2 = height2_m > lowest ? height2_m : lowest;
   const Real radius_m = model.earth.earth_radius_m;
   distance_m = distance_m < 1 ? Real(1) : distance_m;  // straight above: finite
   const Real roots = std::sqrt(h1) + std::sqrt(h2);
+  TwoRayPath<Real> path;
   if (distance_m >= std::sqrt(2 * radius_m) * roots) {
     const Real loss_db = model.earth.firstTermDb(distance_m, h1, h2, radius_m);
-    return loss_db > 0 ? loss_db : Real(0);
+    path.excess_db = loss_db > 0 ? loss_db : Real(0);
+    return path;
   }
-  const Real factor = interferenceFactor(model, reflectedPath(radius_m, distance_m, h1, h2), reflected_gain);
-  const Real interference_db =
-      -kDbPerNeper<Real> * std::log(factor > kMinFieldFactor ? factor : kMinFieldFactor);
+  const ReflectedPath<Real> rays = reflectedPath(radius_m, distance_m, h1, h2);
+  path.reflected = reflectedAmplitude(model, rays);
+  path.depression_sine = depressionSine(radius_m, h1, rays.point_m);
+  const Real factor = abs(Complex<Real>{1, 0} + path.reflected);
+  constexpr Real kMin = Real(kMinInterference);
+  const Real interference_db = -kDbPerNeper<Real> * std::log(factor > kMin ? factor : kMin);
   const LeastClearance<Real> least = leastClearance(model.earth, distance_m, h1, h2);
-  const Real part = least.clearance_m / least.required_m;
-  if (part >= 1) return interference_db;
+  path.weight = least.clearance_m / least.required_m;
+  if (path.weight >= 1) {
+    path.weight = 1;
+    path.excess_db = interference_db;
+    return path;
+  }
   const Real grazing_radius_m = distance_m / roots * (distance_m / roots) / 2;
   const Real first_term_db = model.earth.firstTermDb(distance_m, h1, h2, grazing_radius_m);
-  return part * interference_db + (1 - part) * (first_term_db > 0 ? first_term_db : Real(0));
+  path.excess_db =
+      path.weight * interference_db + (1 - path.weight) * (first_term_db > 0 ? first_term_db : Real(0));
+  return path;
+}
+
+/// The loss alone (dB).
+template <class Real>
+EMSCAPE_HD Real twoRayExcessDb(const TwoRayModel<Real>& model, Real distance_m, Real height1_m,
+                               Real height2_m) {
+  return twoRayPath(model, distance_m, height1_m, height2_m).excess_db;
 }
 
 }  // namespace emscape::propagation

@@ -8,6 +8,10 @@
 
 namespace emscape::scenario {
 
+double Antenna::amplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const {
+  return std::abs(signedAmplitudeTowards(direction, steer_u, steer_v));
+}
+
 double Antenna::gainTowards_dbi(const Vec3d& direction, double steer_azimuth_rad,
                                 double steer_elevation_rad) const {
   const double steer_u = std::cos(steer_elevation_rad) * std::sin(steer_azimuth_rad);

@@ -48,6 +48,14 @@ EMSCAPE_HD inline float larger(float a, float b) {
   return a < b ? b : a;
 }
 
+/// A table's value without its sign, or with it; not below a magnitude.
+template <bool kSigned>
+EMSCAPE_HD inline float bounded(float value, float smallest) {
+  const float magnitude = larger(std::fabs(value), smallest);
+  if constexpr (kSigned) return std::copysign(magnitude, value);
+  return magnitude;
+}
+
 EMSCAPE_HD inline float gaussianAmplitude(const PatternView& pattern, const Vec3f& direction) {
   constexpr float kLog2OfE = 1.44269504f;
   const PatternAngles angles = anglesOf(direction);
@@ -56,21 +64,23 @@ EMSCAPE_HD inline float gaussianAmplitude(const PatternView& pattern, const Vec3
   return larger(fastExp2(-kLog2OfE * exponent), pattern.side_lobe_amplitude);
 }
 
+template <bool kSigned>
 EMSCAPE_HD inline float separableAmplitude(const PatternView& pattern, const Vec3f& direction) {
   const PatternAngles angles = anglesOf(direction);
   const TableCell azimuth = cellInTable(angles.azimuth_rad, float(kPi), pattern.azimuth_count);
   const TableCell elevation = cellInTable(angles.elevation_rad, float(kPi / 2), pattern.elevation_count);
   const float product = atCell(pattern.azimuth_table, azimuth) * atCell(pattern.elevation_table, elevation);
-  return larger(std::fabs(product), pattern.side_lobe_amplitude);
+  return bounded<kSigned>(product, pattern.side_lobe_amplitude);
 }
 
+template <bool kSigned>
 EMSCAPE_HD inline float phasedArrayAmplitude(const PatternView& pattern, const Vec3f& direction,
                                              float steer_u, float steer_v) {
   const TableCell u = cellInTable(direction.y - steer_u, 2.0f, pattern.azimuth_count);
   const TableCell v = cellInTable(direction.z - steer_v, 2.0f, pattern.elevation_count);
-  const float array = std::fabs(atCell(pattern.azimuth_table, u) * atCell(pattern.elevation_table, v));
+  const float array = atCell(pattern.azimuth_table, u) * atCell(pattern.elevation_table, v);
   const float element = fastExp2(pattern.element_exponent * fastLog2(direction.x));
-  return larger(direction.x > 0.0f ? array * element : 0.0f, pattern.side_lobe_amplitude);
+  return bounded<kSigned>(direction.x > 0.0f ? array * element : 0.0f, pattern.side_lobe_amplitude);
 }
 
 EMSCAPE_HD inline float gridAmplitude(const PatternView& pattern, const Vec3f& direction) {
@@ -95,15 +105,16 @@ EMSCAPE_HD inline float depthInLobe(const PatternView& pattern, const Vec3f& dir
 
 /// patternAmplitude() of a kind known at compile time, for loops: without branches; `#pragma omp simd`
 /// vectorises it (see base/fast_math.h for the flags).
-template <PatternKind kind>
+/// @tparam kSigned  true: with the sign of the field, which changes from lobe to lobe of apertures and arrays
+template <PatternKind kind, bool kSigned = false>
 EMSCAPE_HD inline float amplitudeOf(const PatternView& pattern, const Vec3f& direction, float steer_u,
                                     float steer_v) {
   if constexpr (kind == PatternKind::gaussian) {
     return antenna_detail::gaussianAmplitude(pattern, direction);
   } else if constexpr (kind == PatternKind::separable) {
-    return antenna_detail::separableAmplitude(pattern, direction);
+    return antenna_detail::separableAmplitude<kSigned>(pattern, direction);
   } else if constexpr (kind == PatternKind::phased_array) {
-    return antenna_detail::phasedArrayAmplitude(pattern, direction, steer_u, steer_v);
+    return antenna_detail::phasedArrayAmplitude<kSigned>(pattern, direction, steer_u, steer_v);
   } else if constexpr (kind == PatternKind::grid) {
     return antenna_detail::gridAmplitude(pattern, direction);
   } else {

@@ -42,7 +42,7 @@ double gaussianCoefficient(double beamwidth_deg, double full_deg) {
 class IsotropicAntenna : public Antenna {
  public:
   PatternView view() const override { return {}; }
-  double amplitudeTowards(const Vec3d&, double, double) const override { return 1; }
+  double signedAmplitudeTowards(const Vec3d&, double, double) const override { return 1; }
 };
 
 class GaussianAntenna : public Antenna {
@@ -59,7 +59,7 @@ class GaussianAntenna : public Antenna {
     view.lobe_tangent = lobeTangent(std::sqrt(-std::log(side_lobe_amplitude_) / azimuth_));
     return view;
   }
-  double amplitudeTowards(const Vec3d& direction, double, double) const override {
+  double signedAmplitudeTowards(const Vec3d& direction, double, double) const override {
     const Angles angles = patternAngles(direction);
     return std::max(std::exp(-(azimuth_ * angles.azimuth_rad * angles.azimuth_rad +
                                elevation_ * angles.elevation_rad * angles.elevation_rad)),
@@ -94,11 +94,11 @@ class PlanarAntenna : public Antenna {
     view.element_exponent = static_cast<float>(element_exponent_);
     return view;
   }
-  double amplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override {
+  double signedAmplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override {
     if (!(direction.x > 0)) return side_lobe_amplitude_;
-    return std::max(std::abs(u_.shape(direction.y - steer_u) * v_.shape(direction.z - steer_v)) *
-                        std::pow(direction.x, element_exponent_),
-                    side_lobe_amplitude_);
+    const double array = u_.shape(direction.y - steer_u) * v_.shape(direction.z - steer_v);
+    const double magnitude = std::abs(array) * std::pow(direction.x, element_exponent_);
+    return std::copysign(std::max(magnitude, side_lobe_amplitude_), array);
   }
 
  private:

@@ -121,10 +121,10 @@ PatternView SeparableAntenna::view() const {
   return view;
 }
 
-double SeparableAntenna::amplitudeTowards(const Vec3d& direction, double, double) const {
+double SeparableAntenna::signedAmplitudeTowards(const Vec3d& direction, double, double) const {
   const Angles angles = patternAngles(direction);
-  return std::max(std::abs(azimuth_.shape(angles.azimuth_rad) * elevation_.shape(angles.elevation_rad)),
-                  side_lobe_amplitude_);
+  const double product = azimuth_.shape(angles.azimuth_rad) * elevation_.shape(angles.elevation_rad);
+  return std::copysign(std::max(std::abs(product), side_lobe_amplitude_), product);
 }
 
 GridAntenna::GridAntenna(std::vector<float> amplitudes, int azimuth_count, int elevation_count)
@@ -139,7 +139,7 @@ PatternView GridAntenna::view() const {
   return view;
 }
 
-double GridAntenna::amplitudeTowards(const Vec3d& direction, double, double) const {
+double GridAntenna::signedAmplitudeTowards(const Vec3d& direction, double, double) const {
   const Angles angles = patternAngles(direction);
   const double x = (angles.azimuth_rad / (2 * kPi) + 0.5) * (azimuth_count_ - 1);
   const double y = (angles.elevation_rad / kPi + 0.5) * (elevation_count_ - 1);

@@ -56,7 +56,7 @@ class SeparableAntenna : public Antenna {
  public:
   SeparableAntenna(ShapeTable azimuth, ShapeTable elevation, double side_lobe_amplitude);
   PatternView view() const override;
-  double amplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override;
+  double signedAmplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override;
 
  private:
   ShapeTable azimuth_, elevation_;
@@ -70,7 +70,7 @@ class GridAntenna : public Antenna {
   /// @param amplitudes  azimuth_count * elevation_count, both odd and at least 3
   GridAntenna(std::vector<float> amplitudes, int azimuth_count, int elevation_count);
   PatternView view() const override;
-  double amplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override;
+  double signedAmplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override;
 
  private:
   std::vector<float> amplitudes_;

@@ -24,12 +24,18 @@ struct PathGeometry {
   double far_field_m = 0;      ///< 2 D^2 / lambda
 };
 
-/// Direction of the point in the antenna's pattern.
-struct PathPointing {
+/// Direction of a ray in the antenna's pattern.
+struct RayPointing {
   double off_axis_rad = 0;  ///< between the ray's start and the beam's axis
   double azimuth_rad = 0;   ///< in the antenna's frame, clockwise from its boresight
   double elevation_rad = 0;
+  double amplitude = 1;   ///< of the pattern, -1..1, with the sign of the field
   double pattern_db = 0;  ///< gain relative to the pattern's maximum, <= 0
+};
+
+/// The direct ray in the pattern, and the reflected one of models that have it.
+struct PathPointing : RayPointing {
+  std::optional<RayPointing> reflected;
 };
 
 /// One line of the budget.
@@ -55,6 +61,8 @@ struct PathBudget {
   std::vector<PathObstacle> obstacles;
   propagation::PropagationModel model = propagation::PropagationModel::free_space;
   PathExcess excess;
+  /// Power density at the path's end if the antenna had its maximum gain along every ray.
+  double boresight_dbwm2 = 0;
   std::vector<BudgetTerm> terms;
   std::vector<std::string> warnings;
   std::string verdict;  ///< one sentence

@@ -1,8 +1,11 @@
 /// A propagation model's explanation of one path: the parts of its loss and their reason.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "emscape/propagation/reflected_ray.h"
 
 namespace emscape::propagation {
 
@@ -13,10 +16,19 @@ struct ExcessPart {
   double loss_db = 0;
 };
 
+/// A path's reflected ray, with its direction at both ends.
+struct PathReflection : ReflectedRay {
+  /// Sine of the angle below the horizontal from which it arrives at the path's end, 0..1.
+  float arrival_sine = 0;
+};
+
 struct Explanation {
   double loss_db = 0;             ///< sum of the parts; infinite if the model gives no field
   std::vector<ExcessPart> parts;  ///< empty: free space
   std::string why;                ///< reason, one clause
+  /// Of models with a reflected ray, in sight of the emitter. The parts hold the loss between isotropic
+  /// antennas.
+  std::optional<PathReflection> reflection;
 
   void add(const std::string& key, const std::string& label, double part_db) {
     parts.push_back({key, label, part_db});

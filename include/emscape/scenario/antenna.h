@@ -59,9 +59,12 @@ class Antenna {
   virtual ~Antenna() = default;
   /// Valid as long as this object lives.
   virtual PatternView view() const = 0;
-  /// Amplitude (relative voltage, 0..1) in double: the closed form, or the interpolated measurement. For
-  /// tests and reports.
-  virtual double amplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const = 0;
+  /// Amplitude (relative voltage, -1..1) in double: the closed form, or the interpolated measurement. Its
+  /// sign is that of the field, which changes from lobe to lobe of apertures and arrays. For tests and
+  /// reports.
+  virtual double signedAmplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const = 0;
+  /// Its magnitude, 0..1.
+  double amplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const;
 
   double gain_dbi = 0;            ///< at the maximum of the pattern
   double beamwidth_az_deg = 360;  ///< between the half-power points; 360: there are none
