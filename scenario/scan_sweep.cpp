@@ -7,64 +7,98 @@
 namespace emscape::scenario {
 namespace {
 
-bool operator==(const SweptArc& a, const SweptArc& b) {
-  return std::tie(a.first_deg, a.width_deg, a.elevation_deg, a.share) ==
-         std::tie(b.first_deg, b.width_deg, b.elevation_deg, b.share);
+auto membersOf(const SweptArc& arc) {
+  const auto& [first_deg, width_deg, elevation_deg, share, times] = arc;
+  return std::tie(first_deg, width_deg, elevation_deg, share, times);
 }
-bool operator==(const SweptDwell& a, const SweptDwell& b) {
-  return std::tie(a.azimuth_deg, a.elevation_deg, a.share) ==
-         std::tie(b.azimuth_deg, b.elevation_deg, b.share);
+auto membersOf(const SweptDwell& dwell) {
+  const auto& [azimuth_deg, elevation_deg, share] = dwell;
+  return std::tie(azimuth_deg, elevation_deg, share);
 }
-
-/// Sweeps of a sector or raster that begin before a time, in order; each covers the whole width.
-/// @param weight  of the shares of the time
-void addSweeps(const ScanSpec& scan, double begin_s, double end_s, double weight, ScanSweep& sweep) {
-  const double sweep_s = scan.width_deg / scan.rate_deg_s;
-  for (double n = std::floor(begin_s / sweep_s); n * sweep_s < end_s; ++n) {
-    const double from_s = std::max(begin_s, n * sweep_s), to_s = std::min(end_s, (n + 1) * sweep_s);
-    if (!(to_s > from_s)) continue;
-    const BeamDirection middle = beamAt(scan, (from_s + to_s) / 2);
-    const double width_deg = (to_s - from_s) * scan.rate_deg_s;
-    sweep.arcs.push_back(
-        {middle.azimuth_deg - width_deg / 2, width_deg, middle.elevation_deg, (to_s - from_s) * weight});
-  }
+template <class T>
+bool areSame(const std::vector<T>& a, const std::vector<T>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const T& x, const T& y) { return membersOf(x) == membersOf(y); });
 }
 
-void addDwells(const ScanSpec& scan, double begin_s, double end_s, double weight, ScanSweep& sweep) {
-  double at_s = begin_s;
-  double cycle_s = scanCycle_s(scan);
-  if (!(cycle_s > 0)) return;
-  double dwell_s = std::floor(begin_s / cycle_s) * cycle_s;  // where the next dwell begins
-  for (std::size_t i = 0; at_s < end_s; i = (i + 1) % scan.dwells.size()) {
-    const Dwell& dwell = scan.dwells[i];
-    dwell_s += dwell.duration_s;
-    if (dwell_s <= at_s) continue;
-    const double to_s = std::min(dwell_s, end_s);
-    sweep.dwells.push_back({dwell.azimuth_deg, dwell.elevation_deg, (to_s - at_s) * weight});
-    at_s = to_s;
-  }
-}
+/// Adds what a beam does in a part of an interval.
+class SweepBuilder {
+ public:
+  SweepBuilder(const Emitter& emitter, double interval_s, ScanSweep& sweep)
+      : scan_(emitter.scan),
+        steers_(emitter.antenna && emitter.antenna->is_array),
+        interval_s_(interval_s),
+        sweep_(sweep) {}
 
-/// The part of a sweep from begin to end. Whole cycles are gone through once.
-void addPart(const ScanSpec& scan, double begin_s, double end_s, double weight, ScanSweep& sweep) {
-  const double cycle_s = scanCycle_s(scan);
-  if (scan.kind == ScanKind::rotate && scan.rate_rpm != 0) {
-    const double width_deg = 6 * std::abs(scan.rate_rpm) * (end_s - begin_s);
-    const double first_deg = beamAt(scan, begin_s).azimuth_deg - (scan.rate_rpm < 0 ? width_deg : 0);
-    sweep.arcs.push_back({first_deg, width_deg, scan.elevation_deg, (end_s - begin_s) * weight});
-    return;
+  void add(double begin_s, double duration_s) {
+    const double cycle_s = scanCycle_s(scan_);
+    if (cycle_s == 0) {
+      const BeamDirection beam = beamAt(scan_, begin_s);
+      sweep_.arcs.push_back({beam.azimuth_deg, 0, beam.elevation_deg, duration_s / interval_s_, 1});
+    } else if (scan_.kind == ScanKind::rotate) {
+      const double width_deg = 6 * std::abs(scan_.rate_rpm) * duration_s;
+      const double first_deg = beamAt(scan_, begin_s).azimuth_deg - (scan_.rate_rpm < 0 ? width_deg : 0);
+      sweep_.arcs.push_back({first_deg, width_deg, scan_.elevation_deg, duration_s / interval_s_, 1});
+    } else {
+      constexpr double kRounding = 1e-9;
+      const double cycles = std::floor(duration_s / cycle_s + kRounding);
+      if (cycles >= 1) addPositions(begin_s, begin_s + cycle_s, cycles);
+      const double rest_s = duration_s - cycles * cycle_s;
+      if (rest_s > kRounding * cycle_s) addPositions(begin_s + cycles * cycle_s, begin_s + duration_s, 1);
+    }
   }
-  if (cycle_s == 0) {
-    const BeamDirection beam = beamAt(scan, begin_s);
-    sweep.arcs.push_back({beam.azimuth_deg, 0, beam.elevation_deg, (end_s - begin_s) * weight});
-    return;
+
+ private:
+  void addPositions(double begin_s, double end_s, double times) {
+    return scan_.kind == ScanKind::dwell_list ? addDwells(begin_s, end_s, times)
+                                              : addSweeps(begin_s, end_s, times);
   }
-  const auto add = scan.kind == ScanKind::dwell_list ? addDwells : addSweeps;
-  const double cycles = std::floor((end_s - begin_s) / cycle_s);
-  const double rest_s = begin_s + cycles * cycle_s;
-  if (cycles >= 1) add(scan, begin_s, begin_s + cycle_s, cycles * weight, sweep);
-  if (rest_s < end_s) add(scan, rest_s, end_s, weight, sweep);
-}
+  void addSweeps(double begin_s, double end_s, double times) {
+    const double sweep_s = scan_.width_deg / scan_.rate_deg_s;
+    for (double n = std::floor(begin_s / sweep_s); n * sweep_s < end_s; ++n) {
+      const double from_s = std::max(begin_s, n * sweep_s), to_s = std::min(end_s, (n + 1) * sweep_s);
+      if (!(to_s > from_s)) continue;
+      const BeamDirection middle = beamAt(scan_, (from_s + to_s) / 2);
+      const double width_deg = (to_s - from_s) * scan_.rate_deg_s;
+      addArc({middle.azimuth_deg - width_deg / 2, width_deg, middle.elevation_deg,
+              times * (to_s - from_s) / interval_s_, times});
+    }
+  }
+  /// Sweeps over the same azimuths, there and back, are one arc.
+  void addArc(const SweptArc& arc) {
+    constexpr double kSame_deg = 1e-9;
+    for (SweptArc& known : sweep_.arcs) {
+      if (std::abs(known.first_deg - arc.first_deg) > kSame_deg ||
+          std::abs(known.width_deg - arc.width_deg) > kSame_deg || known.elevation_deg != arc.elevation_deg)
+        continue;
+      known.share += arc.share;
+      known.times += arc.times;
+      return;
+    }
+    sweep_.arcs.push_back(arc);
+  }
+  void addDwells(double begin_s, double end_s, double times) {
+    double at_s = begin_s;
+    double next_s = std::floor(begin_s / scanCycle_s(scan_)) * scanCycle_s(scan_);
+    for (std::size_t i = 0; at_s < end_s; i = (i + 1) % scan_.dwells.size()) {
+      const Dwell& dwell = scan_.dwells[i];
+      next_s += dwell.duration_s;
+      if (next_s <= at_s) continue;
+      const double to_s = std::min(next_s, end_s), share = times * (to_s - at_s) / interval_s_;
+      if (steers_) {
+        sweep_.dwells.push_back({dwell.azimuth_deg, dwell.elevation_deg, share});
+      } else {
+        sweep_.arcs.push_back({dwell.azimuth_deg, 0, dwell.elevation_deg, share, times});
+      }
+      at_s = to_s;
+    }
+  }
+
+  const ScanSpec& scan_;
+  bool steers_;
+  double interval_s_;
+  ScanSweep& sweep_;
+};
 
 }  // namespace
 
@@ -74,10 +108,7 @@ const char* toString(IntervalKind kind) {
 }
 
 bool operator==(const ScanSweep& a, const ScanSweep& b) {
-  return std::equal(a.arcs.begin(), a.arcs.end(), b.arcs.begin(), b.arcs.end(),
-                    [](const SweptArc& x, const SweptArc& y) { return x == y; }) &&
-         std::equal(a.dwells.begin(), a.dwells.end(), b.dwells.begin(), b.dwells.end(),
-                    [](const SweptDwell& x, const SweptDwell& y) { return x == y; });
+  return areSame(a.arcs, b.arcs) && areSame(a.dwells, b.dwells);
 }
 
 double scanCycle_s(const ScanSpec& scan) {
@@ -109,14 +140,15 @@ double intervalDuration_s(const IntervalSpec& interval, const ScanSpec& scan, co
 
 ScanSweep sweepOf(const Emitter& emitter, double begin_s, double duration_s) {
   ScanSweep sweep;
+  SweepBuilder builder(emitter, duration_s, sweep);
   const double end_s = begin_s + duration_s;
-  if (!(duration_s > 0)) return sweep;
-  const auto add = [&](double from_s, double to_s) {
-    from_s = std::max(from_s, begin_s), to_s = std::min(to_s, end_s);
-    if (to_s > from_s) addPart(emitter.scan, from_s, to_s, 1 / duration_s, sweep);
-  };
-  if (emitter.active_s.empty()) add(begin_s, end_s);
-  for (const TimeInterval& active : emitter.active_s) add(active.begin_s, active.end_s);
+  if (emitter.active_s.empty()) builder.add(begin_s, duration_s);
+  for (const TimeInterval& active : emitter.active_s) {
+    const double from_s = std::max(active.begin_s, begin_s), to_s = std::min(active.end_s, end_s);
+    if (!(to_s > from_s)) continue;
+    const bool is_whole = from_s == begin_s && to_s == end_s;
+    builder.add(from_s, is_whole ? duration_s : to_s - from_s);
+  }
   return sweep;
 }
 

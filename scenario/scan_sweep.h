@@ -15,6 +15,7 @@ struct SweptArc {
   double width_deg = 0;  ///< >= 0; above 360: more than a turn; 0: the beam stays
   double elevation_deg = 0;
   double share = 0;  ///< of the interval, 0..1
+  double times = 1;  ///< how often it is passed
 };
 
 /// One position of a steered beam.
@@ -25,8 +26,8 @@ struct SweptDwell {
 
 /// Shares add up to the part of the interval in which the emitter is active.
 struct ScanSweep {
-  std::vector<SweptArc> arcs;      ///< of an antenna that turns, in the order of their times
-  std::vector<SweptDwell> dwells;  ///< of one that is steered
+  std::vector<SweptArc> arcs;      ///< of an antenna that turns; each once
+  std::vector<SweptDwell> dwells;  ///< of an array that is steered
 
   bool empty() const { return arcs.empty() && dwells.empty(); }
 };
@@ -39,7 +40,8 @@ double scanCycle_s(const ScanSpec& scan);
 double intervalDuration_s(const IntervalSpec& interval, const ScanSpec& scan, const Clock& clock);
 
 /// The sweep of an emitter during [begin, begin + duration), in the times at which it is active; empty: it is
-/// not.
+/// not. For the same part of a turn or cycle it is the same to the last bit but for `first_deg` of turns.
+/// @param duration_s  > 0
 ScanSweep sweepOf(const Emitter& emitter, double begin_s, double duration_s);
 
 }  // namespace emscape::scenario

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
@@ -11,17 +12,22 @@
 namespace emscape::scenario {
 namespace {
 
-constexpr double kStepsPerBeamwidth = 16;
-constexpr double kFinest_deg = 0.05;
-/// Azimuths of a row of elevation, around the circle; of a table of rows and azimuths, half as many.
-constexpr int kMaxAzimuths = 7200;
-constexpr int kMaxElevations = 3600;
-
-/// An even number of intervals that divide a span, for a beamwidth.
-int intervalsFor(double span_deg, double beamwidth_deg, int most) {
-  const double step_deg = std::max(beamwidth_deg / kStepsPerBeamwidth, kFinest_deg);
-  return std::min(2 * static_cast<int>(std::ceil(span_deg / step_deg / 2)), most);
+/// Intervals of a table: those of a span for a number of steps in a beamwidth, even, up to a limit.
+int intervalsFor(double span_deg, double beamwidth_deg, double steps_per_beamwidth, int most) {
+  const double steps = std::min(std::ceil(span_deg / beamwidth_deg * steps_per_beamwidth), double(most));
+  return 2 * static_cast<int>(std::ceil(steps / 2));
 }
+
+/// The pattern as it is tabulated. A floor under it is none of the table's, in which it would be rounded
+/// where it begins: the largest values have the same floor. A mean has it in its power.
+struct Sampled {
+  PatternView view;
+  float floor_amplitude = 0;
+
+  Sampled(const Antenna& antenna, SweptPattern pattern) : view(antenna.view()) {
+    if (pattern == SweptPattern::largest) std::swap(view.side_lobe_amplitude, floor_amplitude);
+  }
+};
 
 /// A pattern at one elevation as the antenna turns: the power at azimuths off the beam, around the circle.
 class PowerRow {
@@ -160,13 +166,13 @@ double angleOf(int index, int intervals, double span_deg) {
 
 /// Whole turns of one tilt each: the same in every azimuth.
 AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
-  const PatternView view = antenna.view();
-  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, kMaxAzimuths);
-  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, kMaxElevations);
+  const Sampled sampled(antenna, pattern);
+  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 16, 7200);
+  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 64, 14400);
   std::vector<double> amplitudes(static_cast<std::size_t>(elevations) + 1);
   parallelFor(elevations + 1, 16, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
-      Rows rows(view, sweep, azimuths, degToRad(angleOf(e, elevations, 180)));
+      Rows rows(sampled.view, sweep, azimuths, degToRad(angleOf(e, elevations, 180)));
       amplitudes[static_cast<std::size_t>(e)] = std::sqrt(powerOf(rows, sweep, 0, pattern));
     }
   });
@@ -178,33 +184,36 @@ AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPat
                            amplitudes[static_cast<std::size_t>(below)]);
   };
   const auto one = [](double) { return 1.0; };
-  return describedAntenna(std::make_shared<SeparableAntenna>(tabulate(one, kPi, kPi),
-                                                             tabulate(shape, kPi / 2, kPi / elevations), 0),
-                          antenna.gain_dbi, 360, antenna.beamwidth_el_deg, "interval");
+  return describedAntenna(
+      std::make_shared<SeparableAntenna>(tabulate(one, kPi, kPi), tabulate(shape, kPi / 2, kPi / elevations),
+                                         static_cast<double>(sampled.floor_amplitude)),
+      antenna.gain_dbi, 360, antenna.beamwidth_el_deg, "interval");
 }
 
 AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
-  const PatternView view = antenna.view();
-  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, kMaxAzimuths / 2);
-  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, kMaxElevations / 2);
+  const Sampled sampled(antenna, pattern);
+  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 32, 4320);
+  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 32, 2160);
   std::vector<float> amplitudes((static_cast<std::size_t>(azimuths) + 1) *
                                 (static_cast<std::size_t>(elevations) + 1));
   parallelFor(elevations + 1, 8, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
       const double elevation_rad = degToRad(angleOf(e, elevations, 180));
-      Rows rows(view, sweep, azimuths, elevation_rad);
+      Rows rows(sampled.view, sweep, azimuths, elevation_rad);
       float* const row = amplitudes.data() + static_cast<std::size_t>(e) * (azimuths + 1);
       for (int a = 0; a <= azimuths; ++a) {
         const double azimuth_deg = angleOf(a, azimuths, 360), azimuth_rad = degToRad(azimuth_deg);
         const Vec3d direction{std::cos(elevation_rad) * std::cos(azimuth_rad),
                               std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};
-        const double power = sweep.dwells.empty() ? powerOf(rows, sweep, azimuth_deg, pattern)
-                                                  : powerOf(view, sweep, vecCast<float>(direction), pattern);
+        const double power = sweep.dwells.empty()
+                                 ? powerOf(rows, sweep, azimuth_deg, pattern)
+                                 : powerOf(sampled.view, sweep, vecCast<float>(direction), pattern);
         row[a] = static_cast<float>(std::sqrt(power));
       }
     }
   });
-  return describedAntenna(std::make_shared<GridAntenna>(std::move(amplitudes), azimuths + 1, elevations + 1),
+  return describedAntenna(std::make_shared<GridAntenna>(std::move(amplitudes), azimuths + 1, elevations + 1,
+                                                        sampled.floor_amplitude),
                           antenna.gain_dbi, antenna.beamwidth_az_deg, antenna.beamwidth_el_deg, "interval");
 }
 
