@@ -102,11 +102,6 @@ class SweepBuilder {
 
 }  // namespace
 
-const char* toString(IntervalKind kind) {
-  static constexpr const char* kNames[] = {"instant", "max_hold", "mean", "cumulative"};
-  return kNames[static_cast<int>(kind)];
-}
-
 bool operator==(const ScanSweep& a, const ScanSweep& b) {
   return areSame(a.arcs, b.arcs) && areSame(a.dwells, b.dwells);
 }

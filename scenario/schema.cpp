@@ -438,7 +438,6 @@ std::vector<std::string> quantityChoices() {
 }
 
 const ObjectSpec& intervalSpec() {
-  const Variants lasting{"max_hold", "mean", "cumulative"};
   static const ObjectSpec spec{
       "interval",
       "kind",
@@ -446,9 +445,10 @@ const ObjectSpec& intervalSpec() {
           required("kind", choiceUpTo(IntervalKind::cumulative),
                    "what a volume shows of the time from its own on: the field at its time, the largest of "
                    "each emitter, the mean power, or the probability of at least one detection"),
-          optional("seconds", number("s").above(0).to(1e7), "duration; by default step_s", lasting),
+          optional("seconds", number("s").above(0).to(1e7),
+                   "duration; by default step_s. An instant has none"),
           optional("turns", number().above(0).to(1e5),
-                   "duration in turns of each scan: its turns, sweeps there and back, or cycles", lasting),
+                   "duration in turns of each scan: its turns, sweeps there and back, or cycles"),
       }};
   return spec;
 }

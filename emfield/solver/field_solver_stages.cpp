@@ -207,6 +207,12 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   out.categorical = quantity.categorical;
   if (const char* const scale = scaleOf(channel.quantity)) out.extra[volume::kScaleKey] = scale;
   if (const char* const note = legendNoteOf(channel.quantity)) out.extra[volume::kLegendNoteKey] = note;
+  const std::string interval = scenario::describe(setup.scenario->output.interval, setup.scenario->clock);
+  if (!interval.empty()) {
+    out.extra["interval"] = interval;
+    std::string& note = out.extra[volume::kLegendNoteKey];
+    note += (note.empty() ? "" : "; ") + interval;
+  }
   out.extra["scenario"] = setup.scenario->name;
   out.extra["scenario_hash"] = setup.scenario->hash;
   std::string names, near_field;

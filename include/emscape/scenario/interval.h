@@ -2,6 +2,9 @@
 #pragma once
 
 #include <optional>
+#include <string>
+
+#include "emscape/scenario/clock.h"
 
 namespace emscape::scenario {
 
@@ -20,5 +23,8 @@ struct IntervalSpec {
   std::optional<double> seconds;  ///< > 0
   std::optional<double> turns;    ///< > 0; of each emitter's scan: its turns, or there-and-backs, or cycles
 };
+
+/// For legends: "largest in 12 s", "mean of 2 turns"; empty for an instant.
+std::string describe(const IntervalSpec& interval, const Clock& clock);
 
 }  // namespace emscape::scenario
