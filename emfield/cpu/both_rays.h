@@ -1,5 +1,5 @@
-/// Rows of voxels with reflected rays. A source file of their own: beside them g++ leaves the loops of the
-/// other models scalar.
+/// Rows of voxels with reflected rays. Power densities and echoes have a source file each, apart from those
+/// of the other models: g++ leaves loops of a larger file scalar.
 #pragma once
 
 #include "emfield/cpu/row.h"
