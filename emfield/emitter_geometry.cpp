@@ -73,12 +73,16 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   times.excess_ms += watch.lap_ms();
 }
 
+std::size_t EmitterGeometry::bytesPerVoxel(const scenario::Scenario& scenario,
+                                           const scenario::Emitter& emitter) {
+  const bool has_reflected = propagation::modelInfo(emitter.propagation.model).has_reflected_ray;
+  return (hasExcess(scenario, emitter) ? sizeof(ExcessCode) : 0) +
+         (has_reflected ? sizeof(ReflectedRayCode) : 0);
+}
+
 std::size_t EmitterGeometry::bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                      std::size_t columns, int layers) {
-  std::size_t of_voxel = hasExcess(scenario, emitter) ? sizeof(ExcessCode) : 0;
-  if (propagation::modelInfo(emitter.propagation.model).has_reflected_ray)
-    of_voxel += sizeof(ReflectedRayCode);
-  return columns * (kBytesPerColumn + static_cast<std::size_t>(layers) * of_voxel);
+  return columns * (kBytesPerColumn + static_cast<std::size_t>(layers) * bytesPerVoxel(scenario, emitter));
 }
 
 void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns,

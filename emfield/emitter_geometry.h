@@ -33,6 +33,8 @@ class EmitterGeometry {
   unsigned warnings() const { return warnings_; }
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
+  /// Bytes per voxel of an emitter: its excess and its reflected ray, if its model has them.
+  static std::size_t bytesPerVoxel(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
   /// Bytes per emitter for a grid of so many columns and layers.
   static std::size_t bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                              std::size_t columns, int layers);

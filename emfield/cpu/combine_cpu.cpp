@@ -3,6 +3,7 @@
 
 #include "base/simd.h"
 #include "emfield/combine.h"
+#include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/row.h"
 #include "emscape/base/parallel.h"
 
@@ -16,19 +17,6 @@ __attribute__((always_inline)) inline void fillPiece(const EmitterBeam& emitter,
   const EmitterBeam local = emitter;
 #pragma omp simd
   for (int i = 0; i < row.count; ++i) out[i] = powerDensity_wm2<kind>(local, row.column + i, row.t_m);
-}
-
-/// Row of an emitter whose reflected rays are weighed.
-/// @param reflected  of the row's first voxel
-template <PatternKind kind>
-__attribute__((always_inline)) inline void fillBothRays(const EmitterBeam& emitter,
-                                                        const ReflectedRayCode* reflected, const Row& row,
-                                                        float* out) {
-  const EmitterBeam local = emitter;
-#pragma omp simd
-  for (int i = 0; i < row.count; ++i) {
-    out[i] = powerDensity_wm2<kind>(local, reflected[i], row.column + i, row.t_m);
-  }
 }
 
 /// Number of voxels tested together for being outside the lobe, where the pattern need not be evaluated: most
@@ -50,12 +38,8 @@ __attribute__((always_inline)) inline bool fillBesideLobe(const EmitterBeam& emi
   return inside > 0;
 }
 
-/// @param reflected  of the row's first voxel; null: reflected rays are not weighed
 template <PatternKind kind>
-__attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter,
-                                                   const ReflectedRayCode* reflected, const Row& row,
-                                                   float* out) {
-  if (reflected != nullptr) return fillBothRays<kind>(emitter, reflected, row, out);
+__attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter, const Row& row, float* out) {
   if (kind == PatternKind::isotropic || emitter.pattern.lobe_tangent == 0)
     return fillPiece<kind>(emitter, row, out);
   for (int first = 0; first < row.count; first += kPiece) {
@@ -64,42 +48,36 @@ __attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter,
   }
 }
 
-EMSCAPE_SIMD_CLONES void isotropicRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
-                                      const Row& row, float* out) {
-  fillRow<PatternKind::isotropic>(emitter, reflected, row, out);
+EMSCAPE_SIMD_CLONES void isotropicRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::isotropic>(emitter, row, out);
 }
-EMSCAPE_SIMD_CLONES void gaussianRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
-                                     const Row& row, float* out) {
-  fillRow<PatternKind::gaussian>(emitter, reflected, row, out);
+EMSCAPE_SIMD_CLONES void gaussianRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::gaussian>(emitter, row, out);
 }
-EMSCAPE_SIMD_CLONES void separableRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
-                                      const Row& row, float* out) {
-  fillRow<PatternKind::separable>(emitter, reflected, row, out);
+EMSCAPE_SIMD_CLONES void separableRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::separable>(emitter, row, out);
 }
-EMSCAPE_SIMD_CLONES void phasedArrayRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
-                                        const Row& row, float* out) {
-  fillRow<PatternKind::phased_array>(emitter, reflected, row, out);
+EMSCAPE_SIMD_CLONES void phasedArrayRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::phased_array>(emitter, row, out);
 }
-EMSCAPE_SIMD_CLONES void gridRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
-                                 const Row& row, float* out) {
-  fillRow<PatternKind::grid>(emitter, reflected, row, out);
+EMSCAPE_SIMD_CLONES void gridRow(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<PatternKind::grid>(emitter, row, out);
 }
 
 /// @param first  index of the row's first voxel
 void powerDensityRow(const EmitterBeam& emitter, const Row& row, std::size_t first, float* out) {
-  const ReflectedRayCode* const reflected =
-      weighsReflectedRays(emitter) ? emitter.geometry.reflected + first : nullptr;
+  if (weighsReflectedRays(emitter)) return bothRaysRow(emitter, emitter.geometry.reflected + first, row, out);
   switch (emitter.pattern.kind) {
     case PatternKind::isotropic:
-      return isotropicRow(emitter, reflected, row, out);
+      return isotropicRow(emitter, row, out);
     case PatternKind::gaussian:
-      return gaussianRow(emitter, reflected, row, out);
+      return gaussianRow(emitter, row, out);
     case PatternKind::separable:
-      return separableRow(emitter, reflected, row, out);
+      return separableRow(emitter, row, out);
     case PatternKind::phased_array:
-      return phasedArrayRow(emitter, reflected, row, out);
+      return phasedArrayRow(emitter, row, out);
     case PatternKind::grid:
-      return gridRow(emitter, reflected, row, out);
+      return gridRow(emitter, row, out);
   }
 }
 

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "base/simd.h"
+#include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/row.h"
 #include "emfield/radar_product.h"
 #include "emscape/base/parallel.h"
@@ -21,19 +22,6 @@ __attribute__((always_inline)) inline void fillEchoes(const RadarPass& pass, con
   }
 }
 
-/// @param reflected  of the row's first voxel
-template <PatternKind kind>
-__attribute__((always_inline)) inline void fillEchoesOfBothRays(const RadarPass& pass,
-                                                                const ReflectedRayCode* reflected,
-                                                                const Row& row, float* root) {
-  const RadarTask task = pass.task;
-  const EmitterBeam beam = pass.beam;
-#pragma omp simd
-  for (int i = 0; i < row.count; ++i) {
-    root[i] = echoToNoiseRoot<kind>(task, beam, reflected[i], row.column + i, row.t_m);
-  }
-}
-
 template <PatternKind kind>
 __attribute__((always_inline)) inline void addJamming(const RadarPass& pass, const JammerAtRadar& jammer,
                                                       const Row& row, float* jamming) {
@@ -47,74 +35,41 @@ __attribute__((always_inline)) inline void addJamming(const RadarPass& pass, con
 }
 
 template <PatternKind kind>
-__attribute__((always_inline)) inline void addJammingOfBothRays(const RadarPass& pass,
-                                                                const JammerAtRadar& jammer, const Row& row,
-                                                                float* jamming) {
-  const RadarTask task = pass.task;
-  const EmitterBeam beam = pass.beam;
-  const JammerAtRadar local = jammer;
-#pragma omp simd
-  for (int i = 0; i < row.count; ++i) {
-    jamming[i] += jammingOfBothRaysToNoise<kind>(task, beam, local, row.column + i, row.t_m);
-  }
-}
-
-/// @param reflected  of the row's first voxel; null: the radar's reflected rays are not weighed
-template <PatternKind kind>
-__attribute__((always_inline)) inline void fillRow(const RadarPass& pass, const ReflectedRayCode* reflected,
-                                                   const Row& row, float* root, float* jamming) {
-  if (reflected != nullptr) {
-    fillEchoesOfBothRays<kind>(pass, reflected, row, root);
-  } else {
-    fillEchoes<kind>(pass, row, root);
-  }
+__attribute__((always_inline)) inline void fillRow(const RadarPass& pass, const Row& row, float* root,
+                                                   float* jamming) {
+  fillEchoes<kind>(pass, row, root);
   std::fill_n(jamming, row.count, 0.0f);
-  for (int n = 0; n < pass.task.jammer_count; ++n) {
-    const JammerAtRadar& jammer = pass.task.jammers[n];
-    if (jammer.has_reflected_ray) {
-      addJammingOfBothRays<kind>(pass, jammer, row, jamming);
-    } else {
-      addJamming<kind>(pass, jammer, row, jamming);
-    }
-  }
+  for (int n = 0; n < pass.task.jammer_count; ++n) addJamming<kind>(pass, pass.task.jammers[n], row, jamming);
 }
 
-EMSCAPE_SIMD_CLONES void isotropicRow(const RadarPass& pass, const ReflectedRayCode* reflected,
-                                      const Row& row, float* root, float* jamming) {
-  fillRow<PatternKind::isotropic>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void isotropicRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::isotropic>(pass, row, root, jamming);
 }
-EMSCAPE_SIMD_CLONES void gaussianRow(const RadarPass& pass, const ReflectedRayCode* reflected, const Row& row,
-                                     float* root, float* jamming) {
-  fillRow<PatternKind::gaussian>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void gaussianRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::gaussian>(pass, row, root, jamming);
 }
-EMSCAPE_SIMD_CLONES void separableRow(const RadarPass& pass, const ReflectedRayCode* reflected,
-                                      const Row& row, float* root, float* jamming) {
-  fillRow<PatternKind::separable>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void separableRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::separable>(pass, row, root, jamming);
 }
-EMSCAPE_SIMD_CLONES void phasedArrayRow(const RadarPass& pass, const ReflectedRayCode* reflected,
-                                        const Row& row, float* root, float* jamming) {
-  fillRow<PatternKind::phased_array>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void phasedArrayRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::phased_array>(pass, row, root, jamming);
 }
-EMSCAPE_SIMD_CLONES void gridRow(const RadarPass& pass, const ReflectedRayCode* reflected, const Row& row,
-                                 float* root, float* jamming) {
-  fillRow<PatternKind::grid>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void gridRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
+  fillRow<PatternKind::grid>(pass, row, root, jamming);
 }
 
-/// @param voxel  index of the row's first voxel
-void fillRow(const RadarPass& pass, std::size_t voxel, const Row& row, float* root, float* jamming) {
-  const ReflectedRayCode* const reflected =
-      weighsReflectedRays(pass.beam) ? pass.beam.geometry.reflected + voxel : nullptr;
+void fillRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
   switch (pass.beam.pattern.kind) {
     case PatternKind::isotropic:
-      return isotropicRow(pass, reflected, row, root, jamming);
+      return isotropicRow(pass, row, root, jamming);
     case PatternKind::gaussian:
-      return gaussianRow(pass, reflected, row, root, jamming);
+      return gaussianRow(pass, row, root, jamming);
     case PatternKind::separable:
-      return separableRow(pass, reflected, row, root, jamming);
+      return separableRow(pass, row, root, jamming);
     case PatternKind::phased_array:
-      return phasedArrayRow(pass, reflected, row, root, jamming);
+      return phasedArrayRow(pass, row, root, jamming);
     case PatternKind::grid:
-      return gridRow(pass, reflected, row, root, jamming);
+      return gridRow(pass, row, root, jamming);
   }
 }
 
@@ -165,7 +120,11 @@ void radarCpu(const RadarPass& pass) {
         const std::size_t column = static_cast<std::size_t>(j) * dims.x;
         const std::size_t voxel = static_cast<std::size_t>(k) * dims.x * dims.y + column;
         const Row row{column, dims.x, pass.t_m[k]};
-        fillRow(pass, voxel, row, root.data(), jamming.data());
+        if (pass.has_reflected_rays) {
+          echoesOfBothRays(pass, voxel, row, root.data(), jamming.data());
+        } else {
+          fillRow(pass, row, root.data(), jamming.data());
+        }
         if (pass.task.is_cumulative) countLooks(pass, row, looks.data());
         const ExcessCode* excess = pass.beam.geometry.excess;
         if (excess != nullptr) applyExcess(excess + voxel, dims.x, root.data());

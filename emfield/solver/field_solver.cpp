@@ -198,9 +198,10 @@ MemoryUse FieldSolver::memoryUse() const {
   use.bytes_per_column_and_emitter = EmitterGeometry::kBytesPerColumn;
   for (std::size_t e = 0; e < impl.emitters.size(); ++e) {
     use.uncached_emitters += impl.emitters[e].is_cached ? 0 : 1;
-    if (!hasExcess(*impl.setup.scenario, impl.setup.scenario->emitters[e])) continue;
+    const scenario::Scenario& scenario = *impl.setup.scenario;
     use.bytes_per_voxel_and_emitter +=
-        static_cast<double>(sizeof(ExcessCode)) / static_cast<double>(impl.emitters.size());
+        static_cast<double>(EmitterGeometry::bytesPerVoxel(scenario, scenario.emitters[e])) /
+        static_cast<double>(impl.emitters.size());
   }
   impl.engine->addMemory(use);
   use.total_bytes += impl.setup.columns.columns.size() * sizeof(GridColumn);

@@ -467,7 +467,7 @@ TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
     EXPECT_LT(solver.volumes().front().host()->info.range_min, -70);
     ++count;
   }
-  EXPECT_EQ(count, 10);
+  EXPECT_EQ(count, 11);
 }
 
 TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {

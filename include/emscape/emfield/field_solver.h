@@ -61,7 +61,7 @@ struct StageTimes {
 };
 
 struct MemoryUse {
-  double bytes_per_voxel_and_emitter = 0;   ///< excess losses, mean over the emitters
+  double bytes_per_voxel_and_emitter = 0;   ///< excess losses and reflected rays, mean over the emitters
   double bytes_per_column_and_emitter = 0;  ///< geometry cache
   double bytes_per_voxel_and_channel = 0;   ///< sums and output
   std::size_t total_bytes = 0;
