@@ -13,7 +13,6 @@
 #include "emfield/radar/detection.h"
 #include "emfield/radar/receiver.h"
 #include "emfield/station.h"
-#include "emfield/terrain_fan.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/field_solver.h"
 
@@ -190,8 +189,7 @@ const BudgetTerm* PathBudget::find(const std::string& key) const {
 }
 
 PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, const PathEnd& point,
-                      propagation::PropagationModel model, const scenario::Terrain* terrain,
-                      const FanResolution& resolution) {
+                      propagation::PropagationModel model, const scenario::Terrain* terrain) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const Emitter& emitter = scenario.emitters[emitter_index];
   const EmitterState& state = snapshot.emitters[emitter_index];
@@ -204,8 +202,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   budget.frequency_hz = emitter.frequency_hz;
   budget.k_factor = scenario.atmosphere.k_factor;
   budget.model = model;
-  budget.profile =
-      readPathProfile({state.position, state.height_msl_m}, point, budget.k_factor, terrain, resolution);
+  budget.profile = readPathProfile({state.position, state.height_msl_m}, point, budget.k_factor, terrain);
   const PathProfile& profile = budget.profile;
   const Station station = makeStation(state.position, state.height_msl_m, profile.k_factor);
   const double wavelength = wavelength_m(emitter.frequency_hz);
@@ -226,7 +223,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
 
   budget.pointing = pointingOf(emitter, state.beam, ray);
   budget.obstacles = pathObstacles(profile, wavelength);
-  budget.excess = pathExcess(scenario, by_model, profile, terrain, resolution);
+  budget.excess = pathExcess(scenario, by_model, profile, terrain);
   budget.warnings = budget.excess.warnings;
   if (geometry.slant_range_m < geometry.far_field_m) {
     budget.warnings.push_back(
@@ -237,18 +234,11 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   }
   std::optional<RadarAtPoint> radar;
   if (emitter.kind == scenario::EmitterKind::radar && state.active) {
-    radar = radarAtPoint(snapshot, emitter_index, ray, boresightDensity_dbwm2(emitter, budget), terrain,
-                         resolution);
+    radar = radarAtPoint(snapshot, emitter_index, ray, boresightDensity_dbwm2(emitter, budget), terrain);
   }
   budget.terms = termsOf(snapshot, emitter_index, budget, radar);
   budget.verdict = verdictOf(budget);
   return budget;
-}
-
-PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
-                      propagation::PropagationModel model, const scenario::Terrain* terrain) {
-  return pathBudget(snapshot, emitter, point, model, terrain,
-                    fanResolution(gridOf(snapshot.scenario->region), terrain));
 }
 
 }  // namespace emscape::emfield

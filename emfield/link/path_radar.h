@@ -1,7 +1,6 @@
 /// Echo, jamming and detection of a target at the end of a path.
 #pragma once
 
-#include "emfield/terrain_fan.h"
 #include "emscape/base/vec.h"
 #include "emscape/scenario/quantities.h"
 #include "emscape/scenario/snapshot.h"
@@ -19,7 +18,6 @@ struct RadarAtPoint {
 /// @param boresight_dbwm2    power density at the point if the beam pointed there
 /// @throws Error (bad_input) if a jammer's path to the radar crosses missing terrain
 RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray,
-                          double boresight_dbwm2, const scenario::Terrain* terrain,
-                          const FanResolution& resolution);
+                          double boresight_dbwm2, const scenario::Terrain* terrain);
 
 }  // namespace emscape::emfield
