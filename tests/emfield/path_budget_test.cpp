@@ -123,11 +123,10 @@ TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverRealTerrain) {
   for (const PropagationModel model : kModels) {
     SCOPED_TRACE(toString(model));
     Compared compared = compareWithField(whiteMountains(model), terrain, 200);
-    // The field's terrain stands on azimuths a post apart: what is left is the terrain between them.
     const bool is_table = isInterpolated(model);
-    EXPECT_LE(compared.other_shadow, 2);
+    EXPECT_EQ(compared.other_shadow, 0);
     EXPECT_LT(compared.quantile(0.9), is_table ? 0.1 : 0.02);
-    EXPECT_LT(compared.quantile(0.97), is_table ? 1 : 0.2);
+    EXPECT_LT(compared.quantile(0.97), is_table ? 1 : 0.02);
   }
 }
 
