@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "emfield/cpu/read_posts.h"
+#include "emfield/read_posts.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "emfield/cpu/read_posts.h"
+#include "emfield/read_posts.h"
 #include "emfield/shadow_edge.h"
 #include "emscape/base/parallel.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emfield/cpu/read_posts.h"
+#include "emfield/read_posts.h"
 #include "emfield/station.h"
 #include "emscape/base/error.h"
 #include "propagation/diffraction/knife_edge.h"

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "emfield/cpu/read_posts.h"
+#include "emfield/read_posts.h"
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_budget.h"

@@ -1,8 +1,9 @@
+#include "emfield/read_posts.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/simd.h"
-#include "emfield/cpu/read_posts.h"
 
 namespace emscape::emfield {
 namespace {
