@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "emfield/excess_code.h"
-#include "emfield/fan_coordinates.h"
+#include "emfield/foot_inverse.h"
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
 #include "emfield/two_rays.h"
@@ -49,11 +49,11 @@ EMSCAPE_HD inline ColumnGeometryView columnGeometryView(const float* numbers, st
           array(6), array(7), array(8), shadow_edge_m, excess,   reflected};
 }
 
-/// @param coordinates  of the column's foot below its middle
+/// @param foot         footInverse() of the column's middle
 /// @param middle_m     z of the middle
 /// @param out          out[n * stride], n below kColumnNumbers
 EMSCAPE_HD inline void columnGeometry(const Station& station, const GridColumn& column,
-                                      const FanCoordinates& coordinates, double middle_m, float* out,
+                                      const FastInverse& foot, double middle_m, float* out,
                                       std::size_t stride) {
   const Vec3d& up = station.geodesy.station.up;
   const Vec3d base = column.base_ecef_m - station.ecef_m;
@@ -69,7 +69,7 @@ EMSCAPE_HD inline void columnGeometry(const Station& station, const GridColumn& 
                                           dot(column.axis, up),
                                           dot(offset, offset),
                                           nearest_t_m,
-                                          refractionLift_m(station, coordinates.range_m, level_m)};
+                                          refractionLift_m(station, foot.distance_m, level_m)};
   for (int n = 0; n < kColumnNumbers; ++n) out[n * stride] = static_cast<float>(numbers[n]);
 }
 

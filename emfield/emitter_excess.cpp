@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/foot_inverse.h"
+#include "emfield/ground_posts.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "propagation/registry/model_info.h"
@@ -65,8 +67,7 @@ propagation::EmitterInputs emitterInputs(const Scenario& scenario, const Emitter
 }
 
 PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const Station& station,
-                      const scenario::Terrain* terrain, const PathExtent& extent,
-                      const FanResolution& resolution) {
+                      const scenario::Terrain* terrain, const PathExtent& extent) {
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   PathInputs inputs;
   inputs.emitter = emitterInputs(scenario, emitter);
@@ -76,7 +77,7 @@ PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const St
     inputs.surface_msl_m = smoothSurface_msl_m(scenario, emitter, model, station, terrain);
   }
   inputs.extent = extent;
-  inputs.post_spacing_m = resolution.arc_m;
+  inputs.post_spacing_m = postSpacing_m(terrain);
   return inputs;
 }
 
@@ -91,7 +92,7 @@ PathExtent pathExtent(const Station& station, const GridColumns& columns) {
       const double height_m = heightMsl_m(column, static_cast<double>(t_m));
       extent.lowest_msl_m = std::min(extent.lowest_msl_m, height_m);
       extent.highest_msl_m = std::max(extent.highest_msl_m, height_m);
-      extent.farthest_m = std::max(extent.farthest_m, fanCoordinates(station, column, t_m).range_m);
+      extent.farthest_m = std::max(extent.farthest_m, footInverse(station, column, t_m).distance_m);
     }
   };
   for (const int i : {0, columns.dims.x / 2, columns.dims.x - 1}) {
@@ -119,11 +120,10 @@ EmitterExcess makeExcess(const PathInputs& inputs) {
 }
 
 EmitterExcess makeExcess(const Scenario& scenario, const Emitter& emitter, const Station& station,
-                         const scenario::Terrain* terrain, const GridColumns& columns,
-                         const FanResolution& resolution) {
+                         const scenario::Terrain* terrain, const GridColumns& columns) {
   const bool needs_extent = propagation::needsExtent(emitterInputs(scenario, emitter));
   return makeExcess(pathInputs(scenario, emitter, station, terrain,
-                               needs_extent ? pathExtent(station, columns) : PathExtent{}, resolution));
+                               needs_extent ? pathExtent(station, columns) : PathExtent{}));
 }
 
 }  // namespace emscape::emfield

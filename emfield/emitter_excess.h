@@ -7,7 +7,6 @@
 
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
-#include "emfield/terrain_fan.h"
 #include "emscape/scenario/scenario.h"
 #include "propagation/air/air_loss.h"
 #include "propagation/inputs.h"
@@ -36,11 +35,10 @@ propagation::EmitterInputs emitterInputs(const scenario::Scenario& scenario,
 /// The models' inputs for the emitter's paths from its site.
 /// @param terrain     null: none
 /// @param extent      read only where propagation::needsExtent()
-/// @param resolution  of profiles
 /// @throws Error (bad_input) for a model without terrain if the ground below the emitter is missing
 propagation::PathInputs pathInputs(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                    const Station& station, const scenario::Terrain* terrain,
-                                   const propagation::PathExtent& extent, const FanResolution& resolution);
+                                   const propagation::PathExtent& extent);
 
 /// Extent of the paths from a station to a grid.
 propagation::PathExtent pathExtent(const Station& station, const GridColumns& columns);
@@ -54,7 +52,7 @@ EmitterExcess makeExcess(const propagation::PathInputs& inputs);
 /// The same over the columns of a grid.
 /// @throws as pathInputs()
 EmitterExcess makeExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                         const Station& station, const scenario::Terrain* terrain, const GridColumns& columns,
-                         const FanResolution& resolution);
+                         const Station& station, const scenario::Terrain* terrain,
+                         const GridColumns& columns);
 
 }  // namespace emscape::emfield

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "base/stopwatch.h"
 #include "emfield/column_geometry.h"
@@ -14,59 +13,31 @@
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
-namespace {
-
-/// Samples of a fan held at once.
-constexpr int kFanSamples = 1 << 23;
-
-}  // namespace
-
 void EmitterGeometry::compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                               const scenario::Emitter& emitter, const GridColumns& columns,
-                              const scenario::Terrain* terrain, const FanResolution& resolution,
-                              Times& times) {
+                              const scenario::Terrain* terrain, Times& times) {
   Stopwatch watch;
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere.k_factor);
-  const std::vector<FanCoordinates> coordinates = fanCoordinates(station, columns);
-  locateColumns(station, columns, coordinates);
+  locateColumns(station, columns);
   shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
   excess_.clear();
   reflected_.clear();
   unknown_columns_ = 0;
   warnings_ = 0;
+  times.columns_ms += watch.lap_ms();
+
   const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
-  const bool has_shadow = model.casts_shadow;
-  std::optional<EmitterExcess> excess;
+  const ExcessGrid grid = excessGrid(columns, terrain);
+  const std::vector<double> ranges_m =
+      postRanges(pathExtent(station, columns).farthest_m, postSpacing_m(terrain));
+  const GroundPosts ground = groundPosts(terrain, ranges_m);
+  if (model.casts_shadow) findShadowEdgesCpu(station, ground, grid, shadow_edge_m_.data());
   if (hasExcess(scenario, emitter)) {
-    excess = makeExcess(scenario, emitter, station, terrain, columns, resolution);
+    const EmitterExcess excess = makeExcess(scenario, emitter, station, terrain, columns);
     excess_.resize(column_count_ * columns.t_m.size());
     if (model.has_reflected_ray) reflected_.resize(excess_.size());
-  }
-  times.fan_ms += watch.lap_ms();
-  const double tilt_m = tiltOf(columns);
-  const ExcessGrid grid = excessGrid(columns, resolution);
-  const ExcessOutput out{excess_.data(), reflected_.data(), shadow_edge_m_.data()};
-  const bool needs_terrain = excess && excess->needsTerrain();
-  if (excess && !needs_terrain) {
-    warnings_ |= fillExcessCpu(*excess, station, grid, {}, out);
-    times.excess_ms += watch.lap_ms();
-  }
-  if (has_shadow || needs_terrain) {
-    // Some intervals at a time, so that a fine fan over a wide region does not fill the memory.
-    const FanShape shape = fanShape(station, coordinates, terrain, resolution, tilt_m);
-    const int at_once = columns.tilted ? shape.interval_count : std::max(1, kFanSamples / shape.rangeCount());
-    times.fan_ms += watch.lap_ms();
-    for (int first = 0; first < shape.interval_count; first += at_once) {
-      const int count = std::min(at_once, shape.interval_count - first);
-      const TerrainFan fan = readTerrainFan(station, shape, terrain, first, count);
-      times.fan_ms += watch.lap_ms();
-      if (has_shadow) findShadowEdges(station, columns, coordinates, shape, fan, shadow_edge_m_);
-      if (needs_terrain) {
-        warnings_ |=
-            fillExcessCpu(*excess, station, grid, {shape.view(), fan.height_msl_m.data(), first, count}, out);
-      }
-      times.excess_ms += watch.lap_ms();
-    }
+    warnings_ = fillExcessCpu(excess, station, grid, ground,
+                              {excess_.data(), reflected_.data(), shadow_edge_m_.data()});
   }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
@@ -85,14 +56,14 @@ std::size_t EmitterGeometry::bytesOf(const scenario::Scenario& scenario, const s
   return columns * (kBytesPerColumn + static_cast<std::size_t>(layers) * bytesPerVoxel(scenario, emitter));
 }
 
-void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns,
-                                    const std::vector<FanCoordinates>& coordinates) {
+void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns) {
   column_count_ = columns.columns.size();
   arrays_.resize(kColumnNumbers * column_count_);
   const double middle_m = columns.middle_m();
   parallelFor(static_cast<int>(column_count_), 4096, [&](int begin, int end) {
     for (int c = begin; c < end; ++c) {
-      columnGeometry(station, columns.columns[c], coordinates[c], middle_m, arrays_.data() + c,
+      const GridColumn& column = columns.columns[c];
+      columnGeometry(station, column, footInverse(station, column, middle_m), middle_m, arrays_.data() + c,
                      column_count_);
     }
   });

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "emfield/column_geometry.h"
-#include "emfield/terrain_fan.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/snapshot.h"
+#include "emscape/scenario/terrain.h"
 
 namespace emscape::emfield {
 
@@ -16,14 +16,14 @@ class EmitterGeometry {
  public:
   /// Times of the two stages (ms).
   struct Times {
-    double fan_ms = 0, excess_ms = 0;
+    double columns_ms = 0, excess_ms = 0;
   };
 
   /// @param emitter  of the scenario
   /// @param terrain  null: smooth earth
   void compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                const scenario::Emitter& emitter, const GridColumns& columns, const scenario::Terrain* terrain,
-               const FanResolution& resolution, Times& times);
+               Times& times);
 
   ColumnGeometryView view() const;
   /// Columns whose path crosses missing terrain.
@@ -44,8 +44,7 @@ class EmitterGeometry {
   }
 
  private:
-  void locateColumns(const Station& station, const GridColumns& columns,
-                     const std::vector<FanCoordinates>& coordinates);
+  void locateColumns(const Station& station, const GridColumns& columns);
 
   std::size_t column_count_ = 0;
   std::vector<float> arrays_;  ///< kColumnNumbers x column_count_

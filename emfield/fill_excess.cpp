@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "emfield/read_posts.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
@@ -27,12 +28,9 @@ unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
     unsigned warnings = 0;
     for (int block = begin; block < end; ++block) {
       const int first = block * kBlock, count = std::min(kBlock, columns - first);
-      bool is_filled[kBlock];
       for (int i = 0; i < count; ++i) {
-        unsigned of_column = 0;
-        is_filled[i] =
-            task.fillColumn(static_cast<std::size_t>(first + i), scratch, out.reflected, of_column);
-        if (!is_filled[i]) continue;
+        const unsigned of_column =
+            task.fillColumn(static_cast<std::size_t>(first + i), scratch, readPostsCpu, out.reflected);
         if (of_column & kMissingTerrain) out.markUnknown(static_cast<std::size_t>(first + i));
         warnings |= of_column;
         for (int k = 0; k < grid.layers; ++k) {
@@ -41,9 +39,7 @@ unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
       }
       for (int k = 0; k < grid.layers; ++k) {
         ExcessCode* const row = out.codes + static_cast<std::size_t>(k) * grid.column_count + first;
-        for (int i = 0; i < count; ++i) {
-          if (is_filled[i]) row[i] = codes[static_cast<std::size_t>(k) * kBlock + i];
-        }
+        for (int i = 0; i < count; ++i) row[i] = codes[static_cast<std::size_t>(k) * kBlock + i];
       }
     }
     all_warnings |= warnings;
@@ -53,16 +49,18 @@ unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
 
 }  // namespace
 
-ExcessGrid excessGrid(const GridColumns& columns, const FanResolution& resolution) {
+ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terrain) {
   ExcessGrid grid;
   grid.columns = columns.columns.data();
   grid.column_count = columns.columns.size();
   grid.t_m = columns.t_m.data();
   grid.layers = static_cast<int>(columns.t_m.size());
+  grid.tilted = columns.tilted;
   if (columns.tilted) {
-    // The ground track of a segment is not longer than the spacing of the fan's azimuths.
-    grid.segments =
-        std::clamp(static_cast<int>(std::ceil(2 * tiltOf(columns) / resolution.arc_m)), 1, grid.layers);
+    // The ground track of a segment is not longer than the distance between posts.
+    constexpr double kMaxTrack_m = 100;
+    const double track_m = std::min(postSpacing_m(terrain), kMaxTrack_m);
+    grid.segments = std::clamp(static_cast<int>(std::ceil(2 * tiltOf(columns) / track_m)), 1, grid.layers);
   } else if (!columns.ground_msl_m.empty()) {
     grid.ground_msl_m = columns.ground_msl_m.data();
   }
@@ -70,10 +68,10 @@ ExcessGrid excessGrid(const GridColumns& columns, const FanResolution& resolutio
 }
 
 unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
-                       const FanHeights& fan, const ExcessOutput& out) {
+                       const GroundPosts& ground, const ExcessOutput& out) {
   return std::visit(
       [&](const auto& m) {
-        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, fan}, out);
+        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, ground}, out);
       },
       excess.model);
 }

@@ -6,8 +6,9 @@
 
 #include "emfield/emitter_excess.h"
 #include "emfield/excess_code.h"
-#include "emfield/fan_heights.h"
+#include "emfield/foot_inverse.h"
 #include "emfield/grid_columns.h"
+#include "emfield/ground_posts.h"
 #include "emfield/station.h"
 #include "emfield/two_rays.h"
 #include "emscape/base/host_device.h"
@@ -23,7 +24,8 @@ struct ExcessGrid {
   std::size_t column_count = 0;
   const float* t_m = nullptr;
   int layers = 0;
-  /// Ground below each column; null: taken from the fan (tilted columns), or none.
+  bool tilted = false;  ///< columns are not vertical
+  /// Ground below each column; null: read at the end of each profile (tilted columns), or none.
   const float* ground_msl_m = nullptr;
   /// Number of segments of a tilted column, each above one point of the ground; 1 for vertical columns.
   int segments = 1;
@@ -31,50 +33,51 @@ struct ExcessGrid {
   EMSCAPE_HD int firstLayer(int segment) const {
     return static_cast<int>(static_cast<long long>(layers) * segment / segments);
   }
-  /// Azimuth and range of a segment from a station.
-  EMSCAPE_HD FanCoordinates coordinatesOf(const Station& station, std::size_t column, int segment) const {
+  /// From a station to below the middle of a segment.
+  EMSCAPE_HD FastInverse coordinatesOf(const Station& station, std::size_t column, int segment) const {
     const auto first_m = static_cast<double>(t_m[firstLayer(segment)]);
     const auto last_m = static_cast<double>(t_m[firstLayer(segment + 1) - 1]);
-    return fanCoordinates(station, columns[column], (first_m + last_m) / 2);
+    return footInverse(station, columns[column], (first_m + last_m) / 2);
   }
 };
 
 /// The columns of a grid, in host memory.
-ExcessGrid excessGrid(const GridColumns& columns, const FanResolution& resolution);
+/// @param terrain  null: none
+ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terrain);
 
-/// One emitter over some intervals of its fan. A model is a plain struct: see excess_model.h.
+/// One emitter. A model is a plain struct: see excess_model.h.
 template <class Model>
 struct ExcessTask {
   Model model;
   AirLoss air;
   Station station;
   ExcessGrid grid;
-  FanHeights fan;  ///< for models that need terrain
+  GroundPosts ground;  ///< for models that need terrain
 
   /// Posts of the longest profile.
-  int posts() const { return fan.shape.range_count + 1; }
+  int posts() const { return ground.range_count + 1; }
 
-  /// Builds the ExcessColumn of a segment of a column. @return false if the column is outside the fan's
-  /// intervals
-  EMSCAPE_HD bool readSegment(std::size_t c, int segment, const ExcessScratch& scratch,
-                              ExcessColumn& part) const {
+  /// Builds the ExcessColumn of a segment of a column.
+  /// @param read  PostReader, or a function with the same result
+  template <class Reader>
+  EMSCAPE_HD ExcessColumn readSegment(std::size_t c, int segment, const ExcessScratch& scratch,
+                                      const Reader& read) const {
+    ExcessColumn part;
     const int first = grid.firstLayer(segment);
-    const FanCoordinates point = grid.coordinatesOf(station, c, segment);
-    part.range_m = point.range_m;
+    const FastInverse point = grid.coordinatesOf(station, c, segment);
+    part.range_m = point.distance_m;
     part.height_msl_m = scratch.height_msl_m + first;
     part.count = grid.firstLayer(segment + 1) - first;
     if constexpr (Model::kNeedsTerrain) {
-      const double azimuth_index = fan.shape.azimuthIndex(point.azimuth_rad);
-      if (!fan.holds(azimuth_index)) return false;
       part.ground_msl_m =
-          grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : fan.heightAt(azimuth_index, point.range_m);
-      part.profile = readProfile(fan, azimuth_index, point.range_m, part.ground_msl_m, scratch);
+          grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(station, ground, point);
+      part.profile = readProfile(station, ground, point, part.ground_msl_m, scratch, read);
     }
     for (int k = 0; k < part.count; ++k) {
       const auto t_m = static_cast<double>(grid.t_m[first + k]);
       scratch.height_msl_m[first + k] = static_cast<float>(heightMsl_m(grid.columns[c], t_m));
     }
-    return true;
+    return part;
   }
 
   /// Adds the attenuation by the air at some heights of a segment.
@@ -87,12 +90,13 @@ struct ExcessTask {
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
   /// @param reflected  dense order; receives the column's reflected rays if the model has any
-  /// @return false if the column is outside the fan's intervals; `warnings` receives the bits of the model
-  EMSCAPE_HD bool fillColumn(std::size_t c, const ExcessScratch& scratch, ReflectedRayCode* reflected,
-                             unsigned& warnings) const {
+  /// @return warning bits of the model
+  template <class Reader>
+  EMSCAPE_HD unsigned fillColumn(std::size_t c, const ExcessScratch& scratch, const Reader& read,
+                                 ReflectedRayCode* reflected) const {
+    unsigned warnings = 0;
     for (int segment = 0; segment < grid.segments; ++segment) {
-      ExcessColumn part;
-      if (!readSegment(c, segment, scratch, part)) return false;
+      const ExcessColumn part = readSegment(c, segment, scratch, read);
       const int first = grid.firstLayer(segment);
       float* const excess_db = scratch.excess_db + first;
       if constexpr (propagation::Reflects<Model>::value) {
@@ -105,7 +109,7 @@ struct ExcessTask {
       }
       addAir(part, 0, part.count, excess_db);
     }
-    return true;
+    return warnings;
   }
 };
 
@@ -121,6 +125,6 @@ struct ExcessOutput {
 /// Runs a task on the CPU.
 /// @return the models' warnings on all columns
 unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
-                       const FanHeights& fan, const ExcessOutput& out);
+                       const GroundPosts& ground, const ExcessOutput& out);
 
 }  // namespace emscape::emfield

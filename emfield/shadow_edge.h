@@ -1,12 +1,11 @@
-/// The edge of the shadow in one column, from the grazing slopes of a fan; for host and device.
+/// Stage 2 of the model `horizon`: the height below which a column is in shadow; for host and device.
 #pragma once
 
 #include <cmath>
 
-#include "base/device_math.h"
-#include "emfield/fan_coordinates.h"
-#include "emfield/terrain_fan.h"
+#include "emfield/fill_excess.h"
 #include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
 #include "propagation/horizon/horizon.h"
 
 namespace emscape::emfield {
@@ -14,51 +13,53 @@ namespace emscape::emfield {
 using propagation::HorizonGeometry;
 using propagation::RangeTerms;
 
-template <class Real>
-EMSCAPE_HD HorizonGeometry<Real> horizonGeometry(const Station& station) {
-  return {Real(station.height_msl_m), Real(station.effective_earth_radius_m)};
-}
+/// One emitter of the model `horizon` over the columns of a grid.
+struct ShadowTask {
+  Station station;
+  GroundPosts ground;
+  const RangeTerms<float>* terms = nullptr;  ///< of the posts' ranges; not read over a smooth earth
 
-/// Grazing slopes of some neighbouring intervals of a fan.
-struct SlopePlanes {
-  HorizonGeometry<float> geometry;
-  FanView fan;
-  int first_interval = 0;
-  const float* slopes = nullptr;  ///< of the first interval's first azimuth
-  long long azimuth_stride = 0, range_stride = 0;
+  EMSCAPE_HD HorizonGeometry<float> geometry() const {
+    return {float(station.height_msl_m), float(station.effective_earth_radius_m)};
+  }
 
-  /// Height above mean sea level (m) of the shadow's edge over a point of the ground: voxels at or above it
-  /// are lit. -infinity: nothing is in shadow; +infinity: all is; NaN: unknown, because the path crosses
-  /// missing terrain.
-  /// @param azimuth_index  of the fan, within the intervals
-  EMSCAPE_HD float edgeHeight_m(double azimuth_index, double range_m) const {
-    if (range_m > fan.ranges_m[fan.range_count - 1]) return HUGE_VALF;
-    const int interval = static_cast<int>(azimuth_index);
-    const float weight = static_cast<float>(azimuth_index - interval);
-    const int before = fan.lastBefore(range_m);
-    if (before == 0) return -HUGE_VALF;
-    const RangeTerms<float> terms = geometry.termsAt(range_m);
-    const float* slope = slopes + (interval - first_interval) * azimuth_stride + before * range_stride;
-    const float left = geometry.heightOn(slope[0], terms);
-    const float right = geometry.heightOn(slope[azimuth_stride], terms);
-    return lerp(left, right, weight);
+  /// z (m, in the grid's frame) of the shadow's edge in a column: voxels at or above it are lit. -infinity:
+  /// nothing is in shadow; +infinity: all is; NaN: unknown, because the path crosses missing terrain. A
+  /// tilted column that leaves and enters shadow is in shadow up to its last dark voxel.
+  /// @param slopeTo  float(FastInverse, count): GrazingSlope of posts 1..count - 1 toward a point
+  template <class SlopeTo>
+  EMSCAPE_HD float edge_m(const ExcessGrid& grid, std::size_t c, const SlopeTo& slopeTo) const {
+    if (!grid.tilted) {
+      const FastInverse point = grid.coordinatesOf(station, c, 0);
+      return edgeHeight_m(slopeBefore(point, slopeTo), point.distance_m);
+    }
+    float above_m = HUGE_VALF;
+    for (int segment = grid.segments - 1; segment >= 0; --segment) {
+      const float slope = slopeBefore(grid.coordinatesOf(station, c, segment), slopeTo);
+      for (int k = grid.firstLayer(segment + 1) - 1; k >= grid.firstLayer(segment); --k) {
+        const double t_m = double(grid.t_m[k]);
+        const float edge_m = edgeHeight_m(slope, footInverse(station, grid.columns[c], t_m).distance_m);
+        if (std::isnan(edge_m)) return edge_m;
+        if (!(heightMsl_m(grid.columns[c], t_m) >= double(edge_m))) return above_m;
+        above_m = grid.t_m[k];
+      }
+    }
+    return -HUGE_VALF;
+  }
+
+ private:
+  template <class SlopeTo>
+  EMSCAPE_HD float slopeBefore(const FastInverse& point, const SlopeTo& slopeTo) const {
+    if (ground.is_smooth) return propagation::smoothGrazingSlope(geometry(), point.distance_m);
+    const int before = ground.lastBefore(point.distance_m);
+    return before == 0 ? -HUGE_VALF : slopeTo(point, before + 1);
+  }
+  /// Height (m above mean sea level) of the grazing ray over a range.
+  EMSCAPE_HD float edgeHeight_m(float slope, double range_m) const {
+    if (std::isinf(slope)) return slope;
+    if (!(range_m <= 0.5 * kPi * station.earth_radius_m)) return HUGE_VALF;
+    return geometry().heightOn(slope, geometry().termsAt(range_m));
   }
 };
-
-/// z of the edge in a tilted column: the layers are tested from the top down.
-/// @param planes  of all intervals
-/// @param t_m     z of the layers
-EMSCAPE_HD inline float edgeInLeaningColumn(const Station& station, const SlopePlanes& planes,
-                                            const GridColumn& column, const float* t_m, int layers) {
-  float above_m = HUGE_VALF;
-  for (int k = layers - 1; k >= 0; --k) {
-    const FanCoordinates point = fanCoordinates(station, column, t_m[k]);
-    const float edge_m = planes.edgeHeight_m(planes.fan.azimuthIndex(point.azimuth_rad), point.range_m);
-    if (std::isnan(edge_m)) return edge_m;
-    if (!(heightMsl_m(column, t_m[k]) >= edge_m)) return above_m;
-    above_m = t_m[k];
-  }
-  return -HUGE_VALF;
-}
 
 }  // namespace emscape::emfield

@@ -63,7 +63,7 @@ Measured mediansOf(const std::vector<Measured>& runs) {
     return medianOf(values);
   };
   return {of([](const Measured& run) { return run.update_ms; }),
-          {of([](const Measured& run) { return run.stages.fan_ms; }),
+          {of([](const Measured& run) { return run.stages.columns_ms; }),
            of([](const Measured& run) { return run.stages.excess_ms; }),
            of([](const Measured& run) { return run.stages.combine_ms; }),
            of([](const Measured& run) { return run.stages.product_ms; })}};
@@ -157,7 +157,7 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
                {"emitters", emitters},
                {"repeats", options.repeats},
                {"stages_ms",
-                {{"fan", moved.stages.fan_ms},
+                {{"fan", moved.stages.columns_ms},
                  {"plane", moved.stages.excess_ms},
                  {"combine", moved.stages.combine_ms},
                  {"product", moved.stages.product_ms}}},
@@ -176,8 +176,8 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
   print("device {} ({} threads), grid {} x {} x {}, {} emitters, medians of {}\n\n", device, threadCount(),
         dims.x, dims.y, dims.z, emitters, options.repeats);
   print("stages, all emitters moved (ms)\n");
-  print("  fan      {:10.2f}\n  excess   {:10.2f}\n  combine  {:10.2f}\n  product  {:10.2f}\n\n",
-        moved.stages.fan_ms, moved.stages.excess_ms, moved.stages.combine_ms, moved.stages.product_ms);
+  print("  columns  {:10.2f}\n  excess   {:10.2f}\n  combine  {:10.2f}\n  product  {:10.2f}\n\n",
+        moved.stages.columns_ms, moved.stages.excess_ms, moved.stages.combine_ms, moved.stages.product_ms);
   print("update (ms)\n");
   print("  all moved     {:10.2f}\n  one moved     {:10.2f}\n  beams turned  {:10.2f}\n\n", moved.update_ms,
         one_moved.update_ms, turned.update_ms);
@@ -196,7 +196,7 @@ void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action)
   CLI::App* command = bench.add_subcommand("field", "Time the stages of the field computation");
   command->fallthrough();
   command->footer(R"(
-all moved: every emitter is shifted by more than the tolerance, so that its terrain fan and excess are recomputed; one moved: only the
+all moved: every emitter is shifted by more than the tolerance, so that its columns and excess are recomputed; one moved: only the
 first emitter; beams turned: only the beams change. --emitters: only these move and turn, the others are static. Voxel-emitters per
 second: voxels times emitters over the time of the combine stage with all moved.
 

@@ -65,8 +65,8 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     kept_power_.forget(static_cast<std::size_t>(request.slot));
     EmitterGeometry::Times spent;
     geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
-                     setup_.columns, setup_.terrain.get(), setup_.resolution, spent);
-    times_.fan_ms += spent.fan_ms;
+                     setup_.columns, setup_.terrain.get(), spent);
+    times_.columns_ms += spent.columns_ms;
     times_.excess_ms += spent.excess_ms;
 
     GeometryResult found;

@@ -34,32 +34,21 @@ class DeviceGeometry {
  private:
   /// A request in progress.
   struct Work {
-    Station station;
-    FanShape shape;
     LocateTask task;
+    std::vector<double> ranges_m;
+    GroundPosts ground;                  ///< on the device, from place() on
     std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on
     ExcessOutputs excess;
     bool has_shadow = false, has_reflected_ray = false;
-
-    bool needsFan() const { return has_shadow || (model && model->needsTerrain()); }
-  };
-  /// Sectors of fans that are computed at a time.
-  struct Batch {
-    std::vector<const Work*> works;  ///< the request of each sector
-    std::vector<FanSector> sectors;
   };
 
   Work prepare(const GeometryRequest& request) const;
   void place(std::vector<Work>& works, cudaStream_t stream);
-  static bool isDiffraction(const Work& work);
-  std::vector<Batch> batchesOf(const std::vector<Work>& works);
-  void runBatch(Batch& batch, cudaStream_t stream, StageClock& clock);
-  void fillDiffractions(std::vector<DiffractionTask>& tasks, SectorExtent extent, cudaStream_t stream);
-  void fill(const Work& work, const FanHeights& fan, cudaStream_t stream);
+  void findShadows(const std::vector<Work>& works, cudaStream_t stream);
+  void fillDiffractions(const std::vector<Work>& works, cudaStream_t stream);
+  ScratchMemory scratch();
 
   const FieldSetup& setup_;
-  double tilt_m_;
-  std::vector<int> border_;  ///< columns of the border, which enclose all others
   DeviceTerrain terrain_;
   emscape::cuda::Buffer<GridColumn> grid_columns_;
   emscape::cuda::Buffer<float> t_m_;
@@ -77,16 +66,11 @@ class DeviceGeometry {
 
   // for the emitters being computed; kept for the next update
   emscape::cuda::Buffer<LocateTask> tasks_;
-  emscape::cuda::Buffer<FanSector> sectors_;
   emscape::cuda::Buffer<double> ranges_m_;
   emscape::cuda::Buffer<float> model_tables_;
-  emscape::cuda::Buffer<int> used_ranges_;
-  emscape::cuda::Buffer<FanIndex> fan_indices_;
+  emscape::cuda::Buffer<DeviceShadowTask> shadows_;
   emscape::cuda::Buffer<RangeTerms<float>> terms_;
-  emscape::cuda::Buffer<float> samples_;
   emscape::cuda::Buffer<DiffractionTask> diffraction_;
-  emscape::cuda::Buffer<FanBlock> blocks_;
-  emscape::cuda::Buffer<TerrainSums> sums_;
   emscape::cuda::Buffer<double> scratch_;
   emscape::cuda::Buffer<GeometryCounts> counts_;
 };

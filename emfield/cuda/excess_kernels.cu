@@ -2,7 +2,6 @@
 #include <type_traits>
 
 #include "base/cuda/cuda_memory.h"
-#include "base/device_math.h"
 #include "emfield/cuda/excess_kernels.h"
 
 namespace emscape::emfield::cuda {
@@ -12,6 +11,7 @@ using emscape::cuda::checkLaunch;
 using propagation::DiffractionColumn;
 using propagation::kBisectionStep;
 using propagation::kMissingTerrain;
+using propagation::TerrainSums;
 
 constexpr int kThreads = 128;
 constexpr int kReceivers = propagation::kDiffractionReceivers;
@@ -20,44 +20,88 @@ unsigned blocksFor(int threads) {
   return static_cast<unsigned>((threads + kThreads - 1) / kThreads);
 }
 
-/// A column's profile for DiffractionColumn: the fan's samples nearer than the column, linear between
-/// the azimuths, as readProfile().
-class FanPosts {
+/// @throws Error (device)
+[[noreturn]] void throwTooSmall(std::size_t bytes_each, std::size_t bytes) {
+  throw Error(ErrorCode::device, "GPU: " + std::to_string(kThreads) + " columns at a time need " +
+                                     std::to_string(kThreads * bytes_each) + " bytes, of " +
+                                     std::to_string(bytes));
+}
+
+/// Summary of a block of posts; see DiffractionColumn.
+struct PostBlock {
+  float highest_msl_m, lowered_msl_m;
+};
+
+/// Memory for the profiles of the columns that are computed at a time: of each post or block of posts the
+/// threads one after another.
+class ProfileMemory {
  public:
-  __device__ FanPosts(const DiffractionTask& task, const FanIndex& index)
-      : ranges_m_(task.sector.emitter.fan.ranges_m),
-        azimuths_(task.sector.interval_count + 1),
-        before_(task.sector.emitter.fan.lastBefore(index.range_m)),
-        distance_m_(index.range_m) {
-    const int interval = static_cast<int>(index.azimuth_index);
-    weight_ = static_cast<float>(index.azimuth_index - interval);
-    heights_m_ = task.sector.samples + (interval - task.sector.first_interval);
-    blocks_ = task.blocks + (interval - task.sector.first_interval);
-    sums_ = task.sums + (interval - task.sector.first_interval);
+  /// @param posts  of the longest profile
+  ProfileMemory(const ScratchMemory& memory, int posts) {
+    constexpr int kBlock = propagation::kDiffractionBlock;
+    const auto blocks = static_cast<std::size_t>((posts + kBlock - 1) / kBlock);
+    const std::size_t bytes_each = blocks * (kBlock * sizeof(float) + sizeof(PostBlock));
+    threads_ =
+        static_cast<int>(std::min<std::size_t>(memory.bytes / bytes_each, 1 << 30)) / kThreads * kThreads;
+    if (threads_ == 0) throwTooSmall(bytes_each, memory.bytes);
+    blocks_ = static_cast<PostBlock*>(memory.data);
+    heights_msl_m_ = reinterpret_cast<float*>(blocks_ + blocks * static_cast<std::size_t>(threads_));
+  }
+  int threads() const { return threads_; }
+  __device__ float& height_msl_m(int thread, int post) const {
+    return heights_msl_m_[static_cast<long long>(post) * threads_ + thread];
+  }
+  __device__ PostBlock& block(int thread, int b) const {
+    return blocks_[static_cast<long long>(b) * threads_ + thread];
   }
 
-  /// Below the column.
-  __device__ void setGround(float ground_msl_m) { ground_msl_m_ = ground_msl_m; }
+ private:
+  int threads_;
+  PostBlock* blocks_;
+  float* heights_msl_m_;
+};
+
+/// A column's profile for DiffractionColumn, as propagation::ProfilePosts.
+class ColumnPosts {
+ public:
+  /// Reads the profile.
+  __device__ ColumnPosts(const DiffractionTask& task, const FastInverse& path, float ground_msl_m,
+                         const ProfileMemory& memory, int thread)
+      : ranges_m_(task.ground.ranges_m),
+        before_(task.ground.lastBefore(path.distance_m)),
+        thread_(thread),
+        distance_m_(path.distance_m),
+        ground_msl_m_(ground_msl_m),
+        memory_(memory) {
+    constexpr int kBlock = propagation::kDiffractionBlock;
+    const auto curvature = static_cast<float>(task.model.model.half_curvature);
+    const int last_block = before_ / kBlock * kBlock;
+    PostBlock block{-HUGE_VALF, -HUGE_VALF};
+    double base = 0, before_m = 0, before_height_m = 0;
+    visitPosts(task.station, task.ground, path, count(), [&](int i, float height_msl_m) {
+      memory.height_msl_m(thread, i) = height_msl_m;
+      const double range_m = ranges_m_[i];
+      if (i == 0) base = static_cast<double>(height_msl_m);
+      const double height_m = static_cast<double>(height_msl_m) - base;
+      if (i > 0 && i < last_block) sums_.add(before_m, before_height_m, range_m, height_m);
+      before_m = range_m;
+      before_height_m = height_m;
+      const auto range = static_cast<float>(range_m);
+      block.highest_msl_m = fmaxf(block.highest_msl_m, height_msl_m);
+      block.lowered_msl_m = fmaxf(block.lowered_msl_m, height_msl_m - curvature * range * range);
+      if (i % kBlock != kBlock - 1 && i != before_) return;
+      memory.block(thread, i / kBlock) = block;
+      block = {-HUGE_VALF, -HUGE_VALF};
+    });
+  }
 
   __device__ int count() const { return before_ + 1; }
   __device__ double range_m(int i) const { return ranges_m_[i]; }
-  __device__ float height_msl_m(int i) const {
-    const float* left = heights_m_ + i * azimuths_;
-    return lerp(left[0], left[1], weight_);
-  }
-  __device__ float highest_msl_m(int b) const {
-    const FanBlock* left = blocks_ + b * azimuths_;
-    return lerp(left[0].highest_msl_m, left[1].highest_msl_m, weight_);
-  }
-  __device__ float lowered_msl_m(int b) const {
-    const FanBlock* left = blocks_ + b * azimuths_;
-    return lerp(left[0].lowered_msl_m, left[1].lowered_msl_m, weight_);
-  }
-  __device__ TerrainSums sumsBefore(int b) const {
-    const TerrainSums* left = sums_ + b * azimuths_;
-    const double weight = static_cast<double>(weight_);
-    return {left[0].v1 + weight * (left[1].v1 - left[0].v1), left[0].v2 + weight * (left[1].v2 - left[0].v2)};
-  }
+  __device__ float height_msl_m(int i) const { return memory_.height_msl_m(thread_, i); }
+  __device__ float highest_msl_m(int b) const { return memory_.block(thread_, b).highest_msl_m; }
+  __device__ float lowered_msl_m(int b) const { return memory_.block(thread_, b).lowered_msl_m; }
+  /// Those before the last block: DiffractionColumn reads no others.
+  __device__ TerrainSums sumsBefore(int) const { return sums_; }
   __device__ double distance_m() const { return distance_m_; }
   __device__ float ground_msl_m() const { return ground_msl_m_; }
   /// Ranges are even except for the first ones: an estimate from the end, then a few steps.
@@ -73,79 +117,13 @@ class FanPosts {
 
  private:
   const double* ranges_m_;
-  long long azimuths_;
   int before_;
+  int thread_;
   double distance_m_;
   float ground_msl_m_;
-  float weight_;
-  const float* heights_m_;
-  const FanBlock* blocks_;
-  const TerrainSums* sums_;
+  const ProfileMemory& memory_;
+  TerrainSums sums_;
 };
-
-/// Blocks, and the sums of each one's own intervals.
-__global__ void blocksKernel(const DiffractionTask* tasks) {
-  const DiffractionTask& task = tasks[blockIdx.z];
-  const FanSector& sector = task.sector;
-  const int a = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  const int b = static_cast<int>(blockIdx.y);
-  if (a > sector.interval_count || b >= DiffractionTask::blockCount(sector.emitter.fan.range_count)) return;
-  const int used = sector.usedRanges(a);
-  const int begin = b * kDiffractionBlock;
-  const int end = min(begin + kDiffractionBlock, used);
-  const float* const heights_m = sector.samples + a * sector.azimuth_stride;
-  const double* const ranges_m = sector.emitter.fan.ranges_m;
-  const double curvature = static_cast<double>(task.model.model.half_curvature);
-  const double base = static_cast<double>(heights_m[0]);
-  FanBlock block{-HUGE_VALF, -HUGE_VALF};
-  TerrainSums sums;
-  double before_m = 0, before_height_m = 0;
-  if (begin > 0 && begin < end) {
-    before_m = ranges_m[begin - 1];
-    before_height_m = static_cast<double>(heights_m[(begin - 1) * sector.range_stride]) - base;
-  }
-  for (int i = begin; i < end; ++i) {
-    const float height_msl_m = heights_m[i * sector.range_stride];
-    const double range_m = ranges_m[i], height_m = static_cast<double>(height_msl_m) - base;
-    if (i > 0) sums.add(before_m, before_height_m, range_m, height_m);
-    before_m = range_m;
-    before_height_m = height_m;
-    const auto lowered =
-        static_cast<float>(static_cast<double>(height_msl_m) - curvature * range_m * range_m);
-    block.highest_msl_m = fmaxf(block.highest_msl_m, height_msl_m);
-    block.lowered_msl_m = fmaxf(block.lowered_msl_m, lowered);
-  }
-  const long long at = static_cast<long long>(b) * (sector.interval_count + 1) + a;
-  task.blocks[at] = block;
-  task.sums[at] = sums;
-}
-
-/// Sums of each block become those before it. One thread per azimuth.
-__global__ void sumsKernel(const DiffractionTask* tasks) {
-  constexpr int kAhead = 8;
-  const DiffractionTask& task = tasks[blockIdx.y];
-  const FanSector& sector = task.sector;
-  const int a = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (a > sector.interval_count) return;
-  const long long azimuths = sector.interval_count + 1;
-  const int blocks = DiffractionTask::blockCount(sector.usedRanges(a));
-  TerrainSums* const of = task.sums + a;
-  TerrainSums before;
-  for (int begin = 0; begin < blocks; begin += kAhead) {
-    TerrainSums own[kAhead];
-#pragma unroll
-    for (int n = 0; n < kAhead; ++n) {
-      if (begin + n < blocks) own[n] = of[(begin + n) * azimuths];
-    }
-#pragma unroll
-    for (int n = 0; n < kAhead; ++n) {
-      if (begin + n >= blocks) break;
-      of[(begin + n) * azimuths] = before;
-      before.v1 += own[n].v1;
-      before.v2 += own[n].v2;
-    }
-  }
-}
 
 /// Once for a column; one thread at a time.
 __device__ void markUnknown(const ExcessOutputs& to, int column) {
@@ -156,55 +134,37 @@ __device__ void markUnknown(const ExcessOutputs& to, int column) {
 
 /// Columns of a block, and of each of its warps: the columns of a square share more data than those of a row.
 constexpr int kTileX = 16, kTileY = 8, kWarpX = 8, kWarpY = 4;
+static_assert(kTileX * kTileY == kThreads);
 
-/// @tparam kTilted  columns are tilted: they are cut into the grid's segments, each above a point of its own
-template <bool kTilted>
-__global__ void __launch_bounds__(kTileX* kTileY, 5)
-    diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid, int row,
-                      const std::uint16_t* first_valid_k) {
-  const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
-  constexpr int kWarpsX = kTileX / kWarpX;
-  const int x = static_cast<int>(blockIdx.x) * kTileX + warp % kWarpsX * kWarpX + lane % kWarpX;
-  const int y = static_cast<int>(blockIdx.y) * kTileY + warp / kWarpsX * kWarpY + lane / kWarpX;
+/// Tiles of kTileX x kTileY columns: over a grid's rows, of all tasks.
+struct Tiles {
+  int along_x, along_y, count;
+};
+
+/// The column of a thread in a tile.
+__device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGrid& grid, int c, int lowest,
+                                    const ProfileMemory& memory, int thread) {
   const auto layer = static_cast<long long>(grid.column_count);
-  if (x >= row || static_cast<long long>(y) * row >= layer) return;
-  const int c = y * row + x;
-  const DiffractionTask& task = tasks[blockIdx.z];
-  FanIndex index;
-  if (!kTilted) {
-    index = task.sector.emitter.fan_indices[c];
-    const int interval = static_cast<int>(index.azimuth_index) - task.sector.first_interval;
-    if (interval < 0 || interval >= task.sector.interval_count) return;
-  }
-
   ExcessCode* const codes = task.to.out.codes + c;
-  const int lowest = first_valid_k == nullptr ? 0 : min(static_cast<int>(first_valid_k[c]), grid.layers);
   for (int below = 0; below < lowest; ++below) codes[below * layer] = 0;
   const AirLoss& air = task.air;
   const GridColumn& column = grid.columns[c];
   bool is_unknown = false;
-  for (int segment = 0; segment < (kTilted ? grid.segments : 1); ++segment) {
-    const int end = kTilted ? grid.firstLayer(segment + 1) : grid.layers;
-    int k = kTilted ? max(lowest, grid.firstLayer(segment)) : lowest;
-    if (kTilted) {
-      const LocateTask& emitter = task.sector.emitter;
-      const FanCoordinates point = grid.coordinatesOf(emitter.station, static_cast<std::size_t>(c), segment);
-      index = {emitter.fan.azimuthIndex(point.azimuth_rad), point.range_m};
-    }
+  for (int segment = 0; segment < grid.segments; ++segment) {
+    const int end = grid.firstLayer(segment + 1);
+    int k = max(lowest, grid.firstLayer(segment));
     const auto heightOf = [&](int layer_k) {
       const int here = min(layer_k, end - 1);
       return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[here])));
     };
-    bool is_free = !(index.range_m > 0);  // at the emitter itself
+    const FastInverse path = grid.coordinatesOf(task.station, static_cast<std::size_t>(c), segment);
+    const auto range_m = static_cast<float>(path.distance_m);
+    bool is_free = !(path.distance_m > 0);  // at the emitter itself
     if (!is_free) {
-      FanPosts posts(task, index);
-      if (kTilted) {
-        posts.setGround(heightBetween(task.sector.emitter.fan, index.range_m,
-                                      [&](int range) { return posts.height_msl_m(range); }));
-      } else {
-        posts.setGround(grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : 0);
-      }
-      DiffractionColumn<float, FanPosts> receivers(task.model.model, posts, task.model.tx_msl_m);
+      const float ground_msl_m =
+          grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(task.station, task.ground, path);
+      const ColumnPosts posts(task, path, ground_msl_m, memory, thread);
+      DiffractionColumn<float, ColumnPosts> receivers(task.model.model, posts, task.model.tx_msl_m);
       if (receivers.isUnknown()) {
         is_unknown = true;
         for (; k < end; ++k) codes[k * layer] = kUnknownExcess;
@@ -217,18 +177,34 @@ __global__ void __launch_bounds__(kTileX* kTileY, 5)
 #pragma unroll
         for (int j = 0; j < kReceivers; ++j) {
           if (k + j >= end) break;
-          if (!air.isClear()) loss_db[j] += air.lossDb(static_cast<float>(index.range_m), rx_msl_m[j]);
+          if (!air.isClear()) loss_db[j] += air.lossDb(range_m, rx_msl_m[j]);
           codes[(k + j) * layer] = excessCode(loss_db[j]);
         }
         k += kReceivers;
       }
     }
-    for (; k < end; ++k) {
-      codes[k * layer] =
-          air.isClear() ? 0 : excessCode(air.lossDb(static_cast<float>(index.range_m), heightOf(k)));
-    }
+    for (; k < end; ++k) codes[k * layer] = air.isClear() ? 0 : excessCode(air.lossDb(range_m, heightOf(k)));
   }
   if (is_unknown) markUnknown(task.to, c);
+}
+
+__global__ void __launch_bounds__(kThreads, 5)
+    diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid, int row,
+                      const std::uint16_t* first_valid_k, const __grid_constant__ ProfileMemory memory,
+                      Tiles tiles) {
+  const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
+  constexpr int kWarpsX = kTileX / kWarpX;
+  const int in_tile_x = warp % kWarpsX * kWarpX + lane % kWarpX;
+  const int in_tile_y = warp / kWarpsX * kWarpY + lane / kWarpX;
+  const int thread = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  for (int tile = static_cast<int>(blockIdx.x); tile < tiles.count; tile += static_cast<int>(gridDim.x)) {
+    const int x = tile % tiles.along_x * kTileX + in_tile_x;
+    const int y = tile / tiles.along_x % tiles.along_y * kTileY + in_tile_y;
+    if (x >= row || static_cast<std::size_t>(y) * row >= grid.column_count) continue;
+    const int c = y * row + x;
+    const int lowest = first_valid_k == nullptr ? 0 : min(static_cast<int>(first_valid_k[c]), grid.layers);
+    diffractionOfColumn(tasks[tile / (tiles.along_x * tiles.along_y)], grid, c, lowest, memory, thread);
+  }
 }
 
 __device__ void note(const ExcessOutputs& to, int column, unsigned warnings) {
@@ -245,16 +221,14 @@ class ColumnMemory {
     bool is_open;  ///< there is something to fill
   };
 
-  ColumnMemory(void* memory, std::size_t bytes, int posts, int layers)
-      : memory_(static_cast<char*>(memory)), posts_(posts), layers_(layers) {
+  ColumnMemory(const ScratchMemory& memory, int posts, int layers)
+      : memory_(static_cast<char*>(memory.data)), posts_(posts), layers_(layers) {
     constexpr std::size_t kAlignment = alignof(Begun);
     bytes_each_ =
         (sizeof(Begun) + ExcessScratch::bytes(posts, layers) + kAlignment - 1) / kAlignment * kAlignment;
-    columns_ = static_cast<int>(std::min<std::size_t>(bytes / bytes_each_, 1 << 30)) / kThreads * kThreads;
-    if (columns_ > 0) return;
-    throw Error(ErrorCode::device, "GPU: " + std::to_string(kThreads) + " columns at a time need " +
-                                       std::to_string(kThreads * bytes_each_) + " bytes, of " +
-                                       std::to_string(bytes));
+    columns_ =
+        static_cast<int>(std::min<std::size_t>(memory.bytes / bytes_each_, 1 << 30)) / kThreads * kThreads;
+    if (columns_ == 0) throwTooSmall(bytes_each_, memory.bytes);
   }
   int columns() const { return columns_; }
   __device__ Begun& begun(int n) const { return *reinterpret_cast<Begun*>(memory_ + n * bytes_each_); }
@@ -279,8 +253,7 @@ __global__ void __launch_bounds__(kThreads)
   const ExcessGrid& grid = task.grid;
   const ExcessScratch scratch = memory.scratch(thread);
   for (std::size_t c = thread; c < grid.column_count; c += threads) {
-    unsigned warnings = 0;
-    if (!task.fillColumn(c, scratch, to.out.reflected, warnings)) continue;
+    const unsigned warnings = task.fillColumn(c, scratch, PostReader{}, to.out.reflected);
     note(to, static_cast<int>(c), warnings);
     for (int k = 0; k < grid.layers; ++k) {
       to.out.codes[k * grid.column_count + c] = excessCode(scratch.excess_db[k]);
@@ -302,12 +275,10 @@ __global__ void __launch_bounds__(kThreads)
   const int n = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (n >= run.count) return;
   const ExcessScratch scratch = memory.scratch(n);
-  ExcessColumn column;
-  const bool is_here = task.readSegment(run.first + n, run.segment, scratch, column);
-  unsigned warnings = 0;
+  const ExcessColumn column = task.readSegment(run.first + n, run.segment, scratch, PostReader{});
   const int first = task.grid.firstLayer(run.segment);
-  if (is_here) warnings = task.model.begin(column, scratch, scratch.excess_db + first);
-  memory.begun(n) = {column, is_here && warnings == 0};
+  const unsigned warnings = task.model.begin(column, scratch, scratch.excess_db + first);
+  memory.begun(n) = {column, warnings == 0};
   if (warnings == 0) return;
   note(to, run.first + n, warnings);
   for (int k = 0; k < column.count; ++k) {
@@ -366,34 +337,27 @@ void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const 
 
 }  // namespace
 
-void fillDiffraction(const DiffractionTask* tasks, const SectorExtent& extent, const ExcessGrid& grid,
-                     int row, bool tilted, const std::uint16_t* first_valid_k, cudaStream_t stream) {
-  const auto count = static_cast<unsigned>(extent.sectors);
-  const dim3 blocks(blocksFor(extent.azimuths),
-                    static_cast<unsigned>(DiffractionTask::blockCount(extent.ranges)), count);
-  blocksKernel<<<blocks, kThreads, 0, stream>>>(tasks);
-  checkLaunch("terrain blocks");
-  constexpr int kWarp = 32;
-  const dim3 warps(static_cast<unsigned>((extent.azimuths + kWarp - 1) / kWarp), count);
-  sumsKernel<<<warps, kWarp, 0, stream>>>(tasks);
-  checkLaunch("terrain sums");
+void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
+                     const std::uint16_t* first_valid_k, const ScratchMemory& scratch, cudaStream_t stream) {
   const int rows = static_cast<int>(grid.column_count) / row;
-  const dim3 tiles(static_cast<unsigned>((row + kTileX - 1) / kTileX),
-                   static_cast<unsigned>((rows + kTileY - 1) / kTileY), count);
-  const auto kernel = tilted ? diffractionKernel<true> : diffractionKernel<false>;
-  kernel<<<tiles, kTileX * kTileY, 0, stream>>>(tasks, grid, row, first_valid_k);
+  Tiles tiles{(row + kTileX - 1) / kTileX, (rows + kTileY - 1) / kTileY, 0};
+  tiles.count = tiles.along_x * tiles.along_y * count;
+  const ProfileMemory memory(scratch, ranges);
+  const int blocks = std::min(tiles.count, memory.threads() / kThreads);
+  diffractionKernel<<<static_cast<unsigned>(blocks), kThreads, 0, stream>>>(tasks, grid, row, first_valid_k,
+                                                                            memory, tiles);
   checkLaunch("diffraction");
 }
 
 void fillExcess(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
-                const FanHeights& fan, const ExcessOutputs& to, void* scratch, std::size_t scratch_bytes,
+                const GroundPosts& ground, const ExcessOutputs& to, const ScratchMemory& scratch,
                 cudaStream_t stream) {
   std::visit(
       [&](const auto& m) {
         using Model = std::decay_t<decltype(m)>;
         if constexpr (!std::is_same_v<Model, DiffractionExcess>) {  // it has its own kernel
-          const ExcessTask<Model> task{m, excess.air, station, grid, fan};
-          launchExcess(task, to, ColumnMemory(scratch, scratch_bytes, task.posts(), grid.layers), stream);
+          const ExcessTask<Model> task{m, excess.air, station, grid, ground};
+          launchExcess(task, to, ColumnMemory(scratch, task.posts(), grid.layers), stream);
         }
       },
       excess.model);

@@ -10,50 +10,41 @@
 namespace emscape::emfield::cuda {
 
 using propagation::DiffractionExcess;
-using propagation::kDiffractionBlock;
-using propagation::TerrainSums;
 
-/// An emitter with an excess loss. Pointers are to device memory.
+/// Results of an emitter with an excess loss. Pointers are to device memory.
 struct ExcessOutputs {
   ExcessOutput out;
   GeometryCounts* counts = nullptr;
 };
 
-/// Summary of a block of posts along an azimuth; see DiffractionColumn.
-struct FanBlock {
-  float highest_msl_m, lowered_msl_m;
+/// Device memory of the columns that are computed at a time; its size bounds their number.
+struct ScratchMemory {
+  void* data = nullptr;
+  std::size_t bytes = 0;
 };
 
-/// `diffraction` over some intervals of an emitter's fan, over all of them for tilted columns: one thread per
-/// column, which reads its profile from the fan as often as it needs it.
+/// `diffraction` of one emitter. Pointers are to device memory.
 struct DiffractionTask {
   DiffractionExcess model;
   AirLoss air;
-  FanSector sector;  ///< heights, azimuth fastest
+  Station station;
+  GroundPosts ground;
   ExcessOutputs to;
-  /// Of each block of posts and each azimuth, azimuth fastest; made by fillDiffraction().
-  FanBlock* blocks = nullptr;
-  TerrainSums* sums = nullptr;  ///< before the block
-
-  /// Blocks along an azimuth of so many posts.
-  EMSCAPE_HD static constexpr int blockCount(int posts) {
-    return (posts + kDiffractionBlock - 1) / kDiffractionBlock;
-  }
 };
-/// @param extent         of the tasks' sectors
+/// Several emitters at once: one thread per column, which keeps its profile and the maxima of its blocks of
+/// posts.
+/// @param ranges         the largest number of posts of a task
 /// @param grid           of device memory
 /// @param row            columns along x
-/// @param tilted         whether the columns are
 /// @param first_valid_k  voxels below get no excess; null: none is below
-void fillDiffraction(const DiffractionTask* tasks, const SectorExtent& extent, const ExcessGrid& grid,
-                     int row, bool tilted, const std::uint16_t* first_valid_k, cudaStream_t stream);
+void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
+                     const std::uint16_t* first_valid_k, const ScratchMemory& scratch, cudaStream_t stream);
 
 /// Any model: one thread per column, with its own scratch memory.
-/// @param excess     its tables in device memory
-/// @param grid, fan  of device memory; fan: range fastest, none for models without terrain
-/// @param scratch    device memory; its size bounds the number of columns computed at a time
+/// @param excess        its tables in device memory
+/// @param grid, ground  of device memory
 void fillExcess(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
-                const FanHeights& fan, const ExcessOutputs& to, void* scratch, std::size_t scratch_bytes,
+                const GroundPosts& ground, const ExcessOutputs& to, const ScratchMemory& scratch,
                 cudaStream_t stream);
 
 }  // namespace emscape::emfield::cuda

@@ -39,7 +39,7 @@ double freeSpaceDensity_wm2(const Emitter& emitter, const scenario::BeamPose& be
 
 std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int radar,
                                     const std::vector<int>& jammers, const scenario::Terrain* terrain,
-                                    const FanResolution& resolution, std::string* warning) {
+                                    std::string* warning) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const EmitterState& at = snapshot.emitters[radar];
   const double k_factor = scenario.atmosphere.k_factor;
@@ -61,7 +61,7 @@ std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int rada
     } else {
       try {
         const PathBudget budget = pathBudget(snapshot, j, {at.position, at.height_msl_m},
-                                             scenario.emitters[j].propagation.model, terrain, resolution);
+                                             scenario.emitters[j].propagation.model, terrain);
         jammer.power_density_wm2 = dbToRatio(budget.find("power_density_dbwm2")->value);
         ray.z += refractionLift_m(station, budget.profile.range_m, level_m);
         if (const auto& reflection = budget.excess.reflection) {

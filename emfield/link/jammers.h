@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "emfield/radar_share.h"
-#include "emfield/terrain_fan.h"
 #include "emscape/scenario/snapshot.h"
 
 namespace emscape::emfield {
@@ -17,6 +16,6 @@ namespace emscape::emfield {
 /// @throws Error (bad_input) for missing terrain, see warning
 std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int radar,
                                     const std::vector<int>& jammers, const scenario::Terrain* terrain,
-                                    const FanResolution& resolution, std::string* warning);
+                                    std::string* warning);
 
 }  // namespace emscape::emfield

@@ -13,7 +13,6 @@
 #include "emfield/radar/detection.h"
 #include "emfield/radar/receiver.h"
 #include "emfield/station.h"
-#include "emfield/terrain_fan.h"
 #include "emfield/two_rays.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/field_solver.h"
@@ -218,8 +217,7 @@ const BudgetTerm* PathBudget::find(const std::string& key) const {
 }
 
 PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, const PathEnd& point,
-                      propagation::PropagationModel model, const scenario::Terrain* terrain,
-                      const FanResolution& resolution) {
+                      propagation::PropagationModel model, const scenario::Terrain* terrain) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const Emitter& emitter = scenario.emitters[emitter_index];
   const EmitterState& state = snapshot.emitters[emitter_index];
@@ -232,8 +230,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   budget.frequency_hz = emitter.frequency_hz;
   budget.k_factor = scenario.atmosphere.k_factor;
   budget.model = model;
-  budget.profile =
-      readPathProfile({state.position, state.height_msl_m}, point, budget.k_factor, terrain, resolution);
+  budget.profile = readPathProfile({state.position, state.height_msl_m}, point, budget.k_factor, terrain);
   const PathProfile& profile = budget.profile;
   const Station station = makeStation(state.position, state.height_msl_m, profile.k_factor);
   const double wavelength = wavelength_m(emitter.frequency_hz);
@@ -253,7 +250,7 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   geometry.far_field_m = 2 * aperture_m * aperture_m / wavelength;
 
   budget.obstacles = pathObstacles(profile, wavelength);
-  budget.excess = pathExcess(scenario, by_model, profile, terrain, resolution);
+  budget.excess = pathExcess(scenario, by_model, profile, terrain);
   budget.pointing = pointingOf(emitter, state.beam, ray, budget.excess.reflection);
   budget.boresight_dbwm2 = boresightDensity_dbwm2(emitter, budget);
   budget.warnings = budget.excess.warnings;
@@ -266,17 +263,11 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   }
   std::optional<RadarAtPoint> radar;
   if (emitter.kind == scenario::EmitterKind::radar && state.active) {
-    radar = radarAtPoint(snapshot, emitter_index, ray, budget, terrain, resolution);
+    radar = radarAtPoint(snapshot, emitter_index, ray, budget, terrain);
   }
   budget.terms = termsOf(snapshot, emitter_index, budget, radar);
   budget.verdict = verdictOf(budget);
   return budget;
-}
-
-PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
-                      propagation::PropagationModel model, const scenario::Terrain* terrain) {
-  return pathBudget(snapshot, emitter, point, model, terrain,
-                    fanResolution(gridOf(snapshot.scenario->region), terrain));
 }
 
 }  // namespace emscape::emfield

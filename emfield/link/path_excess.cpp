@@ -28,14 +28,12 @@ void addAir(AirLoss air, const PathProfile& profile, PathExcess& excess) {
 }  // namespace
 
 PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                      const PathProfile& profile, const scenario::Terrain* terrain,
-                      const FanResolution& resolution) {
+                      const PathProfile& profile, const scenario::Terrain* terrain) {
   PathExcess excess;
   excess.warnings = checkModel(scenario, emitter);
   const Station station = makeStation(profile.begin.position, profile.begin.height_msl_m, profile.k_factor);
-  const PathInputs inputs =
-      pathInputs(scenario, emitter, station, terrain,
-                 {profile.range_m, profile.end.height_msl_m, profile.end.height_msl_m}, resolution);
+  const PathInputs inputs = pathInputs(scenario, emitter, station, terrain,
+                                       {profile.range_m, profile.end.height_msl_m, profile.end.height_msl_m});
   propagation::PathColumn path({profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()},
                                profile.range_m, profile.end.height_msl_m);
   static_cast<propagation::Explanation&>(excess) =

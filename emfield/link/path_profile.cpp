@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/read_posts.h"
 #include "emfield/station.h"
-#include "emfield/terrain_fan.h"
 #include "emscape/base/error.h"
 #include "propagation/diffraction/knife_edge.h"
 #include "propagation/horizon/horizon.h"
@@ -16,9 +16,9 @@ namespace {
 
 constexpr double kMinPath_m = 1;
 
-/// Ranges of a fan before the path's end, and the end.
-std::vector<double> pathRanges(double range_m, double even_step_m) {
-  std::vector<double> ranges = fanRanges(range_m, even_step_m);
+/// Ranges of the posts before the path's end, and the end.
+std::vector<double> pathRanges(double range_m, double post_spacing_m) {
+  std::vector<double> ranges = postRanges(range_m, post_spacing_m);
   while (ranges.back() >= range_m) ranges.pop_back();
   ranges.push_back(range_m);
   return ranges;
@@ -62,7 +62,7 @@ double PathProfile::fresnelRadius_m(int i, double wavelength_m) const {
 }
 
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
-                            const scenario::Terrain* terrain, const FanResolution& resolution) {
+                            const scenario::Terrain* terrain) {
   PathProfile profile;
   const Station station = makeStation(begin.position, begin.height_msl_m, k_factor);
   profile.k_factor = k_factor;
@@ -70,10 +70,11 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_f
   profile.begin = begin;
   profile.end = end;
   profile.has_terrain = terrain != nullptr;
-  const FanCoordinates coordinates =
-      fanCoordinates(station, surfacePoint(end.position.latitude_deg, end.position.longitude_deg).ecef_m);
-  profile.azimuth_rad = coordinates.azimuth_rad;
-  profile.range_m = coordinates.range_m;
+  const FastInverse inverse = fastInverse(
+      station.geodesy, surfacePoint(end.position.latitude_deg, end.position.longitude_deg).ecef_m);
+  profile.azimuth_rad = std::atan2(inverse.sin_azimuth, inverse.cos_azimuth);
+  if (profile.azimuth_rad < 0) profile.azimuth_rad += 2 * kPi;
+  profile.range_m = inverse.distance_m;
   const double longest_m = 0.5 * kPi * station.earth_radius_m;
   if (!(profile.range_m >= kMinPath_m && profile.range_m <= longest_m)) {
     throw Error(
@@ -81,13 +82,14 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_f
         fmt::format("the path is {:.6g} km long over the ground; profiles are drawn from {:g} to {:.0f} km",
                     profile.range_m / 1000, kMinPath_m / 1000, longest_m / 1000));
   }
-  FanShape path;  // a fan of one azimuth
-  path.first_azimuth_rad = profile.azimuth_rad;
-  path.interval_count = 0;
-  path.ranges_m = pathRanges(profile.range_m, resolution.range_m);
-  path.used_ranges = {path.rangeCount()};
-  profile.ground_msl_m = readTerrainFan(station, path, terrain, 0, 0).height_msl_m;
-  profile.ranges_m = std::move(path.ranges_m);
+  profile.ranges_m = pathRanges(profile.range_m, postSpacing_m(terrain));
+  profile.ground_msl_m.resize(profile.ranges_m.size());
+  readPostsCpu(station, groundPosts(terrain, profile.ranges_m), inverse, profile.count() - 1,
+               profile.ground_msl_m.data());
+  if (terrain != nullptr) {
+    profile.ground_msl_m.back() =
+        static_cast<float>(terrain->heightMsl_m(end.position.latitude_deg, end.position.longitude_deg));
+  }
   if (terrain != nullptr) checkTerrain(profile, *terrain);
 
   const propagation::HorizonGeometry<double> geometry{begin.height_msl_m, station.effective_earth_radius_m};

@@ -87,16 +87,14 @@ class RadarPoint {
 }  // namespace
 
 RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray,
-                          const PathBudget& path, const scenario::Terrain* terrain,
-                          const FanResolution& resolution) {
+                          const PathBudget& path, const scenario::Terrain* terrain) {
   Channel channel;
   channel.emitters = {radar};
   for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
     if (snapshot.scenario->emitters[e].kind == EmitterKind::jammer)
       channel.jammers.push_back(static_cast<int>(e));
   }
-  const std::vector<JammerPath> jammers =
-      jammerPaths(snapshot, radar, channel.jammers, terrain, resolution, nullptr);
+  const std::vector<JammerPath> jammers = jammerPaths(snapshot, radar, channel.jammers, terrain, nullptr);
   const RadarPoint point(snapshot, radar, ray, path);
   RadarAtPoint result;
   channel.quantity = Quantity::snr_db;

@@ -1,7 +1,6 @@
 /// Echo, jamming and detection of a target at the end of a path.
 #pragma once
 
-#include "emfield/terrain_fan.h"
 #include "emscape/base/vec.h"
 #include "emscape/emfield/path_budget.h"
 #include "emscape/scenario/quantities.h"
@@ -20,7 +19,6 @@ struct RadarAtPoint {
 /// @param path   to the point: its power density on boresight and its reflected ray
 /// @throws Error (bad_input) if a jammer's path to the radar crosses missing terrain
 RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray,
-                          const PathBudget& path, const scenario::Terrain* terrain,
-                          const FanResolution& resolution);
+                          const PathBudget& path, const scenario::Terrain* terrain);
 
 }  // namespace emscape::emfield

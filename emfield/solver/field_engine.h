@@ -11,7 +11,6 @@
 #include "emfield/grid_columns.h"
 #include "emfield/products.h"
 #include "emfield/solver/field_plan.h"
-#include "emfield/terrain_fan.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/volume/volume.h"
 #include "scenario/terrain/view.h"
@@ -24,10 +23,9 @@ struct FieldSetup : FieldPlan {
   scenario::TerrainPtr terrain;  ///< null: none
   volume::Grid grid;
   GridColumns columns;
-  FanResolution resolution;
 };
 
-/// Request to run stages 1 (fan) and 2 (excess) for one emitter; the results go into a slot.
+/// Request to run stages 1 (columns) and 2 (excess) for one emitter; the results go into a slot.
 struct GeometryRequest {
   int emitter = 0;
   int slot = 0;
@@ -100,9 +98,8 @@ std::unique_ptr<FieldEngine> makeCpuEngine(const FieldSetup& setup, int slots);
 std::unique_ptr<FieldEngine> makeCudaEngine(const FieldSetup& setup, int slots,
                                             volume::VoxelPrecision precision);
 
-/// Limit (bytes) of the CUDA engine's memory for fans while geometry is computed, and the same again for the
-/// models' own arrays.
-constexpr std::size_t kDeviceScratchBytes = std::size_t{1} << 29;
+/// Limit (bytes) of the CUDA engine's memory for profiles while geometry is computed.
+constexpr std::size_t kDeviceScratchBytes = std::size_t{1} << 30;
 
 /// Bytes of a terrain's posts.
 std::size_t postBytes(const scenario::TerrainView& terrain);

@@ -1,6 +1,6 @@
 /// The inputs of each stage of the field, from which an update finds what an edit or the time invalidates.
 ///
-/// The inputs of stages 1 and 2 (fan and excess) are read in many places; they are collected here by
+/// The inputs of stages 1 and 2 (columns and excess) are read in many places; they are collected here by
 /// structured bindings of every member: a new member does not compile until it is added here. The inputs of
 /// stage 3 (combine) are those of the engine.
 #pragma once

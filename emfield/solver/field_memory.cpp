@@ -35,7 +35,7 @@ std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
     bytes += 2 * voxels * accumulators * sizeof(float) + 2 * volume::deviceBytes(setup.grid.dims, precision);
   }
   if (setup.terrain != nullptr) bytes += postBytes(setup.terrain->view());
-  return bytes + 2 * kDeviceScratchBytes;
+  return bytes + kDeviceScratchBytes;
 }
 
 }  // namespace emscape::emfield

@@ -50,7 +50,6 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
   setup.grid = gridOf(setup.scenario->region);
   setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
   checkHoles();
-  setup.resolution = fanResolution(setup.grid, setup.terrain.get());
   emitters.resize(setup.scenario->emitters.size());
   masks.resize(setup.channels.size());
   volumes.resize(setup.channels.size());

@@ -27,7 +27,7 @@ void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Ch
       if (channel.jammers.empty() || done[e] || !cache.state.active) continue;
       if (!jammed_anew && !cache.mount_changed) continue;
       std::string warning;
-      cache.jammers = jammerPaths(snapshot, e, channel.jammers, setup.terrain.get(), setup.resolution,
+      cache.jammers = jammerPaths(snapshot, e, channel.jammers, setup.terrain.get(),
                                   options.allow_missing_terrain ? &warning : nullptr);
       if (!warning.empty()) ++cache.jamming_warnings[warning];
       done[e] = true;

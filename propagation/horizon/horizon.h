@@ -49,25 +49,31 @@ struct HorizonGeometry {
   }
 };
 
-/// The larger of two slopes; NaN if one is.
-EMSCAPE_HD inline float steeper(float highest, float here) {
-  return !(here <= highest) && !std::isnan(highest) ? here : highest;
-}
-
-/// Slopes of the grazing rays along one azimuth: slope[i] is the largest slope to the terrain at
-/// samples 1..i, so that a point between samples i and i + 1 is lit if the slope to it is not below slope[i].
-/// slope[0] is -infinity: there is no sample before it.
-/// @param profile_msl_m  terrain heights of `count` samples; from a NaN on all slopes are NaN
-/// @param ranges         terms of the samples' ranges, `count` of them
+/// Slope of the ray that grazes the terrain along one azimuth: the largest to its samples. A point beyond them
+/// is lit if the slope to it is not below.
 template <class Real>
-EMSCAPE_HD void grazingSlopes(const HorizonGeometry<Real>& geometry, const float* profile_msl_m,
-                              const RangeTerms<Real>* ranges, int count, float* slope) {
-  float highest = -HUGE_VALF;
-  slope[0] = highest;
-  for (int i = 1; i < count; ++i) {
-    highest = steeper(highest, float(geometry.slopeTo(Real(profile_msl_m[i]), ranges[i])));
-    slope[i] = highest;
+struct GrazingSlope {
+  Real highest = -Real(HUGE_VAL), unknown = 0;
+
+  /// @param slope  slopeTo() a sample of that height
+  EMSCAPE_HD void add(Real height_msl_m, Real slope) {
+    highest = slope > highest ? slope : highest;
+    unknown += height_msl_m - height_msl_m;
   }
+  /// -infinity without a sample; NaN if the height of one is.
+  EMSCAPE_HD Real value() const { return highest + unknown; }
+};
+
+/// The slope of that ray over a smooth earth at mean sea level, in closed form.
+/// @param range_m  of the point
+template <class Real>
+EMSCAPE_HD Real smoothGrazingSlope(const HorizonGeometry<Real>& geometry, double range_m) {
+  const double radius_m = double(geometry.effective_earth_radius_m);
+  const double height_m = double(geometry.station_height_msl_m);
+  if (height_m < 0) return Real(HUGE_VAL);
+  const double tangent = std::sqrt(height_m * (2 * radius_m + height_m)) / radius_m;  // of the dip
+  if (range_m < radius_m * std::atan(tangent)) return geometry.slopeTo(Real(0), geometry.termsAt(range_m));
+  return Real(-tangent);
 }
 
 }  // namespace emscape::propagation

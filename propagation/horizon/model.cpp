@@ -22,13 +22,14 @@ Explanation explainHorizon(const PathInputs& inputs, PathColumn& path) {
   const HorizonGeometry<float> geometry{static_cast<float>(inputs.site.height_msl_m),
                                         static_cast<float>(inputs.site.effective_earth_radius_m)};
   const TerrainProfile& profile = path.column().profile;
-  std::vector<RangeTerms<float>> ranges;
-  for (int i = 0; i < profile.count; ++i) ranges.push_back(geometry.termsAt(profile.range_m[i]));
-  std::vector<float> slopes(ranges.size());
-  grazingSlopes(geometry, profile.height_msl_m, ranges.data(), profile.count, slopes.data());
-  const int before = profile.count - 2;
-  const bool is_lit =
-      before == 0 || path.column().height_msl_m[0] >= geometry.heightOn(slopes[before], ranges.back());
+  const int last = profile.count - 1;  // below the point
+  GrazingSlope<float> slope;
+  for (int i = 1; i < last; ++i) {
+    const float height_msl_m = profile.height_msl_m[i];
+    slope.add(height_msl_m, geometry.slopeTo(height_msl_m, geometry.termsAt(profile.range_m[i])));
+  }
+  const bool is_lit = last < 2 || path.column().height_msl_m[0] >=
+                                      geometry.heightOn(slope.value(), geometry.termsAt(profile.range_m[last]));
   Explanation explanation;
   explanation.why = is_lit ? "no obstacle above the ray: free space"
                            : "an obstacle above the ray: no field behind it (no diffraction)";

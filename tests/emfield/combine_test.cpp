@@ -52,7 +52,6 @@ TEST(Combine, RowsGiveWhatThePlainFunctionGives) {
   auto scenario = emptyScenario(FrameKind::altitude, 40, 5, {37e3, 23e3, 5000}, {150, 13, 7});
   const volume::Grid grid = gridOf(scenario->region);
   const GridColumns columns = makeGridColumns(grid, nullptr);
-  const FanResolution resolution = fanResolution(grid, nullptr);
   for (const NamedAntenna& entry : antennas()) {
     for (double azimuth_deg : {3.0, 91.0, 178.0, 264.5}) {
       SCOPED_TRACE(::testing::Message() << entry.name << " towards " << azimuth_deg);
@@ -68,7 +67,7 @@ TEST(Combine, RowsGiveWhatThePlainFunctionGives) {
       const scenario::EmitterState state = scenario::snapshotAt(scenario, nullptr, 0).emitters[0];
       EmitterGeometry geometry;
       EmitterGeometry::Times times;
-      geometry.compute(state, *scenario, emitter, columns, nullptr, resolution, times);
+      geometry.compute(state, *scenario, emitter, columns, nullptr, times);
 
       CombineEmitter combined;
       combined.beam.geometry = geometry.view();

@@ -45,11 +45,12 @@ AirLoss airOf(const scenario::Scenario& scenario, double station_msl_m, const Pa
 /// An emitter's excess, and one column of it at a time.
 class Columns {
  public:
-  Columns(const scenario::Scenario& scenario, double tx_msl_m, const PathExtent& extent,
-          const scenario::Terrain* terrain = nullptr, double step_m = 45)
-      : station_(makeStation({44.43, -71.47, 0}, tx_msl_m, scenario.atmosphere.k_factor)),
-        excess_(makeExcess(
-            pathInputs(scenario, scenario.emitters[0], station_, terrain, extent, {step_m, step_m}))) {}
+  Columns(const scenario::Scenario& scenario, double tx_msl_m, const PathExtent& extent, double step_m = 45)
+      : station_(makeStation({44.43, -71.47, 0}, tx_msl_m, scenario.atmosphere.k_factor)) {
+    PathInputs inputs = pathInputs(scenario, scenario.emitters[0], station_, nullptr, extent);
+    inputs.post_spacing_m = step_m;
+    excess_ = makeExcess(inputs);
+  }
 
   std::vector<float> fill(const ProfileData& profile, const std::vector<float>& heights_msl_m) const {
     return filled(profile, heights_msl_m, [](const auto& model, const auto&... of) { return model(of...); });
@@ -192,7 +193,6 @@ TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
     scenario->emitters[0].propagation.diffraction.method = method;
     const auto volume = solve(scenario, terrain);
     const scenario::EmitterState state = scenario::snapshotAt(scenario, terrain.get(), 0).emitters[0];
-    const double step_m = fanResolution(volume->grid, terrain.get()).range_m;
     const GeoFrame geo(volume->grid.frame);
     std::mt19937 random(9);
     Spread spread;
@@ -201,7 +201,7 @@ TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
       const Vec3d center = volume->grid.center_m(i, j, k);
       const GeodeticPosition to = geo.toGeodetic(center);
       if (center.z < terrain->heightMsl_m(to.latitude_deg, to.longitude_deg) + 1) continue;
-      const ProfileData profile = profileTo(*terrain, state.position, to, step_m);
+      const ProfileData profile = profileTo(*terrain, state.position, to);
       const double expected = method == propagation::DiffractionMethod::deygout
                                   ? deygoutLossDb(model, profile.view(), state.height_msl_m, center.z)
                                   : singleEdgeLossDb(model, profile.view(), state.height_msl_m, center.z);
@@ -223,7 +223,7 @@ TEST(ExcessModels, ItmStandsNearTheGroundAndGoesOverToDiffractionAboveWithoutJum
   const Columns diffraction(*scenario, tx_msl_m, extent);
   scenario->emitters[0].propagation.model = PropagationModel::itm;
   const double step_m = profile.range_m.back() / 249 * 1.0001;
-  const Columns itm(*scenario, tx_msl_m, extent, nullptr, step_m);
+  const Columns itm(*scenario, tx_msl_m, extent, step_m);
 
   ItmProfile<float> even{profile.height_msl_m.data(), 249, profile.range_m.back() / 249};
   ItmLink<double> link;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "emfield/emitter_excess.h"
-#include "emfield/terrain_fan.h"
+#include "emfield/ground_posts.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"
@@ -45,9 +45,9 @@ inline std::shared_ptr<scenario::Scenario> smoothEarth(propagation::PropagationM
   return scenario;
 }
 
-/// The terrain along the geodesic from an emitter to below a point, at a fan's ranges.
+/// The terrain along the geodesic from an emitter to below a point, at the field's posts.
 inline ProfileData profileTo(const scenario::Terrain& terrain, const GeodeticPosition& from,
-                             const GeodeticPosition& to, double even_step_m) {
+                             const GeodeticPosition& to) {
   const GeodesicInverse path =
       geodesicInverse(from.latitude_deg, from.longitude_deg, to.latitude_deg, to.longitude_deg);
   ProfileData profile;
@@ -58,7 +58,7 @@ inline ProfileData profileTo(const scenario::Terrain& terrain, const GeodeticPos
     profile.height_msl_m.push_back(
         static_cast<float>(terrain.heightMsl_m(at.latitude_deg, at.longitude_deg)));
   };
-  for (const double range_m : fanRanges(path.distance_m, even_step_m)) {
+  for (const double range_m : postRanges(path.distance_m, postSpacing_m(&terrain))) {
     if (range_m < path.distance_m) add(range_m);
   }
   add(path.distance_m);

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "emfield/terrain_fan.h"
+#include "emfield/ground_posts.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_profile.h"
 #include "propagation/air/gases.h"
@@ -71,7 +71,7 @@ class Walk {
         geodesicDirect(site_.position.latitude_deg, site_.position.longitude_deg, azimuth_rad, range_m),
         height_msl_m};
     end.position.height_ellipsoid_m = height_msl_m;
-    return readPathProfile(site_, end, 4.0 / 3, terrain_.get(), {90, 45});
+    return readPathProfile(site_, end, 4.0 / 3, terrain_.get());
   }
 
   using Path = std::function<PathProfile(double)>;

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "emfield/terrain_fan.h"
+#include "emfield/ground_posts.h"
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_budget.h"
@@ -33,7 +33,7 @@ PathEnd pointAt(double latitude_deg, double longitude_deg, double height_msl_m) 
 
 PathBudget budgetTo(const std::shared_ptr<scenario::Scenario>& scenario, const PathEnd& point,
                     PropagationModel model = PropagationModel::free_space) {
-  return pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0, point, model, nullptr, {200, 100});
+  return pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0, point, model, nullptr);
 }
 
 TEST(Traps, ItmBendsRaysByRefractivityAndDiffractionByTheKFactor) {

@@ -146,7 +146,7 @@ TEST(RadarRows, GiveWhatTheVoxelFunctionGives) {
   const scenario::EmitterState state = scenario::snapshotAt(scenario, nullptr, 0).emitters[0];
   EmitterGeometry geometry;
   EmitterGeometry::Times times;
-  geometry.compute(state, *scenario, radar, columns, nullptr, fanResolution(grid, nullptr), times);
+  geometry.compute(state, *scenario, radar, columns, nullptr, times);
   const DetectionCurve curve(detectorOf(radar.receiver));
   const JammerAtRadar jammers[] = {{{0.6f, 0.8f, 0}, 1e4f}, {{0, -1, 0}, 30}};
   RadarPass pass;

@@ -1,4 +1,4 @@
-/// Scenario and time to volumes: the pipeline fan -> excess -> combine -> product, with its caches.
+/// Scenario and time to volumes: the pipeline columns -> excess -> combine -> product, with its caches.
 #pragma once
 
 #include <cstddef>
@@ -49,7 +49,7 @@ struct FieldChanged {
   bool any = false;
   bool grid = false;      ///< everything is new: the first update, or another region, terrain or emitter list
   bool channels = false;  ///< channels() may have changed
-  std::vector<int> moved;    ///< emitters whose geometry (fan and excess losses) was recomputed
+  std::vector<int> moved;    ///< emitters whose geometry (columns and excess losses) was recomputed
   std::vector<int> turned;   ///< emitters of which only the beam, the power or the activity changed, or what
                              ///< else the combine stage reads
   std::vector<int> volumes;  ///< channels whose volume was recomputed
@@ -57,7 +57,7 @@ struct FieldChanged {
 
 /// Times (ms) of the stages of the last update; with cuda on the GPU.
 struct StageTimes {
-  double fan_ms = 0, excess_ms = 0, combine_ms = 0, product_ms = 0;
+  double columns_ms = 0, excess_ms = 0, combine_ms = 0, product_ms = 0;
 };
 
 struct MemoryUse {

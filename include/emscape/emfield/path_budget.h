@@ -77,9 +77,5 @@ struct PathBudget {
 /// @throws Error (bad_input) as readPathProfile and pathExcess do
 PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
                       propagation::PropagationModel model, const scenario::Terrain* terrain);
-/// The same with profiles of another resolution than that of the scenario's own grid.
-PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
-                      propagation::PropagationModel model, const scenario::Terrain* terrain,
-                      const FanResolution& resolution);
 
 }  // namespace emscape::emfield

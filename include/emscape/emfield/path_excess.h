@@ -18,10 +18,8 @@ struct PathExcess : propagation::Explanation {
 /// the field's table.
 /// @param emitter     with the model to use, at the begin of the profile
 /// @param terrain     null: none
-/// @param resolution  of profiles
 /// @throws Error (bad_input) if the model refuses an input
 PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                      const PathProfile& profile, const scenario::Terrain* terrain,
-                      const FanResolution& resolution);
+                      const PathProfile& profile, const scenario::Terrain* terrain);
 
 }  // namespace emscape::emfield

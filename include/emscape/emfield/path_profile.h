@@ -8,8 +8,6 @@
 
 namespace emscape::emfield {
 
-struct FanResolution;  // emfield/terrain_fan.h
-
 /// One end of a path.
 struct PathEnd {
   GeodeticPosition position;
@@ -40,12 +38,12 @@ struct PathProfile {
   double fresnelRadius_m(int i, double wavelength_m) const;
 };
 
-/// Reads the terrain at the ranges of a fan, as the field does, and at the path's end.
+/// Reads the terrain at its posts, as the field does, and at the path's end.
 /// @param terrain  null: a smooth earth at mean sea level
 /// @throws Error (bad_input) that names the first position without terrain, and for ends that are above one
 /// another (nearer than 1 m along the ground) or more than a quarter of the earth apart
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
-                            const scenario::Terrain* terrain, const FanResolution& resolution);
+                            const scenario::Terrain* terrain);
 
 /// A point where the ground enters the ray's first Fresnel zone, or comes nearest to it.
 struct PathObstacle {

@@ -1,0 +1,118 @@
+/// Terrain profiles from an emitter to the columns: the posts at which every one of them reads the ground.
+///
+/// Posts are half a post of the elevation model apart, closer near the emitter, whatever the grid; the field,
+/// the jammers' paths and the budget of a single path read the same ones.
+#pragma once
+
+#include <vector>
+
+#include "emfield/terrain_walk.h"
+#include "emscape/base/host_device.h"
+#include "emscape/scenario/terrain.h"
+#include "propagation/column.h"
+
+namespace emscape::emfield {
+
+using propagation::ExcessScratch;
+using propagation::TerrainProfile;
+
+/// Distance (m) between the posts of the terrain; over a smooth earth (null) a length over which it deviates
+/// from a plane by millimetres.
+double postSpacing_m(const scenario::Terrain* terrain);
+
+/// Ranges of posts from 0 to the first one not below farthest_m: every few metres at first, where a few
+/// metres of ground mask a large angle, then in proportion to the range, then evenly, half the spacing apart.
+/// A longer list begins with the shorter one.
+std::vector<double> postRanges(double farthest_m, double post_spacing_m);
+
+/// The ground as plain data, for loops on host and device.
+struct GroundPosts {
+  scenario::TerrainView terrain;
+  bool is_smooth = true;  ///< a smooth earth at mean sea level; there is no terrain
+  const double* ranges_m = nullptr;
+  int range_count = 0;
+
+  /// Index of the last post nearer than a range; 0 if there is none.
+  EMSCAPE_HD int lastBefore(double range_m) const {
+    int begin = 0, end = range_count;  // the first that is not nearer
+    while (begin < end) {
+      const int middle = (begin + end) / 2;
+      if (ranges_m[middle] < range_m) {
+        begin = middle + 1;
+      } else {
+        end = middle;
+      }
+    }
+    return begin > 0 ? begin - 1 : 0;
+  }
+};
+
+/// The ground below an emitter's paths, in host memory. Pointers are valid as long as both arguments.
+GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<double>& ranges_m);
+
+/// Calls visit(post, height above mean sea level (m)) for the first `count` posts toward a point, in their
+/// order; NaN where the terrain is missing.
+template <class Visit>
+EMSCAPE_HD void visitPosts(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                           int count, Visit visit) {
+  if (ground.is_smooth) {
+    for (int i = 0; i < count; ++i) visit(i, 0.0f);
+    return;
+  }
+  constexpr int kAtOnce = 4;  // loads that do not wait for one another
+  TerrainWalk walk(station, ground.terrain, path);
+  for (int i = 0; i < count;) {
+    const double* const ranges_m = ground.ranges_m + i;
+    const TerrainChord& chord = walk.chordAt(ranges_m[0]);
+    if (chord.corner_msl_m == nullptr || i + kAtOnce > count ||
+        !(ranges_m[kAtOnce - 1] < walk.endOfChord_m(ranges_m[0]))) {
+      visit(i++, chord.heightAt(ground.terrain, ranges_m[0]));
+      continue;
+    }
+    float heights_msl_m[kAtOnce];
+    EMSCAPE_UNROLL
+    for (int n = 0; n < kAtOnce; ++n) heights_msl_m[n] = chord.heightInRaster(ranges_m[n]);
+    EMSCAPE_UNROLL
+    for (int n = 0; n < kAtOnce; ++n) {
+      const float here = heights_msl_m[n];
+      visit(i + n, here == here ? here : chord.heightAmongRasters(ground.terrain, ranges_m[n]));
+    }
+    i += kAtOnce;
+  }
+}
+
+/// Reads the heights of the first `count` posts toward a point. Host and device.
+struct PostReader {
+  EMSCAPE_HD void operator()(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                             int count, float* height_msl_m) const {
+    visitPosts(station, ground, path, count, [&](int i, float here) { height_msl_m[i] = here; });
+  }
+};
+
+/// The height (m) of the ground at a point.
+EMSCAPE_HD inline float groundAt(const Station& station, const GroundPosts& ground,
+                                 const FastInverse& point) {
+  if (ground.is_smooth) return 0;
+  return TerrainWalk(station, ground.terrain, point).heightAt(point.distance_m);
+}
+
+/// The profile to a point of the ground: the posts nearer than it, and the point itself.
+/// @param read  PostReader, or a function with the same result
+template <class Reader>
+EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts& ground,
+                                      const FastInverse& point, float ground_msl_m,
+                                      const ExcessScratch& scratch, const Reader& read) {
+  const double range_m = point.distance_m;
+  const bool is_beyond_first = range_m > 0;
+  const int before = ground.lastBefore(range_m);
+  read(station, ground, point, before + 1, scratch.ground_msl_m);
+  for (int i = 0; i <= before; ++i) scratch.range_m[i] = ground.ranges_m[i];
+  const int last = is_beyond_first ? before + 1 : 0;
+  if (is_beyond_first) {
+    scratch.range_m[last] = range_m;
+    scratch.ground_msl_m[last] = ground_msl_m;
+  }
+  return {scratch.range_m, scratch.ground_msl_m, last + 1};
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,178 @@
+/// Terrain heights along an azimuth of a station, in the order of rising range.
+///
+/// Positions are exact at the ends and in the middle of chords, and on a parabola of latitude and longitude
+/// between.
+/// @accuracy positions within 2 cm of fastDirect() to 75 degrees of latitude, 10 cm beyond, farther than 10
+/// km from the poles; heights in a raster within 2 mm times the slope of the ground
+#pragma once
+
+#include <cmath>
+
+#include "emfield/station.h"
+#include "emscape/base/host_device.h"
+#include "emscape/base/units.h"
+#include "scenario/terrain/view.h"
+
+namespace emscape::emfield {
+
+/// c[0] + part * (c[1] + part * c[2]).
+template <class Real>
+struct Parabola {
+  Real c[3] = {};
+
+  EMSCAPE_HD Real at(Real part) const { return c[0] + part * (c[1] + part * c[2]); }
+};
+
+/// The parabola through three values, at 0, 1/2 and 1.
+EMSCAPE_HD inline Parabola<double> parabolaThrough(double begin, double middle, double end) {
+  const double to_middle = middle - begin, to_end = end - begin;
+  return {{begin, 4 * to_middle - to_end, 2 * to_end - 4 * to_middle}};
+}
+
+/// A part of a walk.
+struct TerrainChord {
+  double begin_m = 0, per_m = 0;  ///< part of the chord at a range: (range - begin_m) * per_m, 0..1
+  Parabola<double> latitude_rad, longitude_rad;
+  /// Posts of the finest raster here, from the one that `corner` points to, as long as the whole chord is in
+  /// that raster; null: it is not.
+  const float* corner_msl_m = nullptr;
+  int row_posts = 0;  ///< posts in a row of that raster
+  Parabola<float> column, row;
+
+  EMSCAPE_HD float partAt(double range_m) const { return static_cast<float>((range_m - begin_m) * per_m); }
+  /// Bilinear height (m) where corner_msl_m is set; NaN beside a void.
+  EMSCAPE_HD float heightInRaster(double range_m) const {
+    const float part = partAt(range_m);
+    const float x = column.at(part), y = row.at(part);
+    const int i = static_cast<int>(x), j = static_cast<int>(y);
+    const int at = j * row_posts + i;
+    const float* const south = corner_msl_m;
+    const float* const north = corner_msl_m + row_posts;
+    const float to_east = x - static_cast<float>(i), to_north = y - static_cast<float>(j);
+    return lerp(lerp(south[at], south[at + 1], to_east), lerp(north[at], north[at + 1], to_east), to_north);
+  }
+  /// Height (m) in all rasters; NaN if the terrain is missing.
+  EMSCAPE_HD float heightAmongRasters(const scenario::TerrainView& terrain, double range_m) const {
+    const double part = (range_m - begin_m) * per_m;
+    return terrain.heightAt(latitude_rad.at(part), longitude_rad.at(part));
+  }
+  EMSCAPE_HD float heightAt(const scenario::TerrainView& terrain, double range_m) const {
+    if (corner_msl_m != nullptr) {
+      const float height_msl_m = heightInRaster(range_m);
+      if (height_msl_m == height_msl_m) return height_msl_m;
+    }
+    return heightAmongRasters(terrain, range_m);
+  }
+};
+
+/// The chords of a path over the ground, one after another, all of the same length.
+class TerrainWalk {
+ public:
+  EMSCAPE_HD TerrainWalk(const Station& station, const scenario::TerrainView& terrain,
+                         const FastInverse& path)
+      : station_(station), terrain_(terrain), sine_(path.sin_azimuth), cosine_(path.cos_azimuth) {
+    const double longest_m = maxChord_m(std::fabs(station.geodesy.station.up.z));
+    last_ = static_cast<int>(path.distance_m / longest_m);
+    chord_m_ = path.distance_m / (last_ + 1);
+    per_m_ = chord_m_ > 0 ? 1 / chord_m_ : 0;
+  }
+
+  /// Range at which the chord of a range ends; infinity for the last one.
+  EMSCAPE_HD double endOfChord_m(double range_m) const {
+    const int index = indexOf(range_m);
+    return index < last_ ? (index + 1) * chord_m_ : HUGE_VAL;
+  }
+  /// The chord that holds a range; ranges must not fall from one call to the next.
+  EMSCAPE_HD const TerrainChord& chordAt(double range_m) {
+    const int index = indexOf(range_m);
+    if (index != index_) {
+      setChord(index);
+      index_ = index;
+    }
+    return chord_;
+  }
+  EMSCAPE_HD float heightAt(double range_m) { return chordAt(range_m).heightAt(terrain_, range_m); }
+
+ private:
+  EMSCAPE_HD static double maxChord_m(double sine_of_latitude) {
+    constexpr double kOf60Degrees = 0.866025403784439, kOf80Degrees = 0.984807753012208;
+    return sine_of_latitude < kOf60Degrees ? 32000 : sine_of_latitude < kOf80Degrees ? 8000 : 100;
+  }
+
+  EMSCAPE_HD int indexOf(double range_m) const {
+    const int index = static_cast<int>(range_m * per_m_);
+    return index < last_ ? index : last_;
+  }
+  EMSCAPE_HD FastDirect positionAt(double range_m) const {
+    return fastDirect(station_.geodesy, sine_, cosine_, range_m);
+  }
+
+  EMSCAPE_HD void setChord(int index) {
+    chord_.begin_m = index * chord_m_;
+    chord_.per_m = per_m_;
+    const FastDirect begin = index > 0 && index == index_ + 1 ? end_ : positionAt(chord_.begin_m);
+    const FastDirect middle = positionAt(chord_.begin_m + chord_m_ / 2);
+    end_ = positionAt(chord_.begin_m + chord_m_);
+    const auto beside = [&](double longitude_rad) {  // in the same turn as the begin
+      const double east_rad = longitude_rad - begin.longitude_rad;
+      return longitude_rad - (east_rad > kPi ? 2 * kPi : east_rad < -kPi ? -2 * kPi : 0);
+    };
+    chord_.latitude_rad = parabolaThrough(begin.latitude_rad, middle.latitude_rad, end_.latitude_rad);
+    chord_.longitude_rad =
+        parabolaThrough(begin.longitude_rad, beside(middle.longitude_rad), beside(end_.longitude_rad));
+    findRaster();
+  }
+
+  /// Sets the chord's raster: the finest, if the whole chord is within it.
+  EMSCAPE_HD void findRaster() {
+    chord_.corner_msl_m = nullptr;
+    if (terrain_.count == 0) return;
+    const scenario::TerrainRaster& raster = terrain_.rasters[0];
+    const Parabola<double>&latitude = chord_.latitude_rad, &longitude = chord_.longitude_rad;
+    // Of the begin, in the turn of longitudes that the raster counts in; the chord's others follow.
+    const double turn = 2 * kPi * raster.posts_per_rad_lon;
+    double first_column = (longitude.c[0] - raster.west_rad) * raster.posts_per_rad_lon;
+    first_column -= turn * std::floor((first_column - raster.first_column) / turn);
+    const Parabola<double> column = {
+        {first_column, longitude.c[1] * raster.posts_per_rad_lon, longitude.c[2] * raster.posts_per_rad_lon}};
+    const Parabola<double> row = {{(latitude.c[0] - raster.south_rad) * raster.posts_per_rad_lat,
+                                   latitude.c[1] * raster.posts_per_rad_lat,
+                                   latitude.c[2] * raster.posts_per_rad_lat}};
+    double lowest_column, highest_column, lowest_row, highest_row;
+    extentOf(column, lowest_column, highest_column);
+    extentOf(row, lowest_row, highest_row);
+    if (!(lowest_column >= raster.first_column && highest_column <= raster.last_column &&
+          lowest_row >= raster.first_row && highest_row <= raster.last_row)) {
+      return;
+    }
+    // An index from the corner must fit into an int.
+    if (!((highest_row - lowest_row + 4) * raster.columns < 2e9)) return;
+    const int i = static_cast<int>(lowest_column), j = static_cast<int>(lowest_row);
+    chord_.corner_msl_m = raster.heights_msl_m + static_cast<long long>(j) * raster.columns + i;
+    chord_.row_posts = raster.columns;
+    chord_.column = relativeTo(column, i);
+    chord_.row = relativeTo(row, j);
+  }
+
+  /// Bounds of a parabola over the chord, with a margin of a post.
+  EMSCAPE_HD static void extentOf(const Parabola<double>& parabola, double& lowest, double& highest) {
+    const double begin = parabola.c[0], end = parabola.at(1), margin = std::fabs(parabola.c[2]) / 4 + 1;
+    lowest = (begin < end ? begin : end) - margin;
+    highest = (begin < end ? end : begin) + margin;
+  }
+  EMSCAPE_HD static Parabola<float> relativeTo(const Parabola<double>& parabola, int origin) {
+    return {{static_cast<float>(parabola.c[0] - origin), static_cast<float>(parabola.c[1]),
+             static_cast<float>(parabola.c[2])}};
+  }
+
+  const Station& station_;
+  const scenario::TerrainView& terrain_;
+  double sine_, cosine_;
+  int last_;  ///< index of the last chord
+  double chord_m_, per_m_;
+  int index_ = -1;
+  FastDirect end_;
+  TerrainChord chord_;
+};
+
+}  // namespace emscape::emfield
