@@ -34,14 +34,24 @@ struct EmitterState {
   BeamPose mount;
 };
 
-/// States are in the order of Scenario::platforms and Scenario::emitters.
+struct ReceiverState {
+  GeodeticPosition position;
+  double height_msl_m = 0;
+  BeamPose beam;
+};
+
+/// States are in the order of Scenario::platforms, Scenario::emitters and Scenario::placed_receivers.
 struct Snapshot {
   double time_s = 0;
   std::string time_utc;
   std::shared_ptr<const Scenario> scenario;
   std::vector<PlatformState> platforms;
   std::vector<EmitterState> emitters;
+  std::vector<ReceiverState> receivers;
 };
+
+/// A platform's axes (nose, right wing, up) in the local east-north-up axes.
+BeamPose platformAxes(const Attitude& attitude);
 
 /// True if an emitter's beam is steered electronically: a phased array with dwells or a fixed scan.
 bool isSteered(const Emitter& emitter);
