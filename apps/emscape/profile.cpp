@@ -93,8 +93,11 @@ ProfileReport makeReport(const ProfileOptions& options) {
   const auto budgetBy = [&](PropagationModel model) {
     return emfield::pathBudget(snapshot, emitter, point, model, terrain.get());
   };
-  ProfileReport report{
-      options.scenario, snapshot.time_utc, budgetBy(scenario->emitters[emitter].propagation.model), {}};
+  ProfileReport report{options.scenario,
+                       snapshot.time_utc,
+                       scenario->emitters[emitter],
+                       budgetBy(scenario->emitters[emitter].propagation.model),
+                       {}};
   for (const std::string& name : options.models) {
     Comparison comparison;
     comparison.model = propagation::modelNamed(name)->model;
