@@ -20,6 +20,17 @@ Pixel pixelAt(int x, int y) {
   return {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)};
 }
 
+/// Class of an estimated error: 1 for less than 1/64 level, one more for every doubling.
+std::uint8_t errorClassOf(float error_levels) {
+  constexpr int kMinExponent = 127 - 6;
+  std::int32_t bits = 0;
+  static_assert(sizeof bits == sizeof error_levels, "float has 32 bits");
+  std::memcpy(&bits, &error_levels, sizeof bits);
+  const int error_class = (bits >> 23) - kMinExponent + 2;
+  const int held = error_class > 1 ? error_class : 1;
+  return static_cast<std::uint8_t>(held < kErrorClasses ? held : kErrorClasses - 1);
+}
+
 // --- A pixel as a vector ---
 
 using Lanes = float __attribute__((vector_size(16)));

@@ -19,6 +19,9 @@
 
 namespace emscape::render {
 
+/// Classes of a prediction's estimated error; each is about twice the one before.
+constexpr int kErrorClasses = 16;
+
 /// Draws frames of this pattern; keeps its buffers between them. Results do not depend on the number of
 /// threads. One thread calls it.
 class AdaptiveFrame {

@@ -1,9 +1,6 @@
 /// The passes of the pattern `adaptive` and what they predict: single source for host and device.
 #pragma once
 
-#include <cstdint>
-#include <cstring>
-
 #include "emscape/base/host_device.h"
 #include "emscape/render/image.h"
 #include "render/adaptive_predict.h"
@@ -28,19 +25,6 @@ struct Pass {
   EMSCAPE_HD int rows(ImageSize size) const { return (size.height + stepY() - 1) / stepY(); }
 };
 constexpr Pass kPasses[] = {{2, true, 0.2}, {2, false, 0.5}, {1, true, 0.5}, {1, false, 1.0}};
-
-constexpr int kErrorClasses = 16;
-
-/// Class of an estimated error: 1 for less than 1/64 level, one more for every doubling.
-EMSCAPE_HD inline std::uint8_t errorClassOf(float error_levels) {
-  constexpr int kMinExponent = 127 - 6;
-  std::int32_t bits = 0;
-  static_assert(sizeof bits == sizeof error_levels, "float has 32 bits");
-  std::memcpy(&bits, &error_levels, sizeof bits);
-  const int error_class = (bits >> 23) - kMinExponent + 2;
-  const int held = error_class > 1 ? error_class : 1;
-  return static_cast<std::uint8_t>(held < kErrorClasses ? held : kErrorClasses - 1);
-}
 
 /// The picture as midpoints see it: Known has Color, at(x, y) and `size`.
 template <class Known>

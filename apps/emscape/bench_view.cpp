@@ -28,7 +28,7 @@ struct BenchViewOptions {
   std::vector<scenario::Edit> edits;
   std::string size = "1200x900";
   double idle_s = 10;
-  bool share_gpu = false;
+  bool share_gpu = true;
   std::string log;  ///< file for the log; empty: not kept
 };
 
@@ -150,7 +150,7 @@ int benchView(const BenchViewOptions& options, const GlobalOptions& global) {
   std::ofstream(script) << trialScript(trialOf(options));
   std::vector<std::string> arguments{options.input, "--size", options.size, "--scale", "1",
                                      "--script",    script,   "--log",      log};
-  if (options.share_gpu) arguments.emplace_back("--share-gpu");
+  if (!options.share_gpu) arguments.emplace_back("--no-share-gpu");
   for (const scenario::Edit& edit : options.edits)
     arguments.insert(arguments.end(), {"--set", scenario::toString(edit)});
   runWindow(global, arguments);
@@ -183,7 +183,8 @@ Example:
   command->add_option("--idle", options->idle_s, "Seconds of the idle phase")
       ->check(CLI::Range(1.0, 600.0))
       ->capture_default_str();
-  command->add_flag("--share-gpu", options->share_gpu, "As of 'emscape view'");
+  command->add_flag_callback(
+      "--no-share-gpu", [options] { options->share_gpu = false; }, "As of 'emscape view'");
   command->add_option("--log", options->log, "Write the window's log to this file");
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchView(*options, global); }; });

@@ -72,9 +72,10 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
                "Compute although elevation data is missing; the holes are drawn as such");
   app.add_option("--script", options.script, "Script: JSON lines (docs/viewer.md)");
   app.add_option("--log", options.log, "Writes the window's log, as JSON lines");
-  app.add_flag("--share-gpu", options.share_gpu,
-               "Hand pictures from CUDA to OpenGL on the GPU while they change, where both are on one; "
-               "experimental");
+  app.add_flag_callback(
+      "--no-share-gpu", [&options] { options.share_gpu = false; },
+      "Copy every picture through the host's memory. Otherwise, where CUDA and the display's OpenGL "
+      "are on one GPU, pictures stay there while they change");
   app.add_option("--backend", options.backend, "Processor: auto, cpu or cuda")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   app.add_option("--threads", options.threads, "Threads to use; 0: one per core")->check(CLI::Range(0, 4096));

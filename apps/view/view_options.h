@@ -23,7 +23,7 @@ struct ViewOptions {
   render::ControllerOptions controller;
   bool allow_missing_terrain = false;
   std::string script, log;
-  bool share_gpu = false;  ///< busy pictures go from CUDA to OpenGL on the GPU, if both are on one
+  bool share_gpu = true;  ///< busy pictures go from CUDA to OpenGL on the GPU, if both are on one
   std::string backend = "auto";
   int threads = 0;
   bool quiet = false;

@@ -70,7 +70,7 @@ struct Criteria {
   Layer layer;
   const Span* inside;
   float tolerance_levels;
-  std::uint8_t* classes;
+  bool* is_predicted;
   Pass pass;
   bool is_lattice;  ///< instead of a pass
 };
@@ -81,19 +81,15 @@ __device__ inline bool mustBeCast(const Criteria& frame, int x, int y) {
   const bool is_inside = inside.contains(x);
   bool must_be_cast = is_inside;
   Rgba color;
-  std::uint8_t error_class = 0;
   if (is_inside && !frame.is_lattice) {
     Prediction<Rgba> prediction;
     if (predictMidpoint(KnownLayer{frame.layer, frame.layer.size}, frame.pass, x, y, prediction)) {
       must_be_cast = !(prediction.error_levels <= frame.tolerance_levels);
     }
-    if (!must_be_cast) {
-      color = prediction.color;
-      error_class = errorClassOf(prediction.error_levels);
-    }
+    if (!must_be_cast) color = prediction.color;
   }
   if (!must_be_cast) frame.layer.at(x, y) = toFloat4(color);
-  frame.classes[pixelIndex(frame.layer.size, x, y)] = error_class;
+  frame.is_predicted[pixelIndex(frame.layer.size, x, y)] = is_inside && !must_be_cast;
   return must_be_cast;
 }
 
@@ -129,7 +125,7 @@ struct BlockQueue {
 __device__ __noinline__ inline unsigned classifyPixels(Criteria frame, unsigned first) {
   __builtin_assume(__isGlobal(frame.layer.pixels));
   __builtin_assume(__isGlobal(frame.inside));
-  __builtin_assume(__isGlobal(frame.classes));
+  __builtin_assume(__isGlobal(frame.is_predicted));
   const bool is_lattice = frame.is_lattice;
   const Pass pass = frame.pass;
   const ImageSize size = frame.layer.size;
@@ -154,7 +150,7 @@ __device__ __noinline__ inline unsigned classifyPixels(Criteria frame, unsigned 
 
 /// @param pass  of AdaptiveLaunch::passes; -1: the lattice
 __device__ inline Criteria criteriaOf(const AdaptiveLaunch& launch, int pass) {
-  Criteria criteria{launch.layer, launch.inside, launch.tolerance_levels, launch.classes, {}, pass < 0};
+  Criteria criteria{launch.layer, launch.inside, launch.tolerance_levels, launch.is_predicted, {}, pass < 0};
   if (pass < 0) return criteria;
   criteria.pass = launch.passes[pass];
   criteria.tolerance_levels *= static_cast<float>(criteria.pass.tolerance);

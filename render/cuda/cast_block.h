@@ -19,6 +19,11 @@ __device__ inline void waitForCopies() {
   __syncthreads();
 }
 
+__device__ inline bool isToBeCast(const CastLaunch& launch, const Pixel& pixel) {
+  return launch.predicted == nullptr ||
+         launch.predicted[pixelIndex(launch.task.camera.size, pixel.x, pixel.y)];
+}
+
 /// Where the samples of a pixel's ray begin and end.
 __device__ inline RayBounds boundsOf(const CastLaunch& launch, const Pixel& pixel) {
   RayBounds bounds;

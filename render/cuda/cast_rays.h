@@ -65,28 +65,20 @@ __device__ inline unsigned nextNumber(unsigned* next, unsigned count) {
   return __shfl_sync(~0U, number, 0);
 }
 
-/// One thread per ray. Warps take the tiles that show something one by one, as each of them is done with the
-/// last; the others, which take no time, are shared out evenly.
+/// One thread per ray. Warps take the tiles one by one, as each of them is done with the last.
 template <class RayKind>
 __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__ CastLaunch launch) {
   const typename RayKind::Colors colors(launch);
-  const unsigned lane = threadIdx.x % 32, warp = threadIdx.x / 32 * gridDim.x + blockIdx.x;
-  const unsigned warps = gridDim.x * kCastWarps;
-  const unsigned shown = launch.pixels.shownTiles(), all = launch.pixels.allTiles();
+  const unsigned lane = threadIdx.x % 32, warps = gridDim.x * kCastWarps, tiles = launch.tiles.count();
   waitForCopies();
-  bool asks = true;
-  for (unsigned tile = warp;;) {  // the first one needs no asking
-    if (asks && tile >= shown) {
-      asks = false;
-      tile = shown + warp;
-    }
-    if (tile >= all) return;
+  unsigned tile = threadIdx.x / 32 * gridDim.x + blockIdx.x;  // the first one needs no asking
+  while (tile < tiles) {
     Pixel pixel;
-    if (launch.pixels.pixelOf(tile, lane, pixel)) {
+    if (launch.tiles.pixelOf(tile, lane, pixel) && isToBeCast(launch, pixel)) {
       launch.layer.at(pixel.x, pixel.y) =
           toFloat4(RayKind::cast(launch, colors, pixel.x, pixel.y, boundsOf(launch, pixel)));
     }
-    tile = asks ? warps + nextNumber(launch.next_tile, shown) : tile + warps;
+    tile = warps + nextNumber(launch.next_tile, tiles);
   }
 }
 
@@ -111,7 +103,7 @@ unsigned residentBlocks(void (*kernel)(Launch)) {
 
 template <class RayKind>
 void start(const CastLaunch& launch, cudaStream_t stream) {
-  const long long rays = launch.pixels.rays();
+  const long long rays = launch.tiles.lattice.count();
   if (rays == 0) return;
   static const unsigned resident = residentBlocks(castRays<RayKind>);
   const auto blocks = static_cast<unsigned>(std::min<long long>((rays + 31) / 32, resident));

@@ -58,7 +58,6 @@ class CudaFrameCaster : public FrameCaster {
                     FrameReport& report);
   bool castAdaptive(const CastLaunch& launch, const FramePlan& plan, const StopFlag* stop);
   void countAdaptive(const FramePlan& plan, FrameReport& report);
-  bool castPredicted(CastLaunch launch, const StopFlag* stop, FrameReport& report);
   void cast(const CastLaunch& launch) const { castPixels(launch, mode_, sampling_, stream_); }
 
   const volume::VoxelPrecision precision_;
@@ -102,11 +101,10 @@ class CudaFrameCaster : public FrameCaster {
   FramePlan drawn_;
   ToleranceController hold_;
   double tolerance_levels_ = 0;  ///< of the last adaptive frame
-  Buffer<std::uint8_t> classes_;
-  Buffer<unsigned> rays_;     ///< one: how many all adaptive frames have cast, modulo 2^32
-  unsigned rays_before_ = 0;  ///< the same before the last frame
-  Buffer<Pixel> queue_;       ///< of a restoration
-  Buffer<cuda::ClassCounts> counts_;
+  Buffer<bool> predicted_;       ///< pixels of the last adaptive frame
+  Buffer<unsigned> rays_;        ///< one: how many all adaptive frames have cast, modulo 2^32
+  unsigned rays_before_ = 0;     ///< the same before the last frame
+  long long missing_rays_ = 0;   ///< those that the last adaptive frame predicted
 };
 
 void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DenseVolume> volume) {
@@ -260,10 +258,14 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   report.pattern = drawn_.pattern;
   const ImageSize size = layers_.size;
   if (size.count() == 0) return report;
-  const CastLaunch launch = begin(scene, size, stop, kRestorationSamples);
-  report.complete = drawn_.pattern == Pattern::adaptive
-                        ? castPredicted(launch, stop, report)
-                        : castLattices(launch, missingLattices(drawn_.pattern, size), stop, report);
+  CastLaunch launch = begin(scene, size, stop, kRestorationSamples);
+  if (drawn_.pattern == Pattern::adaptive) {
+    launch.predicted = predicted_.data();
+    report.complete = castLattices(launch, sourceLattices(Pattern::full, size), stop, report);
+    report.rays = missing_rays_;
+  } else {
+    report.complete = castLattices(launch, missingLattices(drawn_.pattern, size), stop, report);
+  }
   finish(report);
   return report;
 }
@@ -290,7 +292,7 @@ bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<L
       band.first_y += row * lattice.step_y;
       band.rows = std::min(rows, lattice.rows - row);
       CastLaunch part = launch;
-      part.pixels.tiles = cuda::longestFirst(launch.task, band);
+      part.tiles.lattice = band;
       beginTime();
       cast(part);
     }
@@ -301,20 +303,21 @@ bool CudaFrameCaster::castLattices(const CastLaunch& launch, const std::vector<L
 
 /// @return false if it was stopped
 bool CudaFrameCaster::castAdaptive(const CastLaunch& launch, const FramePlan& plan, const StopFlag* stop) {
-  classes_.resize(picture8_.size());
+  predicted_.resize(picture8_.size());
+  missing_rays_ = silhouette_.count();
   if (rays_.size() == 0) {
     rays_.resize(1);
     check(cudaMemsetAsync(rays_.data(), 0, sizeof(unsigned), stream_), "cudaMemset");
   }
   tolerance_levels_ = hold_.levels(plan.tolerance_levels);
   if (isStopped(stop)) {
-    check(cudaMemsetAsync(classes_.data(), 0, classes_.size(), stream_), "cudaMemset");
+    check(cudaMemsetAsync(predicted_.data(), true, predicted_.size(), stream_), "cudaMemset");
     return false;
   }
   cuda::AdaptiveLaunch adaptive{launch};
   adaptive.inside = inside_.data();
   adaptive.tolerance_levels = static_cast<float>(tolerance_levels_);
-  adaptive.classes = classes_.data();
+  adaptive.is_predicted = predicted_.data();
   adaptive.rays = rays_.data();
   beginTime();
   cuda::castAdaptive(adaptive, mode_, sampling_, stream_);
@@ -326,31 +329,9 @@ void CudaFrameCaster::countAdaptive(const FramePlan& plan, FrameReport& report) 
   unsigned rays = 0;
   rays_.download(&rays, stream_);
   report.rays = rays - std::exchange(rays_before_, rays);
+  missing_rays_ -= report.rays;
   const double max_rays = std::max(plan.ray_share * static_cast<double>(silhouette_.count()), 1.0);
   hold_.drawn(tolerance_levels_, static_cast<double>(report.rays), max_rays);
-}
-
-/// Casts what the last adaptive frame predicted, the worst first. @return false if it was stopped
-bool CudaFrameCaster::castPredicted(CastLaunch launch, const StopFlag* stop, FrameReport& report) {
-  beginTime();
-  queue_.resize(classes_.size());
-  counts_.resize(1);
-  check(cudaMemsetAsync(counts_.data(), 0, sizeof(cuda::ClassCounts), stream_), "cudaMemset");
-  cuda::listPredicted(classes_.data(), layers_.size, counts_.data(), queue_.data(), stream_);
-  cuda::ClassCounts counts{};
-  counts_.download(&counts, stream_);
-  unsigned missing = 0;
-  for (const unsigned found : counts.found) missing += found;
-  const auto most = static_cast<unsigned>(std::min<long long>(max_rays_, layers_.size.count()));
-  launch.pixels.list = queue_.data();
-  for (unsigned first = 0; first < missing; first += most) {
-    if (isStopped(stop)) return false;
-    launch.pixels.first = first;
-    launch.pixels.end = std::min(first + most, missing);
-    cast(launch);
-  }
-  report.rays = missing;
-  return true;
 }
 
 void CudaFrameCaster::fetch(Image& image) {

@@ -9,7 +9,6 @@
 
 #include "render/adaptive_pass.h"
 #include "render/compositing.h"
-#include "render/cuda/tile_order.h"
 #include "render/raycast.h"
 #include "render/reconstruction.h"
 #include "render/silhouette.h"
@@ -35,26 +34,26 @@ struct Layer {
 
 // --- Casting ---
 
-/// Which pixels a launch casts: those of a lattice, or a part of a list. A warp casts 32 of them at a time.
-struct PixelSet {
-  TileOrder tiles;              ///< of the lattice
-  const Pixel* list = nullptr;  ///< null: the lattice
-  unsigned first = 0;           ///< of the list
-  unsigned end = 0;             ///< of the list, one beyond the last
+/// The pixels of a lattice in tiles of 32, nearly square in the picture: a warp casts one at a time.
+struct LatticeTiles {
+  Lattice lattice;
 
-  EMSCAPE_HD long long rays() const { return list != nullptr ? end - first : tiles.lattice.count(); }
-  /// Tiles, or 32 pixels of the list each; the first shownTiles() of them show something.
-  EMSCAPE_HD unsigned allTiles() const {
-    return list != nullptr ? (end - first + 31) / 32 : tiles.allTiles();
+  EMSCAPE_HD unsigned count() const {
+    return across() * ((static_cast<unsigned>(lattice.rows) - 1) / (32 / width()) + 1);
   }
-  EMSCAPE_HD unsigned shownTiles() const { return list != nullptr ? allTiles() : tiles.shownTiles(); }
+  /// @param lane  0..31
   /// @return false: there is no such pixel
   EMSCAPE_HD bool pixelOf(unsigned tile, unsigned lane, Pixel& pixel) const {
-    if (list == nullptr) return tiles.pixelOf(tile, lane, pixel);
-    const unsigned n = first + tile * 32 + lane;
-    if (n < end) pixel = list[n];
-    return n < end;
+    const auto column = static_cast<int>(tile % across() * width() + lane % width());
+    const auto row = static_cast<int>(tile / across() * (32 / width()) + lane / width());
+    pixel = {static_cast<std::uint16_t>(lattice.first_x + column * lattice.step_x),
+             static_cast<std::uint16_t>(lattice.first_y + row * lattice.step_y)};
+    return column < lattice.columns && row < lattice.rows;
   }
+
+ private:
+  EMSCAPE_HD unsigned width() const { return lattice.step_x > lattice.step_y ? 4 : 8; }
+  EMSCAPE_HD unsigned across() const { return (static_cast<unsigned>(lattice.columns) - 1) / width() + 1; }
 };
 
 enum class Sampling {
@@ -74,11 +73,13 @@ constexpr int kMaxHalfColors = 4096;
 
 struct CastLaunch {
   RaycastTask task;  ///< without volume_highest_f
-  PixelSet pixels;
+  LatticeTiles tiles;
   const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for Sampling::filtered
   const float* volume_highest_f = nullptr;  ///< one
   const float* limits = nullptr;  ///< one per pixel: where the ground is, or a section; null: nowhere
   const float* begins = nullptr;  ///< one per pixel: where planes let its ray begin; null: not cut
+  /// One per pixel: false if it is not to be cast; null: all are.
+  const bool* predicted = nullptr;
   unsigned* next_tile = nullptr;  ///< queue counter: zero between launches; one per stream
   Layer layer;
 };
@@ -124,30 +125,20 @@ void composeOverlay(unsigned count, const std::uint32_t* behind, const uchar4* c
 
 // --- Adaptive ---
 
-/// A frame: what is cast, its `pixels` aside, and what decides which pixels are.
+/// A frame: what is cast, its `tiles` and `predicted` aside, and what decides which pixels are.
 struct AdaptiveLaunch : CastLaunch {
   static constexpr int kPassCount = static_cast<int>(std::size(kPasses));
   Pass passes[kPassCount] = {kPasses[0], kPasses[1], kPasses[2], kPasses[3]};
   const Span* inside = nullptr;  ///< one per row
   float tolerance_levels = 0;
-  std::uint8_t* classes =
-      nullptr;               ///< receives those of the estimated error, one per pixel; see errorClassOf()
-  unsigned* rays = nullptr;  ///< is increased by the number of rays cast
+  bool* is_predicted = nullptr;  ///< receives one per pixel
+  unsigned* rays = nullptr;      ///< is increased by the number of rays cast
 };
 static_assert(sizeof(AdaptiveLaunch) <= 4096, "what a kernel's parameters may take");
 /// Casts the frame and predicts what it does not cast; the whole layer is written.
 void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 /// The same for a sparse sampling alone.
 void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
-
-/// Counters for listPredicted(): how many pixels there are of each class, and how many are placed.
-struct ClassCounts {
-  unsigned found[kErrorClasses];
-  unsigned placed[kErrorClasses];
-};
-/// Lists the pixels that were predicted, those of the highest class first. @param counts  all 0
-void listPredicted(const std::uint8_t* classes, ImageSize size, ClassCounts* counts, Pixel* list,
-                   cudaStream_t stream);
 
 // --- Bricks ---
 
