@@ -33,6 +33,7 @@ Json pathJson(const PathRow& row) {
           {"active", row.active},
           {"range_m", row.has_path ? Json(row.range_m) : Json(nullptr)},
           {"power_density_dbwm2", number(row.power_density_dbwm2)},
+          {"pattern_db", number(row.pattern_db)},
           {"blocked", row.is_blocked},
           {"verdict", row.verdict}};
 }
@@ -66,16 +67,16 @@ Json rowsJson(const std::vector<Row>& rows) {
   return json;
 }
 
-/// Calls print(row, verdict) for evenly spaced rows, the last among them, and says how many there are.
-/// @param print_row  gets an empty verdict where it is that of the row above
+/// Calls print(row, path) for evenly spaced rows, the last among them, and says how many there are.
+/// @param print_row  gets an empty path where it is that of the row above
 template <class Row, class Print>
 void printThinned(const std::vector<Row>& rows, const Print& print_row) {
   const std::size_t step = std::max<std::size_t>((rows.size() + kTableRows - 2) / (kTableRows - 1), 1);
   std::string last;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (i % step != 0 && i + 1 != rows.size()) continue;
-    print_row(rows[i], rows[i].verdict == last ? "" : rows[i].verdict);
-    last = rows[i].verdict;
+    print_row(rows[i], rows[i].path == last ? "" : rows[i].path);
+    last = rows[i].path;
   }
   if (step > 1) print("  one row in {} of {} times; --csv and --json have all\n", step, rows.size());
 }
@@ -144,13 +145,14 @@ void printDetectionSummary(const NamedLinks& links) {
 void printLink(const NamedLinks& links, const Link& link) {
   const scenario::PlacedReceiver& receiver = receiverOf(links, link);
   print("'{}' at receiver '{}'\n", emitterName(links, link.emitter), receiver.name);
-  print("  {:>8} {:>9} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", "time s", "range km", "power dBm",
-        "interference dBm", "noise dBm", "SINR dB", "J/S dB", "received", "path, where it changes");
-  printThinned(link.rows, [&](const LinkRow& row, const std::string& verdict) {
-    print("  {:>8g} {:>9.3f} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", row.time_s, row.range_m / 1000,
-          cell(row.received_power_dbm), cell(row.interference_dbm), cell(row.noise_dbm), cell(row.sinr_db),
-          cell(row.jammer_to_signal_db), receiver.hasThreshold() ? row.is_received ? "yes" : "no" : "-",
-          verdict);
+  print("  {:>8} {:>9} {:>9} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", "time s", "range km", "beam dB",
+        "power dBm", "interference dBm", "noise dBm", "SINR dB", "J/S dB", "received",
+        "path, where it changes");
+  printThinned(link.rows, [&](const LinkRow& row, const std::string& path) {
+    print("  {:>8g} {:>9.3f} {:>9} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", row.time_s,
+          row.range_m / 1000, cell(row.pattern_db), cell(row.received_power_dbm), cell(row.interference_dbm),
+          cell(row.noise_dbm), cell(row.sinr_db), cell(row.jammer_to_signal_db),
+          receiver.hasThreshold() ? row.is_received ? "yes" : "no" : "-", path);
   });
   print("\n");
 }
@@ -159,10 +161,10 @@ void printDetection(const NamedLinks& links, const Detection& detection) {
   print("Radar '{}' and target '{}'\n", emitterName(links, detection.radar), targetName(links, detection));
   print("  {:>8} {:>9} {:>9} {:>8} {:>8} {:>6} {:>6} {:>10}  {}\n", "time s", "range km", "RCS dBsm",
         "SNR dB", "J/S dB", "Pd", "looks", "cumulative", "path, where it changes");
-  printThinned(detection.rows, [](const DetectionRow& row, const std::string& verdict) {
+  printThinned(detection.rows, [](const DetectionRow& row, const std::string& path) {
     print("  {:>8g} {:>9.3f} {:>9} {:>8} {:>8} {:>6} {:>6} {:>10}  {}\n", row.time_s, row.range_m / 1000,
           cell(ratioToDb(row.rcs_m2)), cell(row.snr_db), cell(row.jammer_to_signal_db),
-          cell(row.detection_probability, 3), row.looks, cell(row.cumulative_probability, 3), verdict);
+          cell(row.detection_probability, 3), row.looks, cell(row.cumulative_probability, 3), path);
   });
   print("\n");
 }
@@ -180,9 +182,9 @@ std::string csvNumber(double value) {
 }
 
 std::string csvPath(const char* kind, const std::string& emitter, const std::string& to, const PathRow& row) {
-  return fmt::format("{},{:.10g},{},{},{},{},{},{}", kind, row.time_s, csvText(emitter), csvText(to),
+  return fmt::format("{},{:.10g},{},{},{},{},{},{},{}", kind, row.time_s, csvText(emitter), csvText(to),
                      int(row.active), row.has_path ? fmt::format("{:.1f}", row.range_m) : "",
-                     csvNumber(row.power_density_dbwm2), int(row.is_blocked));
+                     csvNumber(row.power_density_dbwm2), csvNumber(row.pattern_db), int(row.is_blocked));
 }
 
 }  // namespace
@@ -219,7 +221,7 @@ void printAsTable(const NamedLinks& links) {
 
 void writeCsv(const NamedLinks& links, const std::string& file) {
   writeWhole(file, [&](std::ostream& out) {
-    out << "kind,time_s,emitter,to,active,range_m,power_density_dbwm2,blocked,jammer_to_signal_db,"
+    out << "kind,time_s,emitter,to,active,range_m,power_density_dbwm2,pattern_db,blocked,jammer_to_signal_db,"
            "received_power_dbm,interference_dbm,noise_dbm,sinr_db,received,"
            "rcs_dbsm,snr_db,detection_probability,looks,cumulative_probability,verdict\n";
     for (const Link& link : links.report.links) {

@@ -78,14 +78,16 @@ void fillPath(PathRow& row, const Emitter& emitter, const PathBudget* budget) {
   row.has_path = budget != nullptr;
   if (budget == nullptr) {
     row.power_density_dbwm2 = -HUGE_VAL;
-    row.verdict = fmt::format("No path: '{}' is straight above or below.", emitter.name);
+    row.verdict = row.path = fmt::format("No path: '{}' is straight above or below.", emitter.name);
     return;
   }
   row.active = budget->active;
   row.range_m = budget->geometry.slant_range_m;
   row.power_density_dbwm2 = budget->active ? budget->find("power_density_dbwm2")->value : -HUGE_VAL;
   row.is_blocked = isBlocked(*budget);
+  row.pattern_db = budget->pointing.pattern_db;
   row.verdict = budget->verdict;
+  row.path = pathVerdictOf(*budget);
 }
 
 void keepWarnings(std::vector<std::string>& all, const std::string& from, const std::string& to,
@@ -237,7 +239,6 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
     keepWarnings(warnings, radar.name, target.name, *budget);
   }
   fillPath(row, radar, budget ? &*budget : nullptr);
-  if (budget) row.verdict = pathVerdictOf(*budget);  // the beam looks at the target
   const auto valueOr = [&](const char* key, double otherwise) {
     const BudgetTerm* const term = budget ? budget->find(key) : nullptr;
     return term == nullptr ? otherwise : term->value;

@@ -29,9 +29,9 @@ TEST(Link, HasTheKeysThatOthersRelyOn) {
          {"emitter", "receiver", "first_received_s", "last_received_s", "received_share", "rows"})
       EXPECT_TRUE(link.contains(key)) << key;
     ASSERT_EQ(link["rows"].size(), 4u);
-    for (const char* key :
-         {"time_s", "active", "range_m", "power_density_dbwm2", "blocked", "verdict", "received_power_dbm",
-          "interference_dbm", "noise_dbm", "sinr_db", "jammer_to_signal_db", "received"})
+    for (const char* key : {"time_s", "active", "range_m", "power_density_dbwm2", "pattern_db", "blocked",
+                            "verdict", "received_power_dbm", "interference_dbm", "noise_dbm", "sinr_db",
+                            "jammer_to_signal_db", "received"})
       EXPECT_TRUE(link["rows"][0].contains(key)) << key;
   }
   ASSERT_EQ(report["detections"].size(), 2u);
@@ -81,7 +81,7 @@ TEST(Link, WritesRowsOfOneWidthAndAPicture) {
       if (c == '"') is_quoted = !is_quoted;
       if (c == ',' && !is_quoted) ++cells;
     }
-    EXPECT_EQ(cells, 20) << line;
+    EXPECT_EQ(cells, 21) << line;
   }
   EXPECT_EQ(rows, 1 + 5 * 4);
 }

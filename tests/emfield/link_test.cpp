@@ -167,6 +167,7 @@ TEST(Link, ARowIsTheBudgetOfItsPathWhetherTheEndsMoveOrNot) {
           pathBudget(snapshot, 0, {end.position, end.height_msl_m}, emitter.propagation.model, nullptr);
       EXPECT_DOUBLE_EQ(row.power_density_dbwm2, budget.find("power_density_dbwm2")->value);
       EXPECT_EQ(row.verdict, budget.verdict);
+      EXPECT_EQ(row.pattern_db, budget.pointing.pattern_db);
     }
   };
   expectBudgets();

@@ -29,8 +29,10 @@ struct PathRow {
   bool has_path = true;  ///< false: the ends are above one another, and no path is computed
   double range_m = 0;    ///< slant
   double power_density_dbwm2 = 0;
+  double pattern_db = 0;    ///< emitter's antenna towards the other end, relative to its maximum
   bool is_blocked = false;  ///< ground or the earth's bulge is above the ray
-  std::string verdict;      ///< one sentence
+  std::string verdict;      ///< one sentence: that of the budget
+  std::string path;         ///< the same without antenna and detection
 };
 
 /// An emitter at a receiver at one time.
