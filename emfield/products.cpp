@@ -1,5 +1,6 @@
 #include "emfield/products.h"
 
+#include "emfield/radar/detection_losses.h"
 #include "emfield/radar/receiver.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
@@ -32,7 +33,7 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Out
       break;
     case Quantity::burn_through_margin_db:
       task.measure = RadarMeasure::signal_to_jamming;
-      task.factor = static_cast<float>(dbToRatio(-requiredSignalToJammerDb(radar.receiver)));
+      task.factor = static_cast<float>(dbToRatio(-requiredSignalToJammerDb(radar)));
       task.lowest = 1 / kMaxMargin;
       task.ceiling = kMaxMargin;
       break;
@@ -43,13 +44,14 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Out
 }
 
 std::shared_ptr<const DetectionCurve> curveOf(
-    const scenario::RadarReceiver& receiver,
-    const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
-  const Detector detector = detectorOf(receiver);
+    const Emitter& radar, const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
+  const Detector detector = detectorOf(radar.receiver);
+  const scenario::DetectionMethod method = radar.receiver.detection;
+  const double loss_db = detectionLosses(radar).total_db();
   for (const auto& curve : known_curves) {
-    if (curve->isOf(detector, receiver.detection)) return curve;
+    if (curve->isOf(detector, method, loss_db)) return curve;
   }
-  return std::make_shared<const DetectionCurve>(detector, receiver.detection);
+  return std::make_shared<const DetectionCurve>(detector, method, loss_db);
 }
 
 }  // namespace
@@ -128,6 +130,9 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       plan.product.decibels = false;
       plan.product.floor = -1;
       break;
+    case Quantity::mean_power_density_dbwm2:
+      weigh([](const Emitter& emitter) { return emitter.dutyCycle(); });
+      break;
   }
   // The combine stage has the power density of the beam's own direction, but not that of another look, and no
   // jamming.
@@ -139,7 +144,7 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
     const Emitter& radar = scenario.emitters[e];
     plan.radars.push_back(radarTask(channel.quantity, radar, scenario.output));
     if (channel.quantity != Quantity::detection_probability) continue;
-    plan.curves.push_back(curveOf(radar.receiver, known_curves));
+    plan.curves.push_back(curveOf(radar, known_curves));
     plan.radars.back().curve = plan.curves.back()->view();
   }
   return plan;

@@ -76,7 +76,7 @@ std::vector<EmitterProbe> probeEmitters(const emfield::PathEnd& point, double ti
   const auto refuse = [](EmitterProbe& emitter, const Error& error) { emitter.refusal = error.message(); };
   scenario::Snapshot snapshot;
   try {
-    snapshot = scenario::snapshotAt(scenario, terrain, time_s);
+    snapshot = scenario::instantAt(scenario, terrain, time_s);
   } catch (const Error& error) {
     for (EmitterProbe& emitter : emitters) refuse(emitter, error);
     return emitters;

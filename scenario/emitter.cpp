@@ -19,6 +19,11 @@ const char* toString(DetectionMethod method) {
   return kNames[static_cast<int>(method)];
 }
 
+const char* toString(BeamShapeLoss rule) {
+  static constexpr const char* kNames[] = {"none", "blake", "barton"};
+  return kNames[static_cast<int>(rule)];
+}
+
 double polarizationFactor(Polarization transmit, Polarization receive, double isolation_db) {
   // Jones vectors (horizontal, vertical) without the factor sqrt(1/2) of the mixed ones, which norm()
   // restores.

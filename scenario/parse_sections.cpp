@@ -71,38 +71,6 @@ AntennaPtr makeConsistentAntenna(const Section& section, const ParseContext& con
   return makeAntenna(section, context, antenna->directivity_dbi());
 }
 
-ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context) {
-  ScanSpec scan;
-  scan.kind = section.has("kind") ? section.choice<ScanKind>("kind") : ScanKind::fixed;
-  scan.azimuth_deg = section.number("azimuth_deg");
-  scan.elevation_deg = section.number("elevation_deg");
-  const auto numberOrZero = [&](const char* key) { return section.optionalNumber(key).value_or(0); };
-  scan.rate_rpm = numberOrZero("rate_rpm");
-  scan.width_deg = numberOrZero("width_deg");
-  scan.rate_deg_s = numberOrZero("rate_deg_s");
-  scan.elevation_step_deg = numberOrZero("elevation_step_deg");
-  scan.bars = std::max(section.integer("bars"), 1);
-  const double highest_deg = std::abs(scan.elevation_deg) + (scan.bars - 1) / 2.0 * scan.elevation_step_deg;
-  if (highest_deg > 90) {
-    context.problems.addError(section.locationOf("bars"),
-                              fmt::format("the bars reach {} deg of elevation, outside the "
-                                          "allowed -90 to 90 deg",
-                                          highest_deg));
-  }
-  for (const Section& item : section.sections("dwells")) {
-    const Dwell dwell{item.number("azimuth_deg"), item.number("elevation_deg"), item.number("duration_s")};
-    scan.dwells.push_back(dwell);
-    if (steers_electronically && std::abs(dwell.azimuth_deg) >= 90) {
-      context.problems.addError(
-          item.locationOf("azimuth_deg"),
-          fmt::format("'azimuth_deg' is {}: a phased array is steered within less than 90 deg of its "
-                      "boresight",
-                      dwell.azimuth_deg));
-    }
-  }
-  return scan;
-}
-
 std::vector<TimeInterval> parseActive(const Section& section, ParseContext& context) {
   std::vector<TimeInterval> intervals;
   const auto lists = section.numberLists("active_s");
@@ -128,7 +96,7 @@ RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
   if (section.has("polarization"))
     receiver.polarization = section.choice<propagation::Polarization>("polarization");
   receiver.cross_polar_isolation_db = section.number("cross_polar_isolation_db");
-  receiver.pulses = section.integer("pulses");
+  if (section.has("pulses")) receiver.pulses = section.integer("pulses");
   receiver.pfa = section.number("pfa");
   receiver.swerling = section.integer("swerling");
   receiver.detection = section.choice<DetectionMethod>("detection");
@@ -139,9 +107,50 @@ RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
             "'detection' is albersheim, which knows steady targets alone (swerling 0), not swerling {}",
             receiver.swerling));
   }
+  receiver.beam_shape_loss = section.choice<BeamShapeLoss>("beam_shape_loss");
+  receiver.cfar_cells = section.integer("cfar_cells");
+  receiver.binary_threshold = section.integer("binary_threshold");
   receiver.required_signal_to_jammer_db = section.optionalNumber("required_signal_to_jammer_db");
   receiver.target_rcs_m2 = section.number("target_rcs_m2");
   return receiver;
+}
+
+std::optional<Waveform> parseWaveform(const Section& section, ParseContext& context) {
+  const Waveform waveform{section.number("prf_hz"), section.number("pulse_width_s"),
+                          section.optionalNumber("instrumented_range_m")};
+  if (waveform.dutyCycle() >= 1) {
+    context.problems.addError(
+        section.locationOf("pulse_width_s"),
+        fmt::format("'pulse_width_s' is {} s: pulses that are repeated at {} Hz are shorter than {:.4g} s",
+                    waveform.pulse_width_s, waveform.prf_hz, 1 / waveform.prf_hz));
+  }
+  if (!section.sound()) return std::nullopt;
+  return waveform;
+}
+
+/// Takes the number of integrated pulses from the waveform unless it is given, and compares it with the hits
+/// of one scan.
+void matchPulses(Emitter& radar, const Section& receiver, ParseContext& context) {
+  const std::optional<double> hits =
+      radar.waveform && radar.antenna
+          ? hitsPerScan(radar.scan, radar.antenna->beamwidth_az_deg, radar.waveform->prf_hz)
+          : std::nullopt;
+  int& pulses = radar.receiver.pulses;
+  if (hits && !receiver.has("pulses")) {
+    pulses = static_cast<int>(std::clamp(std::floor(*hits * (1 + 1e-9)), 1.0, 1e6));
+  } else if (hits && pulses > *hits * (1 + 1e-9)) {
+    context.problems.addWarning(
+        receiver.locationOf("pulses"),
+        fmt::format(
+            "'pulses' is {}, but one pass of the beam of '{}' gives {:.4g} hits; {} are integrated all "
+            "the same. Without 'pulses' it is the hits",
+            pulses, radar.name, *hits, pulses));
+  }
+  if (radar.receiver.binary_threshold > pulses) {
+    context.problems.addError(receiver.locationOf("binary_threshold"),
+                              fmt::format("'binary_threshold' is {}, more than the {} pulses integrated",
+                                          radar.receiver.binary_threshold, pulses));
+  }
 }
 
 /// The model and the settings of all models; settings of a model that is not used are an error.
@@ -216,6 +225,38 @@ std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
 
 }  // namespace
 
+ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context) {
+  ScanSpec scan;
+  scan.kind = section.has("kind") ? section.choice<ScanKind>("kind") : ScanKind::fixed;
+  scan.azimuth_deg = section.number("azimuth_deg");
+  scan.elevation_deg = section.number("elevation_deg");
+  const auto numberOrZero = [&](const char* key) { return section.optionalNumber(key).value_or(0); };
+  scan.rate_rpm = numberOrZero("rate_rpm");
+  scan.width_deg = numberOrZero("width_deg");
+  scan.rate_deg_s = numberOrZero("rate_deg_s");
+  scan.elevation_step_deg = numberOrZero("elevation_step_deg");
+  scan.bars = std::max(section.integer("bars"), 1);
+  const double highest_deg = std::abs(scan.elevation_deg) + (scan.bars - 1) / 2.0 * scan.elevation_step_deg;
+  if (highest_deg > 90) {
+    context.problems.addError(section.locationOf("bars"),
+                              fmt::format("the bars reach {} deg of elevation, outside the "
+                                          "allowed -90 to 90 deg",
+                                          highest_deg));
+  }
+  for (const Section& item : section.sections("dwells")) {
+    const Dwell dwell{item.number("azimuth_deg"), item.number("elevation_deg"), item.number("duration_s")};
+    scan.dwells.push_back(dwell);
+    if (steers_electronically && std::abs(dwell.azimuth_deg) >= 90) {
+      context.problems.addError(
+          item.locationOf("azimuth_deg"),
+          fmt::format("'azimuth_deg' is {}: a phased array is steered within less than 90 deg of its "
+                      "boresight",
+                      dwell.azimuth_deg));
+    }
+  }
+  return scan;
+}
+
 Platform parsePlatform(const Section& section, ParseContext& context) {
   Platform platform;
   platform.name = section.text("name");
@@ -264,22 +305,26 @@ AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
   return antenna;
 }
 
-Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
-  Emitter emitter;
-  emitter.name = section.text("name");
-  emitter.location = section.location();
+int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
   const std::string carrier = section.text("platform");
-  const auto found = std::find_if(platforms.begin(), platforms.end(),
-                                  [&](const Platform& platform) { return platform.name == carrier; });
-  if (found != platforms.end()) {
-    emitter.platform = static_cast<int>(found - platforms.begin());
-  } else if (!carrier.empty()) {
-    std::vector<std::string> names;
-    for (const Platform& platform : platforms) names.push_back(platform.name);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < platforms.size(); ++i) {
+    if (platforms[i].name == carrier) return static_cast<int>(i);
+    names.push_back(platforms[i].name);
+  }
+  if (!carrier.empty()) {
     context.problems.addError(
         section.locationOf("platform"),
         fmt::format("there is no platform '{}'{}", carrier, document::didYouMean(carrier, names)));
   }
+  return -1;
+}
+
+Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
+  Emitter emitter;
+  emitter.name = section.text("name");
+  emitter.location = section.location();
+  emitter.platform = parseCarrier(section, platforms, context);
   emitter.kind = section.choice<EmitterKind>("kind");
   emitter.frequency_hz = section.number("frequency_hz");
   emitter.bandwidth_hz = section.number("bandwidth_hz");
@@ -297,7 +342,12 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
         fmt::format("'kind' is track, which turns a radar onto its targets; '{}' is a {}: its beam stays",
                     emitter.name, toString(emitter.kind)));
   }
-  if (section.has("receiver")) emitter.receiver = parseReceiver(section.section("receiver"), context);
+  if (section.has("waveform")) emitter.waveform = parseWaveform(section.section("waveform"), context);
+  if (section.has("receiver")) {
+    const Section receiver = section.section("receiver");
+    emitter.receiver = parseReceiver(receiver, context);
+    matchPulses(emitter, receiver, context);
+  }
   emitter.active_s = parseActive(section, context);
   return emitter;
 }

@@ -10,6 +10,8 @@
 #include "emscape/document/problem.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/platform.h"
+#include "emscape/scenario/receiver.h"
+#include "emscape/scenario/target.h"
 #include "scenario/schema.h"
 #include "scenario/source.h"
 
@@ -37,7 +39,15 @@ struct ParseContext {
 /// a faulty section is incomplete.
 Platform parsePlatform(const Section& section, ParseContext& context);
 AntennaPtr parseAntenna(const Section& section, ParseContext& context);  ///< null if faulty
+ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context);
+/// Index of the platform that a section names; -1, and a problem, if there is none.
+int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
+
+/// @param section  with a platform
+PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Platform>& platforms,
+                                   ParseContext& context);
+Target parseTarget(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
 
 /// Rows of a track file (CSV: a header line, then rows; empty lines and lines that begin with # are skipped).
 /// Every fault is reported with its line and column, at most 50 per file.

@@ -24,6 +24,8 @@ const std::vector<QuantityInfo>& quantityTable() {
        "emitters above the count threshold"},
       {Quantity::dominant_emitter, "dominant_emitter", "", QuantityKind::of_emitters,
        "index of the emitter with the largest power density", true},
+      {Quantity::mean_power_density_dbwm2, "mean_power_density_dbwm2", "dBW/m2", QuantityKind::of_emitters,
+       "power density averaged over the radars' pulses and pauses"},
   };
   return kTable;
 }

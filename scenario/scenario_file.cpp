@@ -189,7 +189,7 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
                                 toString(output.interval.kind), quantitiesOver(output.interval.kind)));
     }
     if (row->kind == QuantityKind::of_receiver) {
-      need(!scenario.receivers.empty(), location, quantity, "a receiver");
+      need(!scenario.receivers.empty(), location, quantity, "a receiver without a platform");
     }
     if (needsRadar(row->quantity)) {
       need(hasKind(EmitterKind::radar), location, quantity, "an emitter of kind radar");
@@ -306,8 +306,15 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
   for (const Section& item : root.sections("emitters")) {
     scenario.emitters.push_back(parseEmitter(item, scenario.platforms, context));
   }
-  for (const Section& item : root.sections("receivers"))
-    scenario.receivers.push_back(parseReceiverProfile(item));
+  for (const Section& item : root.sections("receivers")) {
+    if (item.has("platform")) {
+      scenario.placed_receivers.push_back(parsePlacedReceiver(item, scenario.platforms, context));
+    } else {
+      scenario.receivers.push_back(parseReceiverProfile(item));
+    }
+  }
+  for (const Section& item : root.sections("targets"))
+    scenario.targets.push_back(parseTarget(item, scenario.platforms, context));
   for (const Section& item : root.sections("bands")) scenario.bands.push_back(parseBand(item, context));
   scenario.output = parseOutput(root.section("output"), scenario, context);
   if (!context.problems.hasErrors()) {

@@ -53,6 +53,10 @@ const ValueSpec kFrequency = number("Hz").from(1e6).to(1e12);
 const ValueSpec kBandwidth = number("Hz").above(0).to(1e11);
 const ValueSpec kLoss = number("dB").from(0).to(100);
 const ValueSpec kGain = number("dBi").from(-50).to(80);
+const ValueSpec kNoiseFigure = number("dB").from(0).to(60);
+const ValueSpec kNoiseTemperature = number("K").from(0).to(10000);
+const ValueSpec kRcs = number("m2").above(0).to(1e9);
+const ValueSpec kSwerling = kInteger.from(0).to(4);
 constexpr int kMaxItems = 10000;
 
 KeySpec latitudeKey() {
@@ -243,7 +247,7 @@ const ObjectSpec& platformSpec() {
       "platform",
       "",
       {
-          required("name", kName, "emitters refer to it by this name"),
+          required("name", kName, "emitters, receivers and targets refer to it by this name"),
           optional("position", object(positionSpec()), "of a fixed site"),
           optional("attitude", object(attitudeSpec()), "of a fixed site; level and north by default"),
           optional("track", object(trackSpec()), "of a moving platform"),
@@ -348,9 +352,9 @@ const ObjectSpec& radarReceiverSpec() {
       "radar receiver",
       "",
       {
-          required("noise_figure_db", number("dB").from(0).to(60), "referred to 290 K"),
-          byDefault("antenna_temperature_k", number("K").from(0).to(10000),
-                    RadarReceiver{}.antenna_temperature_k, "noise from sky and ground"),
+          required("noise_figure_db", kNoiseFigure, "referred to 290 K"),
+          byDefault("antenna_temperature_k", kNoiseTemperature, RadarReceiver{}.antenna_temperature_k,
+                    "noise from sky and ground"),
           required("bandwidth_hz", kBandwidth, "of the noise"),
           byDefault(
               "losses_db", kLoss, RadarReceiver{}.losses_db,
@@ -361,18 +365,41 @@ const ObjectSpec& radarReceiverSpec() {
           optional("polarization", choiceUpTo(Polarization::circular_left),
                    "for jamming; by default the emitter's. target_rcs_m2 is that between the two"),
           crossPolarKey(),
-          byDefault("pulses", kInteger.from(1).to(1e6), double(RadarReceiver{}.pulses),
-                    "integrated on a target"),
+          optional(
+              "pulses", kInteger.from(1).to(1e6),
+              "integrated on a target; by default the hits of one scan, from the waveform, the beamwidth "
+              "and the scan's rate; 1 without a waveform or without a scan"),
           byDefault("pfa", number().above(0).to(0.5), RadarReceiver{}.pfa, "probability of false alarm"),
-          byDefault("swerling", kInteger.from(0).to(4), double(RadarReceiver{}.swerling),
-                    "case of target fluctuation"),
+          byDefault("swerling", kSwerling, double(RadarReceiver{}.swerling), "case of target fluctuation"),
           byDefault("detection", choiceUpTo(DetectionMethod::shnidman), toString(RadarReceiver{}.detection),
                     "method of detection_probability: exact statistics or a formula; albersheim only with "
                     "swerling 0"),
+          byDefault(
+              "beam_shape_loss", choiceUpTo(BeamShapeLoss::barton), toString(RadarReceiver{}.beam_shape_loss),
+              "of pulses received off the beam's peak, per scanned plane: blake 1.6 dB, barton 1.23 dB"),
+          optional("cfar_cells", kInteger.from(1).to(10000),
+                   "reference cells of a cell-averaging CFAR, for its loss; by default the noise level is "
+                   "known"),
+          optional("binary_threshold", kInteger.from(1).to(1e4),
+                   "M of M-of-N integration over N = pulses, for its loss; by default the pulses are added "
+                   "up"),
           optional("required_signal_to_jammer_db", number("dB").from(-100).to(100),
                    "required for burn-through; by default that of a detection probability of 0.5"),
-          byDefault("target_rcs_m2", number("m2").above(0).to(1e9), RadarReceiver{}.target_rcs_m2,
-                    "radar cross section"),
+          byDefault("target_rcs_m2", kRcs, RadarReceiver{}.target_rcs_m2, "radar cross section"),
+      }};
+  return spec;
+}
+
+const ObjectSpec& waveformSpec() {
+  static const ObjectSpec spec{
+      "waveform",
+      "",
+      {
+          required("prf_hz", number("Hz").above(0).to(1e8), "pulse repetition frequency"),
+          required("pulse_width_s", number("s").above(0).to(1),
+                   "of the transmitted pulse, before compression; shorter than 1 / prf_hz"),
+          optional("instrumented_range_m", number("m").above(0).to(1e8),
+                   "beyond which the radar does not look; reports say where a point is beyond it"),
       }};
   return spec;
 }
@@ -397,6 +424,8 @@ const ObjectSpec& emitterSpec() {
           },
           {
               required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
+              optional("waveform", object(waveformSpec()),
+                       "the pulses; without it the mean power is taken as power_w", {"radar"}),
               optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMaxItems),
                        "[begin, end) of the times at which it radiates; always by default"),
           })};
@@ -409,14 +438,51 @@ const ObjectSpec& receiverSpec() {
       "",
       {
           required("name", kName, ""),
+          optional("platform", kName,
+                   "name of its platform, for `emscape link`; without it the receiver is at every voxel"),
           byDefault("gain_dbi", kGain, ReceiverProfile{}.gain_dbi, "in every direction"),
+          optional("antenna", object(antennaSpec()), "pattern and gain, in place of gain_dbi"),
+          optional("scan", object(scanSpec()), "motion of the beam; by default fixed along the heading"),
           byDefault("losses_db", kLoss, ReceiverProfile{}.losses_db, "between antenna and receiver"),
+          optional("noise_figure_db", kNoiseFigure, "referred to 290 K; required with a platform"),
+          optional("antenna_temperature_k", kNoiseTemperature, "noise from sky and ground; by default 290"),
           optional("polarization", choiceUpTo(Polarization::circular_left),
                    "by default that of each emitter"),
           crossPolarKey(),
           optional("center_frequency_hz", kFrequency, "by default that of each emitter"),
-          optional("bandwidth_hz", kBandwidth, "by default that of each emitter's signal"),
-      }};
+          optional("bandwidth_hz", kBandwidth,
+                   "by default that of each emitter's signal; required with a platform"),
+          optional("sensitivity_dbm", number("dBm").from(-300).to(100),
+                   "smallest power, after losses_db, at which a signal is received"),
+          optional("required_sinr_db", number("dB").from(-100).to(100),
+                   "smallest ratio to noise and interference at which a signal is received"),
+      },
+      {},
+      {{"platform", "noise_figure_db"},
+       {"platform", "bandwidth_hz"},
+       {"antenna", "platform"},
+       {"scan", "antenna"},
+       {"noise_figure_db", "platform"},
+       {"antenna_temperature_k", "platform"},
+       {"sensitivity_dbm", "platform"},
+       {"required_sinr_db", "platform"}}};
+  return spec;
+}
+
+const ObjectSpec& targetSpec() {
+  static const ObjectSpec spec{
+      "target",
+      "",
+      {
+          required("name", kName, ""),
+          required("platform", kName, "name of its platform"),
+          optional("rcs_m2", kRcs, "radar cross section, the same from every aspect"),
+          optional("rcs_file", kFile,
+                   "CSV: azimuth_deg (clockwise from the nose), elevation_deg, rcs_dbsm; a full grid, "
+                   "relative to the scenario's folder"),
+          byDefault("swerling", kSwerling, double(Target{}.swerling), "case of fluctuation"),
+      },
+      {{"rcs_m2", "rcs_file"}}};
   return spec;
 }
 
@@ -499,11 +565,14 @@ const ObjectSpec& scenarioSpec() {
           optional("atmosphere", object(atmosphereSpec()), "refraction and attenuation by the air"),
           optional("ground", object(groundSpec()), "electrical properties of the ground"),
           required("platforms", listOf(object(platformSpec()), 1, kMaxItems).distinct(),
-                   "carriers of emitters"),
+                   "carriers of emitters, receivers and targets"),
           required("emitters", listOf(object(emitterSpec()), 1, kMaxItems).distinct(),
                    "radars, transmitters and jammers"),
           optional("receivers", listOf(object(receiverSpec()), 1, kMaxItems).distinct(),
-                   "placed at every voxel for received_power_dbm, which uses the first"),
+                   "at every voxel, for received_power_dbm, which uses the first of them; with a platform "
+                   "there, for `emscape link`"),
+          optional("targets", listOf(object(targetSpec()), 1, kMaxItems).distinct(),
+                   "of the radars, for `emscape link`"),
           optional("bands", listOf(object(bandSpec()), 1, kMaxItems).distinct(), "for combine per_band"),
           optional("output", object(outputSpec()), "quantities and their combination"),
       }};

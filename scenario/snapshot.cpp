@@ -71,29 +71,18 @@ void aim(BeamPose& pose, double azimuth_deg, double elevation_deg) {
   turn(pose.forward, pose.up, elevation_deg);
 }
 
-/// The platform's axes: north, east, up, turned by yaw, then pitch, then roll.
-BeamPose axesOf(const Attitude& attitude) {
-  BeamPose pose;
-  pose.forward = {0, 1, 0};
-  pose.right = {1, 0, 0};
-  pose.up = {0, 0, 1};
-  aim(pose, attitude.heading_deg, attitude.pitch_deg);
-  turn(pose.up, pose.right, attitude.roll_deg);
-  return pose;
+bool isArray(const AntennaPtr& antenna) {
+  return antenna && antenna->is_array;
 }
 
-bool isArray(const Emitter& emitter) {
-  return emitter.antenna && emitter.antenna->is_array;
-}
-
-BeamPose beamPose(BeamPose pose, const Emitter& emitter, double t_s) {
-  const BeamDirection beam = beamAt(emitter.scan, t_s);
+BeamPose beamPose(BeamPose pose, const AntennaPtr& antenna, const ScanSpec& scan, double t_s) {
+  const BeamDirection beam = beamAt(scan, t_s);
   if (!beam.electronic) {
     aim(pose, beam.azimuth_deg, beam.elevation_deg);
     return pose;
   }
-  aim(pose, emitter.scan.azimuth_deg, emitter.scan.elevation_deg);
-  if (isArray(emitter)) {
+  aim(pose, scan.azimuth_deg, scan.elevation_deg);
+  if (isArray(antenna)) {
     const double azimuth_rad = degToRad(beam.azimuth_deg), elevation_rad = degToRad(beam.elevation_deg);
     pose.steer_u = std::sin(azimuth_rad) * std::cos(elevation_rad);
     pose.steer_v = std::sin(elevation_rad);
@@ -129,12 +118,27 @@ BeamPose aimed(BeamPose pose, double azimuth_deg, double elevation_deg) {
   return pose;
 }
 
+BeamPose platformAxes(const Attitude& attitude) {
+  // North, east, up, turned by yaw, then pitch, then roll.
+  BeamPose pose;
+  pose.forward = {0, 1, 0};
+  pose.right = {1, 0, 0};
+  pose.up = {0, 0, 1};
+  aim(pose, attitude.heading_deg, attitude.pitch_deg);
+  turn(pose.up, pose.right, attitude.roll_deg);
+  return pose;
+}
+
 bool isSteered(const Emitter& emitter) {
-  return isArray(emitter) &&
+  return isArray(emitter.antenna) &&
          (emitter.scan.kind == ScanKind::dwell_list || emitter.scan.kind == ScanKind::fixed);
 }
 
-Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s) {
+namespace {
+
+/// @param interval  in which emitters are active
+Snapshot snapshotOf(const std::shared_ptr<const Scenario>& scenario, const IntervalSpec& interval,
+                    const Terrain* terrain, double t_s) {
   Snapshot snapshot;
   snapshot.time_s = t_s;
   snapshot.time_utc = utcAt(scenario->clock, t_s);
@@ -145,16 +149,31 @@ Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terra
   for (const Emitter& emitter : scenario->emitters) {
     const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(emitter.platform)];
     EmitterState state;
-    state.active =
-        isActive(emitter, t_s, intervalDuration_s(scenario->output.interval, emitter.scan, scenario->clock));
+    state.active = isActive(emitter, t_s, intervalDuration_s(interval, emitter.scan, scenario->clock));
     state.position = carrier.position;
     state.height_msl_m = carrier.height_msl_m;
-    const BeamPose axes = axesOf(carrier.attitude);
-    state.beam = beamPose(axes, emitter, t_s);
+    const BeamPose axes = platformAxes(carrier.attitude);
+    state.beam = beamPose(axes, emitter.antenna, emitter.scan, t_s);
     state.mount = mountPose(axes, emitter);
     snapshot.emitters.push_back(state);
   }
+  for (const PlacedReceiver& receiver : scenario->placed_receivers) {
+    const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(receiver.platform)];
+    snapshot.receivers.push_back(
+        {carrier.position, carrier.height_msl_m,
+         beamPose(platformAxes(carrier.attitude), receiver.antenna, receiver.scan, t_s)});
+  }
   return snapshot;
+}
+
+}  // namespace
+
+Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s) {
+  return snapshotOf(scenario, scenario->output.interval, terrain, t_s);
+}
+
+Snapshot instantAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s) {
+  return snapshotOf(scenario, {}, terrain, t_s);
 }
 
 }  // namespace emscape::scenario

@@ -11,6 +11,7 @@
 #include "emscape/scenario/antenna.h"
 #include "emscape/scenario/edit.h"
 #include "emscape/scenario/platform.h"
+#include "emscape/scenario/target.h"
 
 namespace emscape::scenario {
 
@@ -22,9 +23,10 @@ constexpr std::size_t kMaxScenarioBytes = std::size_t{4} << 20;
 struct NamedFiles {
   std::map<std::string, std::string> digests;  ///< ContentHash of a file's bytes, by its resolved name
   std::map<std::string, std::shared_ptr<const std::vector<TrackPoint>>> tracks;  ///< valid ones, by name
-  std::map<std::string, AntennaPtr> antennas;  ///< by the antenna's keys and values, written on one line
-  document::DocumentNodePtr terrain_node;      ///< null without terrain
-  std::string terrain_digest;                  ///< names and sizes of the elevation files
+  std::map<std::string, AntennaPtr> antennas;     ///< by the antenna's keys and values, written on one line
+  std::map<std::string, RcsTablePtr> rcs_tables;  ///< valid ones, by resolved name
+  document::DocumentNodePtr terrain_node;         ///< null without terrain
+  std::string terrain_digest;                     ///< names and sizes of the elevation files
 };
 
 /// An applied edit.

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,9 @@ template <class... Arguments>
 void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   printResult(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
+/// A finite number, or null.
+Json number(double value);
+Json number(const std::optional<double>& value);
 /// The result as JSON, alone on standard output. @throws Error (other)
 void printJson(const Json& result);
 /// Flushes standard output. @throws Error (other) if any part of the result could not be written

@@ -7,6 +7,7 @@
 
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
+#include "apps/emscape/waveform_report.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/playback/inputs.h"
 #include "emscape/playback/volume_input.h"
@@ -52,10 +53,29 @@ Json describeScenario(const std::string& file) {
                         {"antenna", emitter.antenna->description},
                         {"gain_dbi", emitter.antenna->gain_dbi},
                         {"propagation", toString(emitter.propagation.model)}});
+    if (emitter.waveform) emitters.back()["waveform"] = waveformJson(emitter);
   }
   Json platforms = Json::array();
   for (const scenario::Platform& platform : scenario->platforms) {
     platforms.push_back({{"name", platform.name}, {"track_points", platform.track.size()}});
+  }
+  Json receivers = Json::array(), targets = Json::array();
+  for (const scenario::ReceiverProfile& receiver : scenario->receivers) {
+    receivers.push_back({{"name", receiver.name}, {"platform", nullptr}, {"gain_dbi", receiver.gain_dbi}});
+  }
+  for (const scenario::PlacedReceiver& receiver : scenario->placed_receivers) {
+    receivers.push_back({{"name", receiver.name},
+                         {"platform", scenario->platforms[static_cast<std::size_t>(receiver.platform)].name},
+                         {"antenna", receiver.antenna->description},
+                         {"gain_dbi", receiver.antenna->gain_dbi},
+                         {"noise_figure_db", receiver.noise_figure_db},
+                         {"bandwidth_hz", receiver.bandwidth_hz}});
+  }
+  for (const scenario::Target& target : scenario->targets) {
+    targets.push_back({{"name", target.name},
+                       {"platform", scenario->platforms[static_cast<std::size_t>(target.platform)].name},
+                       {"rcs_m2", target.table ? Json("by aspect") : Json(target.rcs_m2)},
+                       {"swerling", target.swerling}});
   }
   Json channels = Json::array();
   for (const emfield::Channel& channel : emfield::channelsOf(*scenario, {})) channels.push_back(channel.name);
@@ -72,6 +92,8 @@ Json describeScenario(const std::string& file) {
           {"terrain_files", scenario->terrain ? Json(scenario->terrain->files) : Json::array()},
           {"platforms", platforms},
           {"emitters", emitters},
+          {"receivers", receivers},
+          {"targets", targets},
           {"channels", channels}};
 }
 

@@ -122,6 +122,7 @@ int emscapeMain(int argc, char** argv) {
   addRender(app, global, action);
   addView(app, global, action);
   addProfile(app, global, action);
+  addLink(app, global, action);
   addCheck(app, global, action);
   addBench(app, global, action);
 

@@ -88,13 +88,16 @@ ProfileReport makeReport(const ProfileOptions& options) {
   const auto scenario = withPoint(*scenario::loadScenario(options.scenario, options.edits), to);
   const int emitter = emitterNamed(*scenario, options.emitter);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), options.time_s);
+  const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain.get(), options.time_s);
   const emfield::PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};
   const auto budgetBy = [&](PropagationModel model) {
     return emfield::pathBudget(snapshot, emitter, point, model, terrain.get());
   };
-  ProfileReport report{
-      options.scenario, snapshot.time_utc, budgetBy(scenario->emitters[emitter].propagation.model), {}};
+  ProfileReport report{options.scenario,
+                       snapshot.time_utc,
+                       scenario->emitters[emitter],
+                       budgetBy(scenario->emitters[emitter].propagation.model),
+                       {}};
   for (const std::string& name : options.models) {
     Comparison comparison;
     comparison.model = propagation::modelNamed(name)->model;

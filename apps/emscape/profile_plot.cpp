@@ -305,15 +305,19 @@ bool isPlotFile(const std::string& file) {
   return isSvg(file) || std::filesystem::path(file).extension() == ".png";
 }
 
-void plotProfile(const PathBudget& budget, render::ImageSize size, const std::string& file) {
+void drawPlot(render::ImageSize size, const std::string& file, const std::function<void(Canvas&)>& draw) {
   Canvas canvas = isSvg(file) ? Canvas::forSvg(size) : Canvas(size);
-  ProfilePlot(budget, canvas).draw();
+  draw(canvas);
   if (isSvg(file)) {
     const std::string text = canvas.svg();
     writeWhole(file, [&](std::ostream& out) { out << text; });
   } else {
     render::writePng(file, canvas.pixels());
   }
+}
+
+void plotProfile(const PathBudget& budget, render::ImageSize size, const std::string& file) {
+  drawPlot(size, file, [&](Canvas& canvas) { ProfilePlot(budget, canvas).draw(); });
 }
 
 }  // namespace emscape::app

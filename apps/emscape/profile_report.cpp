@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/emscape/waveform_report.h"
 #include "base/quantity_text.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_report.h"
@@ -17,11 +18,6 @@ using emfield::PathBudget;
 using emfield::PathEnd;
 using emfield::PathObstacle;
 using emfield::valueText;
-
-/// A finite number, or null.
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 Json toJson(const PathEnd& end, double ground_msl_m) {
   return {{"latitude_deg", end.position.latitude_deg},
@@ -147,6 +143,7 @@ Json toJson(const ProfileReport& report) {
           {"time_utc", report.time_utc},
           {"active", budget.active},
           {"frequency_hz", budget.frequency_hz},
+          {"waveform", waveformJson(report.emitter)},
           {"from", toJson(budget.profile.begin, budget.geometry.begin_ground_msl_m)},
           {"to", toJson(budget.profile.end, budget.geometry.end_ground_msl_m)},
           {"geometry", geometryJson(budget)},
@@ -170,6 +167,7 @@ void printAsTable(const ProfileReport& report) {
   print("Path from '{}' at t = {:g} s ({}), {}\n\n", budget.emitter, budget.time_s, report.time_utc,
         quantityText(budget.frequency_hz, "Hz"));
   printGeometry(budget);
+  printWaveform(report.emitter);
   printObstacles(budget);
   printBudget(budget);
   printCompared(report.compared, budget);

@@ -19,6 +19,7 @@ struct Comparison {
 struct ProfileReport {
   std::string scenario;
   std::string time_utc;
+  scenario::Emitter emitter;
   emfield::PathBudget budget;
   std::vector<Comparison> compared;
 };

@@ -54,6 +54,12 @@ struct PanelState {
     for (const scenario::ReceiverProfile& receiver : next->receivers) {
       others.push_back({receiver.name, "receivers." + scenario::pathStep(receiver.name), {}});
     }
+    for (const scenario::PlacedReceiver& receiver : next->placed_receivers) {
+      others.push_back({receiver.name, "receivers." + scenario::pathStep(receiver.name), {}});
+    }
+    for (const scenario::Target& target : next->targets) {
+      others.push_back({target.name, "targets." + scenario::pathStep(target.name), {}});
+    }
     others.push_back({"Air", "atmosphere", {}});
     others.push_back({"Ground", "ground", {}});
     others.push_back({"Output", "output", {}});

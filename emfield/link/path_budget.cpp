@@ -10,7 +10,7 @@
 #include "emfield/link/path_radar.h"
 #include "emfield/link/path_verdict.h"
 #include "emfield/products.h"
-#include "emfield/radar/detection.h"
+#include "emfield/radar/detection_losses.h"
 #include "emfield/radar/receiver.h"
 #include "emfield/station.h"
 #include "emfield/two_rays.h"
@@ -136,9 +136,33 @@ void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, dou
       {"received_power_dbm", "received power", of_one_watt_dbm + power_density_dbwm2, "dBm", "", Kind::sum});
 }
 
+/// Reasons for which a radar does not detect an echo from a range whatever its strength.
+std::vector<std::string> rangeWarnings(const scenario::Waveform& waveform, double range_m) {
+  std::vector<std::string> warnings;
+  const double eclipsed = waveform.eclipsedPart(range_m);
+  if (eclipsed > 0) {
+    warnings.push_back(fmt::format(
+        "{:.0f} % of the echo arrives while the radar transmits (eclipsed); detection is computed without it",
+        100 * eclipsed));
+  }
+  if (waveform.instrumented_range_m && range_m > *waveform.instrumented_range_m) {
+    warnings.push_back(
+        fmt::format("the point is beyond the radar's instrumented range of {:.1f} km; detection is computed "
+                    "all the same",
+                    *waveform.instrumented_range_m / 1000));
+  } else if (range_m > waveform.unambiguousRange_m()) {
+    warnings.push_back(
+        fmt::format("the point is beyond the radar's unambiguous range of {:.1f} km: its echo arrives after "
+                    "the next pulse",
+                    waveform.unambiguousRange_m() / 1000));
+  }
+  return warnings;
+}
+
 void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const RadarAtPoint& radar,
                    std::vector<BudgetTerm>& terms) {
-  const scenario::RadarReceiver& receiver = scenario.emitters[emitter_index].receiver;
+  const Emitter& emitter = scenario.emitters[emitter_index];
+  const scenario::RadarReceiver& receiver = emitter.receiver;
   const char* const look = scenario.output.radar_look == scenario::RadarLook::scan
                                ? "beam where the scan has it"
                                : "beam on the target";
@@ -153,9 +177,16 @@ void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const 
   }
   const std::string settings =
       fmt::format("{} pulses, Pfa {:g}, Swerling {}", receiver.pulses, receiver.pfa, receiver.swerling);
-  const double half_way = receiver.pfa < 0.5 ? 0.5 : 0.75;
-  terms.push_back({"required_snr_db", fmt::format("of which detection with probability {:g} takes", half_way),
-                   requiredSnrDb(detectorOf(receiver), half_way), "dB", settings});
+  const DetectionLosses losses = detectionLosses(emitter);
+  if (losses.total_db() > 0) {
+    terms.push_back({"detection_losses_db", "detection losses", losses.total_db(), "dB",
+                     fmt::format("beam shape {:.2f}, CFAR {:.2f}, M-of-N {:.2f}", losses.beam_shape_db,
+                                 losses.cfar_db, losses.binary_db)});
+  }
+  terms.push_back(
+      {"required_snr_db",
+       fmt::format("of which detection with probability {:g} takes", requiredProbability(receiver)),
+       requiredSnrDb(emitter), "dB", settings});
   terms.push_back({"detection_probability", "probability of detection", radar.detection_probability, "",
                    settings, Kind::sum});
 }
@@ -195,6 +226,11 @@ std::vector<BudgetTerm> termsOf(const scenario::Snapshot& snapshot, int emitter_
   terms.push_back({"field_strength_dbuvm", "field strength (RMS)",
                    quantityOf(Quantity::field_strength_dbuvm, scenario, emitter_index, level_db), "dBuV/m",
                    "", Kind::sum});
+  if (emitter.waveform) {
+    terms.push_back({"mean_power_density_dbwm2", "mean power density",
+                     quantityOf(Quantity::mean_power_density_dbwm2, scenario, emitter_index, level_db),
+                     "dBW/m2", fmt::format("duty cycle {:.4g} %", 100 * emitter.dutyCycle()), Kind::sum});
+  }
   if (!scenario.receivers.empty()) addReceiverTerms(scenario, emitter_index, level_db, terms);
   if (radar) addRadarTerms(scenario, emitter_index, *radar, terms);
 
@@ -216,8 +252,17 @@ const BudgetTerm* PathBudget::find(const std::string& key) const {
   return found == terms.end() ? nullptr : &*found;
 }
 
-PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, const PathEnd& point,
-                      propagation::PropagationModel model, const scenario::Terrain* terrain) {
+namespace {
+
+bool isAt(const PathEnd& end, const PathEnd& other) {
+  return end.position.latitude_deg == other.position.latitude_deg &&
+         end.position.longitude_deg == other.position.longitude_deg && end.height_msl_m == other.height_msl_m;
+}
+
+/// The budget, with what does not depend on the beam taken from an earlier one if neither end has moved.
+PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const PathEnd& point,
+                    propagation::PropagationModel model, const scenario::Terrain* terrain,
+                    bool with_detection, const PathBudget* earlier) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const Emitter& emitter = scenario.emitters[emitter_index];
   const EmitterState& state = snapshot.emitters[emitter_index];
@@ -230,7 +275,10 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   budget.frequency_hz = emitter.frequency_hz;
   budget.k_factor = scenario.atmosphere.k_factor;
   budget.model = model;
-  budget.profile = readPathProfile({state.position, state.height_msl_m}, point, budget.k_factor, terrain);
+  const PathEnd begin{state.position, state.height_msl_m};
+  const bool is_still =
+      earlier != nullptr && isAt(earlier->profile.begin, begin) && isAt(earlier->profile.end, point);
+  budget.profile = is_still ? earlier->profile : readPathProfile(begin, point, budget.k_factor, terrain);
   const PathProfile& profile = budget.profile;
   const Station station = makeStation(state.position, state.height_msl_m, profile.k_factor);
   const double wavelength = wavelength_m(emitter.frequency_hz);
@@ -249,8 +297,8 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
   const double aperture_m = emitter.antenna->apertureDimension_m(wavelength);
   geometry.far_field_m = 2 * aperture_m * aperture_m / wavelength;
 
-  budget.obstacles = pathObstacles(profile, wavelength);
-  budget.excess = pathExcess(scenario, by_model, profile, terrain);
+  budget.obstacles = is_still ? earlier->obstacles : pathObstacles(profile, wavelength);
+  budget.excess = is_still ? earlier->excess : pathExcess(scenario, by_model, profile, terrain);
   budget.pointing = pointingOf(emitter, state.beam, ray, budget.excess.reflection);
   budget.boresight_dbwm2 = boresightDensity_dbwm2(emitter, budget);
   budget.warnings = budget.excess.warnings;
@@ -261,13 +309,30 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter_index, con
                     "far field's formula is taken all the same",
                     geometry.slant_range_m, geometry.far_field_m));
   }
+  if (with_detection && emitter.waveform) {
+    for (std::string& warning : rangeWarnings(*emitter.waveform, geometry.slant_range_m))
+      budget.warnings.push_back(std::move(warning));
+  }
   std::optional<RadarAtPoint> radar;
-  if (emitter.kind == scenario::EmitterKind::radar && state.active) {
+  if (with_detection && emitter.kind == scenario::EmitterKind::radar && state.active) {
     radar = radarAtPoint(snapshot, emitter_index, ray, budget, terrain);
   }
   budget.terms = termsOf(snapshot, emitter_index, budget, radar);
   budget.verdict = verdictOf(budget);
   return budget;
+}
+
+}  // namespace
+
+PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
+                      propagation::PropagationModel model, const scenario::Terrain* terrain) {
+  return budgetOf(snapshot, emitter, point, model, terrain, true, nullptr);
+}
+
+PathBudget powerBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
+                       propagation::PropagationModel model, const scenario::Terrain* terrain,
+                       const PathBudget* earlier) {
+  return budgetOf(snapshot, emitter, point, model, terrain, false, earlier);
 }
 
 }  // namespace emscape::emfield

@@ -70,9 +70,14 @@ std::string detectionText(const PathBudget& budget) {
 
 }  // namespace
 
-std::string verdictOf(const PathBudget& budget) {
+std::string pathVerdictOf(const PathBudget& budget) {
   if (!budget.active)
     return fmt::format("Silent: '{}' does not radiate at t = {:g} s.", budget.emitter, budget.time_s);
+  return pathText(budget) + ".";
+}
+
+std::string verdictOf(const PathBudget& budget) {
+  if (!budget.active) return pathVerdictOf(budget);
   return pathText(budget) + pointingText(budget.pointing) + detectionText(budget) + ".";
 }
 

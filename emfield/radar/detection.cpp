@@ -232,8 +232,8 @@ double shnidmanProbability(const Detector& detector, double snr_db) {
   return probabilityOf(low);
 }
 
-DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method)
-    : detector_(detector), method_(method) {
+DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method, double loss_db)
+    : detector_(detector), method_(method), loss_db_(loss_db) {
   const double threshold = detectionThreshold(detector);
   const auto probabilityAt = [&](double snr_db) {
     switch (method) {
@@ -252,7 +252,7 @@ DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMeth
   constexpr double kStep_db = 0.1;
   const int count = std::max(4, int(std::ceil((last - first) / kStep_db)) + 1);
   const double step_db = (last - first) / (count - 1);
-  first_snr_db_ = float(first);
+  first_snr_db_ = float(first + loss_db);
   steps_per_db_ = float(1 / step_db);
   std::vector<double> values;
   for (int i = 0; i < count; ++i) {

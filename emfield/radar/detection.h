@@ -113,12 +113,14 @@ struct DetectionCurveView {
 /// Holds the knots of a curve.
 class DetectionCurve {
  public:
+  /// @param loss_db  by which the curve is shifted to larger signal-to-noise ratios
   /// @throws Error (bad_input) for a detector outside the ranges stated
   explicit DetectionCurve(const Detector& detector,
-                          scenario::DetectionMethod method = scenario::DetectionMethod::exact);
+                          scenario::DetectionMethod method = scenario::DetectionMethod::exact,
+                          double loss_db = 0);
 
-  bool isOf(const Detector& detector, scenario::DetectionMethod method) const {
-    return detector == detector_ && method == method_;
+  bool isOf(const Detector& detector, scenario::DetectionMethod method, double loss_db) const {
+    return detector == detector_ && method == method_ && loss_db == loss_db_;
   }
 
   DetectionCurveView view() const {
@@ -128,6 +130,7 @@ class DetectionCurve {
  private:
   Detector detector_;
   scenario::DetectionMethod method_;
+  double loss_db_;
   std::vector<DetectionCurveView::Knot> knots_;
   float first_snr_db_ = 0, steps_per_db_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/radar/detection_losses.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/snapshot.h"
 
@@ -53,9 +54,18 @@ double jammingToNoise_m2_w(const Emitter& radar, const Emitter& jammer) {
   return jammingPower_w(link, jamming, 1) / noisePower_w(link.bandwidth_hz, link.noise_temperature_k);
 }
 
-double requiredSignalToJammerDb(const RadarReceiver& receiver) {
-  if (receiver.required_signal_to_jammer_db) return *receiver.required_signal_to_jammer_db;
-  return requiredSnrDb(detectorOf(receiver), receiver.pfa < 0.5 ? 0.5 : 0.75);
+double requiredProbability(const RadarReceiver& receiver) {
+  return receiver.pfa < 0.5 ? 0.5 : 0.75;
+}
+
+double requiredSnrDb(const Emitter& radar) {
+  return requiredSnrDb(detectorOf(radar.receiver), requiredProbability(radar.receiver)) +
+         detectionLosses(radar).total_db();
+}
+
+double requiredSignalToJammerDb(const Emitter& radar) {
+  const std::optional<double>& stated_db = radar.receiver.required_signal_to_jammer_db;
+  return stated_db ? *stated_db : requiredSnrDb(radar);
 }
 
 double receivingArea_m2(const Emitter& emitter, const ReceiverProfile& receiver) {

@@ -23,8 +23,14 @@ double echoRoot_m2_w(const scenario::Emitter& radar);
 /// boresight; 0 for a jammer outside its band.
 double jammingToNoise_m2_w(const scenario::Emitter& radar, const scenario::Emitter& jammer);
 
+/// Signal-to-noise ratio (dB) of one pulse, its detection losses included, for which a target is detected
+/// with a probability of 1/2 (3/4 if the probability of false alarm is 1/2).
+double requiredSnrDb(const scenario::Emitter& radar);
+/// The probability for which requiredSnrDb() is.
+double requiredProbability(const scenario::RadarReceiver& receiver);
+
 /// Signal-to-jammer ratio (dB) at which the radar burns through, after processing.
-double requiredSignalToJammerDb(const scenario::RadarReceiver& receiver);
+double requiredSignalToJammerDb(const scenario::Emitter& radar);
 
 /// Received power (W) of a receiver for a power density of 1 W/m2 of an emitter.
 double receivingArea_m2(const scenario::Emitter& emitter, const scenario::ReceiverProfile& receiver);

@@ -125,10 +125,10 @@ bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const scenario::EmitterState& state) {
   // Only the listed inputs enter the geometry. Members that are not named below enter the combine stage
-  // (power_w, losses_db, antenna, receiver, bandwidth_hz), the channels (kind), the snapshot (platform, scan,
-  // active_s) or messages (name, locations).
+  // (power_w, losses_db, antenna, receiver, bandwidth_hz), the channels (kind, waveform), the snapshot
+  // (platform, scan, active_s) or messages (name, locations).
   const auto& [name, platform, kind, frequency_hz, bandwidth_hz, power_w, losses_db, polarization, antenna,
-               scan, propagation, receiver, active_s, place, frequency_place] =
+               scan, propagation, receiver, waveform, active_s, place, frequency_place] =
       plan.scenario->emitters[static_cast<std::size_t>(emitter_index)];
   GeometryInputs inputs;
   inputs.position = state.position;

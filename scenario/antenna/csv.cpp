@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "emscape/base/units.h"
-#include "scenario/antenna/cut.h"
+#include "scenario/antenna/csv_grid.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/antenna/tables.h"
 #include "scenario/antenna/text.h"
@@ -22,11 +22,6 @@ using document::CsvCell;
 using document::CsvReader;
 using document::CsvRow;
 
-struct ColumnSpec {
-  const char* name;
-  double lowest, highest;
-  const char* unit;
-};
 constexpr ColumnSpec kAzimuth{"azimuth_deg", -360, 360, "deg"};
 constexpr ColumnSpec kElevation{"elevation_deg", -90, 90, "deg"};
 constexpr ColumnSpec kAttenuation{"attenuation_db", 0, kMaxAttenuation_db, "dB"};
@@ -110,13 +105,13 @@ ShapeTable tableOf(const MeasuredCut& cut, double half_span) {
                   cut.angles_deg());
 }
 
-/// The attenuations of rows (elevation, azimuth, attenuation), azimuth fastest.
+/// The values of rows (elevation, azimuth, value), azimuth fastest.
 std::vector<double> inGridOrder(std::vector<GridRow> rows, const MeasuredAxis& azimuth,
-                                const MeasuredAxis& elevation, const SourceLocation& file) {
+                                const MeasuredAxis& elevation, const SourceLocation& file, const char* unit) {
   const auto pairOf = [](const GridRow& row) { return std::make_pair(row.values[0], row.values[1]); };
   std::stable_sort(rows.begin(), rows.end(),
                    [&](const GridRow& a, const GridRow& b) { return pairOf(a) < pairOf(b); });
-  std::vector<double> attenuations_db;
+  std::vector<double> values;
   const std::size_t columns = azimuth.angles_deg().size();
   const std::size_t cells = columns * elevation.angles_deg().size();
   std::size_t row = 0;
@@ -128,16 +123,16 @@ std::vector<double> inGridOrder(std::vector<GridRow> rows, const MeasuredAxis& a
           ErrorCode::bad_input, file,
           fmt::format("the grid has no row for azimuth {} deg, elevation {} deg", pair.second, pair.first));
     }
-    attenuations_db.push_back(rows[row].values[2]);
+    values.push_back(rows[row].values[2]);
     for (++row; row < rows.size() && pairOf(rows[row]) == pair; ++row) {
-      if (rows[row].values[2] == attenuations_db.back()) continue;
+      if (rows[row].values[2] == values.back()) continue;
       throw Error(
           ErrorCode::bad_input, {file.file, rows[row].line, 1},
-          fmt::format("azimuth {} deg, elevation {} deg occurs a second time, with {} dB instead of {} dB",
-                      pair.second, pair.first, rows[row].values[2], attenuations_db.back()));
+          fmt::format("azimuth {} deg, elevation {} deg occurs a second time, with {} {} instead of {} {}",
+                      pair.second, pair.first, rows[row].values[2], unit, values.back(), unit));
     }
   }
-  return attenuations_db;
+  return values;
 }
 
 }  // namespace
@@ -152,37 +147,43 @@ AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& eleva
                           gain_dbi, azimuth_deg, elevation_deg, "measured cuts");
 }
 
-AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
-  requireGain(gain_dbi);
+double MeasuredGrid::valueAt(const AxisSample& a, const AxisSample& e) const {
+  const double* below = &values[e.below * azimuth.angles_deg().size()];
+  const double* above = &values[e.above * azimuth.angles_deg().size()];
+  const double at_below = below[a.below] + a.fraction * (below[a.above] - below[a.below]);
+  const double at_above = above[a.below] + a.fraction * (above[a.above] - above[a.below]);
+  return at_below + e.fraction * (at_above - at_below);
+}
+
+MeasuredGrid readMeasuredGrid(const std::string& file, const ColumnSpec& value) {
   const SourceLocation location{file, 0, 0};
   const AntennaText text(file);
-  std::vector<GridRow> rows = readRows(text, {kElevation, kAzimuth, kAttenuation});
+  std::vector<GridRow> rows = readRows(text, {kElevation, kAzimuth, value});
   std::vector<double> azimuths_deg, elevations_deg;
   for (GridRow& row : rows) {
     elevations_deg.push_back(row.values[0] = MeasuredAxis::normalized(AxisKind::elevation, row.values[0]));
     azimuths_deg.push_back(row.values[1] = MeasuredAxis::normalized(AxisKind::circle, row.values[1]));
   }
-  const MeasuredAxis azimuth(AxisKind::circle, std::move(azimuths_deg), location, "grid's azimuths");
-  const MeasuredAxis elevation(AxisKind::elevation, std::move(elevations_deg), location, "grid's elevations");
+  MeasuredGrid grid{{AxisKind::circle, std::move(azimuths_deg), location, "grid's azimuths"},
+                    {AxisKind::elevation, std::move(elevations_deg), location, "grid's elevations"},
+                    {}};
+  grid.values = inGridOrder(std::move(rows), grid.azimuth, grid.elevation, location, value.unit);
+  return grid;
+}
 
-  const std::vector<double> attenuations_db = inGridOrder(std::move(rows), azimuth, elevation, location);
-  requireMaximum(*std::min_element(attenuations_db.begin(), attenuations_db.end()), location, "grid");
-  std::vector<double> measured(attenuations_db.size());
-  std::transform(attenuations_db.begin(), attenuations_db.end(), measured.begin(), amplitudeOfAttenuation);
+AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
+  requireGain(gain_dbi);
+  MeasuredGrid grid = readMeasuredGrid(file, kAttenuation);
+  requireMaximum(*std::min_element(grid.values.begin(), grid.values.end()), {file, 0, 0}, "grid");
+  std::transform(grid.values.begin(), grid.values.end(), grid.values.begin(), amplitudeOfAttenuation);
 
-  const GridNodes nodes = gridNodes(azimuth.angles_deg(), elevation.angles_deg());
+  const GridNodes nodes = gridNodes(grid.azimuth.angles_deg(), grid.elevation.angles_deg());
   std::vector<AxisSample> columns;
-  for (const double azimuth_deg : nodes.azimuths_deg) columns.push_back(azimuth.locate(azimuth_deg));
+  for (const double azimuth_deg : nodes.azimuths_deg) columns.push_back(grid.azimuth.locate(azimuth_deg));
   std::vector<float> amplitudes;
   for (const double elevation_deg : nodes.elevations_deg) {
-    const AxisSample e = elevation.locate(elevation_deg);
-    const double* below = &measured[e.below * azimuth.angles_deg().size()];
-    const double* above = &measured[e.above * azimuth.angles_deg().size()];
-    for (const AxisSample& a : columns) {
-      const double at_below = below[a.below] + a.fraction * (below[a.above] - below[a.below]);
-      const double at_above = above[a.below] + a.fraction * (above[a.above] - above[a.below]);
-      amplitudes.push_back(static_cast<float>(at_below + e.fraction * (at_above - at_below)));
-    }
+    const AxisSample e = grid.elevation.locate(elevation_deg);
+    for (const AxisSample& a : columns) amplitudes.push_back(static_cast<float>(grid.valueAt(a, e)));
   }
   return makeGridAntenna(nodes, std::move(amplitudes), gain_dbi, "measured grid");
 }

@@ -586,6 +586,12 @@ TEST_F(EditedOnce, WhatNoVolumeDependsOnComputesNothing) {
     s.hash = "another";
     s.receivers.front().gain_dbi = 9;
     s.emitters[3].receiver.noise_figure_db = 7;
+    s.emitters[0].waveform = scenario::Waveform{1000, 1e-6, {}};
+    s.placed_receivers.emplace_back();
+    s.placed_receivers.back().platform = 0;
+    s.placed_receivers.back().antenna = scenario::makeIsotropic();
+    s.targets.emplace_back();
+    s.targets.back().platform = 1;
   });
   EXPECT_FALSE(changed.any);
   EXPECT_EQ(solver_->volumes().front().dense(), before);

@@ -193,7 +193,7 @@ TEST(BurnThrough, OfAStandOffJammerIsAtItsClosedFormRange) {
 TEST(BurnThrough, AsksByDefaultForWhatHalfTheDetectionsTake) {
   scenario::Emitter radar = trackingRadar();
   radar.receiver.pulses = 8;
-  EXPECT_DOUBLE_EQ(requiredSignalToJammerDb(radar.receiver), requiredSnrDb(detectorOf(radar.receiver), 0.5));
+  EXPECT_DOUBLE_EQ(requiredSignalToJammerDb(radar), requiredSnrDb(detectorOf(radar.receiver), 0.5));
   // Against jamming far above the noise both say the same: where the margin is 0, Pd is 1/2.
   scenario::Emitter jammer = jammerOf(1e6);
   const auto scenario = duel(radar, jammer, 0, 60e3);

@@ -71,11 +71,20 @@ struct PathBudget {
   const BudgetTerm* find(const std::string& key) const;
 };
 
+/// The budget of a path, the terms of detection of a target at its end included if the emitter is a radar.
 /// @param emitter  index into the snapshot
 /// @param point    the far end of the path
 /// @param terrain  null: a smooth earth at mean sea level
 /// @throws Error (bad_input) as readPathProfile and pathExcess do
 PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
                       propagation::PropagationModel model, const scenario::Terrain* terrain);
+
+/// The same without the terms of detection: for receivers.
+/// @param earlier  null, or a budget from this function of the same emitter, model and terrain: its profile
+/// and
+///                 losses are taken if neither end has moved since
+PathBudget powerBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
+                       propagation::PropagationModel model, const scenario::Terrain* terrain,
+                       const PathBudget* earlier = nullptr);
 
 }  // namespace emscape::emfield

@@ -10,6 +10,7 @@
 #include "emscape/propagation/settings.h"
 #include "emscape/scenario/antenna.h"
 #include "emscape/scenario/scan.h"
+#include "emscape/scenario/waveform.h"
 
 namespace emscape::scenario {
 
@@ -36,6 +37,10 @@ enum class DetectionMethod {
 };
 const char* toString(DetectionMethod method);
 
+/// Rule for the loss of the pulses that a scanning beam receives off its peak.
+enum class BeamShapeLoss { none, blake, barton };
+const char* toString(BeamShapeLoss rule);
+
 /// A radar's own receiver, for signal-to-noise ratio and detection.
 struct RadarReceiver {
   double noise_figure_db = 0;
@@ -45,10 +50,13 @@ struct RadarReceiver {
   double processing_gain_db = 0;  ///< of echoes over noise and jamming, net of processing losses
   std::optional<propagation::Polarization> polarization;  ///< none: that of the transmitted wave
   double cross_polar_isolation_db = kCrossPolarIsolation_db;
-  int pulses = 1;
+  int pulses = 1;  ///< integrated on a target; from the waveform and the scan unless given
   double pfa = 1e-6;
   int swerling = 1;  ///< 0..4
   DetectionMethod detection = DetectionMethod::exact;
+  BeamShapeLoss beam_shape_loss = BeamShapeLoss::none;
+  int cfar_cells = 0;        ///< reference cells of a cell-averaging CFAR; 0: the noise level is known
+  int binary_threshold = 0;  ///< M of M-of-N integration, N = pulses; 0: the pulses are added up
   /// For burn-through; none: the ratio for a probability of detection of 1/2 in noise.
   std::optional<double> required_signal_to_jammer_db;
   double target_rcs_m2 = 1;
@@ -84,9 +92,13 @@ struct Emitter {
   ScanSpec scan;
   propagation::ModelSettings propagation;
   RadarReceiver receiver;              ///< radars only
+  std::optional<Waveform> waveform;    ///< radars only; none: power_w is taken for the mean power too
   std::vector<TimeInterval> active_s;  ///< empty: always
   SourceLocation location;             ///< in the scenario
   SourceLocation frequency_location;   ///< of its frequency
+
+  /// Mean over peak power, (0..1].
+  double dutyCycle() const { return waveform ? waveform->dutyCycle() : 1; }
 };
 
 }  // namespace emscape::scenario

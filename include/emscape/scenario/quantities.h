@@ -18,6 +18,7 @@ enum class Quantity {
   burn_through_margin_db,
   emitter_count,
   dominant_emitter,
+  mean_power_density_dbwm2,
 };
 
 /// The signals that a quantity depends on.

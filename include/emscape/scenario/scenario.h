@@ -14,6 +14,8 @@
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/interval.h"
 #include "emscape/scenario/platform.h"
+#include "emscape/scenario/receiver.h"
+#include "emscape/scenario/target.h"
 #include "emscape/scenario/terrain.h"
 
 namespace emscape::scenario {
@@ -68,7 +70,9 @@ struct Scenario {
   propagation::Ground ground;
   std::vector<Platform> platforms;
   std::vector<Emitter> emitters;
-  std::vector<ReceiverProfile> receivers;  ///< the first is used for received_power_dbm
+  std::vector<ReceiverProfile> receivers;  ///< without a platform; the first is used for received_power_dbm
+  std::vector<PlacedReceiver> placed_receivers;
+  std::vector<Target> targets;
   std::vector<Band> bands;
   OutputSpec output;
 

@@ -34,14 +34,24 @@ struct EmitterState {
   BeamPose mount;
 };
 
-/// States are in the order of Scenario::platforms and Scenario::emitters.
+struct ReceiverState {
+  GeodeticPosition position;
+  double height_msl_m = 0;
+  BeamPose beam;
+};
+
+/// States are in the order of Scenario::platforms, Scenario::emitters and Scenario::placed_receivers.
 struct Snapshot {
   double time_s = 0;
   std::string time_utc;
   std::shared_ptr<const Scenario> scenario;
   std::vector<PlatformState> platforms;
   std::vector<EmitterState> emitters;
+  std::vector<ReceiverState> receivers;
 };
+
+/// A platform's axes (nose, right wing, up) in the local east-north-up axes.
+BeamPose platformAxes(const Attitude& attitude);
 
 /// A pose turned in azimuth about its own up, clockwise, then in elevation about its new right, upwards.
 BeamPose aimed(BeamPose pose, double azimuth_deg, double elevation_deg);
@@ -54,5 +64,8 @@ bool isSteered(const Emitter& emitter);
 /// @throws Error (bad_input) if a height above ground is asked for where the terrain is missing, or a
 /// platform is below ground
 Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s);
+
+/// The same for paths and links, which know no interval: emitters are active if they are at t_s itself.
+Snapshot instantAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s);
 
 }  // namespace emscape::scenario

@@ -1,0 +1,142 @@
+/// emscape link: emitters at receivers and targets in the view of radars, over time.
+#include "emscape/emfield/link.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/interrupt.h"
+#include "apps/emscape/link_plot.h"
+#include "apps/emscape/link_report.h"
+#include "apps/emscape/profile_plot.h"
+#include "emscape/base/log.h"
+#include "emscape/scenario/scenario_file.h"
+#include "propagation/registry/model_info.h"
+
+namespace emscape::app {
+namespace {
+
+struct LinkCommand {
+  std::string scenario;
+  std::vector<scenario::Edit> edits;
+  std::string times;
+  std::vector<std::string> emitters, receivers, targets;
+  std::string model;
+  std::string csv;
+  std::string plot;
+  std::string size = "1400x800";
+};
+
+/// Indices of the named items; of all without names.
+/// @throws Error (usage) that lists the names that there are
+template <class Item>
+std::vector<int> chosen(const std::vector<Item>& items, const std::vector<std::string>& names,
+                        const char* option, const char* kind, const std::string& file) {
+  std::vector<int> indices;
+  for (std::size_t i = 0; names.empty() && i < items.size(); ++i) indices.push_back(static_cast<int>(i));
+  for (const std::string& name : names) {
+    const auto found =
+        std::find_if(items.begin(), items.end(), [&](const Item& item) { return item.name == name; });
+    if (found == items.end()) {
+      std::string known;
+      for (const Item& item : items) known += (known.empty() ? "'" : ", '") + item.name + "'";
+      throw Error(ErrorCode::usage, fmt::format("{}: no {} '{}' in {}; it has {}", option, kind, name, file,
+                                                known.empty() ? "none" : known));
+    }
+    indices.push_back(static_cast<int>(found - items.begin()));
+  }
+  return indices;
+}
+
+int link(const LinkCommand& command, const GlobalOptions& global) {
+  NamedLinks links{command.scenario, scenario::loadScenario(command.scenario, command.edits), {}};
+  const scenario::Scenario& scenario = *links.scenario;
+  emfield::LinkOptions options;
+  options.times_s = command.times.empty() ? scenario::timesOf(scenario.clock)
+                                          : scenario::parseTimes(command.times, scenario.clock);
+  options.emitters = chosen(scenario.emitters, command.emitters, "--emitter", "emitter", scenario.file);
+  // A choice of receivers alone leaves the targets out, and the other way round.
+  if (!command.receivers.empty() || command.targets.empty())
+    options.receivers = chosen(scenario.placed_receivers, command.receivers, "--receiver",
+                               "receiver with a platform", scenario.file);
+  if (!command.targets.empty() || command.receivers.empty())
+    options.targets = chosen(scenario.targets, command.targets, "--target", "target", scenario.file);
+  if (!command.model.empty()) options.model = propagation::modelNamed(command.model)->model;
+
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(scenario);
+  const ProgressSink show = progressSink(global);
+  links.report = emfield::computeLinks(links.scenario, terrain.get(), options,
+                                       [&](const std::string& step, double fraction) {
+                                         stopIfInterrupted();
+                                         show(step, fraction);
+                                       });
+  if (links.report.links.empty() && links.report.detections.empty()) {
+    throw Error(ErrorCode::bad_input, {scenario.file},
+                "there is no link: it takes a receiver with a platform that is tuned to an emitter, or a "
+                "target and a radar, on another "
+                "platform than the emitter");
+  }
+  logWarnings(links.report.warnings);
+  if (!command.csv.empty()) {
+    writeCsv(links, command.csv);
+    logInfo("wrote " + command.csv);
+  }
+  if (!command.plot.empty()) {
+    plotLinks(links, render::parseImageSize(command.size), command.plot);
+    logInfo("wrote " + command.plot);
+  }
+  if (global.json) {
+    printJson(toJson(links));
+  } else {
+    printAsTable(links);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void addLink(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "link", "Links over time: what receivers receive of emitters, and radars detect of targets");
+  command->fallthrough();
+  command->footer(R"(
+For every pair of an emitter and a receiver on a platform: received power, the sum of all others in the band, noise, the
+ratio of signal to noise and interference (SINR), J/S, whether it is received, and what blocks the path. For every pair of a radar and a
+target: SNR, J/S and the probability of detection of one look, with the beam on the target, and of all looks so far.
+The tables show some twenty times of each pair; --csv and --json have all.
+
+Examples:
+  emscape link scenarios/links.yaml
+  emscape link scenarios/links.yaml --emitter "search radar" --receiver "warning receiver" --times 0:60:5
+  emscape link scenarios/links.yaml --csv links.csv --plot links.png
+  emscape link scenarios/links.yaml --target airliner --set targets.airliner.rcs_m2=1 --json
+
+Exit status: 0, whether there is reception or not; 2 for a name that the scenario does not have; 3 for a path over missing
+terrain and a scenario without receivers and targets.)");
+  auto options = std::make_shared<LinkCommand>();
+  std::vector<std::string> names;
+  for (const propagation::ModelInfo& row : propagation::models()) names.push_back(row.name);
+  command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
+  addSetOption(*command, options->edits);
+  command->add_option("--times", options->times,
+                      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
+  addListOption(*command, "--emitter", options->emitters, "Emitters, with commas between them; default: all");
+  addListOption(*command, "--receiver", options->receivers,
+                "Receivers; default: all, unless --target is given");
+  addListOption(*command, "--target", options->targets, "Targets; default: all, unless --receiver is given");
+  command->add_option("--model", options->model, "Propagation model in place of the emitters' own")
+      ->check(CLI::IsMember(names));
+  command->add_option("--csv", options->csv, "Write all rows into a CSV file");
+  command->add_option("--plot", options->plot, "Draw SINR and probabilities over time into a .png or .svg")
+      ->check([](const std::string& file) {
+        return isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+      });
+  command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return link(*options, global); }; });
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,257 @@
+#include "emfield/link/links_of_time.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emfield/link/path_verdict.h"
+#include "emfield/radar/receiver.h"
+#include "emfield/station.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/path_report.h"
+#include "emscape/scenario/waveform.h"
+
+namespace emscape::emfield {
+namespace {
+
+using propagation::PropagationModel;
+using scenario::Emitter;
+using scenario::EmitterState;
+using scenario::PlacedReceiver;
+using scenario::Scenario;
+
+/// Ground distance (m) below which there is no path.
+constexpr double kMinPath_m = 1;
+
+bool isAbove(const GeodeticPosition& a, const GeodeticPosition& b) {
+  return geodesicInverse(a.latitude_deg, a.longitude_deg, b.latitude_deg, b.longitude_deg).distance_m <
+         kMinPath_m;
+}
+
+/// Components of a direction, east-north-up, in the axes of a pose.
+Vec3d inAxesOf(const scenario::BeamPose& pose, const Vec3d& direction) {
+  return {dot(direction, pose.forward), dot(direction, pose.right), dot(direction, pose.up)};
+}
+
+/// The straight line (m) between two positions in the first one's east-north-up axes.
+Vec3d lineBetween(const Station& from, const GeodeticPosition& to) {
+  const Vec3d line = toEcef(to) - from.ecef_m;
+  return {dot(line, from.geodesy.east), dot(line, from.geodesy.north), dot(line, from.geodesy.station.up)};
+}
+
+/// A receiver with the gain that its antenna has towards a wave.
+scenario::ReceiverProfile profileOf(const PlacedReceiver& receiver, double pattern_db, double tuned_hz) {
+  scenario::ReceiverProfile profile;
+  profile.gain_dbi = receiver.antenna->gain_dbi + pattern_db;
+  profile.losses_db = receiver.losses_db;
+  profile.polarization = receiver.polarization;
+  profile.cross_polar_isolation_db = receiver.cross_polar_isolation_db;
+  profile.center_frequency_hz = tuned_hz;
+  profile.bandwidth_hz = receiver.bandwidth_hz;
+  return profile;
+}
+
+/// Behind the line's losses, where received powers are.
+double noiseOf_w(const PlacedReceiver& receiver) {
+  return noisePower_w(receiver.bandwidth_hz,
+                      systemNoiseTemperature_k(receiver.antenna_temperature_k, kReferenceTemperature_K,
+                                               receiver.losses_db, receiver.noise_figure_db) /
+                          dbToRatio(receiver.losses_db));
+}
+
+double tunedTo_hz(const PlacedReceiver& receiver, const Emitter& wanted) {
+  return receiver.center_frequency_hz > 0 ? receiver.center_frequency_hz : wanted.frequency_hz;
+}
+
+bool isInBand(const Emitter& emitter, const PlacedReceiver& receiver, double tuned_hz) {
+  return bandOverlap(emitter.frequency_hz, emitter.bandwidth_hz, tuned_hz, receiver.bandwidth_hz) > 0;
+}
+
+double dbm(double power_w) {
+  return ratioToDb(power_w) + 30;
+}
+
+/// What a row has of its path.
+void fillPath(PathRow& row, const Emitter& emitter, const PathBudget* budget) {
+  row.has_path = budget != nullptr;
+  if (budget == nullptr) {
+    row.power_density_dbwm2 = -HUGE_VAL;
+    row.verdict = row.path = fmt::format("No path: '{}' is straight above or below.", emitter.name);
+    return;
+  }
+  row.active = budget->active;
+  row.range_m = budget->geometry.slant_range_m;
+  row.power_density_dbwm2 = budget->active ? budget->find("power_density_dbwm2")->value : -HUGE_VAL;
+  row.is_blocked = isBlocked(*budget);
+  row.pattern_db = budget->pointing.pattern_db;
+  row.verdict = budget->verdict;
+  row.path = pathVerdictOf(*budget);
+}
+
+void keepWarnings(std::vector<std::string>& all, const std::string& from, const std::string& to,
+                  const PathBudget& budget) {
+  for (const std::string& warning : budget.warnings) {
+    const std::string line = fmt::format("'{}' to '{}': {}", from, to, warning);
+    if (std::find(all.begin(), all.end(), line) == all.end() && all.size() < 50) all.push_back(line);
+  }
+}
+
+/// Adds the ends and the time to an error of a path.
+[[noreturn]] void refuse(const std::string& from, const std::string& to, double time_s, const Error& error) {
+  throw Error(error.code(), error.location(),
+              fmt::format("'{}' to '{}' at t = {:g} s: {}", from, to, time_s, error.message()));
+}
+
+}  // namespace
+
+ReceiverListener::ReceiverListener(const Scenario& scenario, int receiver, const LinkOptions& options)
+    : receiver_(receiver), waves_(scenario.emitters.size()) {
+  const PlacedReceiver& own = scenario.placed_receivers[receiver];
+  for (std::size_t e = 0; e < waves_.size(); ++e) waves_[e].model = scenario.emitters[e].propagation.model;
+  for (const int e : options.emitters) {
+    const Emitter& wanted = scenario.emitters[e];
+    if (wanted.platform == own.platform || !isInBand(wanted, own, tunedTo_hz(own, wanted))) continue;
+    links.push_back({e, receiver, {}});
+    waves_[e].is_needed = true;
+    if (options.model) waves_[e].model = *options.model;
+    for (std::size_t i = 0; i < waves_.size(); ++i) {
+      const Emitter& other = scenario.emitters[i];
+      if (other.platform != own.platform && isInBand(other, own, tunedTo_hz(own, wanted)))
+        waves_[i].is_needed = true;
+    }
+  }
+}
+
+void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
+                               const scenario::Terrain* terrain) {
+  const Scenario& scenario = *snapshot.scenario;
+  const PlacedReceiver& own = scenario.placed_receivers[receiver_];
+  const scenario::ReceiverState& state = snapshot.receivers[receiver_];
+  const EmitterState& from = snapshot.emitters[emitter];
+  Wave& wave = waves_[emitter];
+  wave.is_present = false;
+  if (isAbove(from.position, state.position)) {
+    wave.budget.reset();
+    return;
+  }
+  try {
+    wave.budget = powerBudget(snapshot, emitter, {state.position, state.height_msl_m}, wave.model, terrain,
+                              wave.budget ? &*wave.budget : nullptr);
+  } catch (const Error& error) {
+    refuse(scenario.emitters[emitter].name, own.name, snapshot.time_s, error);
+  }
+  keepWarnings(warnings, scenario.emitters[emitter].name, own.name, *wave.budget);
+  wave.is_present = from.active;
+  const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere.k_factor);
+  Vec3d ray = lineBetween(station, from.position);
+  ray.z += refractionLift_m(station, wave.budget->profile.range_m, std::hypot(ray.x, ray.y));
+  const double amplitude = own.antenna->amplitudeTowards(inAxesOf(state.beam, ray * (1 / length(ray))),
+                                                         state.beam.steer_u, state.beam.steer_v);
+  wave.pattern_db = 2 * ratioToDb(std::abs(amplitude));
+}
+
+double ReceiverListener::power_w(const Scenario& scenario, int emitter, double tuned_hz) const {
+  const Wave& wave = waves_[emitter];
+  if (!wave.is_present) return 0;
+  const PlacedReceiver& own = scenario.placed_receivers[receiver_];
+  return dbToRatio(wave.budget->find("power_density_dbwm2")->value) *
+         receivingArea_m2(scenario.emitters[emitter], profileOf(own, wave.pattern_db, tuned_hz));
+}
+
+void ReceiverListener::add(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain) {
+  const Scenario& scenario = *snapshot.scenario;
+  const PlacedReceiver& own = scenario.placed_receivers[receiver_];
+  for (std::size_t e = 0; e < waves_.size(); ++e) {
+    if (waves_[e].is_needed) receive(static_cast<int>(e), snapshot, terrain);
+  }
+  const double noise_w = noiseOf_w(own);
+  for (Link& link : links) {
+    const Emitter& wanted = scenario.emitters[link.emitter];
+    const double tuned_hz = tunedTo_hz(own, wanted);
+    double interference_w = 0, jamming_w = 0;
+    for (std::size_t e = 0; e < waves_.size(); ++e) {
+      if (static_cast<int>(e) == link.emitter) continue;
+      const double power = power_w(scenario, static_cast<int>(e), tuned_hz);
+      interference_w += power;
+      if (scenario.emitters[e].kind == scenario::EmitterKind::jammer) jamming_w += power;
+    }
+    const Wave& wave = waves_[link.emitter];
+    const double signal_w = power_w(scenario, link.emitter, tuned_hz);
+    LinkRow row;
+    row.time_s = snapshot.time_s;
+    fillPath(row, wanted, wave.budget ? &*wave.budget : nullptr);
+    row.active = snapshot.emitters[link.emitter].active;
+    row.received_power_dbm = dbm(signal_w);
+    row.interference_dbm = dbm(interference_w);
+    row.noise_dbm = dbm(noise_w);
+    row.sinr_db = ratioToDb(signal_w / (noise_w + interference_w));
+    row.jammer_to_signal_db = jamming_w > 0 ? ratioToDb(jamming_w / signal_w) : -HUGE_VAL;
+    row.is_received = own.hasThreshold() && signal_w > 0 &&
+                      row.received_power_dbm >= own.sensitivity_dbm.value_or(-HUGE_VAL) &&
+                      row.sinr_db >= own.required_sinr_db.value_or(-HUGE_VAL);
+    link.rows.push_back(std::move(row));
+  }
+}
+
+TargetWatcher::TargetWatcher(const Scenario& scenario, int radar, int target, const LinkOptions& options)
+    : own_(std::make_shared<Scenario>(scenario)),
+      model_(options.model.value_or(scenario.emitters[radar].propagation.model)),
+      period_s_(scenario::scanPeriod_s(scenario.emitters[radar].scan)) {
+  detection.radar = radar;
+  detection.target = target;
+  own_->output.radar_look = scenario::RadarLook::target;
+  own_->emitters[radar].receiver.swerling = scenario.targets[target].swerling;
+}
+
+long long TargetWatcher::looksUntil(double time_s) const {
+  const double first_s = detection.rows.empty() ? time_s : detection.rows.front().time_s;
+  return static_cast<long long>(std::floor((time_s - first_s) / *period_s_ + 1e-9)) + 1;
+}
+
+void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain) {
+  const EmitterState& radar_state = snapshot.emitters[detection.radar];
+  const scenario::Target& target = own_->targets[detection.target];
+  const scenario::PlatformState& carrier = snapshot.platforms[target.platform];
+  Emitter& radar = own_->emitters[detection.radar];
+  DetectionRow row;
+  row.time_s = snapshot.time_s;
+  row.active = radar_state.active;
+
+  const Station station = makeStation(carrier.position, carrier.height_msl_m, own_->atmosphere.k_factor);
+  const Vec3d aspect =
+      inAxesOf(scenario::platformAxes(carrier.attitude), lineBetween(station, radar_state.position));
+  row.rcs_m2 = target.rcsTowards_m2(radToDeg(std::atan2(aspect.y, aspect.x)),
+                                    radToDeg(std::atan2(aspect.z, std::hypot(aspect.x, aspect.y))));
+  radar.receiver.target_rcs_m2 = row.rcs_m2;
+
+  std::optional<PathBudget> budget;
+  if (!isAbove(radar_state.position, carrier.position)) {
+    scenario::Snapshot with_target = snapshot;
+    with_target.scenario = own_;
+    try {
+      budget =
+          pathBudget(with_target, detection.radar, {carrier.position, carrier.height_msl_m}, model_, terrain);
+    } catch (const Error& error) {
+      refuse(radar.name, target.name, snapshot.time_s, error);
+    }
+    keepWarnings(warnings, radar.name, target.name, *budget);
+  }
+  fillPath(row, radar, budget ? &*budget : nullptr);
+  const auto valueOr = [&](const char* key, double otherwise) {
+    const BudgetTerm* const term = budget ? budget->find(key) : nullptr;
+    return term == nullptr ? otherwise : term->value;
+  };
+  row.snr_db = valueOr("snr_db", -HUGE_VAL);
+  row.jammer_to_signal_db = valueOr("jammer_to_signal_db", -HUGE_VAL);
+  row.detection_probability = valueOr("detection_probability", 0);
+  const long long before = detection.rows.empty() ? 0 : looksUntil(detection.rows.back().time_s);
+  const long long looks = period_s_ ? looksUntil(row.time_s) - before : 1;
+  row.looks = row.active ? static_cast<int>(std::min<long long>(looks, 1000000)) : 0;
+  missed_ *= std::pow(1 - row.detection_probability, row.looks);
+  row.cumulative_probability = 1 - missed_;
+  detection.rows.push_back(std::move(row));
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,42 @@
+/// Losses of a radar's detection against an ideal detector of `pulses` pulses at the beam's peak.
+#pragma once
+
+#include "emfield/radar/detection.h"
+#include "emscape/scenario/emitter.h"
+
+namespace emscape::emfield {
+
+/// Signal-to-noise ratio (dB) that detection needs beyond the ideal detector's, by cause; each >= 0.
+struct DetectionLosses {
+  double beam_shape_db = 0;
+  double cfar_db = 0;
+  double binary_db = 0;  ///< M-of-N integration instead of the sum of all pulses
+
+  double total_db() const { return beam_shape_db + cfar_db + binary_db; }
+};
+
+/// The losses of a radar, as its receiver states them; all 0 unless it does.
+DetectionLosses detectionLosses(const scenario::Emitter& radar);
+
+/// Loss (dB) of the pulses that a beam receives off its peak as it scans past the target.
+/// blake: 1.6 dB for each plane; L. V. Blake, Prediction of Radar Range (Radar Handbook, 1970, ch. 2).
+/// barton: (8 ln 2 / pi)^(1/2), 1.23 dB, for each plane: a Gaussian beam, pulses counted between the one-way
+/// half-power points and dense; D. K. Barton, Radar Equations for Modern Radar, 2013, ch. 5.
+/// @param planes  scanned, 0..2
+double beamShapeLossDb(scenario::BeamShapeLoss rule, int planes);
+
+/// Loss (dB) of a cell-averaging CFAR detector at a probability of detection of 1/2. Exact for Swerling's
+/// case 2, and for case 1 of one pulse; taken for the other cases.
+///   Pfa = sum over k < N of C(M N + k - 1, k) a^k / (1 + a)^(M N + k),
+/// and Pd the same with a / (1 + S): N pulses, M reference cells, threshold a times the cells' sum.
+/// @param cells  M, >= 1
+/// @see H. M. Finn, R. S. Johnson, RCA Review 29 (1968), p. 414, for N = 1
+double cfarLossDb(const Detector& detector, int cells);
+
+/// Loss (dB) at a probability of detection of 1/2, for a steady target, of a detector that decides on each
+/// pulse and declares a target from `needed` detections in Detector::pulses, against the sum of the pulses.
+/// @param needed  1..Detector::pulses
+/// @see M. Schwartz, IRE Trans. IT-2 (1956), p. 135
+double binaryIntegrationLossDb(const Detector& detector, int needed);
+
+}  // namespace emscape::emfield

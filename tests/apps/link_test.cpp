@@ -1,0 +1,113 @@
+// emscape link: the keys that others rely on, files, and what is refused. The figures are emfield's tests.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+Arguments links(const Arguments& more) {
+  Arguments arguments{"link", shippedScenario("links.yaml"), "--times", "0:60:20"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(Link, HasTheKeysThatOthersRelyOn) {
+  const ProgramResult result = run(links({"--json"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out);
+  ASSERT_EQ(report["links"].size(), 3u) << "those in a receiver's band and on another platform";
+  for (const json& link : report["links"]) {
+    for (const char* key :
+         {"emitter", "receiver", "first_received_s", "last_received_s", "received_share", "rows"})
+      EXPECT_TRUE(link.contains(key)) << key;
+    ASSERT_EQ(link["rows"].size(), 4u);
+    for (const char* key : {"time_s", "active", "range_m", "power_density_dbwm2", "pattern_db", "blocked",
+                            "verdict", "received_power_dbm", "interference_dbm", "noise_dbm", "sinr_db",
+                            "jammer_to_signal_db", "received"})
+      EXPECT_TRUE(link["rows"][0].contains(key)) << key;
+  }
+  ASSERT_EQ(report["detections"].size(), 2u);
+  for (const json& detection : report["detections"]) {
+    for (const char* key : {"radar", "target", "first_detection_s", "cumulative_probability", "rows"})
+      EXPECT_TRUE(detection.contains(key)) << key;
+    for (const char* key : {"rcs_dbsm", "snr_db", "detection_probability", "looks", "cumulative_probability"})
+      EXPECT_TRUE(detection["rows"][0].contains(key)) << key;
+  }
+}
+
+TEST(Link, ARowIsWhatProfileSaysOfThePath) {
+  const ProgramResult result = run(links({"--json", "--emitter", "jammer", "--receiver", "handset"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report["detections"].size(), 0u) << "a choice of receivers leaves the targets out";
+  const json row = report["links"][0]["rows"][2];
+  EXPECT_EQ(row["time_s"], 40);
+  const ProgramResult profile = run({"profile", shippedScenario("links.yaml"), "--emitter", "jammer", "--to",
+                                     "36.24925,-84.14697,3", "--agl", "--time", "40", "--json"});
+  ASSERT_EQ(profile.status, 0) << profile.err;
+  const json path = json::parse(profile.out);
+  EXPECT_EQ(row["power_density_dbwm2"], path["budget"]["power_density_dbwm2"]);
+  EXPECT_EQ(row["range_m"], path["geometry"]["slant_range_m"]);
+  EXPECT_EQ(row["verdict"], path["verdict"]);
+}
+
+TEST(Link, PrintsASummaryAndATableOfEachPair) {
+  const ProgramResult result = run(links({"--target", "drone"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const char* part : {"Targets\n", "Radar 'search radar' and target 'drone'", "cumulative"})
+    EXPECT_THAT(result.out, HasSubstr(part));
+}
+
+TEST(Link, WritesRowsOfOneWidthAndAPicture) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run(links({"--csv", folder / "links.csv", "--plot", folder / "links.png", "--size", "700x400"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(readFile(folder / "links.png").substr(1, 3), "PNG");
+  std::istringstream lines(readFile(folder / "links.csv"));
+  int rows = 0;
+  for (std::string line; std::getline(lines, line); ++rows) {
+    bool is_quoted = false;
+    int cells = 1;
+    for (const char c : line) {
+      if (c == '"') is_quoted = !is_quoted;
+      if (c == ',' && !is_quoted) ++cells;
+    }
+    EXPECT_EQ(cells, 21) << line;
+  }
+  EXPECT_EQ(rows, 1 + 5 * 4);
+}
+
+TEST(Link, RefusesNamesAndScenariosWithoutLinksWithOneClearError) {
+  const ProgramResult nobody = run(links({"--receiver", "nobody"}));
+  EXPECT_EQ(nobody.status, 2);
+  EXPECT_THAT(nobody.err, HasSubstr("--receiver: no receiver with a platform 'nobody' in "));
+  EXPECT_THAT(nobody.err, HasSubstr("it has 'warning receiver', 'handset'"));
+  const ProgramResult none = run({"link", shippedScenario("quick.yaml")});
+  EXPECT_EQ(none.status, 3);
+  EXPECT_THAT(none.err, HasSubstr("there is no link: "));
+  EXPECT_EQ(run(links({"--plot", "links.gif"})).status, 2);
+}
+
+TEST(Info, ShowsWaveformsReceiversAndTargets) {
+  const ProgramResult result = run({"info", shippedScenario("links.yaml"), "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out);
+  const json waveform = report["emitters"][0]["waveform"];
+  EXPECT_EQ(waveform["pulses"], 62);
+  EXPECT_NEAR(waveform["mean_power_w"].get<double>(), 6, 1e-9);
+  EXPECT_NEAR(waveform["unambiguous_range_m"].get<double>(), 99930.8, 0.1);
+  EXPECT_EQ(report["receivers"][1]["platform"], "valley post");
+  EXPECT_EQ(report["targets"][0]["rcs_m2"], "by aspect");
+}
+
+}  // namespace
+}  // namespace emscape::test

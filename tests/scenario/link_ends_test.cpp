@@ -1,0 +1,133 @@
+// Receivers and targets on platforms: reading, faults and edits.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "emscape/scenario/scenario_file.h"
+#include "tests/scenario/scenario_files.h"
+
+namespace emscape::scenario {
+namespace {
+
+using ::testing::HasSubstr;
+
+class LinkEnds : public ::testing::Test {
+ protected:
+  ParseResult parse(const std::string& sections) {
+    return parseScenario(folder_.write("links.yaml", R"(schema_version: 1
+name: links
+region: {origin: {latitude_deg: 50, longitude_deg: 8}, size_m: [1e4, 1e4, 1e3], dims: [4, 4, 4]}
+platforms: [{name: site, position: {latitude_deg: 50, longitude_deg: 8, height_agl_m: 10}}]
+emitters:
+  - {name: mast, platform: site, kind: transmitter, frequency_hz: 4e8, power_w: 1, antenna: {pattern: isotropic}}
+)" + sections));
+  }
+  /// All problems of a scenario that is refused.
+  std::string refusal(const std::string& sections) {
+    const ParseResult result = parse(sections);
+    EXPECT_FALSE(result.scenario) << sections;
+    std::string all;
+    for (const Problem& problem : result.problems) all += problem.message + "\n";
+    return all;
+  }
+  std::shared_ptr<const Scenario> valid(const std::string& sections) {
+    const ParseResult result = parse(sections);
+    EXPECT_TRUE(result.problems.empty()) << result.problems.front().message;
+    return result.scenario;
+  }
+  void writeTable(const std::string& rows) {
+    folder_.write("rcs.csv", "azimuth_deg,elevation_deg,rcs_dbsm\n" + rows);
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(LinkEnds, AReceiverWithAPlatformStandsThereAndOneWithoutIsAtEveryVoxel) {
+  const auto scenario = valid(R"(receivers:
+  - {name: everywhere, gain_dbi: 3}
+  - name: post
+    platform: site
+    antenna: {pattern: gaussian, gain_dbi: 12, beamwidth_az_deg: 30, beamwidth_el_deg: 30}
+    scan: {kind: fixed, azimuth_deg: 45}
+    noise_figure_db: 6
+    bandwidth_hz: 25.0e3
+    sensitivity_dbm: -100
+  - {name: whip, platform: site, gain_dbi: 2, noise_figure_db: 8, bandwidth_hz: 1.0e6, required_sinr_db: 10}
+)");
+  ASSERT_TRUE(scenario);
+  ASSERT_EQ(scenario->receivers.size(), 1u);
+  EXPECT_EQ(scenario->receivers[0].name, "everywhere");
+  ASSERT_EQ(scenario->placed_receivers.size(), 2u);
+  const PlacedReceiver& post = scenario->placed_receivers[0];
+  EXPECT_EQ(post.platform, 0);
+  EXPECT_EQ(post.antenna->gain_dbi, 12);
+  EXPECT_EQ(post.scan.azimuth_deg, 45);
+  EXPECT_EQ(post.sensitivity_dbm, -100);
+  EXPECT_EQ(post.antenna_temperature_k, 290);
+  const PlacedReceiver& whip = scenario->placed_receivers[1];
+  EXPECT_EQ(whip.antenna->gain_dbi, 2);
+  EXPECT_EQ(whip.required_sinr_db, 10);
+}
+
+TEST_F(LinkEnds, IncompleteReceiversAreRefused) {
+  const auto receiver = [this](const std::string& keys) {
+    return refusal("receivers: [{name: post, " + keys + "}]\n");
+  };
+  EXPECT_THAT(receiver("platform: site, bandwidth_hz: 1e6"), HasSubstr("'noise_figure_db'"));
+  EXPECT_THAT(receiver("platform: site, noise_figure_db: 3"), HasSubstr("'bandwidth_hz'"));
+  EXPECT_THAT(receiver("sensitivity_dbm: -90"), HasSubstr("'platform'"));
+  EXPECT_THAT(receiver("platform: sight, noise_figure_db: 3, bandwidth_hz: 1e6"),
+              HasSubstr("there is no platform 'sight'"));
+  EXPECT_THAT(receiver("platform: site, noise_figure_db: 3, bandwidth_hz: 1e6, gain_dbi: 3, antenna: "
+                       "{pattern: isotropic}"),
+              HasSubstr("'antenna' has its own gain"));
+}
+
+TEST_F(LinkEnds, ATargetHasOneCrossSectionOrATable) {
+  writeTable(
+      "0,-90,0\n0,0,10\n0,90,0\n90,-90,0\n90,0,20\n90,90,0\n180,-90,0\n180,0,10\n180,90,0\n-90,-90,0\n"
+      "-90,0,20\n-90,90,0\n");
+  const auto scenario = valid(R"(targets:
+  - {name: balloon, platform: site, rcs_m2: 0.5, swerling: 0}
+  - {name: aircraft, platform: site, rcs_file: rcs.csv}
+)");
+  ASSERT_TRUE(scenario);
+  ASSERT_EQ(scenario->targets.size(), 2u);
+  EXPECT_EQ(scenario->targets[0].rcsTowards_m2(12, 34), 0.5);
+  EXPECT_EQ(scenario->targets[0].swerling, 0);
+  const Target& aircraft = scenario->targets[1];
+  EXPECT_EQ(aircraft.swerling, 1);
+  EXPECT_NEAR(aircraft.table->rcs_dbsm(0, 0), 10, 1e-12);
+  EXPECT_NEAR(aircraft.table->rcs_dbsm(45, 0), 15, 1e-12);
+  EXPECT_NEAR(aircraft.table->rcs_dbsm(-135, 0), 15, 1e-12);
+  EXPECT_NEAR(aircraft.table->rcs_dbsm(90, 45), 10, 1e-12);
+  EXPECT_NEAR(aircraft.rcsTowards_m2(90, 0), 100, 1e-9);
+}
+
+TEST_F(LinkEnds, FaultsOfTargetsAndTheirTablesAreNamed) {
+  EXPECT_THAT(refusal("targets: [{name: t, platform: site}]\n"), HasSubstr("rcs_m2"));
+  EXPECT_THAT(refusal("targets: [{name: t, platform: site, rcs_file: none.csv}]\n"), HasSubstr("none.csv"));
+  const std::string target = "targets: [{name: t, platform: site, rcs_file: rcs.csv}]\n";
+  writeTable("0,-90,0\n0,0,x\n");
+  const ParseResult result = parse(target);
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].location.line, 3);
+  EXPECT_THAT(result.problems[0].message, HasSubstr("rcs_dbsm is 'x', not a number"));
+  writeTable("0,-90,0\n0,90,0\n");
+  EXPECT_THAT(refusal(target), HasSubstr("gaps of up to 90 deg are allowed"));
+}
+
+TEST_F(LinkEnds, AreEdited) {
+  const auto scenario = valid(R"(receivers:
+  - {name: whip, platform: site, noise_figure_db: 8, bandwidth_hz: 1.0e6}
+targets: [{name: balloon, platform: site, rcs_m2: 0.5}]
+)");
+  ASSERT_TRUE(scenario);
+  Scenario edited = *scenario;
+  edited.set({{"receivers.whip.noise_figure_db", "3"}, {"targets.balloon.rcs_m2", "2"}});
+  EXPECT_EQ(edited.placed_receivers[0].noise_figure_db, 3);
+  EXPECT_EQ(edited.targets[0].rcs_m2, 2);
+  EXPECT_NE(edited.hash, scenario->hash);
+}
+
+}  // namespace
+}  // namespace emscape::scenario

@@ -1,0 +1,121 @@
+#include "emscape/scenario/waveform.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "emscape/base/units.h"
+#include "emscape/scenario/scenario_file.h"
+#include "tests/scenario/scenario_files.h"
+
+namespace emscape::scenario {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(Waveform, FiguresAreTheTextbooks) {
+  const Waveform waveform{1000, 1e-6, std::nullopt};
+  EXPECT_DOUBLE_EQ(waveform.dutyCycle(), 1e-3);
+  EXPECT_NEAR(waveform.unambiguousRange_m(), 149896.2, 0.1);
+  EXPECT_NEAR(waveform.minRange_m(), 149.9, 0.01);
+  // v (m/s) = lambda (m) f (Hz) / 2: 50 m/s at 3 GHz
+  EXPECT_NEAR(waveform.firstBlindSpeed_mps(kSpeedOfLight / 0.1), 50, 1e-9);
+}
+
+TEST(Waveform, EchoesAreLostWhileThePulseIsSent) {
+  const Waveform waveform{1000, 10e-6, std::nullopt};
+  const double repeat_m = waveform.unambiguousRange_m(), half_m = waveform.minRange_m() / 2;
+  EXPECT_DOUBLE_EQ(waveform.eclipsedPart(0), 1);
+  EXPECT_NEAR(waveform.eclipsedPart(half_m), 0.5, 1e-12);
+  EXPECT_EQ(waveform.eclipsedPart(1.001 * waveform.minRange_m()), 0);
+  EXPECT_NEAR(waveform.eclipsedPart(3 * repeat_m - half_m), 0.5, 1e-9);
+  EXPECT_NEAR(waveform.eclipsedPart(3 * repeat_m + half_m), 0.5, 1e-9);
+  EXPECT_EQ(waveform.eclipsedPart(2.5 * repeat_m), 0);
+}
+
+TEST(Waveform, HitsOfAScan) {
+  ScanSpec scan;
+  EXPECT_FALSE(hitsPerScan(scan, 1.5, 300));
+  EXPECT_FALSE(scanPeriod_s(scan));
+  scan.kind = ScanKind::rotate;
+  scan.rate_rpm = -5;
+  EXPECT_DOUBLE_EQ(*hitsPerScan(scan, 1.5, 300), 15);  // Skolnik's example
+  EXPECT_DOUBLE_EQ(*scanPeriod_s(scan), 12);
+  EXPECT_EQ(scannedPlanes(scan), 1);
+  scan = {};
+  scan.kind = ScanKind::raster;
+  scan.width_deg = 40;
+  scan.rate_deg_s = 20;
+  scan.bars = 3;
+  EXPECT_DOUBLE_EQ(*hitsPerScan(scan, 2, 1000), 100);
+  EXPECT_DOUBLE_EQ(*scanPeriod_s(scan), 6);
+  EXPECT_EQ(scannedPlanes(scan), 2);
+  scan = {};
+  scan.kind = ScanKind::dwell_list;
+  scan.dwells = {{0, 0, 0.02}, {10, 0, 0.01}};
+  EXPECT_DOUBLE_EQ(*hitsPerScan(scan, 2, 1000), 10);
+  EXPECT_DOUBLE_EQ(*scanPeriod_s(scan), 0.03);
+}
+
+/// A radar with a beam of 1.5 deg at 5 rpm.
+ParseResult parsed(const std::string& receiver_keys, const std::string& waveform) {
+  const test::TemporaryFolder folder;
+  return parseScenario(folder.write("radar.yaml", R"(schema_version: 1
+name: radar
+region: {origin: {latitude_deg: 50, longitude_deg: 8}, size_m: [1e4, 1e4, 1e3], dims: [4, 4, 4]}
+platforms: [{name: site, position: {latitude_deg: 50, longitude_deg: 8, height_agl_m: 10}}]
+emitters:
+  - name: search
+    platform: site
+    kind: radar
+    frequency_hz: 3.0e9
+    power_w: 1.0e5
+    antenna: {pattern: cosecant2, gain_dbi: 30, beamwidth_az_deg: 1.5, beamwidth_el_deg: 4}
+    scan: {kind: rotate, rate_rpm: 5}
+    receiver: {noise_figure_db: 4, bandwidth_hz: 1.0e6)" +
+                                                      receiver_keys +
+                                                      R"(}
+    waveform: )" + waveform + "\n"));
+}
+
+TEST(Waveform, GivesTheIntegratedPulses) {
+  const ParseResult result = parsed("", "{prf_hz: 300, pulse_width_s: 2.0e-6, instrumented_range_m: 2.0e5}");
+  ASSERT_TRUE(result.scenario);
+  const Emitter& radar = result.scenario->emitters.front();
+  EXPECT_EQ(radar.receiver.pulses, 15);
+  EXPECT_DOUBLE_EQ(radar.dutyCycle(), 6e-4);
+  EXPECT_EQ(radar.waveform->instrumented_range_m, 2e5);
+}
+
+TEST(Waveform, PulsesThatAreGivenStayAndMoreThanTheHitsAreAWarning) {
+  const std::string waveform = "{prf_hz: 300, pulse_width_s: 2.0e-6}";
+  const auto problems = [](const ParseResult& result) {
+    std::string all;
+    for (const Problem& problem : result.problems) {
+      if (problem.message.find("sweeps") == std::string::npos) all += problem.message + "\n";
+    }
+    return all;
+  };
+  const ParseResult fewer = parsed(", pulses: 10", waveform);
+  ASSERT_TRUE(fewer.scenario);
+  EXPECT_EQ(fewer.scenario->emitters.front().receiver.pulses, 10);
+  EXPECT_EQ(problems(fewer), "");
+  const ParseResult more = parsed(", pulses: 20", waveform);
+  ASSERT_TRUE(more.scenario);
+  EXPECT_EQ(more.scenario->emitters.front().receiver.pulses, 20);
+  EXPECT_THAT(problems(more),
+              HasSubstr("'pulses' is 20, but one pass of the beam of 'search' gives 15 hits"));
+}
+
+TEST(Waveform, IsRefusedWherePulsesOverlapOrMissTheirCount) {
+  const auto refusal = [](const ParseResult& result) {
+    EXPECT_FALSE(result.scenario);
+    return result.problems.empty() ? "" : result.problems.front().message;
+  };
+  EXPECT_THAT(refusal(parsed("", "{prf_hz: 1000, pulse_width_s: 0.001}")),
+              HasSubstr("pulses that are repeated at 1000 Hz are shorter than 0.001 s"));
+  EXPECT_THAT(refusal(parsed(", binary_threshold: 16", "{prf_hz: 300, pulse_width_s: 1.0e-6}")),
+              HasSubstr("'binary_threshold' is 16, more than the 15 pulses integrated"));
+}
+
+}  // namespace
+}  // namespace emscape::scenario
