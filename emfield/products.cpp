@@ -16,7 +16,9 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Out
   RadarTask task;
   task.echo_root = static_cast<float>(echoRoot_m2_w(radar));
   const bool looks_at_scan = quantity == Quantity::snr_db || quantity == Quantity::detection_probability;
-  task.look = lookOf(radar, looks_at_scan ? output.radar_look : scenario::RadarLook::target);
+  const bool is_instant = output.interval.kind == scenario::IntervalKind::instant;
+  task.look = lookOf(radar, looks_at_scan && is_instant ? output.radar_look : scenario::RadarLook::target);
+  task.is_cumulative = output.interval.kind == scenario::IntervalKind::cumulative;
   const double processing = dbToRatio(radar.receiver.processing_gain_db);
   switch (quantity) {
     case Quantity::detection_probability:
@@ -129,8 +131,9 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
   }
   // The combine stage has the power density of the beam's own direction, but not that of another look, and no
   // jamming.
-  const bool is_plain =
-      channel.quantity == Quantity::snr_db && scenario.output.radar_look == scenario::RadarLook::scan;
+  const bool is_plain = channel.quantity == Quantity::snr_db &&
+                        scenario.output.radar_look == scenario::RadarLook::scan &&
+                        scenario.output.interval.kind == scenario::IntervalKind::instant;
   if (!needsRadar(channel.quantity) || is_plain) return plan;
   for (int e : channel.emitters) {
     const Emitter& radar = scenario.emitters[e];

@@ -42,8 +42,10 @@ struct RadarTask {
   RadarMeasure measure = RadarMeasure::root_of_signal_to_noise;
   Reduction reduction = Reduction::maximum;  ///< for detections, sum means independent detections
   RadarLook look;
-  float echo_root = 0;  ///< (m2/W)
-  float factor = 1;     ///< of signal_to_jamming
+  bool is_cumulative = false;  ///< detection: at least one in all looks
+  LookCount looks;             ///< of is_cumulative
+  float echo_root = 0;         ///< (m2/W)
+  float factor = 1;            ///< of signal_to_jamming
   float lowest = 0, ceiling = 1e30f;
   DetectionCurveView curve;  ///< detection
   const JammerAtRadar* jammers = nullptr;
@@ -96,10 +98,23 @@ EMSCAPE_HD inline float jammingOfBothRaysToNoise(const RadarTask& task, const Em
                                                      jammer.reflected_amplitude * reflected);
 }
 
+/// Number of looks at a voxel.
+EMSCAPE_HD inline float looksAt(const RadarTask& task, const EmitterBeam& beam, std::size_t column,
+                                float t_m) {
+  return task.looks.towards(voxelRay(beam, column, t_m).direction);
+}
+
+/// Probability of at least one detection in independent looks.
+EMSCAPE_HD inline float inAllLooks(float probability, float looks) {
+  const float missed = 1 - probability;
+  return missed > 0 ? 1 - fastExp2(looks * fastLog2(missed)) : 1.0f;
+}
+
 /// Adds a radar's echo to a channel's accumulator. Without branches, for SIMD.
+/// @param looks  of RadarTask::is_cumulative
 template <RadarMeasure measure>
 EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
-                                 float accumulated) {
+                                 float looks, float accumulated) {
   const float echo_to_noise = echo_to_noise_root * echo_to_noise_root;
   float value = echo_to_noise_root;
   if constexpr (measure == RadarMeasure::signal_to_jamming) {
@@ -111,6 +126,7 @@ EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root
   } else if constexpr (measure == RadarMeasure::detection) {
     const float probability = task.curve(fastRatioToDb(echo_to_noise / (1 + jamming_to_noise)));
     value = echo_to_noise > 0 ? probability : 0.0f;
+    value = task.is_cumulative ? inAllLooks(value, looks) : value;
     const float either = accumulated + value * (1 - accumulated);
     value = task.reduction == Reduction::sum ? either : value;
   }
@@ -119,17 +135,18 @@ EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root
 
 /// The same for a measure that is not a template parameter.
 EMSCAPE_HD inline float withRadar(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
-                                  float accumulated) {
+                                  float looks, float accumulated) {
   switch (task.measure) {
     case RadarMeasure::signal_to_jamming:
-      return withEcho<RadarMeasure::signal_to_jamming>(task, echo_to_noise_root, jamming_to_noise,
+      return withEcho<RadarMeasure::signal_to_jamming>(task, echo_to_noise_root, jamming_to_noise, looks,
                                                        accumulated);
     case RadarMeasure::detection:
-      return withEcho<RadarMeasure::detection>(task, echo_to_noise_root, jamming_to_noise, accumulated);
+      return withEcho<RadarMeasure::detection>(task, echo_to_noise_root, jamming_to_noise, looks,
+                                               accumulated);
     case RadarMeasure::root_of_signal_to_noise:
       break;
   }
-  return withEcho<RadarMeasure::root_of_signal_to_noise>(task, echo_to_noise_root, jamming_to_noise,
+  return withEcho<RadarMeasure::root_of_signal_to_noise>(task, echo_to_noise_root, jamming_to_noise, looks,
                                                          accumulated);
 }
 
@@ -165,7 +182,8 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
                    ? jammingOfBothRaysToNoise<kind>(task, pass.beam, jammer, column, t_m)
                    : jammingToNoise<kind>(task, pass.beam, jammer, column, t_m);
   }
-  pass.accumulator[voxel] = withRadar(task, root, jamming, pass.accumulator[voxel]);
+  const float looks = task.is_cumulative ? looksAt(task, pass.beam, column, t_m) : 1.0f;
+  pass.accumulator[voxel] = withRadar(task, root, jamming, looks, pass.accumulator[voxel]);
 }
 
 /// Runs a pass on the CPU. Voxels below first_row_k are not changed.

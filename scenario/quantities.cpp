@@ -32,6 +32,22 @@ const QuantityInfo& info(Quantity quantity) {
   return quantityTable()[static_cast<std::size_t>(quantity)];
 }
 
+bool hasInterval(const QuantityInfo& quantity, IntervalKind interval) {
+  switch (interval) {
+    case IntervalKind::instant:
+      return true;
+    case IntervalKind::max_hold:  // ratios to jamming have no time at which they are largest for all targets
+      return !quantity.needs_jammer;
+    case IntervalKind::mean:
+      return quantity.quantity == Quantity::power_density_dbwm2 ||
+             quantity.quantity == Quantity::field_strength_dbuvm ||
+             quantity.quantity == Quantity::received_power_dbm;
+    case IntervalKind::cumulative:
+      break;
+  }
+  return quantity.quantity == Quantity::detection_probability;
+}
+
 bool needsRadar(Quantity quantity) {
   return info(quantity).kind == QuantityKind::of_radars || needsJammer(quantity);
 }

@@ -138,11 +138,36 @@ Band parseBand(const Section& section, ParseContext& context) {
   return band;
 }
 
+IntervalSpec parseInterval(const Section& section, ParseContext& context) {
+  IntervalSpec interval;
+  interval.kind = section.choice<IntervalKind>("kind");
+  interval.seconds = section.optionalNumber("seconds");
+  interval.turns = section.optionalNumber("turns");
+  if (interval.seconds && interval.turns) {
+    context.problems.addError(section.locationOf("turns"),
+                              "'seconds' and 'turns' both give the interval's duration: one of them");
+  }
+  return interval;
+}
+
+/// The quantities that have a meaning over an interval, with commas between them.
+std::string quantitiesOver(IntervalKind interval) {
+  std::string names;
+  for (const QuantityInfo& row : quantityTable()) {
+    if (hasInterval(row, interval)) names += (names.empty() ? "" : ", ") + std::string(row.name);
+  }
+  return names;
+}
+
 /// Checks that the scenario has everything that the output needs.
 OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseContext& context) {
-  const OutputSpec output{section.texts("quantities"), section.choice<CombineMode>("combine"),
-                          section.choice<RadarLook>("radar_look"), section.number("floor"),
-                          section.number("count_threshold_dbwm2")};
+  OutputSpec output{section.texts("quantities"),
+                    section.choice<CombineMode>("combine"),
+                    section.choice<RadarLook>("radar_look"),
+                    section.number("floor"),
+                    section.number("count_threshold_dbwm2"),
+                    {}};
+  if (section.has("interval")) output.interval = parseInterval(section.section("interval"), context);
   const auto hasKind = [&](EmitterKind kind) {
     return std::any_of(scenario.emitters.begin(), scenario.emitters.end(),
                        [kind](const Emitter& emitter) { return emitter.kind == kind; });
@@ -158,6 +183,11 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
     const auto row = std::find_if(quantityTable().begin(), quantityTable().end(),
                                   [&](const QuantityInfo& known) { return quantity == known.name; });
     if (row == quantityTable().end()) continue;  // already reported
+    if (!hasInterval(*row, output.interval.kind)) {
+      context.problems.addError(
+          location, fmt::format("{} has no meaning over an interval of kind {}; these have: {}", quantity,
+                                toString(output.interval.kind), quantitiesOver(output.interval.kind)));
+    }
     if (row->kind == QuantityKind::of_receiver) {
       need(!scenario.receivers.empty(), location, quantity, "a receiver");
     }
@@ -232,13 +262,14 @@ void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& co
 
 /// Whether the output holds a radar's beam, or any other's, where its scan has it at the time.
 bool showsScans(const OutputSpec& output) {
-  return std::any_of(output.quantities.begin(), output.quantities.end(), [&](const std::string& name) {
-    const Quantity quantity = quantityFromName(name);
-    const bool is_of_target = quantity == Quantity::jammer_to_signal_db ||
-                              quantity == Quantity::burn_through_margin_db ||
-                              (needsRadar(quantity) && output.radar_look == RadarLook::target);
-    return !is_of_target;
-  });
+  return output.interval.kind == IntervalKind::instant &&
+         std::any_of(output.quantities.begin(), output.quantities.end(), [&](const std::string& name) {
+           const Quantity quantity = quantityFromName(name);
+           const bool is_of_target = quantity == Quantity::jammer_to_signal_db ||
+                                     quantity == Quantity::burn_through_margin_db ||
+                                     (needsRadar(quantity) && output.radar_look == RadarLook::target);
+           return !is_of_target;
+         });
 }
 
 /// Beams that sweep further in a time step than they are wide, so that the series never shows some azimuths.
@@ -256,7 +287,7 @@ void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseConte
             "the beam of '{}', {:.3g} deg wide, sweeps {:.4g} deg in a step of {} s: of its azimuths {:.0f} "
             "% "
             "are ever lit. A smaller step_s, or a rate whose steps fall between those of earlier turns, "
-            "lights the others",
+            "lights the others; an 'interval' of the output shows what is lit between the steps",
             emitter.name, width_deg, sampling->step_deg, scenario.clock.step_s, 100 * sampling->lit_share));
   }
 }

@@ -437,6 +437,22 @@ std::vector<std::string> quantityChoices() {
   return names;
 }
 
+const ObjectSpec& intervalSpec() {
+  static const ObjectSpec spec{
+      "interval",
+      "kind",
+      {
+          required("kind", choiceUpTo(IntervalKind::cumulative),
+                   "what a volume shows of the time from its own on: the field at its time, the largest of "
+                   "each emitter, the mean power, or the probability of at least one detection"),
+          optional("seconds", number("s").above(0).to(1e7),
+                   "duration; by default step_s. An instant has none"),
+          optional("turns", number().above(0).to(1e5),
+                   "duration in turns of each scan: its turns, sweeps there and back, or cycles"),
+      }};
+  return spec;
+}
+
 const ObjectSpec& outputSpec() {
   static const ObjectSpec spec{
       "output",
@@ -453,6 +469,7 @@ const ObjectSpec& outputSpec() {
                     "lowest stored value, in each quantity's unit"),
           byDefault("count_threshold_dbwm2", number("dBW/m2").from(-1000).to(1000),
                     OutputSpec{}.count_threshold_dbwm2, "emitter_count counts emitters above it"),
+          optional("interval", object(intervalSpec()), "of time that a volume covers; by default an instant"),
       }};
   return spec;
 }

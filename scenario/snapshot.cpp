@@ -7,6 +7,7 @@
 
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
+#include "scenario/scan_sweep.h"
 
 namespace emscape::scenario {
 
@@ -65,7 +66,6 @@ void turn(Vec3d& a, Vec3d& b, double angle_deg) {
   a = turned_a;
 }
 
-/// Azimuth about the pose's own vertical axis, then elevation about its new right.
 void aim(BeamPose& pose, double azimuth_deg, double elevation_deg) {
   turn(pose.forward, pose.right, azimuth_deg);
   turn(pose.forward, pose.up, elevation_deg);
@@ -113,14 +113,21 @@ BeamPose mountPose(BeamPose pose, const Emitter& emitter) {
   return pose;
 }
 
-bool isActive(const Emitter& emitter, double t_s) {
+/// At t_s, or at some time of the duration that begins there.
+bool isActive(const Emitter& emitter, double t_s, double duration_s) {
   return emitter.active_s.empty() ||
-         std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [t_s](const TimeInterval& interval) {
-           return t_s >= interval.begin_s && t_s < interval.end_s;
+         std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [&](const TimeInterval& interval) {
+           const bool has_begun = t_s >= interval.begin_s || t_s + duration_s > interval.begin_s;
+           return has_begun && t_s < interval.end_s;
          });
 }
 
 }  // namespace
+
+BeamPose aimed(BeamPose pose, double azimuth_deg, double elevation_deg) {
+  aim(pose, azimuth_deg, elevation_deg);
+  return pose;
+}
 
 bool isSteered(const Emitter& emitter) {
   return isArray(emitter) &&
@@ -138,7 +145,8 @@ Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terra
   for (const Emitter& emitter : scenario->emitters) {
     const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(emitter.platform)];
     EmitterState state;
-    state.active = isActive(emitter, t_s);
+    state.active =
+        isActive(emitter, t_s, intervalDuration_s(scenario->output.interval, emitter.scan, scenario->clock));
     state.position = carrier.position;
     state.height_msl_m = carrier.height_msl_m;
     const BeamPose axes = axesOf(carrier.attitude);

@@ -129,18 +129,19 @@ void CpuEngine::combine(const CombinePass& pass) {
     task.emitters.push_back(member.emitter);
     EmitterBeam& beam = task.emitters.back().beam;
     beam.geometry = slots_[member.slot].view();
-    const auto& antenna = setup_.scenario->emitters[member.emitter.emitter_index].antenna;
-    beam.pattern = antenna->view();
+    beam.pattern = member.antenna->view();
     if (takesPart(task, task.emitters.back()))
-      kept_power_.choose(static_cast<std::size_t>(member.slot), antenna, task.emitters.back());
+      kept_power_.choose(static_cast<std::size_t>(member.slot), member.antenna, task.emitters.back());
   }
   Stopwatch watch;
   combineCpu(task);
   for (std::size_t m = 0; m < pass.members.size(); ++m) {
+    EmitterBeam beam = task.emitters[m].beam;
+    beam.pattern = setup_.scenario->emitters[pass.members[m].emitter.emitter_index].antenna->view();
     for (const RadarShare& share : pass.members[m].radars) {
       float* const accumulator = task.accumulators[share.channel].value;
       if (accumulator == nullptr) continue;
-      radarCpu(radarPass(share, task.emitters[m].beam, task, accumulator));
+      radarCpu(radarPass(share, beam, task, accumulator));
     }
   }
   times_.combine_ms += watch.lap_ms();

@@ -78,26 +78,34 @@ EMSCAPE_SIMD_CLONES void applyExcess(const ExcessCode* excess, int count, float*
   for (int i = 0; i < count; ++i) root[i] *= excessFactor(excess[i]);
 }
 
+EMSCAPE_SIMD_CLONES void countLooks(const RadarPass& pass, const Row& row, float* looks) {
+  const RadarTask task = pass.task;
+  const EmitterBeam beam = pass.beam;
+#pragma omp simd
+  for (int i = 0; i < row.count; ++i) looks[i] = looksAt(task, beam, row.column + i, row.t_m);
+}
+
 template <RadarMeasure measure>
 __attribute__((always_inline)) inline void accumulate(const RadarTask& pass_task, int count,
                                                       const float* root, const float* jamming,
-                                                      float* accumulator) {
+                                                      const float* looks, float* accumulator) {
   const RadarTask task = pass_task;
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
-    accumulator[i] = withEcho<measure>(task, root[i], jamming[i], accumulator[i]);
+    accumulator[i] = withEcho<measure>(task, root[i], jamming[i], looks[i], accumulator[i]);
   }
 }
 
 EMSCAPE_SIMD_CLONES void accumulateRow(const RadarTask& task, int count, const float* root,
-                                       const float* jamming, float* accumulator) {
+                                       const float* jamming, const float* looks, float* accumulator) {
   switch (task.measure) {
     case RadarMeasure::root_of_signal_to_noise:
-      return accumulate<RadarMeasure::root_of_signal_to_noise>(task, count, root, jamming, accumulator);
+      return accumulate<RadarMeasure::root_of_signal_to_noise>(task, count, root, jamming, looks,
+                                                               accumulator);
     case RadarMeasure::signal_to_jamming:
-      return accumulate<RadarMeasure::signal_to_jamming>(task, count, root, jamming, accumulator);
+      return accumulate<RadarMeasure::signal_to_jamming>(task, count, root, jamming, looks, accumulator);
     case RadarMeasure::detection:
-      return accumulate<RadarMeasure::detection>(task, count, root, jamming, accumulator);
+      return accumulate<RadarMeasure::detection>(task, count, root, jamming, looks, accumulator);
   }
 }
 
@@ -106,7 +114,7 @@ EMSCAPE_SIMD_CLONES void accumulateRow(const RadarTask& task, int count, const f
 void radarCpu(const RadarPass& pass) {
   const Dims& dims = pass.dims;
   parallelFor(dims.y, 1, [&](int begin, int end) {
-    std::vector<float> root(dims.x), jamming(dims.x);
+    std::vector<float> root(dims.x), jamming(dims.x), looks(dims.x, 1.0f);
     for (int j = begin; j < end; ++j) {
       for (int k = pass.first_row_k == nullptr ? 0 : pass.first_row_k[j]; k < dims.z; ++k) {
         const std::size_t column = static_cast<std::size_t>(j) * dims.x;
@@ -117,9 +125,10 @@ void radarCpu(const RadarPass& pass) {
         } else {
           fillRow(pass, row, root.data(), jamming.data());
         }
+        if (pass.task.is_cumulative) countLooks(pass, row, looks.data());
         const ExcessCode* excess = pass.beam.geometry.excess;
         if (excess != nullptr) applyExcess(excess + voxel, dims.x, root.data());
-        accumulateRow(pass.task, dims.x, root.data(), jamming.data(), pass.accumulator + voxel);
+        accumulateRow(pass.task, dims.x, root.data(), jamming.data(), looks.data(), pass.accumulator + voxel);
       }
     }
   });

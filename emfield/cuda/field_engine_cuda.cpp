@@ -73,6 +73,7 @@ class CudaEngine : public FieldEngine {
   void addMemory(MemoryUse& use) const override;
 
  private:
+  const scenario::PatternView& patternOf(const scenario::AntennaPtr& antenna);
   bool hasLargest(std::size_t channel) const {
     return setup_.channel_plans[channel].reduction == Reduction::dominant;
   }
@@ -84,7 +85,7 @@ class CudaEngine : public FieldEngine {
   cuda::StageClock clock_;
   cuda::DeviceGeometry geometry_;
   KeptPower<Buffer<float>> kept_power_;                      // without the last slot, which emitters share
-  std::map<scenario::AntennaPtr, DevicePattern> patterns_;   ///< of the emitters' antennas
+  std::map<scenario::AntennaPtr, DevicePattern> patterns_;   ///< of antennas and of their intervals
   std::map<std::pair<int, int>, RadarTables> radar_tables_;  ///< by channel and emitter
   std::vector<ChannelBuffers> buffers_;
   Buffer<cuda::DeviceRange> ranges_;
@@ -99,18 +100,17 @@ CudaEngine::CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecisio
   planChanged(true);
 }
 
-void CudaEngine::planChanged(bool channels_changed) {
-  std::map<scenario::AntennaPtr, DevicePattern> patterns;
-  for (const scenario::Emitter& emitter : setup_.scenario->emitters) {
-    if (patterns.count(emitter.antenna) != 0) continue;
-    auto known = patterns_.extract(emitter.antenna);
-    if (known.empty()) {
-      patterns.emplace(emitter.antenna, DevicePattern(emitter.antenna->view()));
-    } else {
-      patterns.insert(std::move(known));
-    }
+/// Copies the tables of an antenna that is new; those of antennas that nobody else holds go.
+const scenario::PatternView& CudaEngine::patternOf(const scenario::AntennaPtr& antenna) {
+  const auto known = patterns_.find(antenna);
+  if (known != patterns_.end()) return known->second.view();
+  for (auto it = patterns_.begin(); it != patterns_.end();) {
+    it = it->first.use_count() == 1 ? patterns_.erase(it) : std::next(it);
   }
-  patterns_ = std::move(patterns);
+  return patterns_.emplace(antenna, DevicePattern(antenna->view())).first->second.view();
+}
+
+void CudaEngine::planChanged(bool channels_changed) {
   radar_tables_.clear();
   if (!channels_changed) return;
   buffers_ = std::vector<ChannelBuffers>(setup_.channels.size());
@@ -147,18 +147,20 @@ void CudaEngine::combine(const CombinePass& pass) {
     task.emitters.push_back(member.emitter);
     EmitterBeam& beam = task.emitters.back().beam;
     beam.geometry = geometry_.view(member.slot);
-    const scenario::AntennaPtr& antenna = setup_.scenario->emitters[member.emitter.emitter_index].antenna;
-    beam.pattern = patterns_.at(antenna).view();
+    beam.pattern = patternOf(member.antenna);
     if (takesPart(task, task.emitters.back()))
-      kept_power_.choose(static_cast<std::size_t>(member.slot), antenna, task.emitters.back());
+      kept_power_.choose(static_cast<std::size_t>(member.slot), member.antenna, task.emitters.back());
   }
   clock_.begin(stream_);
   cuda::combine(task, geometry_.firstValidK(), stream_);
   for (std::size_t m = 0; m < pass.members.size(); ++m) {
+    if (pass.members[m].radars.empty()) continue;
+    EmitterBeam beam = task.emitters[m].beam;
+    beam.pattern = patternOf(setup_.scenario->emitters[pass.members[m].emitter.emitter_index].antenna);
     for (const RadarShare& share : pass.members[m].radars) {
       float* const accumulator = task.accumulators[share.channel].value;
       if (accumulator == nullptr) continue;
-      RadarPass radar = radarPass(share, task.emitters[m].beam, task, accumulator);
+      RadarPass radar = radarPass(share, beam, task, accumulator);
       RadarTables& tables = radar_tables_[{share.channel, pass.members[m].emitter.emitter_index}];
       if (tables.knots.size() == 0) {
         tables.knots.upload(share.task.curve.knots, static_cast<std::size_t>(share.task.curve.count),

@@ -62,7 +62,7 @@ class RadarPoint {
     }
     const double root = static_cast<double>(task.echo_root) * boresight_wm2_ * pattern_power;
     return static_cast<double>(
-        withRadar(share.task, static_cast<float>(root), static_cast<float>(jamming), 0));
+        withRadar(share.task, static_cast<float>(root), static_cast<float>(jamming), 1, 0));
   }
 
  private:

@@ -30,6 +30,26 @@ struct RadarLook {
   float steer_u = 0, steer_v = 0;
 };
 
+/// How often a beam passes a direction in an interval, as plain data.
+struct LookCount {
+  static constexpr int kMaxArcs = 4;
+  float everywhere = 1;  ///< times
+  int arc_count = 0;     ///< azimuths that are passed once more
+  /// Of each arc: the azimuth of its middle in the look's frame, and the cosine of half its width.
+  float cos_middle[kMaxArcs] = {}, sin_middle[kMaxArcs] = {}, cos_half[kMaxArcs] = {};
+
+  /// At least 1: beside all arcs the beam is seen as it is at the nearest one.
+  EMSCAPE_HD float towards(const Vec3f& direction) const {
+    const float level = std::sqrt(direction.x * direction.x + direction.y * direction.y);
+    float times = everywhere;
+    for (int n = 0; n < arc_count; ++n) {
+      const float along = direction.x * cos_middle[n] + direction.y * sin_middle[n];
+      times += along >= cos_half[n] * level ? 1.0f : 0.0f;
+    }
+    return times < 1 ? 1.0f : times;
+  }
+};
+
 /// The attitude of an antenna that points at a target.
 struct Aim {
   float cos_azimuth = 1, sin_azimuth = 0, cos_elevation = 1, sin_elevation = 0;

@@ -46,6 +46,8 @@ struct GeometryResult {
 struct CombinePass {
   struct Member {
     int slot = 0;
+    /// Of the beam's pattern, which may be that of an interval; radars' echoes have the emitter's own.
+    scenario::AntennaPtr antenna;
     /// Without the views of geometry and pattern, which belong to the engine. Channels are those of the
     /// setup.
     CombineEmitter emitter;

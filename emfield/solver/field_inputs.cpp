@@ -48,6 +48,15 @@ bool same(const T& a, const T& b) {
   return membersOf(a) == membersOf(b);
 }
 
+bool sameLooks(const LookCount& a, const LookCount& b) {
+  const auto& [everywhere, arc_count, cos_middle, sin_middle, cos_half] = a;
+  const auto sameArcs = [](const float* x, const float* y) {
+    return std::equal(x, x + LookCount::kMaxArcs, y);
+  };
+  return everywhere == b.everywhere && arc_count == b.arc_count && sameArcs(cos_middle, b.cos_middle) &&
+         sameArcs(sin_middle, b.sin_middle) && sameArcs(cos_half, b.cos_half);
+}
+
 bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
   const auto& [direction, boresight_to_noise, has_reflected_ray, reflected, reflected_direction,
                direct_amplitude, reflected_amplitude] = a;
@@ -59,9 +68,10 @@ bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
 
 bool sameTask(const RadarTask& a, const RadarTask& b) {
   // The jammers are in RadarShare.
-  const auto& [measure, reduction, look, echo_root, factor, lowest, ceiling, curve, jammers, jammer_count] =
-      a;
-  return measure == b.measure && reduction == b.reduction && same(look, b.look) && echo_root == b.echo_root &&
+  const auto& [measure, reduction, look, is_cumulative, looks, echo_root, factor, lowest, ceiling, curve,
+               jammers, jammer_count] = a;
+  return measure == b.measure && reduction == b.reduction && same(look, b.look) &&
+         is_cumulative == b.is_cumulative && sameLooks(looks, b.looks) && echo_root == b.echo_root &&
          factor == b.factor && lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve);
 }
 
@@ -158,7 +168,9 @@ bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, 
   }
   const EmitterBeam& old_beam = before->member.emitter.beam;
   const EmitterBeam& beam = now->member.emitter.beam;
-  if (!samePattern(before->antenna, now->antenna) || old_beam.eirp_over_4pi_w != beam.eirp_over_4pi_w) {
+  if (!samePattern(before->antenna, now->antenna) ||
+      !samePattern(before->member.antenna, now->member.antenna) ||
+      old_beam.eirp_over_4pi_w != beam.eirp_over_4pi_w) {
     return markAll(*now);
   }
   bool is_any = false;

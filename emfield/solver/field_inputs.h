@@ -30,7 +30,7 @@ bool areSame(const GeometryInputs& a, const GeometryInputs& b);
 /// Inputs of an emitter's part in the channels (stage 3), without its geometry.
 struct CombineInputs {
   CombinePass::Member member;
-  scenario::AntennaPtr antenna;
+  scenario::AntennaPtr antenna;  ///< the emitter's own
 };
 
 /// True if two antennas, not null, have the same pattern; their gains may differ.

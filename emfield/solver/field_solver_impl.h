@@ -10,6 +10,7 @@
 #include "emfield/link/jammers.h"
 #include "emfield/solver/field_engine.h"
 #include "emfield/solver/field_inputs.h"
+#include "emfield/solver/interval_beam.h"
 #include "emscape/emfield/field_solver.h"
 
 namespace emscape::emfield {
@@ -22,6 +23,7 @@ struct EmitterCache {
   scenario::EmitterState state;            ///< at the last update
   std::optional<GeometryInputs> geometry;  ///< of geometry_result, and of the slot if the emitter is cached
   std::optional<CombineInputs> combined;   ///< its part in the sums; none: not active
+  std::optional<IntervalBeam> interval;    ///< none: not active, or the output is of an instant
   bool is_cached = true;                   ///< false: its geometry is discarded after each use
   GeometryResult geometry_result;
   bool mount_changed = true;        ///< since the previous update: moved, switched or turned as a whole
@@ -72,6 +74,7 @@ struct FieldSolver::Impl {
   void discardAll();
 
   void findMoved(const scenario::Snapshot& snapshot, Changes& changes);
+  void findIntervals(const scenario::Snapshot& snapshot);
   void findJamming(const scenario::Snapshot& snapshot, const Changes& changes);
   void findCombined(Changes& changes);
   void findProducts(Changes& changes);

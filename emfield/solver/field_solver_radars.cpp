@@ -37,13 +37,14 @@ void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Ch
 
 /// An emitter's parts in channels of radar echoes.
 std::vector<RadarShare> FieldSolver::Impl::radarShares(int e) const {
-  const scenario::EmitterState& state = emitters[e].state;
   std::vector<RadarShare> shares;
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     const Channel& channel = setup.channels[c];
     const auto place = std::find(channel.emitters.begin(), channel.emitters.end(), e);
     if (place == channel.emitters.end() || setup.channel_plans[c].radars.empty()) continue;
-    const RadarTask& task = setup.channel_plans[c].radars[place - channel.emitters.begin()];
+    scenario::EmitterState state = emitters[e].state;
+    RadarTask task = setup.channel_plans[c].radars[place - channel.emitters.begin()];
+    if (emitters[e].interval) lookInInterval(*emitters[e].interval, task, state);
     const std::vector<JammerPath> none;
     shares.push_back(
         radarShare(*setup.scenario, e, state, task, channel.jammers.empty() ? none : emitters[e].jammers));

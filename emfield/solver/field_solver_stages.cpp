@@ -91,17 +91,21 @@ CombineInputs FieldSolver::Impl::combineInputs(int e) const {
   const Emitter& emitter = setup.scenario->emitters[e];
   const EmitterState& state = emitters[e].state;
   CombineInputs inputs;
+  const std::optional<IntervalBeam>& interval = emitters[e].interval;
+  const scenario::BeamPose& pose = interval ? interval->pose : state.beam;
   inputs.antenna = emitter.antenna;
+  inputs.member.antenna = interval ? interval->antenna : emitter.antenna;
   inputs.member.slot = e;
   inputs.member.radars = radarShares(e);
   CombineEmitter& part = inputs.member.emitter;
   part.emitter_index = e;
-  part.beam.forward = vecCast<float>(state.beam.forward);
-  part.beam.right = vecCast<float>(state.beam.right);
-  part.beam.up = vecCast<float>(state.beam.up);
-  part.beam.steer_u = static_cast<float>(state.beam.steer_u);
-  part.beam.steer_v = static_cast<float>(state.beam.steer_v);
-  const double eirp_w = emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db);
+  part.beam.forward = vecCast<float>(pose.forward);
+  part.beam.right = vecCast<float>(pose.right);
+  part.beam.up = vecCast<float>(pose.up);
+  part.beam.steer_u = static_cast<float>(pose.steer_u);
+  part.beam.steer_v = static_cast<float>(pose.steer_v);
+  const double eirp_w = emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db) *
+                        (interval ? interval->power_share : 1);
   part.beam.eirp_over_4pi_w = static_cast<float>(eirp_w / (4 * kPi));
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     const auto& members = setup.channels[c].emitters;
@@ -203,6 +207,12 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   out.categorical = quantity.categorical;
   if (const char* const scale = scaleOf(channel.quantity)) out.extra[volume::kScaleKey] = scale;
   if (const char* const note = legendNoteOf(channel.quantity)) out.extra[volume::kLegendNoteKey] = note;
+  const std::string interval = scenario::describe(setup.scenario->output.interval, setup.scenario->clock);
+  if (!interval.empty()) {
+    out.extra["interval"] = interval;
+    std::string& note = out.extra[volume::kLegendNoteKey];
+    note += (note.empty() ? "" : "; ") + interval;
+  }
   out.extra["scenario"] = setup.scenario->name;
   out.extra["scenario_hash"] = setup.scenario->hash;
   std::string names, near_field;

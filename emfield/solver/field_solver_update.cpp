@@ -78,6 +78,7 @@ void FieldSolver::Impl::discardAll() {
 
 void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& changes) {
   findMoved(snapshot, changes);
+  findIntervals(snapshot);
   findJamming(snapshot, changes);
   findCombined(changes);
   findProducts(changes);
@@ -120,6 +121,24 @@ void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& c
     cache.mount_changed = changes.all || has_moved || now.active != cache.state.active ||
                           !samePose(now.mount, cache.state.mount);
     cache.state = now;
+  }
+}
+
+/// Beams over the interval of the output.
+void FieldSolver::Impl::findIntervals(const scenario::Snapshot& snapshot) {
+  const bool is_instant = setup.scenario->output.interval.kind == scenario::IntervalKind::instant;
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    EmitterCache& cache = emitters[e];
+    const std::optional<IntervalBeam> before = std::exchange(cache.interval, std::nullopt);
+    if (is_instant || !cache.state.active) continue;
+    bool needs_pattern = false;
+    for (std::size_t c = 0; c < setup.channels.size(); ++c) {
+      const std::vector<int>& members = setup.channels[c].emitters;
+      needs_pattern = needs_pattern || (setup.channel_plans[c].radars.empty() &&
+                                        std::count(members.begin(), members.end(), static_cast<int>(e)) > 0);
+    }
+    cache.interval = intervalBeam(*setup.scenario, setup.scenario->emitters[e], cache.state, snapshot.time_s,
+                                  needs_pattern, before ? &*before : nullptr);
   }
 }
 

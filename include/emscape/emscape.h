@@ -66,6 +66,7 @@
 #include "emscape/scenario/clock.h"
 #include "emscape/scenario/edit.h"
 #include "emscape/scenario/emitter.h"
+#include "emscape/scenario/interval.h"
 #include "emscape/scenario/parameters.h"
 #include "emscape/scenario/platform.h"
 #include "emscape/scenario/quantities.h"

@@ -91,8 +91,10 @@ EMSCAPE_HD inline float gridAmplitude(const PatternView& pattern, const Vec3f& d
   const int corner = elevation.index * pattern.azimuth_count + azimuth.index;
   const int above = corner + pattern.azimuth_count;
   const float* table = pattern.grid_table;
-  return std::fabs(lerp(lerp(table[corner], table[corner + 1], azimuth.fraction),
-                        lerp(table[above], table[above + 1], azimuth.fraction), elevation.fraction));
+  const float value =
+      std::fabs(lerp(lerp(table[corner], table[corner + 1], azimuth.fraction),
+                     lerp(table[above], table[above + 1], azimuth.fraction), elevation.fraction));
+  return larger(value, pattern.side_lobe_amplitude);
 }
 
 }  // namespace antenna_detail

@@ -127,12 +127,17 @@ double SeparableAntenna::signedAmplitudeTowards(const Vec3d& direction, double, 
   return std::copysign(std::max(std::abs(product), side_lobe_amplitude_), product);
 }
 
-GridAntenna::GridAntenna(std::vector<float> amplitudes, int azimuth_count, int elevation_count)
-    : amplitudes_(std::move(amplitudes)), azimuth_count_(azimuth_count), elevation_count_(elevation_count) {}
+GridAntenna::GridAntenna(std::vector<float> amplitudes, int azimuth_count, int elevation_count,
+                         float side_lobe_amplitude)
+    : amplitudes_(std::move(amplitudes)),
+      azimuth_count_(azimuth_count),
+      elevation_count_(elevation_count),
+      side_lobe_amplitude_(side_lobe_amplitude) {}
 
 PatternView GridAntenna::view() const {
   PatternView view;
   view.kind = PatternKind::grid;
+  view.side_lobe_amplitude = side_lobe_amplitude_;
   view.grid_table = amplitudes_.data();
   view.azimuth_count = azimuth_count_;
   view.elevation_count = elevation_count_;
@@ -148,8 +153,9 @@ double GridAntenna::signedAmplitudeTowards(const Vec3d& direction, double, doubl
   const auto entry = [&](int i, int j) {
     return double(amplitudes_[static_cast<std::size_t>(row + j) * azimuth_count_ + column + i]);
   };
-  return lerp(lerp(entry(0, 0), entry(1, 0), x - column), lerp(entry(0, 1), entry(1, 1), x - column),
-              y - row);
+  const double value =
+      lerp(lerp(entry(0, 0), entry(1, 0), x - column), lerp(entry(0, 1), entry(1, 1), x - column), y - row);
+  return std::copysign(std::max(std::abs(value), static_cast<double>(side_lobe_amplitude_)), value);
 }
 
 GridNodes gridNodes(const std::vector<double>& azimuths_deg, const std::vector<double>& elevations_deg) {

@@ -68,13 +68,16 @@ class SeparableAntenna : public Antenna {
 class GridAntenna : public Antenna {
  public:
   /// @param amplitudes  azimuth_count * elevation_count, both odd and at least 3
-  GridAntenna(std::vector<float> amplitudes, int azimuth_count, int elevation_count);
+  /// @param side_lobe_amplitude  below which the pattern does not fall
+  GridAntenna(std::vector<float> amplitudes, int azimuth_count, int elevation_count,
+              float side_lobe_amplitude = 0);
   PatternView view() const override;
   double signedAmplitudeTowards(const Vec3d& direction, double steer_u, double steer_v) const override;
 
  private:
   std::vector<float> amplitudes_;
   int azimuth_count_, elevation_count_;
+  float side_lobe_amplitude_;
 };
 
 /// Largest number of intervals of a grid in azimuth, twice that in elevation: 0.1 degree, 26 MB.

@@ -25,7 +25,7 @@ enum class PatternKind {
   phased_array,  ///< planar aperture, continuous or of elements: azimuth_table(u - u0) * elevation_table(v -
                  ///< v0) * element pattern, not below side_lobe_amplitude, which it is behind; u = right, v =
                  ///< up (direction cosines)
-  grid,          ///< bilinear in azimuth and elevation
+  grid,          ///< bilinear in azimuth and elevation, not below side_lobe_amplitude
 };
 
 /// A pattern as plain data, for host and device loops. Amplitudes are relative voltages: 1 at the

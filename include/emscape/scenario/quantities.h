@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "emscape/scenario/interval.h"
+
 namespace emscape::scenario {
 
 enum class Quantity {
@@ -36,6 +38,8 @@ struct QuantityInfo {
   bool needs_jammer = false;  ///< the scenario must have a jammer
 };
 
+/// True if a quantity has a meaning over such an interval.
+bool hasInterval(const QuantityInfo& quantity, IntervalKind interval);
 /// True for quantities of radars and their targets, with or without jamming.
 bool needsRadar(Quantity quantity);
 /// True for those that depend on jamming.

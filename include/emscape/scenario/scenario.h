@@ -12,6 +12,7 @@
 #include "emscape/scenario/clock.h"
 #include "emscape/scenario/edit.h"
 #include "emscape/scenario/emitter.h"
+#include "emscape/scenario/interval.h"
 #include "emscape/scenario/platform.h"
 #include "emscape/scenario/terrain.h"
 
@@ -48,6 +49,7 @@ struct OutputSpec {
   RadarLook radar_look = RadarLook::scan;
   double floor = -120;                 ///< lowest value kept, in each quantity's unit
   double count_threshold_dbwm2 = -90;  ///< emitter_count: emitters above this power density
+  IntervalSpec interval;
 };
 
 struct ScenarioSource;  // scenario/source.h

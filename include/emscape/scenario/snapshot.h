@@ -25,7 +25,7 @@ struct BeamPose {
 };
 
 struct EmitterState {
-  bool active = true;
+  bool active = true;  ///< at the time, or at some time of the output's interval that begins there
   GeodeticPosition position;
   double height_msl_m = 0;
   BeamPose beam;
@@ -42,6 +42,9 @@ struct Snapshot {
   std::vector<PlatformState> platforms;
   std::vector<EmitterState> emitters;
 };
+
+/// A pose turned in azimuth about its own up, clockwise, then in elevation about its new right, upwards.
+BeamPose aimed(BeamPose pose, double azimuth_deg, double elevation_deg);
 
 /// True if an emitter's beam is steered electronically: a phased array with dwells or a fixed scan.
 bool isSteered(const Emitter& emitter);

@@ -1,0 +1,148 @@
+#include "emfield/solver/interval_beam.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/units.h"
+#include "scenario/antenna/swept.h"
+
+namespace emscape::emfield {
+namespace {
+
+using scenario::BeamPose;
+using scenario::Emitter;
+using scenario::EmitterState;
+using scenario::IntervalKind;
+using scenario::ScanKind;
+using scenario::ScanSweep;
+using scenario::SweptArc;
+using scenario::SweptPattern;
+
+constexpr double kTurn_deg = 360;
+
+bool isRound(const SweptArc& arc) {
+  return arc.width_deg >= kTurn_deg;
+}
+
+bool stays(const ScanSweep& sweep) {
+  return sweep.dwells.empty() && std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [&](const SweptArc& arc) {
+           return arc.width_deg == 0 && arc.first_deg == sweep.arcs.front().first_deg &&
+                  arc.elevation_deg == sweep.arcs.front().elevation_deg;
+         });
+}
+
+/// The frame in which the azimuths of a sweep count.
+BeamPose sweepFrame(const Emitter& emitter, const EmitterState& state) {
+  const bool turns_onto_dwells = emitter.scan.kind == ScanKind::dwell_list && !scenario::isSteered(emitter);
+  return turns_onto_dwells
+             ? scenario::aimed(state.mount, emitter.scan.azimuth_deg, emitter.scan.elevation_deg)
+             : state.mount;
+}
+
+/// Turns the sweep into a frame in which it does not depend on the time, if there is one: the middle of a
+/// part of a turn is ahead.
+/// @return the azimuth of that frame's forward
+double turnIntoFrame(ScanSweep& sweep, double frame_deg) {
+  if (sweep.arcs.size() == 1 && !isRound(sweep.arcs.front())) {
+    SweptArc& arc = sweep.arcs.front();
+    const double middle_deg = arc.first_deg + arc.width_deg / 2;
+    arc.first_deg = -arc.width_deg / 2;
+    return middle_deg - frame_deg;
+  }
+  const bool is_even = std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [](const SweptArc& arc) {
+    return isRound(arc) && std::abs(std::remainder(arc.width_deg, kTurn_deg)) < 1e-6 * arc.width_deg;
+  });
+  for (SweptArc& arc : sweep.arcs) arc.first_deg = is_even ? 0 : arc.first_deg - frame_deg;
+  return 0;
+}
+
+/// Looks of a sweep whose azimuths are those of the look's frame.
+/// @param bars  of a raster: each passes its own elevations
+LookCount countLooks(const ScanSweep& sweep, double whole_deg, int bars) {
+  LookCount looks;
+  if (!sweep.dwells.empty()) return looks;
+  looks.everywhere = 0;
+  for (const SweptArc& arc : sweep.arcs) {
+    const double whole = std::floor(arc.width_deg / whole_deg + 1e-9);
+    looks.everywhere += static_cast<float>(arc.times * whole);
+    const double rest_deg = arc.width_deg - whole * whole_deg;
+    if (rest_deg <= 1e-6 * whole_deg || looks.arc_count == LookCount::kMaxArcs) continue;
+    const double middle_rad = degToRad(arc.first_deg + rest_deg / 2);
+    looks.cos_middle[looks.arc_count] = static_cast<float>(std::cos(middle_rad));
+    looks.sin_middle[looks.arc_count] = static_cast<float>(std::sin(middle_rad));
+    looks.cos_half[looks.arc_count++] = static_cast<float>(std::cos(degToRad(rest_deg / 2)));
+  }
+  looks.everywhere = std::floor(looks.everywhere / static_cast<float>(bars));
+  return looks;
+}
+
+/// Cycles of the dwells in an interval: a look in every direction is one of each cycle.
+float dwellLooks(const scenario::ScanSpec& scan, double duration_s) {
+  return static_cast<float>(std::max(1.0, std::floor(duration_s / scenario::scanCycle_s(scan) + 1e-9)));
+}
+
+}  // namespace
+
+IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emitter,
+                          const EmitterState& state, double t_s, bool needs_pattern,
+                          const IntervalBeam* before) {
+  const scenario::IntervalSpec& interval = scenario.output.interval;
+  const scenario::ScanSpec& scan = emitter.scan;
+  const double duration_s = scenario::intervalDuration_s(interval, scan, scenario.clock);
+  IntervalBeam beam;
+  beam.of_antenna = emitter.antenna;
+  beam.of_kind = interval.kind;
+  beam.of_sweep = scenario::sweepOf(emitter, t_s, duration_s);
+  beam.antenna = emitter.antenna;
+  ScanSweep& sweep = beam.of_sweep;
+  if (stays(sweep)) {
+    beam.pose = state.beam;
+    beam.look_frame = state.mount;
+    if (interval.kind == IntervalKind::mean) {
+      beam.power_share = 0;
+      for (const SweptArc& arc : sweep.arcs) beam.power_share += arc.share;
+    }
+    return beam;
+  }
+  const bool sweeps = scan.kind == ScanKind::sector || scan.kind == ScanKind::raster;
+  const double frame_deg = turnIntoFrame(sweep, sweeps ? scan.azimuth_deg : 0);
+  beam.pose = scenario::aimed(sweepFrame(emitter, state), frame_deg, 0);
+  beam.look_frame = beam.pose;
+  beam.looks =
+      countLooks(sweep, sweeps ? scan.width_deg : kTurn_deg, scan.kind == ScanKind::raster ? scan.bars : 1);
+  if (scan.kind == ScanKind::dwell_list) {
+    beam.looks = {};
+    beam.looks.everywhere = dwellLooks(scan, duration_s);
+  } else if (std::none_of(sweep.arcs.begin(), sweep.arcs.end(), isRound)) {
+    double lowest_deg = HUGE_VAL, highest_deg = -HUGE_VAL;
+    for (const SweptArc& arc : sweep.arcs) {
+      lowest_deg = std::min(lowest_deg, arc.first_deg);
+      highest_deg = std::max(highest_deg, arc.first_deg + arc.width_deg);
+    }
+    const bool is_ahead = sweep.arcs.size() == 1 || sweeps;
+    if (is_ahead && highest_deg - lowest_deg < kTurn_deg)
+      beam.look_half_width_deg = std::max(-lowest_deg, highest_deg);
+  }
+  if (!needs_pattern) return beam;
+
+  const bool is_known = before != nullptr && before->antenna != before->of_antenna &&
+                        before->of_antenna == beam.of_antenna && before->of_kind == beam.of_kind &&
+                        before->of_sweep == sweep;
+  beam.antenna = is_known
+                     ? before->antenna
+                     : scenario::sweptAntenna(
+                           *emitter.antenna, sweep,
+                           interval.kind == IntervalKind::mean ? SweptPattern::mean : SweptPattern::largest);
+  return beam;
+}
+
+void lookInInterval(const IntervalBeam& beam, RadarTask& task, EmitterState& state) {
+  task.looks = beam.looks;
+  if (task.look.kind != LookKind::turned) return;
+  state.mount = beam.look_frame;
+  if (beam.look_half_width_deg >= kTurn_deg / 2) return;
+  task.look.cos_azimuth = static_cast<float>(std::cos(degToRad(beam.look_half_width_deg)));
+  task.look.sin_azimuth = static_cast<float>(std::sin(degToRad(beam.look_half_width_deg)));
+}
+
+}  // namespace emscape::emfield

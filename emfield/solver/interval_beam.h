@@ -1,0 +1,37 @@
+/// An emitter's beam over the interval that a volume covers: a pattern and a pose in place of those of an
+/// instant, and how often a radar looks in each direction.
+#pragma once
+
+#include "emfield/radar_product.h"
+#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/snapshot.h"
+#include "scenario/scan_sweep.h"
+
+namespace emscape::emfield {
+
+struct IntervalBeam {
+  scenario::AntennaPtr antenna;  ///< its pattern is that of the interval; the emitter's own if not asked for
+  scenario::BeamPose pose;
+  double power_share = 1;            ///< of the emitter's power: the mean of one that is not always active
+  scenario::BeamPose look_frame;     ///< of a radar's looks at targets, in place of EmitterState::mount
+  double look_half_width_deg = 180;  ///< azimuths to both sides of its forward that the beam passes
+  LookCount looks;
+
+  /// From what the antenna was made.
+  scenario::AntennaPtr of_antenna;
+  scenario::IntervalKind of_kind = scenario::IntervalKind::instant;
+  scenario::ScanSweep of_sweep;
+};
+
+/// @param interval  not of kind instant
+/// @param state     active in the interval that begins at t_s
+/// @param needs_pattern  false: for looks alone
+/// @param before    its beam at an earlier time, whose antenna is reused where it is the same; may be null
+IntervalBeam intervalBeam(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                          const scenario::EmitterState& state, double t_s, bool needs_pattern,
+                          const IntervalBeam* before);
+
+/// Replaces a radar's look at targets by its looks in the interval.
+void lookInInterval(const IntervalBeam& beam, RadarTask& task, scenario::EmitterState& state);
+
+}  // namespace emscape::emfield

@@ -1,0 +1,232 @@
+#include "scenario/antenna/swept.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "emscape/base/parallel.h"
+#include "emscape/base/units.h"
+#include "scenario/antenna/pattern.h"
+#include "scenario/antenna/tables.h"
+
+namespace emscape::scenario {
+namespace {
+
+/// Intervals of a table: those of a span for a number of steps in a beamwidth, even, up to a limit.
+int intervalsFor(double span_deg, double beamwidth_deg, double steps_per_beamwidth, int most) {
+  const double steps = std::min(std::ceil(span_deg / beamwidth_deg * steps_per_beamwidth), double(most));
+  return 2 * static_cast<int>(std::ceil(steps / 2));
+}
+
+/// The pattern as it is tabulated. A floor under it is none of the table's, in which it would be rounded
+/// where it begins: the largest values have the same floor. A mean has it in its power.
+struct Sampled {
+  PatternView view;
+  float floor_amplitude = 0;
+
+  Sampled(const Antenna& antenna, SweptPattern pattern) : view(antenna.view()) {
+    if (pattern == SweptPattern::largest) std::swap(view.side_lobe_amplitude, floor_amplitude);
+  }
+};
+
+/// A pattern at one elevation as the antenna turns: the power at azimuths off the beam, around the circle.
+class PowerRow {
+ public:
+  /// @param elevation_rad  of the row
+  /// @param tilt_rad       of the beam, upwards
+  PowerRow(const PatternView& pattern, int azimuths, double elevation_rad, double tilt_rad)
+      : count_(azimuths), power_(static_cast<std::size_t>(azimuths)) {
+    const double level = std::cos(elevation_rad), up = std::sin(elevation_rad);
+    const double cos_tilt = std::cos(tilt_rad), sin_tilt = std::sin(tilt_rad);
+    for (int i = 0; i < azimuths; ++i) {
+      const double azimuth_rad = 2 * kPi * i / azimuths;
+      const double ahead = level * std::cos(azimuth_rad), right = level * std::sin(azimuth_rad);
+      const Vec3d direction{ahead * cos_tilt + up * sin_tilt, right, up * cos_tilt - ahead * sin_tilt};
+      const float amplitude = patternAmplitude(pattern, vecCast<float>(direction), 0, 0);
+      power_[static_cast<std::size_t>(i)] = static_cast<double>(amplitude) * static_cast<double>(amplitude);
+    }
+    sums_.reserve(power_.size() + 1);
+    sums_.push_back(0);
+    for (int i = 0; i < azimuths; ++i) sums_.push_back(sums_.back() + (at(i) + at(i + 1)) / 2);
+  }
+
+  double largest() const { return *std::max_element(power_.begin(), power_.end()); }
+  /// Between two azimuths (deg), less than a turn apart.
+  double largest(double begin_deg, double end_deg) {
+    const double begin = begin_deg * count_ / 360, end = end_deg * count_ / 360;
+    const double at_ends = std::max(between(begin), between(end));
+    const int first = static_cast<int>(std::ceil(begin)), last = static_cast<int>(std::floor(end));
+    return last < first ? at_ends : std::max(at_ends, largestOf(first, last));
+  }
+  /// The mean between two azimuths (deg).
+  double mean(double begin_deg, double end_deg) const {
+    const double begin = begin_deg * count_ / 360, end = end_deg * count_ / 360;
+    if (!(end > begin)) return between(begin);
+    return (integralTo(end) - integralTo(begin)) / (end - begin);
+  }
+
+ private:
+  double at(int i) const { return power_[index(i)]; }
+  double between(double x) const {
+    const double below = std::floor(x);
+    const int i = static_cast<int>(below);
+    return at(i) + (x - below) * (at(i + 1) - at(i));
+  }
+  /// From azimuth 0, of the power as it is interpolated.
+  double integralTo(double x) const {
+    const double turns = std::floor(x / count_);
+    const double in_turn = x - turns * count_;
+    const int i = std::min(static_cast<int>(in_turn), count_ - 1);
+    const double part = in_turn - i;
+    return turns * sums_.back() + sums_[static_cast<std::size_t>(i)] +
+           part * (at(i) + part / 2 * (at(i + 1) - at(i)));
+  }
+
+  /// Of entries first..last, by two runs of a power of two of them that may overlap.
+  double largestOf(int first, int last) {
+    std::size_t level = 0;
+    while ((2 << level) <= last - first + 1) ++level;
+    if (runs_.empty()) runs_.push_back(power_);
+    while (runs_.size() <= level) {
+      const std::vector<double>& half = runs_.back();
+      const int length = 1 << (runs_.size() - 1);
+      std::vector<double> whole(half.size());
+      for (int i = 0; i < count_; ++i) whole[index(i)] = std::max(half[index(i)], half[index(i + length)]);
+      runs_.push_back(std::move(whole));
+    }
+    return std::max(runs_[level][index(first)], runs_[level][index(last + 1 - (1 << level))]);
+  }
+  std::size_t index(int i) const { return static_cast<std::size_t>(((i % count_) + count_) % count_); }
+
+  int count_;
+  std::vector<double> power_, sums_;       ///< sums_[i]: the integral from azimuth 0 to entry i
+  std::vector<std::vector<double>> runs_;  ///< runs_[n][i]: the largest of the 2^n entries from i on
+};
+
+bool isRound(const SweptArc& arc) {
+  return arc.width_deg >= 360;
+}
+
+/// The rows of one elevation, one for each tilt of the sweep's arcs.
+class Rows {
+ public:
+  Rows(const PatternView& pattern, const ScanSweep& sweep, int azimuths, double elevation_rad) {
+    for (const SweptArc& arc : sweep.arcs) {
+      if (indexOf(arc.elevation_deg) < rows_.size()) continue;
+      tilts_deg_.push_back(arc.elevation_deg);
+      rows_.emplace_back(pattern, azimuths, elevation_rad, degToRad(arc.elevation_deg));
+    }
+  }
+  PowerRow& of(const SweptArc& arc) { return rows_[indexOf(arc.elevation_deg)]; }
+
+ private:
+  std::size_t indexOf(double tilt_deg) const {
+    return static_cast<std::size_t>(std::find(tilts_deg_.begin(), tilts_deg_.end(), tilt_deg) -
+                                    tilts_deg_.begin());
+  }
+  std::vector<double> tilts_deg_;
+  std::vector<PowerRow> rows_;
+};
+
+/// The power of an interval at one azimuth of a row.
+double powerOf(Rows& rows, const ScanSweep& sweep, double azimuth_deg, SweptPattern pattern) {
+  double power = 0;
+  for (const SweptArc& arc : sweep.arcs) {
+    PowerRow& row = rows.of(arc);
+    // The beam is at first..first + width: the azimuth is at these angles off it.
+    const double begin_deg = azimuth_deg - arc.first_deg - arc.width_deg,
+                 end_deg = azimuth_deg - arc.first_deg;
+    if (pattern == SweptPattern::mean) {
+      power += arc.share * row.mean(begin_deg, end_deg);
+    } else {
+      power = std::max(power, isRound(arc) ? row.largest() : row.largest(begin_deg, end_deg));
+    }
+  }
+  return power;
+}
+
+/// The power of an interval of dwells in a direction of the array's frame.
+double powerOf(const PatternView& view, const ScanSweep& sweep, const Vec3f& direction,
+               SweptPattern pattern) {
+  double power = 0;
+  for (const SweptDwell& dwell : sweep.dwells) {
+    const double azimuth_rad = degToRad(dwell.azimuth_deg), elevation_rad = degToRad(dwell.elevation_deg);
+    const auto steer_u = static_cast<float>(std::sin(azimuth_rad) * std::cos(elevation_rad));
+    const auto steer_v = static_cast<float>(std::sin(elevation_rad));
+    const float amplitude = patternAmplitude(view, direction, steer_u, steer_v);
+    const double of_dwell = static_cast<double>(amplitude) * static_cast<double>(amplitude);
+    power = pattern == SweptPattern::mean ? power + dwell.share * of_dwell : std::max(power, of_dwell);
+  }
+  return power;
+}
+
+double angleOf(int index, int intervals, double span_deg) {
+  return span_deg * (index - intervals / 2) / intervals;
+}
+
+/// Whole turns of one tilt each: the same in every azimuth.
+AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
+  const Sampled sampled(antenna, pattern);
+  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 16, 7200);
+  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 64, 14400);
+  std::vector<double> amplitudes(static_cast<std::size_t>(elevations) + 1);
+  parallelFor(elevations + 1, 16, [&](int begin, int end) {
+    for (int e = begin; e < end; ++e) {
+      Rows rows(sampled.view, sweep, azimuths, degToRad(angleOf(e, elevations, 180)));
+      amplitudes[static_cast<std::size_t>(e)] = std::sqrt(powerOf(rows, sweep, 0, pattern));
+    }
+  });
+  const auto shape = [amplitudes, elevations](double angle_rad) {
+    const double at = std::clamp((angle_rad / kPi + 0.5) * elevations, 0.0, double(elevations));
+    const int below = std::min(static_cast<int>(at), elevations - 1);
+    return amplitudes[static_cast<std::size_t>(below)] +
+           (at - below) * (amplitudes[static_cast<std::size_t>(below) + 1] -
+                           amplitudes[static_cast<std::size_t>(below)]);
+  };
+  const auto one = [](double) { return 1.0; };
+  return describedAntenna(
+      std::make_shared<SeparableAntenna>(tabulate(one, kPi, kPi), tabulate(shape, kPi / 2, kPi / elevations),
+                                         static_cast<double>(sampled.floor_amplitude)),
+      antenna.gain_dbi, 360, antenna.beamwidth_el_deg, "interval");
+}
+
+AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
+  const Sampled sampled(antenna, pattern);
+  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 32, 4320);
+  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 32, 2160);
+  std::vector<float> amplitudes((static_cast<std::size_t>(azimuths) + 1) *
+                                (static_cast<std::size_t>(elevations) + 1));
+  parallelFor(elevations + 1, 8, [&](int begin, int end) {
+    for (int e = begin; e < end; ++e) {
+      const double elevation_rad = degToRad(angleOf(e, elevations, 180));
+      Rows rows(sampled.view, sweep, azimuths, elevation_rad);
+      float* const row = amplitudes.data() + static_cast<std::size_t>(e) * (azimuths + 1);
+      for (int a = 0; a <= azimuths; ++a) {
+        const double azimuth_deg = angleOf(a, azimuths, 360), azimuth_rad = degToRad(azimuth_deg);
+        const Vec3d direction{std::cos(elevation_rad) * std::cos(azimuth_rad),
+                              std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};
+        const double power = sweep.dwells.empty()
+                                 ? powerOf(rows, sweep, azimuth_deg, pattern)
+                                 : powerOf(sampled.view, sweep, vecCast<float>(direction), pattern);
+        row[a] = static_cast<float>(std::sqrt(power));
+      }
+    }
+  });
+  return describedAntenna(std::make_shared<GridAntenna>(std::move(amplitudes), azimuths + 1, elevations + 1,
+                                                        sampled.floor_amplitude),
+                          antenna.gain_dbi, antenna.beamwidth_az_deg, antenna.beamwidth_el_deg, "interval");
+}
+
+}  // namespace
+
+AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
+  const bool is_round = sweep.dwells.empty() && std::all_of(sweep.arcs.begin(), sweep.arcs.end(), isRound);
+  // A mean over more than a turn but not over whole turns depends on the azimuth.
+  const bool is_even = pattern == SweptPattern::largest ||
+                       std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [](const SweptArc& arc) {
+                         return std::abs(std::remainder(arc.width_deg, 360)) < 1e-6 * arc.width_deg;
+                       });
+  return is_round && is_even ? roundAntenna(antenna, sweep, pattern) : gridAntenna(antenna, sweep, pattern);
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,23 @@
+/// The pattern of an antenna over an interval in which its beam moves.
+#pragma once
+
+#include "emscape/scenario/antenna.h"
+#include "scenario/scan_sweep.h"
+
+namespace emscape::scenario {
+
+enum class SweptPattern {
+  largest,  ///< the largest amplitude of the interval
+  mean      ///< the root of the mean power of the interval
+};
+
+/// The pattern in the frame about whose up the beam turns (arcs), or in that of the array (dwells); forward
+/// is azimuth 0 of the sweep. Its gain is the antenna's, so that amplitudes are relative to the beam's
+/// maximum and a mean contains the part of the interval in which the emitter is active.
+/// @param sweep  not empty; azimuths of arcs relative to the frame
+/// @accuracy 0.1 dB down to 20 dB below the maximum, without nulls to 30 dB; next to nulls 0.5 dB. Entries of
+/// tables are a 32nd of a beamwidth apart, but not nearer than 1/12 degree; those of whole turns, which
+/// depend on elevation alone, a 64th or 1/80 degree
+AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern);
+
+}  // namespace emscape::scenario

@@ -1,0 +1,290 @@
+// Fields over an interval against fine time steps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "emscape/base/units.h"
+#include "scenario/scan_sweep.h"
+#include "tests/emfield/radar_duel.h"
+#include "tests/support/on_backends.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using scenario::AntennaPtr;
+using scenario::Emitter;
+using scenario::IntervalKind;
+using scenario::ScanKind;
+using scenario::ScanSpec;
+using scenario::Scenario;
+
+constexpr double kBegin_s = 1.7;
+
+ScanSpec rotating(double rate_rpm, double elevation_deg = 0) {
+  ScanSpec scan;
+  scan.kind = ScanKind::rotate;
+  scan.rate_rpm = rate_rpm;
+  scan.azimuth_deg = 20;
+  scan.elevation_deg = elevation_deg;
+  return scan;
+}
+
+ScanSpec sweeping(ScanKind kind, double width_deg, double rate_deg_s, int bars = 1) {
+  ScanSpec scan;
+  scan.kind = kind;
+  scan.azimuth_deg = 40;
+  scan.elevation_deg = 2;
+  scan.width_deg = width_deg;
+  scan.rate_deg_s = rate_deg_s;
+  scan.bars = bars;
+  scan.elevation_step_deg = 4;
+  return scan;
+}
+
+ScanSpec dwelling() {
+  ScanSpec scan;
+  scan.kind = ScanKind::dwell_list;
+  scan.azimuth_deg = 30;
+  scan.elevation_deg = 5;
+  scan.dwells = {{-20, 0, 0.3}, {5, 10, 0.2}, {25, -3, 0.5}};
+  return scan;
+}
+
+/// An emitter in the middle of a box whose voxels are at all azimuths and elevations.
+std::shared_ptr<Scenario> around(const AntennaPtr& antenna, const ScanSpec& scan) {
+  auto scenario = emptyScenario(FrameKind::enu, 44.3, -71.4, {15000, 15000, 6000}, {15, 15, 6});
+  Emitter emitter = plainEmitter("emitter", 0);
+  emitter.antenna = antenna;
+  emitter.scan = scan;
+  addEmitter(*scenario, middleOf(*scenario), emitter);
+  scenario->platforms.front().track.front().heading_deg = 0;
+  return scenario;
+}
+
+class Intervals : public test::OnBackends {
+ protected:
+  std::vector<float> valuesOf(FieldSolver& solver, const std::shared_ptr<Scenario>& scenario, double t_s) {
+    solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
+    return solver.volumes().front().host()->values;
+  }
+  FieldSolver solverOf(const std::shared_ptr<Scenario>& scenario) {
+    FieldOptions options;
+    options.backend = GetParam();
+    return FieldSolver(scenario, nullptr, options);
+  }
+  std::vector<float> overInterval(const std::shared_ptr<Scenario>& scenario, IntervalKind kind,
+                                  double seconds) {
+    auto copy = std::make_shared<Scenario>(*scenario);
+    copy->output.interval = {kind, seconds, {}};
+    FieldSolver solver = solverOf(copy);
+    return valuesOf(solver, copy, kBegin_s);
+  }
+  /// The largest and the mean (dB) of the instants between equal steps, both ends among them.
+  struct Instants {
+    std::vector<double> largest_db, mean_db;
+  };
+  Instants byInstants(const std::shared_ptr<Scenario>& scenario, double seconds, double step_s) {
+    const int steps = static_cast<int>(std::ceil(seconds / step_s));
+    FieldSolver solver = solverOf(scenario);
+    std::vector<double> largest, sum;
+    for (int n = 0; n <= steps; ++n) {
+      const std::vector<float> values = valuesOf(solver, scenario, kBegin_s + seconds * n / steps);
+      const double weight = (n == 0 || n == steps ? 0.5 : 1) / steps;
+      largest.resize(values.size());
+      sum.resize(values.size());
+      for (std::size_t v = 0; v < values.size(); ++v) {
+        const double power = dbToRatio(static_cast<double>(values[v]));
+        largest[v] = std::max(largest[v], power);
+        sum[v] += weight * power;
+      }
+    }
+    for (double& value : largest) value = ratioToDb(value);
+    for (double& value : sum) value = ratioToDb(value);
+    return {largest, sum};
+  }
+  void expectAsByInstants(const std::shared_ptr<Scenario>& scenario, double seconds, double step_s,
+                          double tolerance_db = 0.1, double depth_db = 30) {
+    const Instants expected = byInstants(scenario, seconds, step_s);
+    expectNear(scenario, overInterval(scenario, IntervalKind::max_hold, seconds), expected.largest_db,
+               tolerance_db, "largest", depth_db);
+    expectNear(scenario, overInterval(scenario, IntervalKind::mean, seconds), expected.mean_db, tolerance_db,
+               "mean", depth_db);
+  }
+  /// Down to depth_db below the beam's maximum at each voxel.
+  void expectNear(const std::shared_ptr<Scenario>& scenario, const std::vector<float>& found,
+                  const std::vector<double>& expected, double tolerance_db, const char* what,
+                  double depth_db = 30) {
+    auto isotropic = std::make_shared<Scenario>(*scenario);
+    isotropic->emitters.front().antenna =
+        scenario::makeIsotropic(scenario->emitters.front().antenna->gain_dbi);
+    isotropic->emitters.front().active_s.clear();
+    FieldSolver solver = solverOf(isotropic);
+    const std::vector<float> boresight = valuesOf(solver, isotropic, 0);
+    const std::vector<double> boresight_db(boresight.begin(), boresight.end());
+    ASSERT_EQ(found.size(), expected.size());
+    double worst_db = 0;
+    std::size_t where = 0;
+    for (std::size_t v = 0; v < found.size(); ++v) {
+      if (v % (15 * 15) == 7 * 15 + 7) continue;  // straight above, where a pattern may have no one value
+      if (expected[v] < boresight_db[v] - depth_db) continue;
+      const double difference = std::abs(static_cast<double>(found[v]) - expected[v]);
+      if (!(difference <= worst_db)) worst_db = difference, where = v;
+    }
+    EXPECT_LE(worst_db, tolerance_db)
+        << what << ", voxel " << where << ": " << found[where] << " for " << expected[where];
+  }
+};
+
+// A step turns a beam by a twentieth of its width.
+TEST_P(Intervals, OfATurnAreThoseOfFineSteps) {
+  const double beamwidth_deg = 4;
+  for (const AntennaPtr& antenna : {
+           scenario::makeGaussian(30, beamwidth_deg, 6, -35),
+           scenario::makeCosecant2(30, beamwidth_deg, 5, 40, -35),
+           scenario::makeSinc(30, beamwidth_deg, 6, -40),
+           scenario::makePhasedArray(25, 24, 16, 0.5, 1, -45),
+       }) {
+    for (const double elevation_deg : {0.0, 12.0}) {
+      SCOPED_TRACE(antenna->description + " at " + std::to_string(elevation_deg));
+      const auto scenario = around(antenna, rotating(10, elevation_deg));
+      expectAsByInstants(scenario, 6, beamwidth_deg / 20 / 60);
+    }
+  }
+}
+
+TEST_P(Intervals, OfPartsOfATurnAreThoseOfFineSteps) {
+  const auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), rotating(-10, 3));
+  expectAsByInstants(scenario, 1.9, 0.2 / 60);
+  expectAsByInstants(scenario, 8.3, 0.2 / 60);
+}
+
+TEST_P(Intervals, OfSectorsAndRastersAreThoseOfFineSteps) {
+  const AntennaPtr antenna = scenario::makeGaussian(30, 4, 5, -35);
+  for (const double seconds : {0.8, 3.7, 9.1}) {
+    SCOPED_TRACE(seconds);
+    expectAsByInstants(around(antenna, sweeping(ScanKind::sector, 70, 60)), seconds, 0.2 / 60);
+  }
+  // The beam leaves the end of a bar between two steps.
+  expectAsByInstants(around(antenna, sweeping(ScanKind::raster, 70, 60, 3)), 3.7, 0.02 / 60, 0.2);
+}
+
+TEST_P(Intervals, OfDwellsAreThoseOfFineSteps) {
+  for (const double seconds : {0.25, 1.0, 3.6}) {
+    SCOPED_TRACE(seconds);
+    const auto array = around(scenario::makePhasedArray(25, 16, 12, 0.5, 1, -40), dwelling());
+    expectAsByInstants(array, seconds, 0.005, 0.1, 20);
+    expectAsByInstants(array, seconds, 0.005, 0.5, 30);
+    expectAsByInstants(around(scenario::makeGaussian(25, 5, 5, -40), dwelling()), seconds, 0.005);
+  }
+}
+
+TEST_P(Intervals, CountTheTimesOfActivity) {
+  auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), rotating(10));
+  scenario->emitters.front().active_s = {{0, 2.5}, {4, 4.5}};
+  const auto largest = overInterval(scenario, IntervalKind::max_hold, 6);
+  const auto mean = overInterval(scenario, IntervalKind::mean, 6);
+  const Instants expected = byInstants(scenario, 6, 0.02 / 60);
+  expectNear(scenario, largest, expected.largest_db, 0.2,
+             "largest, at the end of an active time, between two steps");
+  expectNear(scenario, mean, expected.mean_db, 0.1, "mean");
+
+  scenario->emitters.front().scan = {};
+  scenario->output.interval = {IntervalKind::mean, 6, {}};
+  const float part = overInterval(scenario, IntervalKind::mean, 6).front();
+  scenario->emitters.front().active_s.clear();
+  const float whole = overInterval(scenario, IntervalKind::mean, 6).front();
+  EXPECT_NEAR(static_cast<double>(whole - part), -ratioToDb((0.8 + 0.5) / 6), 1e-3);
+}
+
+TEST_P(Intervals, OfWholeTurnsDoNotChangeWithTheTime) {
+  auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), rotating(7, 3));
+  scenario->output.interval = {IntervalKind::max_hold, {}, 2.0};
+  FieldSolver solver = solverOf(scenario);
+  const std::vector<float> first = valuesOf(solver, scenario, 0);
+  EXPECT_FALSE(solver.update(scenario::snapshotAt(scenario, nullptr, 1.3)).volumes.size() > 0);
+  EXPECT_EQ(first, valuesOf(solver, scenario, 2.1));
+}
+
+TEST_P(Intervals, OfPartsOfATurnAreTheSameFromSolverToSolver) {
+  auto scenario = around(scenario::makeSinc(30, 4, 6, -35), rotating(7, 3));
+  scenario->output.interval = {IntervalKind::mean, 3.0, {}};
+  FieldSolver solver = solverOf(scenario);
+  valuesOf(solver, scenario, 0);
+  const std::vector<float> later = valuesOf(solver, scenario, 4.9);
+  FieldSolver anew = solverOf(scenario);
+  EXPECT_EQ(valuesOf(anew, scenario, 4.9), later);
+}
+
+/// A radar of which targets are detected half way.
+std::shared_ptr<Scenario> radarAround(const ScanSpec& scan) {
+  auto scenario = around(scenario::makeGaussian(30, 4, 20, -35), scan);
+  Emitter radar = radarOf(scenario->emitters.front().antenna);
+  radar.platform = 0;
+  radar.scan = scan;
+  radar.power_w = 60;
+  scenario->emitters = {radar};
+  scenario->output.quantities = {"detection_probability"};
+  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.floor = 0;
+  return scenario;
+}
+
+TEST_P(Intervals, CumulateTheLooksOfATurn) {
+  const auto scenario = radarAround(rotating(10));
+  FieldSolver solver = solverOf(scenario);
+  const std::vector<float> once = valuesOf(solver, scenario, kBegin_s);
+  const std::vector<float> thrice = overInterval(scenario, IntervalKind::cumulative, 18);
+  EXPECT_EQ(overInterval(scenario, IntervalKind::max_hold, 18), once);
+  double most = 0;
+  for (std::size_t v = 0; v < once.size(); ++v) {
+    const double expected = 1 - std::pow(1 - static_cast<double>(once[v]), 3);
+    EXPECT_NEAR(static_cast<double>(thrice[v]), expected, 1e-5);
+    if (once[v] < 0.9f) most = std::max(most, expected - static_cast<double>(once[v]));
+  }
+  EXPECT_GT(most, 0.3) << "the scenario must have probabilities between 0 and 1";
+}
+
+// Looks are counted by walking through the time: a look is a passage of the beam's azimuth.
+TEST_P(Intervals, CumulateTheLooksOfEachAzimuth) {
+  for (const ScanSpec& scan : {rotating(10), rotating(-8), sweeping(ScanKind::sector, 90, 50)}) {
+    for (const double seconds : {2.0, 9.5}) {
+      SCOPED_TRACE(seconds);
+      const auto scenario = radarAround(scan);
+      FieldSolver solver = solverOf(scenario);
+      const std::vector<float> once = valuesOf(solver, scenario, kBegin_s);
+      const std::vector<float> found = overInterval(scenario, IntervalKind::cumulative, seconds);
+      const volume::Grid grid = gridOf(scenario->region);
+      int compared = 0;
+      for (int j = 0; j < grid.dims.y; ++j) {
+        for (int i = 0; i < grid.dims.x; ++i) {
+          const Vec3d at = grid.center_m(i, j, 3) - grid.center_m(grid.dims.x / 2, grid.dims.y / 2, 0);
+          const double azimuth_deg = radToDeg(std::atan2(at.x, at.y));
+          int looks = 0;
+          double before_deg = 0;
+          for (int n = 0; n <= 4000; ++n) {
+            const double beam_deg = beamAt(scan, kBegin_s + seconds * n / 4000).azimuth_deg;
+            const double off_deg = std::remainder(beam_deg - azimuth_deg, 360);
+            if (n > 0 && std::abs(off_deg) < 90 && (off_deg > 0) != (before_deg > 0)) ++looks;
+            before_deg = off_deg;
+          }
+          if (looks == 0 || std::hypot(at.x, at.y) < 2000) continue;
+          ++compared;
+          const auto v = static_cast<std::size_t>(grid.index(i, j, 3));
+          EXPECT_NEAR(static_cast<double>(found[v]), 1 - std::pow(1 - static_cast<double>(once[v]), looks),
+                      0.005)
+              << looks << " looks at " << azimuth_deg << " deg";
+        }
+      }
+      EXPECT_GT(compared, 50);
+    }
+  }
+}
+
+EMSCAPE_ON_BACKENDS(Intervals);
+
+}  // namespace
+}  // namespace emscape::emfield
