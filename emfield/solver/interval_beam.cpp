@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
-#include "scenario/antenna/swept.h"
+#include "scenario/swept_antenna.h"
 
 namespace emscape::emfield {
 namespace {

@@ -28,8 +28,9 @@ Explanation explainHorizon(const PathInputs& inputs, PathColumn& path) {
     const float height_msl_m = profile.height_msl_m[i];
     slope.add(height_msl_m, geometry.slopeTo(height_msl_m, geometry.termsAt(profile.range_m[i])));
   }
-  const bool is_lit = last < 2 || path.column().height_msl_m[0] >=
-                                      geometry.heightOn(slope.value(), geometry.termsAt(profile.range_m[last]));
+  const bool is_lit =
+      last < 2 || path.column().height_msl_m[0] >=
+                      geometry.heightOn(slope.value(), geometry.termsAt(profile.range_m[last]));
   Explanation explanation;
   explanation.why = is_lit ? "no obstacle above the ray: free space"
                            : "an obstacle above the ray: no field behind it (no diffraction)";

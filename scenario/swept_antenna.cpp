@@ -1,4 +1,4 @@
-#include "scenario/antenna/swept.h"
+#include "scenario/swept_antenna.h"
 
 #include <algorithm>
 #include <cmath>
