@@ -49,8 +49,8 @@ struct HorizonGeometry {
   }
 };
 
-/// Slope of the ray that grazes the terrain along one azimuth: the largest to its samples. A point beyond them
-/// is lit if the slope to it is not below.
+/// Slope of the ray that grazes the terrain along one azimuth: the largest to its samples. A point beyond
+/// them is lit if the slope to it is not below.
 template <class Real>
 struct GrazingSlope {
   Real highest = -Real(HUGE_VAL), unknown = 0;
