@@ -47,6 +47,7 @@
 #include "emscape/playback/view_state.h"
 #include "emscape/playback/volume_input.h"
 #include "emscape/propagation/explanation.h"
+#include "emscape/propagation/reflected_ray.h"
 #include "emscape/propagation/settings.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/render/annotate/overlay.h"
