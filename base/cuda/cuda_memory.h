@@ -64,6 +64,7 @@ class Buffer {
     if (count > 0) {
       check(cudaMemcpyAsync(data_, from, count * sizeof(T), cudaMemcpyHostToDevice, stream),
             "cudaMemcpyAsync to the GPU");
+      if (stream == nullptr) check(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
     }
   }
   void upload(const std::vector<T>& from, cudaStream_t stream = nullptr) {
