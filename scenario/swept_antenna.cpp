@@ -53,14 +53,16 @@ class PowerRow {
   double largest() const { return *std::max_element(power_.begin(), power_.end()); }
   /// Between two azimuths (deg), less than a turn apart.
   double largest(double begin_deg, double end_deg) {
-    const double begin = begin_deg * count_ / 360, end = end_deg * count_ / 360;
+    const double first_turn = std::floor(begin_deg / 360) * 360;
+    const double begin = (begin_deg - first_turn) * count_ / 360, end = (end_deg - first_turn) * count_ / 360;
     const double at_ends = std::max(between(begin), between(end));
     const int first = static_cast<int>(std::ceil(begin)), last = static_cast<int>(std::floor(end));
     return last < first ? at_ends : std::max(at_ends, largestOf(first, last));
   }
   /// The mean between two azimuths (deg).
   double mean(double begin_deg, double end_deg) const {
-    const double begin = begin_deg * count_ / 360, end = end_deg * count_ / 360;
+    const double first_turn = std::floor(begin_deg / 360) * 360;
+    const double begin = (begin_deg - first_turn) * count_ / 360, end = (end_deg - first_turn) * count_ / 360;
     if (!(end > begin)) return between(begin);
     return (integralTo(end) - integralTo(begin)) / (end - begin);
   }
@@ -96,7 +98,10 @@ class PowerRow {
     }
     return std::max(runs_[level][index(first)], runs_[level][index(last + 1 - (1 << level))]);
   }
-  std::size_t index(int i) const { return static_cast<std::size_t>(((i % count_) + count_) % count_); }
+  /// @param i  0..2 count_: of two turns
+  std::size_t index(int i) const {
+    return static_cast<std::size_t>(i < count_ ? i : i < 2 * count_ ? i - count_ : i - 2 * count_);
+  }
 
   int count_;
   std::vector<double> power_, sums_;       ///< sums_[i]: the integral from azimuth 0 to entry i
@@ -167,8 +172,8 @@ double angleOf(int index, int intervals, double span_deg) {
 /// Whole turns of one tilt each: the same in every azimuth.
 AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
   const Sampled sampled(antenna, pattern);
-  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 16, 7200);
-  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 64, 14400);
+  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 8, 3600);
+  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 32, 7200);
   std::vector<double> amplitudes(static_cast<std::size_t>(elevations) + 1);
   parallelFor(elevations + 1, 16, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
@@ -192,8 +197,8 @@ AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPat
 
 AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
   const Sampled sampled(antenna, pattern);
-  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 32, 4320);
-  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 32, 2160);
+  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 16, 2880);
+  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 16, 1440);
   std::vector<float> amplitudes((static_cast<std::size_t>(azimuths) + 1) *
                                 (static_cast<std::size_t>(elevations) + 1));
   parallelFor(elevations + 1, 8, [&](int begin, int end) {

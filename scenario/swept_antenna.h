@@ -15,9 +15,9 @@ enum class SweptPattern {
 /// is azimuth 0 of the sweep. Its gain is the antenna's, so that amplitudes are relative to the beam's
 /// maximum and a mean contains the part of the interval in which the emitter is active.
 /// @param sweep  not empty; azimuths of arcs relative to the frame
-/// @accuracy 0.1 dB down to 20 dB below the maximum, without nulls to 30 dB; next to nulls 0.5 dB. Entries of
-/// tables are a 32nd of a beamwidth apart, but not nearer than 1/12 degree; those of whole turns, which
-/// depend on elevation alone, a 64th or 1/80 degree
+/// @accuracy 0.1 dB down to 20 dB below the maximum, without nulls to 30 dB; next to nulls 0.5 dB; for
+/// beamwidths below 1.5 degrees 0.2 dB. Entries of tables are a 16th of a beamwidth apart, but not nearer
+/// than 1/8 degree; those of whole turns, which depend on elevation alone, a 32nd or 1/40 degree
 AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern);
 
 }  // namespace emscape::scenario
