@@ -1,6 +1,7 @@
 /// Where a beam is during an interval, and for which part of it.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "emscape/scenario/clock.h"
@@ -16,6 +17,13 @@ struct SweptArc {
   double elevation_deg = 0;
   double share = 0;  ///< of the interval, 0..1
   double times = 1;  ///< how often it is passed
+
+  /// A turn or more.
+  bool isRound() const { return width_deg >= 360; }
+  /// Turns without a rest: every azimuth is passed equally often.
+  bool isWholeTurns() const {
+    return isRound() && std::abs(std::remainder(width_deg, 360)) < 1e-6 * width_deg;
+  }
 };
 
 /// One position of a steered beam.

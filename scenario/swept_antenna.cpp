@@ -108,10 +108,6 @@ class PowerRow {
   std::vector<std::vector<double>> runs_;  ///< runs_[n][i]: the largest of the 2^n entries from i on
 };
 
-bool isRound(const SweptArc& arc) {
-  return arc.width_deg >= 360;
-}
-
 /// The rows of one elevation, one for each tilt of the sweep's arcs.
 class Rows {
  public:
@@ -144,7 +140,7 @@ double powerOf(Rows& rows, const ScanSweep& sweep, double azimuth_deg, SweptPatt
     if (pattern == SweptPattern::mean) {
       power += arc.share * row.mean(begin_deg, end_deg);
     } else {
-      power = std::max(power, isRound(arc) ? row.largest() : row.largest(begin_deg, end_deg));
+      power = std::max(power, arc.isRound() ? row.largest() : row.largest(begin_deg, end_deg));
     }
   }
   return power;
@@ -225,13 +221,12 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
 }  // namespace
 
 AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
-  const bool is_round = sweep.dwells.empty() && std::all_of(sweep.arcs.begin(), sweep.arcs.end(), isRound);
   // A mean over more than a turn but not over whole turns depends on the azimuth.
-  const bool is_even = pattern == SweptPattern::largest ||
-                       std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [](const SweptArc& arc) {
-                         return std::abs(std::remainder(arc.width_deg, 360)) < 1e-6 * arc.width_deg;
-                       });
-  return is_round && is_even ? roundAntenna(antenna, sweep, pattern) : gridAntenna(antenna, sweep, pattern);
+  const bool is_same_all_round =
+      sweep.dwells.empty() && std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [&](const SweptArc& arc) {
+        return pattern == SweptPattern::largest ? arc.isRound() : arc.isWholeTurns();
+      });
+  return is_same_all_round ? roundAntenna(antenna, sweep, pattern) : gridAntenna(antenna, sweep, pattern);
 }
 
 }  // namespace emscape::scenario

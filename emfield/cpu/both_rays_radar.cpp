@@ -2,21 +2,12 @@
 
 #include "base/simd.h"
 #include "emfield/cpu/both_rays.h"
+#include "emfield/cpu/echo_rows.h"
 
 namespace emscape::emfield {
 namespace {
 
 using scenario::PatternKind;
-
-template <PatternKind kind>
-__attribute__((always_inline)) inline void fillEchoes(const RadarPass& pass, const Row& row, float* root) {
-  const RadarTask task = pass.task;
-  const EmitterBeam beam = pass.beam;
-#pragma omp simd
-  for (int i = 0; i < row.count; ++i) {
-    root[i] = echoToNoiseRoot<kind>(task, beam, row.column + i, row.t_m);
-  }
-}
 
 /// @param reflected  of the row's first voxel
 template <PatternKind kind>
@@ -28,18 +19,6 @@ __attribute__((always_inline)) inline void fillEchoesOfBothRays(const RadarPass&
 #pragma omp simd
   for (int i = 0; i < row.count; ++i) {
     root[i] = echoToNoiseRoot<kind>(task, beam, reflected[i], row.column + i, row.t_m);
-  }
-}
-
-template <PatternKind kind>
-__attribute__((always_inline)) inline void addJamming(const RadarPass& pass, const JammerAtRadar& jammer,
-                                                      const Row& row, float* jamming) {
-  const RadarTask task = pass.task;
-  const EmitterBeam beam = pass.beam;
-  const JammerAtRadar local = jammer;
-#pragma omp simd
-  for (int i = 0; i < row.count; ++i) {
-    jamming[i] += jammingToNoise<kind>(task, beam, local, row.column + i, row.t_m);
   }
 }
 

@@ -20,10 +20,6 @@ using scenario::SweptPattern;
 
 constexpr double kTurn_deg = 360;
 
-bool isRound(const SweptArc& arc) {
-  return arc.width_deg >= kTurn_deg;
-}
-
 bool stays(const ScanSweep& sweep) {
   return sweep.dwells.empty() && std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [&](const SweptArc& arc) {
            return arc.width_deg == 0 && arc.first_deg == sweep.arcs.front().first_deg &&
@@ -43,15 +39,14 @@ BeamPose sweepFrame(const Emitter& emitter, const EmitterState& state) {
 /// part of a turn is ahead.
 /// @return the azimuth of that frame's forward
 double turnIntoFrame(ScanSweep& sweep, double frame_deg) {
-  if (sweep.arcs.size() == 1 && !isRound(sweep.arcs.front())) {
+  if (sweep.arcs.size() == 1 && !sweep.arcs.front().isRound()) {
     SweptArc& arc = sweep.arcs.front();
     const double middle_deg = arc.first_deg + arc.width_deg / 2;
     arc.first_deg = -arc.width_deg / 2;
     return middle_deg - frame_deg;
   }
-  const bool is_even = std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [](const SweptArc& arc) {
-    return isRound(arc) && std::abs(std::remainder(arc.width_deg, kTurn_deg)) < 1e-6 * arc.width_deg;
-  });
+  const bool is_even = std::all_of(sweep.arcs.begin(), sweep.arcs.end(),
+                                   [](const SweptArc& arc) { return arc.isWholeTurns(); });
   for (SweptArc& arc : sweep.arcs) arc.first_deg = is_even ? 0 : arc.first_deg - frame_deg;
   return 0;
 }
@@ -113,7 +108,8 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
   if (scan.kind == ScanKind::dwell_list) {
     beam.looks = {};
     beam.looks.everywhere = dwellLooks(scan, duration_s);
-  } else if (std::none_of(sweep.arcs.begin(), sweep.arcs.end(), isRound)) {
+  } else if (std::none_of(sweep.arcs.begin(), sweep.arcs.end(),
+                          [](const SweptArc& arc) { return arc.isRound(); })) {
     double lowest_deg = HUGE_VAL, highest_deg = -HUGE_VAL;
     for (const SweptArc& arc : sweep.arcs) {
       lowest_deg = std::min(lowest_deg, arc.first_deg);
