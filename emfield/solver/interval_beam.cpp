@@ -120,6 +120,10 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
       beam.look_half_width_deg = std::max(-lowest_deg, highest_deg);
   }
   if (!needs_pattern) return beam;
+  const bool is_max_hold = interval.kind == IntervalKind::max_hold;
+  for (SweptArc& arc : sweep.arcs) {
+    if (is_max_hold && arc.isRound()) arc.first_deg = 0;  // the largest are the same from wherever it begins
+  }
 
   const bool is_known = before != nullptr && before->antenna != before->of_antenna &&
                         before->of_antenna == beam.of_antenna && before->of_kind == beam.of_kind &&

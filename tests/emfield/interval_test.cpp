@@ -207,6 +207,11 @@ TEST_P(Intervals, OfWholeTurnsDoNotChangeWithTheTime) {
   const std::vector<float> first = valuesOf(solver, scenario, 0);
   EXPECT_FALSE(solver.update(scenario::snapshotAt(scenario, nullptr, 1.3)).volumes.size() > 0);
   EXPECT_EQ(first, valuesOf(solver, scenario, 2.1));
+
+  scenario->output.interval = {IntervalKind::max_hold, 12.3, {}};  // 1.4 turns
+  FieldSolver longer = solverOf(scenario);
+  valuesOf(longer, scenario, 0);
+  EXPECT_TRUE(longer.update(scenario::snapshotAt(scenario, nullptr, 1.3)).volumes.empty());
 }
 
 TEST_P(Intervals, OfPartsOfATurnAreTheSameFromSolverToSolver) {
