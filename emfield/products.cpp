@@ -1,7 +1,10 @@
 #include "emfield/products.h"
 
+#include <cmath>
+
 #include "emfield/radar/detection_losses.h"
 #include "emfield/radar/receiver.h"
+#include "emfield/radar_clutter.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/volume/dense_volume.h"
@@ -12,11 +15,21 @@ namespace {
 using scenario::Emitter;
 using scenario::Quantity;
 
+/// True for quantities of an echo behind the radar's filter, against clutter.
+bool isAgainstClutter(Quantity quantity) {
+  return quantity == Quantity::detection_probability || quantity == Quantity::sclnr_db;
+}
+
 /// The task of a radar in a channel of a radar quantity, without the look.
-RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::OutputSpec& output) {
+RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Scenario& scenario) {
+  const scenario::OutputSpec& output = scenario.output;
   RadarTask task;
   task.echo_root = static_cast<float>(echoRoot_m2_w(radar));
-  const bool looks_at_scan = quantity == Quantity::snr_db || quantity == Quantity::detection_probability;
+  if (radar.clutter && isAgainstClutter(quantity)) {
+    task.echo_root = static_cast<float>(echoRoot_m2_w(radar) * std::sqrt(filterResponse(radar)));
+    task.clutter = clutterTask(scenario, radar);
+  }
+  const bool looks_at_scan = quantity == Quantity::snr_db || isAgainstClutter(quantity);
   const bool is_instant = output.interval.kind == scenario::IntervalKind::instant;
   task.look = lookOf(radar, looks_at_scan && is_instant ? output.radar_look : scenario::RadarLook::target);
   task.is_cumulative = output.interval.kind == scenario::IntervalKind::cumulative;
@@ -36,6 +49,9 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Out
       task.factor = static_cast<float>(dbToRatio(-requiredSignalToJammerDb(radar)));
       task.lowest = 1 / kMaxMargin;
       task.ceiling = kMaxMargin;
+      break;
+    case Quantity::sclnr_db:
+      task.measure = RadarMeasure::root_of_signal_to_clutter_and_noise;
       break;
     default:
       break;
@@ -106,6 +122,7 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       weigh([&](const Emitter& emitter) { return receivingArea_m2(emitter, scenario.receivers.front()); });
       break;
     case Quantity::snr_db:
+    case Quantity::sclnr_db:
       plan.reduction = Reduction::maximum;
       plan.product.scale = 2;
       weigh(echoRoot_m2_w);
@@ -142,7 +159,7 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
   if (!needsRadar(channel.quantity) || is_plain) return plan;
   for (int e : channel.emitters) {
     const Emitter& radar = scenario.emitters[e];
-    plan.radars.push_back(radarTask(channel.quantity, radar, scenario.output));
+    plan.radars.push_back(radarTask(channel.quantity, radar, scenario));
     if (channel.quantity != Quantity::detection_probability) continue;
     plan.curves.push_back(curveOf(radar, known_curves));
     plan.radars.back().curve = plan.curves.back()->view();

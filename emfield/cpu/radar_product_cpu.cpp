@@ -3,6 +3,7 @@
 
 #include "base/simd.h"
 #include "emfield/cpu/both_rays.h"
+#include "emfield/cpu/clutter_rows.h"
 #include "emfield/cpu/echo_rows.h"
 #include "emfield/cpu/row.h"
 #include "emfield/radar_product.h"
@@ -85,6 +86,9 @@ EMSCAPE_SIMD_CLONES void accumulateRow(const RadarTask& task, int count, const f
       return accumulate<RadarMeasure::signal_to_jamming>(task, count, root, jamming, looks, accumulator);
     case RadarMeasure::detection:
       return accumulate<RadarMeasure::detection>(task, count, root, jamming, looks, accumulator);
+    case RadarMeasure::root_of_signal_to_clutter_and_noise:
+      return accumulate<RadarMeasure::root_of_signal_to_clutter_and_noise>(task, count, root, jamming, looks,
+                                                                           accumulator);
   }
 }
 
@@ -104,6 +108,7 @@ void radarCpu(const RadarPass& pass) {
         } else {
           fillRow(pass, row, root.data(), jamming.data());
         }
+        if (!pass.task.clutter.isNone()) addClutter(pass, row, jamming.data());
         if (pass.task.is_cumulative) countLooks(pass, row, looks.data());
         const ExcessCode* excess = pass.beam.geometry.excess;
         if (excess != nullptr) applyExcess(excess + voxel, dims.x, root.data());

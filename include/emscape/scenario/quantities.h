@@ -19,6 +19,7 @@ enum class Quantity {
   emitter_count,
   dominant_emitter,
   mean_power_density_dbwm2,
+  sclnr_db,
 };
 
 /// The signals that a quantity depends on.
