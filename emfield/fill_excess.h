@@ -83,9 +83,8 @@ struct ExcessTask {
   /// Adds the attenuation by the air at some heights of a segment.
   EMSCAPE_HD void addAir(const ExcessColumn& part, int begin, int end, float* excess_db) const {
     if (air.isClear()) return;
-    for (int k = begin; k < end; ++k) {
-      excess_db[k] += air.lossDb(static_cast<float>(part.range_m), part.height_msl_m[k]);
-    }
+    const propagation::AirColumn above(air, static_cast<float>(part.range_m));
+    for (int k = begin; k < end; ++k) excess_db[k] += above.lossDb(part.height_msl_m[k]);
   }
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.

@@ -158,7 +158,7 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
       return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[here])));
     };
     const FastInverse path = grid.coordinatesOf(task.station, static_cast<std::size_t>(c), segment);
-    const auto range_m = static_cast<float>(path.distance_m);
+    const propagation::AirColumn above(air, static_cast<float>(path.distance_m));
     bool is_free = !(path.distance_m > 0);  // at the emitter itself
     if (!is_free) {
       const float ground_msl_m =
@@ -177,13 +177,13 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
 #pragma unroll
         for (int j = 0; j < kReceivers; ++j) {
           if (k + j >= end) break;
-          if (!air.isClear()) loss_db[j] += air.lossDb(range_m, rx_msl_m[j]);
+          if (!air.isClear()) loss_db[j] += above.lossDb(rx_msl_m[j]);
           codes[(k + j) * layer] = excessCode(loss_db[j]);
         }
         k += kReceivers;
       }
     }
-    for (; k < end; ++k) codes[k * layer] = air.isClear() ? 0 : excessCode(air.lossDb(range_m, heightOf(k)));
+    for (; k < end; ++k) codes[k * layer] = air.isClear() ? 0 : excessCode(above.lossDb(heightOf(k)));
   }
   if (is_unknown) markUnknown(task.to, c);
 }
