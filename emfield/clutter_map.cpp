@@ -1,6 +1,7 @@
 #include "emfield/clutter_map.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "emfield/emitter_excess.h"
 #include "emscape/base/parallel.h"
@@ -28,6 +29,24 @@ int azimuthsOf(const scenario::Emitter& radar) {
                     kMaxAzimuths);
 }
 
+ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emitter& radar,
+                        const Station& station, const propagation::PathExtent* extent) {
+  const double reach = reach_m(scenario.region, station), cell_m = radar.clutter->range_cell_m;
+  const double step_m = std::max(cell_m, reach / kMaxRanges);
+  double farthest_m = reach;
+  if (extent != nullptr) {
+    const double highest_m = std::max(std::abs(extent->highest_msl_m - station.height_msl_m),
+                                      std::abs(extent->lowest_msl_m - station.height_msl_m));
+    farthest_m = std::max(farthest_m, std::hypot(extent->farthest_m, highest_m));
+  }
+  ClutterGrid grid;
+  grid.azimuths = azimuthsOf(radar);
+  grid.ranges = static_cast<int>(std::ceil(farthest_m / step_m)) + 1;
+  grid.step_m = static_cast<float>(step_m);
+  grid.part_of_step = static_cast<float>(cell_m / step_m);
+  return grid;
+}
+
 }  // namespace
 
 double airLossAtSea_db_per_m(const scenario::Scenario& scenario, const scenario::Emitter& radar) {
@@ -48,20 +67,9 @@ double airLossAtSea_db_per_m(const scenario::Scenario& scenario, const scenario:
   return db_per_km / 1000;
 }
 
-ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emitter& radar,
-                        const Station& station) {
-  const double reach = reach_m(scenario.region, station), cell_m = radar.clutter->range_cell_m;
-  const double step_m = std::max(cell_m, reach / kMaxRanges);
-  ClutterGrid grid;
-  grid.azimuths = azimuthsOf(radar);
-  grid.ranges = std::clamp(static_cast<int>(std::ceil(reach / step_m)), 1, kMaxRanges);
-  grid.step_m = static_cast<float>(step_m);
-  grid.part_of_step = static_cast<float>(cell_m / step_m);
-  return grid;
-}
-
 std::optional<ClutterMapTask> clutterMapTask(const scenario::Scenario& scenario,
-                                             const scenario::Emitter& radar, const Station& station) {
+                                             const scenario::Emitter& radar, const Station& station,
+                                             const propagation::PathExtent* extent) {
   if (!hasClutterMap(radar)) return std::nullopt;
   const scenario::Clutter& clutter = *radar.clutter;
   ClutterMapTask task;
@@ -72,7 +80,7 @@ std::optional<ClutterMapTask> clutterMapTask(const scenario::Scenario& scenario,
   task.surface.sea_state = clutter.sea_state.value_or(0);
   task.surface.frequency_ghz = radar.frequency_hz / 1e9;
   task.surface.horizontal_part = horizontalPart(radar.polarization);
-  task.grid = clutterGrid(scenario, radar, station);
+  task.grid = clutterGrid(scenario, radar, station, extent);
   task.air_db_per_m = static_cast<float>(airLossAtSea_db_per_m(scenario, radar));
   return task;
 }
@@ -88,8 +96,9 @@ ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar) {
 }
 
 std::size_t clutterMapBytes(const scenario::Emitter& radar) {
-  return hasClutterMap(radar) ? static_cast<std::size_t>(azimuthsOf(radar)) * kMaxRanges * sizeof(ClutterCell)
-                              : 0;
+  return hasClutterMap(radar)
+             ? static_cast<std::size_t>(azimuthsOf(radar)) * (kMaxRanges + 1) * sizeof(ClutterCell)
+             : 0;
 }
 
 std::vector<double> clutterPostRanges(const ClutterGrid& grid, double post_spacing_m) {

@@ -17,6 +17,7 @@
 #include "emfield/ground_posts.h"
 #include "emscape/base/host_device.h"
 #include "emscape/scenario/scenario.h"
+#include "propagation/inputs.h"
 
 namespace emscape::emfield {
 
@@ -175,16 +176,15 @@ struct ClutterMapInputs {
 };
 ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar);
 
-/// The grid of a radar's map: two rows per beamwidth, 90 to 1440 in all; cells as long as the range cell, at
-/// most 2048 as far as the region's farthest point: at most 24 MB.
-ClutterGrid clutterGrid(const scenario::Scenario& scenario, const scenario::Emitter& radar,
-                        const Station& station);
-
-/// The task of a radar's map without the ground; none: it has no map.
+/// The task of a radar's map without the ground; none: it has no map. Two rows per beamwidth, 90 to 1440 in
+/// all; cells as long as the range cell, at most 2048 as far as the region's farthest point: at most 24 MB.
+/// @param extent  of paths that may reach farther than the region; null: none does. The cells keep their
+/// places
 std::optional<ClutterMapTask> clutterMapTask(const scenario::Scenario& scenario,
-                                             const scenario::Emitter& radar, const Station& station);
+                                             const scenario::Emitter& radar, const Station& station,
+                                             const propagation::PathExtent* extent = nullptr);
 
-/// Largest size of a radar's map; 0 without one.
+/// Largest size of a radar's map over the region; 0 without one.
 std::size_t clutterMapBytes(const scenario::Emitter& radar);
 
 /// Specific attenuation (dB/m) by gases and rain at mean sea level, one way.

@@ -28,8 +28,8 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
 
   const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   const ExcessGrid grid = excessGrid(columns, terrain);
-  const std::vector<double> ranges_m =
-      postRanges(pathExtent(station, columns).farthest_m, postSpacing_m(terrain));
+  const propagation::PathExtent extent = pathExtent(station, columns);
+  const std::vector<double> ranges_m = postRanges(extent.farthest_m, postSpacing_m(terrain));
   const GroundPosts ground = groundPosts(terrain, ranges_m);
   if (model.casts_shadow) findShadowEdgesCpu(station, ground, grid, shadow_edge_m_.data());
   if (hasExcess(scenario, emitter)) {
@@ -41,14 +41,15 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
-  mapClutter(scenario, emitter, station, terrain);
+  mapClutter(scenario, emitter, station, extent, terrain);
   times.excess_ms += watch.lap_ms();
 }
 
 void EmitterGeometry::mapClutter(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                                 const Station& station, const scenario::Terrain* terrain) {
+                                 const Station& station, const propagation::PathExtent& extent,
+                                 const scenario::Terrain* terrain) {
   clutter_.clear();
-  std::optional<ClutterMapTask> task = clutterMapTask(scenario, emitter, station);
+  std::optional<ClutterMapTask> task = clutterMapTask(scenario, emitter, station, &extent);
   if (!task) return;
   const std::vector<double> ranges_m = clutterPostRanges(task->grid, postSpacing_m(terrain));
   task->ground = groundPosts(terrain, ranges_m);

@@ -50,7 +50,8 @@ class EmitterGeometry {
 
  private:
   void mapClutter(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                  const Station& station, const scenario::Terrain* terrain);
+                  const Station& station, const propagation::PathExtent& extent,
+                  const scenario::Terrain* terrain);
   void locateColumns(const Station& station, const GridColumns& columns);
 
   std::size_t column_count_ = 0;

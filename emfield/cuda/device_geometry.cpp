@@ -50,6 +50,7 @@ DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots) : setup_(setu
   excess_grid_ = excessGrid(setup.columns, setup.terrain.get());
   excess_grid_.columns = grid_columns_.data();
   excess_grid_.t_m = t_m_.data();
+  excess_grid_.first_valid_k = firstValidK();
   if (excess_grid_.ground_msl_m != nullptr) {
     ground_msl_m_.upload(setup.columns.ground_msl_m);
     excess_grid_.ground_msl_m = ground_msl_m_.data();
@@ -81,12 +82,12 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   if (hasExcess(scenario, emitter)) {
     work.model = makeExcess(scenario, emitter, station, setup_.terrain.get(), setup_.columns);
   }
-  work.ranges_m =
-      postRanges(pathExtent(station, setup_.columns).farthest_m, postSpacing_m(setup_.terrain.get()));
+  const propagation::PathExtent extent = pathExtent(station, setup_.columns);
+  work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
   work.ground.is_smooth = setup_.terrain == nullptr;
   work.ground.terrain = terrain_.view();
   work.ground.range_count = static_cast<int>(work.ranges_m.size());
-  work.clutter = clutterMapTask(scenario, emitter, station);
+  work.clutter = clutterMapTask(scenario, emitter, station, &extent);
   if (work.clutter) {
     std::vector<double> farther_m =
         clutterPostRanges(work.clutter->grid, postSpacing_m(setup_.terrain.get()));
@@ -227,7 +228,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<Work>& works, cudaStream
   }
   if (tasks.empty()) return;
   fillDiffraction(sent(diffraction_, tasks, stream), static_cast<int>(tasks.size()), most_ranges,
-                  excess_grid_, columns_.row, firstValidK(), scratch(), stream);
+                  excess_grid_, columns_.row, scratch(), stream);
 }
 
 ScratchMemory DeviceGeometry::scratch() {
