@@ -38,54 +38,67 @@ EMSCAPE_HD inline Vec3f axisOf(const Aim& aim) {
           forward * aim.sin_elevation + aim.steer_v * aim.cos_elevation};
 }
 
-/// Rain's clutter over noise.
-/// @param sine  of the beam's elevation
-EMSCAPE_HD inline float rainToNoise(const ClutterTask& task, float range_m, float sine) {
+/// Direction of the beam's axis, east-north-up.
+/// @param beam  with the look's frame as its forward, right and up
+EMSCAPE_HD inline Vec3f axisOf(const EmitterBeam& beam, const Aim& aim) {
+  const Vec3f axis = axisOf(aim);
+  return beam.forward * axis.x + beam.right * axis.y + beam.up * axis.z;
+}
+
+/// Rain's clutter over noise at a slant range. Without branches, for SIMD.
+EMSCAPE_HD inline float rainToNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim,
+                                    float range_m) {
+  const float sine = axisOf(beam, aim).z;
   const float height_m = range_m * (sine + range_m * (1 - sine * sine) * task.curvature_per_m);
   const float depth_m = range_m * task.elevation_width_rad + 1e-6f;
   const auto part = [&](float top_m) {
     const float below = (top_m - height_m) / depth_m + 0.5f;
-    return below < 0 ? 0.0f : below > 1 ? 1.0f : below;
+    const float not_negative = below > 0 ? below : 0.0f;
+    return not_negative < 1 ? not_negative : 1.0f;
   };
   const float in_rain = part(task.rain_top_m) - part(task.sea_level_m);
   return task.rain * (in_rain > 0 ? in_rain : 0.0f) * fastExp2(-task.rain_octaves_per_m * range_m) /
          (range_m * range_m);
 }
 
-/// Clutter over noise at a slant range.
-/// @param beam  with the look's frame as its forward, right and up
+/// Clutter of land and sea over noise at a slant range. Without branches, for SIMD.
 /// @param map   ClutterMapView, or another one with its cellAt()
+template <scenario::PatternKind kind, class Map>
+EMSCAPE_HD inline float surfaceToNoise(const ClutterTask& task, const Map& map, const EmitterBeam& beam,
+                                       const Aim& aim, float range_m) {
+  const Vec3f direction = axisOf(beam, aim);
+  const ClutterCell cell = map.cellAt(fastAtan2(direction.x, direction.y), range_m);
+  constexpr float kMinEcho = 1e-37f;
+  const float sine = cell.echo_times_sine / (cell.echo > kMinEcho ? cell.echo : kMinEcho);
+  const float cosine2 = 1 - sine * sine;
+  const float level2 = direction.x * direction.x + direction.y * direction.y;
+  const float scale = std::sqrt((cosine2 > 0 ? cosine2 : 0.0f) / (level2 + 1e-12f));
+  const Vec3f to_surface = inAntennaFrame(beam, {direction.x * scale, direction.y * scale, sine});
+  const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, to_surface);
+  const float power = amplitude * amplitude;
+  return task.surface * cell.echo * power * power;
+}
+
+/// Both.
 template <scenario::PatternKind kind, class Map>
 EMSCAPE_HD inline float clutterToNoise(const ClutterTask& task, const Map& map, const EmitterBeam& beam,
                                        const Aim& aim, float range_m) {
-  const Vec3f axis = axisOf(aim);
-  const Vec3f direction = beam.forward * axis.x + beam.right * axis.y + beam.up * axis.z;
-  float clutter = task.rain > 0 ? rainToNoise(task, range_m, direction.z) : 0.0f;
-  if (task.surface > 0) {
-    const ClutterCell cell = map.cellAt(fastAtan2(direction.x, direction.y), range_m);
-    const float sine = cell.echo > 0 ? cell.echo_times_sine / cell.echo : 0.0f;
-    const float cosine2 = 1 - sine * sine;
-    const float level2 = direction.x * direction.x + direction.y * direction.y;
-    const float scale = std::sqrt((cosine2 > 0 ? cosine2 : 0.0f) / (level2 + 1e-12f));
-    const Vec3f to_surface = inAntennaFrame(beam, {direction.x * scale, direction.y * scale, sine});
-    const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, to_surface);
-    const float power = amplitude * amplitude;
-    clutter += task.surface * cell.echo * power * power;
-  }
-  return clutter;
+  return (task.surface > 0 ? surfaceToNoise<kind>(task, map, beam, aim, range_m) : 0.0f) +
+         (task.rain > 0 ? rainToNoise(task, beam, aim, range_m) : 0.0f);
 }
 
-/// The same for a voxel.
-template <scenario::PatternKind kind>
-EMSCAPE_HD inline float clutterToNoise(const ClutterTask& task, const RadarLook& look,
-                                       const ClutterMapView& map, const EmitterBeam& beam, std::size_t column,
-                                       float t_m) {
+/// The aim of a radar at a voxel, and the voxel's slant range.
+struct AimedVoxel {
+  Aim aim;
+  float range_m;
+};
+EMSCAPE_HD inline AimedVoxel aimedVoxel(const RadarLook& look, const EmitterBeam& beam, std::size_t column,
+                                        float t_m) {
   const Vec3f target = inAntennaFrame(beam, directRay(beam.geometry, column, t_m));
   const float along_m = t_m - beam.geometry.nearest_t_m[column];
   const float distance2 = beam.geometry.offset2_m2[column] + along_m * along_m;
   constexpr float kMin2 = kMinDistance_m * kMinDistance_m;
-  return clutterToNoise<kind>(task, map, beam, aimAt(look, target),
-                              std::sqrt(distance2 > kMin2 ? distance2 : kMin2));
+  return {aimAt(look, target), std::sqrt(distance2 > kMin2 ? distance2 : kMin2)};
 }
 
 }  // namespace emscape::emfield

@@ -52,24 +52,20 @@ EMSCAPE_HD inline ClutterNeighbours rowsBeside(float azimuth_rad, int azimuths, 
   return {first, first + 1 < azimuths ? first + 1 : 0, turned - static_cast<float>(i)};
 }
 
-/// A row's cells at a range, interpolated between their middles: below that of the first cell its own value,
-/// beyond the last cell nothing. Without branches, for SIMD.
-EMSCAPE_HD inline ClutterCell cellAtRange(const ClutterCell* row, int ranges, float cells_per_m,
-                                          float range_m) {
+/// The cells beside a range: interpolated between their middles, below that of the first cell its own value.
+/// Without branches, for SIMD.
+EMSCAPE_HD inline ClutterNeighbours cellsBeside(float range_m, int ranges, float cells_per_m) {
   const float place = range_m * cells_per_m - 0.5f;
   const int last = ranges - 1, n = static_cast<int>(place > 0 ? place : 0.0f);
   const int first = n < last ? n : last, second = n < last ? n + 1 : last;
-  const float beyond = place - static_cast<float>(first);
-  const float weight = beyond > 0 ? beyond : 0.0f, in_reach = n > last ? 0.0f : 1.0f;
-  const float bounded = weight < 1 ? weight : 1.0f;
-  const ClutterCell a = row[first], b = row[second];
-  return {in_reach * (a.echo + bounded * (b.echo - a.echo)),
-          in_reach * (a.echo_times_sine + bounded * (b.echo_times_sine - a.echo_times_sine))};
+  const float beyond = place - static_cast<float>(first), weight = beyond > 0 ? beyond : 0.0f;
+  return {first, second, weight < 1 ? weight : 1.0f};
 }
 
-EMSCAPE_HD inline ClutterCell mixed(const ClutterCell& a, const ClutterCell& b, float weight) {
-  return {a.echo + weight * (b.echo - a.echo),
-          a.echo_times_sine + weight * (b.echo_times_sine - a.echo_times_sine)};
+/// Bilinear: values of two rows (a, b and c, d) at two ranges.
+EMSCAPE_HD inline float mixed(float a, float b, float c, float d, float row_weight, float range_weight) {
+  const float near_row = a + range_weight * (b - a), far_row = c + range_weight * (d - c);
+  return near_row + row_weight * (far_row - near_row);
 }
 
 /// All rows of a map as plain data; no cells: no clutter of the surface.
@@ -78,11 +74,16 @@ struct ClutterMapView {
   int azimuths = 0, ranges = 0;
   float cells_per_m = 0, azimuths_per_rad = 0;
 
-  /// Bilinear.
+  /// Beyond the last range its value.
   EMSCAPE_HD ClutterCell cellAt(float azimuth_rad, float range_m) const {
     const ClutterNeighbours rows = rowsBeside(azimuth_rad, azimuths, azimuths_per_rad);
-    return mixed(cellAtRange(cells + rows.first * ranges, ranges, cells_per_m, range_m),
-                 cellAtRange(cells + rows.second * ranges, ranges, cells_per_m, range_m), rows.weight);
+    const ClutterNeighbours columns = cellsBeside(range_m, ranges, cells_per_m);
+    // Indices instead of pointers per lane, so that the look-ups become gathers.
+    const int a = rows.first * ranges + columns.first, b = rows.first * ranges + columns.second;
+    const int c = rows.second * ranges + columns.first, d = rows.second * ranges + columns.second;
+    return {mixed(cells[a].echo, cells[b].echo, cells[c].echo, cells[d].echo, rows.weight, columns.weight),
+            mixed(cells[a].echo_times_sine, cells[b].echo_times_sine, cells[c].echo_times_sine,
+                  cells[d].echo_times_sine, rows.weight, columns.weight)};
   }
 };
 

@@ -195,8 +195,10 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
                    : jammingToNoise<kind>(task, pass.beam, jammer, column, t_m);
   }
   if constexpr (kClutter) {
-    if (!task.clutter.isNone())
-      jamming += clutterToNoise<kind>(task.clutter, task.look, pass.clutter_map, pass.beam, column, t_m);
+    if (!task.clutter.isNone()) {
+      const AimedVoxel aimed = aimedVoxel(task.look, pass.beam, column, t_m);
+      jamming += clutterToNoise<kind>(task.clutter, pass.clutter_map, pass.beam, aimed.aim, aimed.range_m);
+    }
   }
   const float looks = task.is_cumulative ? looksAt(task, pass.beam, column, t_m) : 1.0f;
   pass.accumulator[voxel] = withRadar(task, root, jamming, looks, pass.accumulator[voxel]);

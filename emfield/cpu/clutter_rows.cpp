@@ -15,7 +15,19 @@ __attribute__((always_inline)) inline void addOfKind(const RadarPass& pass, cons
   const EmitterBeam beam = pass.beam;
 #pragma omp simd
   for (int i = 0; i < row.count; ++i) {
-    jamming[i] += clutterToNoise<kind>(task, look, map, beam, row.column + i, row.t_m);
+    const AimedVoxel aimed = aimedVoxel(look, beam, row.column + i, row.t_m);
+    jamming[i] += surfaceToNoise<kind>(task, map, beam, aimed.aim, aimed.range_m);
+  }
+}
+
+EMSCAPE_SIMD_CLONES void addRain(const RadarPass& pass, const Row& row, float* jamming) {
+  const ClutterTask task = pass.task.clutter;
+  const RadarLook look = pass.task.look;
+  const EmitterBeam beam = pass.beam;
+#pragma omp simd
+  for (int i = 0; i < row.count; ++i) {
+    const AimedVoxel aimed = aimedVoxel(look, beam, row.column + i, row.t_m);
+    jamming[i] += rainToNoise(task, beam, aimed.aim, aimed.range_m);
   }
 }
 
@@ -35,9 +47,7 @@ EMSCAPE_SIMD_CLONES void addGrid(const RadarPass& pass, const Row& row, float* j
   addOfKind<PatternKind::grid>(pass, row, jamming);
 }
 
-}  // namespace
-
-void addClutter(const RadarPass& pass, const Row& row, float* jamming) {
+void addSurface(const RadarPass& pass, const Row& row, float* jamming) {
   switch (pass.beam.pattern.kind) {
     case PatternKind::isotropic:
       return addIsotropic(pass, row, jamming);
@@ -50,6 +60,13 @@ void addClutter(const RadarPass& pass, const Row& row, float* jamming) {
     case PatternKind::grid:
       return addGrid(pass, row, jamming);
   }
+}
+
+}  // namespace
+
+void addClutter(const RadarPass& pass, const Row& row, float* jamming) {
+  if (pass.task.clutter.surface > 0) addSurface(pass, row, jamming);
+  if (pass.task.clutter.rain > 0) addRain(pass, row, jamming);
 }
 
 }  // namespace emscape::emfield

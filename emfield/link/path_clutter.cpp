@@ -38,10 +38,13 @@ const std::vector<ClutterCell>& PathClutter::row(int azimuth) const {
 ClutterCell PathClutter::cellAt(float azimuth_rad, float range_m) const {
   const ClutterMapView shape = clutterMapView(task_.grid, nullptr);
   const ClutterNeighbours rows = rowsBeside(azimuth_rad, shape.azimuths, shape.azimuths_per_rad);
-  const auto cell = [&](int azimuth) {
-    return cellAtRange(row(azimuth).data(), shape.ranges, shape.cells_per_m, range_m);
+  const ClutterNeighbours columns = cellsBeside(range_m, shape.ranges, shape.cells_per_m);
+  const auto mix = [&](float ClutterCell::*value) {
+    const std::vector<ClutterCell>&near_row = row(rows.first), &far_row = row(rows.second);
+    return mixed(near_row[columns.first].*value, near_row[columns.second].*value,
+                 far_row[columns.first].*value, far_row[columns.second].*value, rows.weight, columns.weight);
   };
-  return mixed(cell(rows.first), cell(rows.second), rows.weight);
+  return {mix(&ClutterCell::echo), mix(&ClutterCell::echo_times_sine)};
 }
 
 float PathClutter::toNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim) const {

@@ -11,6 +11,7 @@
 #include "emfield/clutter/reflectivity.h"
 #include "emfield/clutter_map.h"
 #include "emfield/radar_clutter.h"
+#include "emscape/emfield/link.h"
 #include "emscape/emfield/path_budget.h"
 #include "emscape/emfield/reference_check.h"
 #include "tests/emfield/made_terrain.h"
@@ -375,6 +376,48 @@ TEST_P(Clutter, AfterAnEditIsThatOfAFreshField) {
 }
 
 EMSCAPE_ON_BACKENDS(Clutter);
+
+TEST(ClutterOfALink, IsThatAtTheTargetsRadialSpeed) {
+  scenario::Emitter radar = cluttered(trackingRadar());
+  radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 40, -80);
+  radar.clutter->sea_state = 5;
+  radar.clutter->mti.emplace();
+  radar.clutter->mti->surface_spread_mps = 0.5;
+  const auto scenario = lineWith(radar);
+  // eastwards from 12 km, at the first blind speed, twice that in the second half
+  const double blind_mps = radar.waveform->firstBlindSpeed_mps(radar.frequency_hz);
+  scenario::Platform aircraft = scenario->platforms[0];
+  const double east_m[] = {12e3, 12e3 + 5 * blind_mps, 12e3 + 12.5 * blind_mps};
+  const double times_s[] = {0, 5, 10};
+  const scenario::TrackPoint point = aircraft.track[0];
+  aircraft.track.clear();
+  for (int n = 0; n < 3; ++n) {
+    const GeodeticPosition at = pointAt(*scenario, east_m[n], 0);
+    aircraft.track.push_back(point);
+    aircraft.track.back().t_s = times_s[n];
+    aircraft.track.back().position.latitude_deg = at.latitude_deg;
+    aircraft.track.back().position.longitude_deg = at.longitude_deg;
+    aircraft.track.back().position.height_ellipsoid_m = at.height_ellipsoid_m;
+  }
+  scenario->platforms.push_back(aircraft);
+  scenario::Target target;
+  target.platform = 1;
+  target.rcs_m2 = radar.receiver.target_rcs_m2;
+  scenario->targets.push_back(target);
+  LinkOptions options;
+  options.times_s = {1, 6, 10};
+  options.emitters = {0};
+  options.targets = {0};
+  const LinkReport report = computeLinks(scenario, nullptr, options);
+  const std::vector<DetectionRow>& rows = report.detections.at(0).rows;
+  EXPECT_NEAR(*rows[0].radial_speed_mps, blind_mps, 0.01);
+  EXPECT_LT(rows[0].detection_probability, 1e-3) << "a blind speed";
+  EXPECT_NEAR(*rows[1].radial_speed_mps, 1.5 * blind_mps, 0.02);
+  EXPECT_NEAR(*rows[2].radial_speed_mps, 1.5 * blind_mps, 0.02) << "the end of the track";
+  EXPECT_GT(rows[1].sclnr_db, rows[0].sclnr_db + 30);
+  EXPECT_NEAR(rows[1].snr_db + ratioToDb(2), rows[1].sclnr_db, 0.1) << "the filter's largest response";
+  EXPECT_GT(rows[1].detection_probability, 0.5);
+}
 
 TEST(CudaClutter, IsThatOfTheCpu) {
   EMSCAPE_NEEDS_GPU();
