@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the pictures of models.md: a slice of each scenario in scenarios/models.
+"""Draws the pictures of models.md: a slice of each scenario in scenarios/models and scenarios/level.
 
     docs/make_models.py [EMSCAPE] [NAME...]      writes docs/images/model_NAME.png; by default all
 """
@@ -35,7 +35,7 @@ def draw(emscape, name, colours):
     with tempfile.TemporaryDirectory() as folder:
         full = pathlib.Path(folder) / "full.png"
         subprocess.run(
-            [emscape, "render", ROOT / "scenarios" / "models" / f"{name}.yaml", "-o", full, "--quiet",
+            [emscape, "render", ROOT / "scenarios" / ("level" if name in LEVEL else "models") / f"{name}.yaml", "-o", full, "--quiet",
              "--backend", "cpu", "--size", size, "--mode", "mip", f"--range={colours}", "--theme", "light",
              "--terrain", "off", "--transfer", ROOT / "scenarios" / "transfer" / "slice_viridis.json", "--camera",
              f"orbit:azimuth_deg=180,elevation_deg={elevation_deg},distance={distance},fov_deg=20,projection=orthographic"],

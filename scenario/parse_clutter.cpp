@@ -10,8 +10,8 @@ Mti parseMti(const Section& section, ParseContext& context) {
   Mti mti;
   mti.kind = section.choice<MtiKind>("kind");
   mti.pulses = section.integer("pulses");
-  mti.surface_spread_mps = section.number("surface_spread_mps");
-  mti.rain_spread_mps = section.number("rain_spread_mps");
+  mti.surface_spread_mps = section.number("surface_spread_m_s");
+  mti.rain_spread_mps = section.number("rain_spread_m_s");
   mti.improvement_limit_db = section.optionalNumber("improvement_limit_db");
   if (mti.kind == MtiKind::canceller && mti.pulses > kMostOfCanceller) {
     context.problems.addError(
@@ -42,10 +42,10 @@ std::optional<Clutter> parseClutter(const Section& section, const Emitter& radar
         "'clutter' names no source: give 'land', 'land_gamma_db', 'sea_state' or 'rain: true'");
   }
   if (section.has("mti")) clutter.mti = parseMti(section.section("mti"), context);
-  clutter.target_radial_speed_mps = section.optionalNumber("target_radial_speed_mps");
+  clutter.target_radial_speed_mps = section.optionalNumber("target_radial_speed_m_s");
   if (clutter.target_radial_speed_mps && !clutter.mti) {
-    context.problems.addWarning(section.locationOf("target_radial_speed_mps"),
-                                "'target_radial_speed_mps' has no effect without 'mti'");
+    context.problems.addWarning(section.locationOf("target_radial_speed_m_s"),
+                                "'target_radial_speed_m_s' has no effect without 'mti'");
   }
   constexpr double kLowestSea_hz = 0.5e9, kHighestSea_hz = 35e9, kHighestRain_hz = 10e9;
   if (clutter.sea_state && (radar.frequency_hz < kLowestSea_hz || radar.frequency_hz > kHighestSea_hz)) {

@@ -414,9 +414,9 @@ const ObjectSpec& mtiSpec() {
               "kind", choiceUpTo(MtiKind::pulse_doppler),
               "canceller: binomial weights of alternating sign; pulse_doppler: a bank of coherent filters"),
           byDefault("pulses", kInteger.from(2).to(1024), double(Mti{}.pulses), "that the filter weighs"),
-          byDefault("surface_spread_mps", spread, Mti{}.surface_spread_mps,
+          byDefault("surface_spread_m_s", spread, Mti{}.surface_spread_mps,
                     "standard deviation of the radial velocities of land and sea, the scanning included"),
-          byDefault("rain_spread_mps", spread, Mti{}.rain_spread_mps, "the same of rain"),
+          byDefault("rain_spread_m_s", spread, Mti{}.rain_spread_mps, "the same of rain"),
           optional("improvement_limit_db", number("dB").from(0).to(200),
                    "largest improvement that the radar's stability permits"),
       }};
@@ -439,7 +439,7 @@ const ObjectSpec& clutterSpec() {
                    "compression"),
           optional("mti", object(mtiSpec()), "Doppler filter; by default none"),
           optional(
-              "target_radial_speed_mps", number("m/s").from(-20000).to(20000),
+              "target_radial_speed_m_s", number("m/s").from(-20000).to(20000),
               "in volumes; by default the mean response of all speeds (canceller), the middle between two "
               "blind speeds (pulse_doppler)"),
       }};

@@ -382,7 +382,7 @@ TEST(ClutterOfALink, IsThatAtTheTargetsRadialSpeed) {
   radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 40, -80);
   radar.clutter->sea_state = 5;
   radar.clutter->mti.emplace();
-  radar.clutter->mti->surface_spread_mps = 0.5;
+  radar.clutter->mti->surface_spread_mps = 0.02;
   const auto scenario = lineWith(radar);
   // eastwards from 12 km, at the first blind speed, twice that in the second half
   const double blind_mps = radar.waveform->firstBlindSpeed_mps(radar.frequency_hz);
