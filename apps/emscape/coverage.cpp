@@ -16,7 +16,9 @@
 #include "base/whole_file.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
 #include "emscape/study/geotiff.h"
+#include "emscape/study/map_picture.h"
 
 namespace emscape::app {
 namespace {
@@ -33,6 +35,7 @@ struct CoverageCommand {
   double cell_m = NAN;
   std::string area;
   std::string crs = "utm";
+  std::vector<std::string> formats{"cog", "png"};
 };
 
 /// "LAT,LON,RADIUS_M" or "bbox:WEST,SOUTH,EAST,NORTH". @throws Error (usage)
@@ -72,16 +75,16 @@ std::string timeName(double time_s) {
   return fmt::format("t{}s", time_s);
 }
 
-/// PRODUCT_HEIGHT[_TIME].tif
+/// PRODUCT_HEIGHT[_TIME]
 std::string fileNameOf(const study::CoverageMap& map) {
   std::string name = fmt::format("{}_{}", study::info(map.product).name, study::nameOf(map.height));
   if (map.time_s) name += "_" + timeName(*map.time_s);
-  return name + ".tif";
+  return name;
 }
 
-Json toJson(const study::CoverageMap& map, const std::string& file) {
+Json toJson(const study::CoverageMap& map, const std::vector<std::string>& files) {
   Json json{{"product", study::info(map.product).name},
-            {"file", file},
+            {"files", files},
             {"description", map.description},
             {"unit", map.unit},
             {map.height.reference == emfield::HeightReference::ground ? "height_agl_m" : "height_msl_m",
@@ -161,9 +164,16 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
     print("Coverage of {}: {} x {} pixels of {} m in {}, {} >= {}\n", scenario->name, grid.width, grid.height,
           grid.cell_m, grid.crs, command.quantity, request.threshold);
   }
+  const auto has = [&](const char* format) {
+    return std::find(command.formats.begin(), command.formats.end(), format) != command.formats.end();
+  };
+  study::MapPictureOptions picture;
+  picture.labels = emitters;
+  if (has("png") && terrain != nullptr) picture.ground_msl_m = study::groundOf(grid, *terrain);
   const auto take = [&](study::CoverageMap map) {
     stopIfInterrupted();
     const std::string name = fileNameOf(map);
+    std::vector<std::string> files;
     std::vector<std::pair<std::string, std::string>> metadata{
         {"EMSCAPE_SCENARIO", scenario->name},
         {"EMSCAPE_SCENARIO_HASH", scenario->hash},
@@ -174,11 +184,24 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
         {"EMSCAPE_HEIGHT_DATUM", "EGM96 (EPSG:5773)"},
         {"EMSCAPE_VERSION", kVersion}};
     if (map.time_s) metadata.emplace_back("EMSCAPE_TIME_S", fmt::format("{}", *map.time_s));
-    study::writeGeoTiff(maps / name, grid, map,
-                        map.product == study::Product::best ? emitters : std::vector<std::string>{},
-                        metadata);
-    report["maps"].push_back(toJson(map, "maps/" + name));
-    if (!global.json) printRow(map, "maps/" + name);
+    if (has("cog")) {
+      files.push_back("maps/" + name + ".tif");
+      study::writeGeoTiff(folder / files.back(), grid, map,
+                          map.product == study::Product::best ? emitters : std::vector<std::string>{},
+                          metadata);
+    }
+    if (has("png")) {
+      files.push_back("maps/" + name + ".png");
+      const double time_s = map.time_s.value_or(request.times_s.front());
+      picture.title = fmt::format("{}: {}", scenario->name, map.description);
+      picture.subtitle = map.time_s
+                             ? fmt::format("t = {} s", time_s)
+                             : fmt::format("t = {} to {} s", request.times_s.front(), request.times_s.back());
+      picture.markers = study::markersOf(scenario::snapshotAt(scenario, terrain.get(), time_s));
+      render::writePng(folder / files.back(), study::drawMap(grid, map, picture));
+    }
+    report["maps"].push_back(toJson(map, files));
+    if (!global.json) printRow(map, files.empty() ? "" : files.front());
   };
   const ProgressSink show = progressSink(global);
   const std::vector<std::string> warnings = openOnTarget(global, "float", [&](const ComputeTarget& target) {
@@ -213,7 +236,7 @@ points. A place is covered where the quantity is at or above --threshold.
 
 Products:
 {}
-DIR/maps holds a cloud-optimised GeoTIFF for each map, DIR/report.json their areas and ranges.
+DIR/maps holds a cloud-optimised GeoTIFF and a picture of each map, DIR/report.json their areas and ranges.
 
 Examples:
   emscape coverage scenarios/jacksboro.yaml -o out --heights agl:30,150,300

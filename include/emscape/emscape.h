@@ -85,6 +85,7 @@
 #include "emscape/study/coverage.h"
 #include "emscape/study/geotiff.h"
 #include "emscape/study/map_grid.h"
+#include "emscape/study/map_picture.h"
 #include "emscape/volume/dense_volume.h"
 #include "emscape/volume/device_volume.h"
 #include "emscape/volume/difference.h"
