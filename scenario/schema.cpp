@@ -109,10 +109,9 @@ const ObjectSpec& terrainSpec() {
       {
           required("files", listOf(kFile, 1, kMaxItems),
                    "elevation files (HGT, DTED, GeoTIFF, VRT), relative to the scenario's folder"),
-          byDefault(
-              "vertical_datum", choice({"egm96", "ellipsoid", "egm2008"}), "egm96",
-              "datum of the files' heights; egm2008 (Copernicus): taken as egm96, from which it differs by "
-              "about a metre"),
+          byDefault("vertical_datum", choice({"egm96", "ellipsoid", "egm2008"}), "egm96",
+                    "datum of the files' heights; egm2008 (Copernicus GLO-30) needs PROJ's or "
+                    "GeographicLib's grid of it"),
       }};
   return spec;
 }
