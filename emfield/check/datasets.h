@@ -16,6 +16,7 @@ DatasetCheck checkRain(const std::filesystem::path& folder);
 DatasetCheck checkSwerling(const std::filesystem::path& file);
 DatasetCheck checkDetectionProbability(const std::filesystem::path& file);
 DatasetCheck checkRadarEquation(const std::filesystem::path& file);
+DatasetCheck checkDetectionLosses(const std::filesystem::path& file);
 DatasetCheck checkFreeSpaceConversions(const std::filesystem::path& file);
 
 // check_diffraction.cpp
