@@ -434,7 +434,8 @@ TEST_F(TerrainTest, HeightsAboveEgm2008GoByItsOwnGrid) {
   } catch (const Error& missing) {
     const std::string message =
         test::errorOf([&] { load({file}, box, VerticalDatum::egm2008); }, ErrorCode::bad_input);
-    EXPECT_THAT(message, testing::HasSubstr("heights above EGM2008 need its geoid grid, which was not found"));
+    EXPECT_THAT(message,
+                testing::HasSubstr("heights above EGM2008 need its geoid grid, which was not found"));
     EXPECT_THAT(message, testing::HasSubstr("projsync --file us_nga_egm08_25"));
     GTEST_SKIP() << missing.message();
   }
