@@ -9,6 +9,7 @@
 #include "emscape/base/parallel.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/volume/dense_volume.h"
+#include "study/least_heights.h"
 #include "study/time_figures.h"
 
 namespace emscape::study {
@@ -44,6 +45,38 @@ void checkRequest(const CoverageRequest& request) {
     if (info(product).over_time && request.times_s.size() < 2) {
       refuse("is over time: give two times or more");
     }
+  }
+}
+
+/// @param height  none: for all heights
+CoverageMap emptyMap(const CoverageRequest& request, Product product,
+                     const std::optional<MapHeight>& height) {
+  const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
+  const ProductInfo& of_product = info(product);
+  CoverageMap map;
+  map.product = product;
+  map.height = height;
+  map.unit = of_product.unit != nullptr ? of_product.unit : quantity.unit;
+  map.description = product == Product::value
+                        ? quantity.name
+                        : fmt::format("{} ({} >= {})", of_product.name, quantity.name, request.threshold);
+  if (height) map.description += " at " + describe(*height);
+  return map;
+}
+
+/// Sets the values of a map, and its areas.
+template <class Value>
+void fill(CoverageMap& map, const MapGrid& grid, const Value& valueAtPixel) {
+  map.values.resize(grid.pixels());
+  parallelFor(static_cast<int>(grid.pixels()), 1 << 14, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) map.values[p] = valueAtPixel(static_cast<std::size_t>(p));
+  });
+  const bool is_area = map.product == Product::covered || map.product == Product::jam_loss;
+  for (std::size_t p = 0; p < grid.pixels(); ++p) {
+    if (std::isnan(map.values[p])) continue;
+    const auto area_m2 = static_cast<double>(grid.areas_m2[p]);
+    map.known_area_m2 += area_m2;
+    if (is_area && map.values[p] == 1) map.covered_area_m2 += area_m2;
   }
 }
 
@@ -106,10 +139,10 @@ class SurfaceMaps {
         figures_[k].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*all, k, p)); });
       }
       for (const Product product : request_.products) {
-        if (info(product).over_time) continue;
-        CoverageMap map = emptyMap(product, heights_[k]);
+        if (info(product).over_time || !info(product).at_heights) continue;
+        CoverageMap map = emptyMap(request_, product, heights_[k]);
         map.time_s = time_s;
-        fill(map, [&](std::size_t p) { return valueOf(product, *all, unjammed.get(), each, k, p); });
+        fill(map, grid_, [&](std::size_t p) { return valueOf(product, *all, unjammed.get(), each, k, p); });
         take(std::move(map));
       }
     }
@@ -121,8 +154,8 @@ class SurfaceMaps {
       for (const Product product : request_.products) {
         if (!info(product).over_time) continue;
         const std::shared_ptr<const volume::DenseVolume> last = all_->volumes().front().host();
-        CoverageMap map = emptyMap(product, heights_[k]);
-        fill(map, [&](std::size_t p) {
+        CoverageMap map = emptyMap(request_, product, heights_[k]);
+        fill(map, grid_, [&](std::size_t p) {
           return std::isnan(valueAt(*last, k, p)) ? NAN : figures_[k].figure(product, p);
         });
         take(std::move(map));
@@ -175,35 +208,6 @@ class SurfaceMaps {
     }
   }
 
-  CoverageMap emptyMap(Product product, const MapHeight& height) const {
-    const scenario::QuantityInfo& quantity = scenario::info(request_.quantity);
-    const ProductInfo& of_product = info(product);
-    CoverageMap map;
-    map.product = product;
-    map.height = height;
-    map.unit = of_product.unit != nullptr ? of_product.unit : quantity.unit;
-    map.description = product == Product::value
-                          ? fmt::format("{} at {}", quantity.name, describe(height))
-                          : fmt::format("{} ({} >= {}) at {}", of_product.name, quantity.name,
-                                        request_.threshold, describe(height));
-    map.values.resize(grid_.pixels());
-    return map;
-  }
-
-  template <class Value>
-  void fill(CoverageMap& map, const Value& valueAtPixel) const {
-    parallelFor(static_cast<int>(grid_.pixels()), 1 << 14, [&](int begin, int end) {
-      for (int p = begin; p < end; ++p) map.values[p] = valueAtPixel(static_cast<std::size_t>(p));
-    });
-    const bool is_area = map.product == Product::covered || map.product == Product::jam_loss;
-    for (std::size_t p = 0; p < grid_.pixels(); ++p) {
-      if (std::isnan(map.values[p])) continue;
-      const auto area_m2 = static_cast<double>(grid_.areas_m2[p]);
-      map.known_area_m2 += area_m2;
-      if (is_area && map.values[p] == 1) map.covered_area_m2 += area_m2;
-    }
-  }
-
   const CoverageRequest& request_;
   const MapGrid& grid_;
   std::vector<MapHeight> heights_;
@@ -247,7 +251,8 @@ std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::S
       maps.push_back(std::make_unique<SurfaceMaps>(at_targets, terrain, grid, request, reference, options));
     }
   }
-  const double steps = static_cast<double>(request.times_s.size() * maps.size());
+  const bool has_least = isIn(request.products, {Product::min_height});
+  const double steps = static_cast<double>(request.times_s.size() * (maps.size() + (has_least ? 1 : 0)));
   double done = 0;
   for (const double time_s : request.times_s) {
     for (const auto& of_reference : maps) {
@@ -255,6 +260,15 @@ std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::S
       of_reference->addTime(terrain.get(), time_s, take);
       ++done;
     }
+    if (!has_least) continue;
+    if (progress) progress("maps", done / steps);
+    const std::vector<float> heights_m =
+        leastHeights(at_targets, terrain, grid, request.threshold, time_s, options);
+    CoverageMap map = emptyMap(request, Product::min_height, std::nullopt);
+    map.time_s = time_s;
+    fill(map, grid, [&](std::size_t p) { return heights_m[p]; });
+    take(std::move(map));
+    ++done;
   }
   std::vector<std::string> warnings;
   for (const auto& of_reference : maps) {

@@ -41,6 +41,8 @@ const std::vector<ProductInfo>& productTable() {
       {Product::margin, "margin", "dB", "the quantity less the threshold"},
       {Product::count, "count", "", "number of emitters that reach the threshold by themselves", false, true},
       {Product::best, "best", "", "the emitter with the largest value that reaches it", false, true},
+      {Product::min_height, "min_height", "m",
+       "least height above ground that reaches the threshold, to 10 km", false, false, false},
       {Product::jam_loss, "jam_loss", "", "1 where jamming takes the coverage away", false, true},
       {Product::first_detection, "first_detection", "s", "time of the first coverage", true},
       {Product::fraction, "fraction", "", "fraction of the time with coverage", true},

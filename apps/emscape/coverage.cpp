@@ -77,7 +77,8 @@ std::string timeName(double time_s) {
 
 /// PRODUCT_HEIGHT[_TIME]
 std::string fileNameOf(const study::CoverageMap& map) {
-  std::string name = fmt::format("{}_{}", study::info(map.product).name, study::nameOf(map.height));
+  std::string name = study::info(map.product).name;
+  if (map.height) name += "_" + study::nameOf(*map.height);
   if (map.time_s) name += "_" + timeName(*map.time_s);
   return name;
 }
@@ -86,9 +87,11 @@ Json toJson(const study::CoverageMap& map, const std::vector<std::string>& files
   Json json{{"product", study::info(map.product).name},
             {"files", files},
             {"description", map.description},
-            {"unit", map.unit},
-            {map.height.reference == emfield::HeightReference::ground ? "height_agl_m" : "height_msl_m",
-             map.height.metres}};
+            {"unit", map.unit}};
+  if (map.height) {
+    const bool above_ground = map.height->reference == emfield::HeightReference::ground;
+    json[above_ground ? "height_agl_m" : "height_msl_m"] = map.height->metres;
+  }
   if (map.time_s) json["time_s"] = *map.time_s;
   float least = INFINITY, largest = -INFINITY;
   for (const float value : map.values) {
@@ -112,8 +115,8 @@ void printRow(const study::CoverageMap& map, const std::string& file) {
                                ? ""
                                : fmt::format("{:.1f} km2, {:.1f} %", map.covered_area_m2 / 1e6,
                                              100 * map.covered_area_m2 / std::max(map.known_area_m2, 1.0));
-  print("  {:<16} {:<26} {:>8}  {:<24} {}\n", study::info(map.product).name, study::describe(map.height),
-        time, area, file);
+  print("  {:<16} {:<26} {:>8}  {:<24} {}\n", study::info(map.product).name,
+        map.height ? study::describe(*map.height) : "", time, area, file);
 }
 
 int coverage(const CoverageCommand& command, const GlobalOptions& global) {
@@ -180,9 +183,9 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
         {"EMSCAPE_PRODUCT", study::info(map.product).name},
         {"EMSCAPE_QUANTITY", command.quantity},
         {"EMSCAPE_THRESHOLD", fmt::format("{}", request.threshold)},
-        {"EMSCAPE_HEIGHT", study::describe(map.height)},
         {"EMSCAPE_HEIGHT_DATUM", "EGM96 (EPSG:5773)"},
         {"EMSCAPE_VERSION", kVersion}};
+    if (map.height) metadata.emplace_back("EMSCAPE_HEIGHT", study::describe(*map.height));
     if (map.time_s) metadata.emplace_back("EMSCAPE_TIME_S", fmt::format("{}", *map.time_s));
     if (has("cog")) {
       files.push_back("maps/" + name + ".tif");
@@ -241,7 +244,7 @@ DIR/maps holds a cloud-optimised GeoTIFF and a picture of each map, DIR/report.j
 Examples:
   emscape coverage scenarios/jacksboro.yaml -o out --heights agl:30,150,300
   emscape coverage scenarios/jacksboro.yaml -o out --heights "agl:150;msl:1000:3000:500" --products covered,count,best
-  emscape coverage scenarios/jamming.yaml -o out --products covered,jam_loss --cell 100
+  emscape coverage scenarios/jamming.yaml -o out --products min_height,jam_loss --cell 100 --format png
   emscape coverage scenarios/jacksboro.yaml -o out --times 0:120:5 --products fraction,first_detection,longest_gap
   emscape coverage scenarios/jacksboro.yaml -o out --quantity power_density_dbwm2 --threshold -60 --area 36.3,-84.2,8000)",
                               products));
@@ -269,6 +272,8 @@ Examples:
   command->add_option(
       "--crs", options->crs,
       "Projection: utm (zone of the area's middle), local (azimuthal equidistant) or EPSG:NUMBER");
+  addListOption(*command, "--format", options->formats, "Files of each map, with commas between them")
+      ->check(CLI::IsMember({"cog", "png"}));
   command->callback(
       [options, &global, &action] { action = [options, &global] { return coverage(*options, global); }; });
 }

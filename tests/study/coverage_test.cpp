@@ -35,8 +35,8 @@ class CoverageOf {
 
   const CoverageMap& find(Product product, const MapHeight& height, std::optional<double> time_s = {}) const {
     for (const CoverageMap& map : maps) {
-      if (map.product == product && map.height.metres == height.metres &&
-          map.height.reference == height.reference && map.time_s == time_s) {
+      if (map.product == product && map.height && map.height->metres == height.metres &&
+          map.height->reference == height.reference && map.time_s == time_s) {
         return map;
       }
     }
@@ -137,6 +137,42 @@ TEST(Coverage, ProductsFollowFromTheValues) {
       ASSERT_TRUE(std::isnan(first.values[p]));
     }
   }
+}
+
+TEST(Coverage, TheLeastHeightIsTheLowestThatIsCovered) {
+  // Beside ridges there are places where a lower height is seen and a higher one is not; few.
+  const CoverageOf coverage(
+      "jacksboro.yaml", 1000,
+      {{kLow}, {Product::min_height}, scenario::Quantity::detection_probability, 0.5, {10}});
+  ASSERT_EQ(coverage.maps.size(), 1u);
+  const std::vector<float>& least_m = coverage.maps[0].values;
+  auto edited = std::make_shared<scenario::Scenario>(*coverage.scenario);
+  edited->output.radar_look = scenario::RadarLook::target;
+  edited->output.quantities = {"detection_probability"};
+  auto surface = std::make_shared<emfield::Surface>();
+  surface->width = coverage.grid.width;
+  surface->height = coverage.grid.height;
+  surface->places = coverage.grid.places;
+  surface->heights_m = {0, 1};  // the metre below, and the height itself
+  for (const float height_m : least_m) {
+    surface->offsets_m.push_back(height_m >= 1 ? height_m - 1 : 0);
+  }
+  emfield::FieldOptions options;
+  options.surface = surface;
+  emfield::FieldSolver solver(edited, coverage.terrain, options);
+  solver.update(scenario::snapshotAt(edited, coverage.terrain.get(), 10));
+  const auto volume = solver.volumes().front().host();
+  int found = 0, above = 0;
+  for (std::size_t p = 0; p < least_m.size(); ++p) {
+    if (std::isnan(least_m[p])) continue;
+    ++found;
+    if (least_m[p] < 1) continue;
+    ++above;
+    EXPECT_LT(volume->values[p], 0.5f) << least_m[p];
+    EXPECT_GE(volume->values[least_m.size() + p], 0.5f) << least_m[p];
+  }
+  EXPECT_GT(found, 500);
+  EXPECT_GT(above, 200);
 }
 
 TEST(Coverage, RefusesProductsThatTheQuantityOrTheTimesDoNotHave) {

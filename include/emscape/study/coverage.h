@@ -34,6 +34,7 @@ enum class Product {
   margin,           ///< the quantity less the threshold, of quantities in decibels
   count,            ///< number of emitters that cover the place by themselves
   best,             ///< the emitter with the largest value, where it covers the place
+  min_height,       ///< least height (m) above ground at which it is covered
   jam_loss,         ///< 1 where the place would be covered without jammers, but is not
   first_detection,  ///< time (s) at which the place is covered for the first time
   fraction,         ///< fraction of the times at which it is covered
@@ -48,6 +49,7 @@ struct ProductInfo {
   const char* description;
   bool over_time = false;    ///< one map for all times
   bool categorical = false;  ///< integers: counts and indices
+  bool at_heights = true;    ///< a map for each height
 };
 const std::vector<ProductInfo>& productTable();
 const ProductInfo& info(Product product);
@@ -65,8 +67,8 @@ struct CoverageRequest {
 /// One map: a product at a height, at a time or over all.
 struct CoverageMap {
   Product product = Product::value;
-  MapHeight height;
-  std::optional<double> time_s;  ///< none: over all times
+  std::optional<MapHeight> height;  ///< none: for all heights
+  std::optional<double> time_s;     ///< none: over all times
   std::string unit;
   std::string description;     ///< "detection_probability at 150 m above ground"
   std::vector<float> values;   ///< pixels in the grid's order; NaN: left out, below ground or unknown
