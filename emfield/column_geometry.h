@@ -59,17 +59,26 @@ EMSCAPE_HD inline void columnGeometry(const Station& station, const GridColumn& 
   const Vec3d base = column.base_ecef_m - station.ecef_m;
   const double nearest_t_m = -dot(base, column.axis);
   const Vec3d offset = base + column.axis * nearest_t_m;
-  const Vec3d middle = base + column.axis * middle_m;
-  const double level_m = std::hypot(dot(middle, station.geodesy.east), dot(middle, station.geodesy.north));
+  const auto liftAt = [&](double t_m) {
+    const Vec3d point = base + column.axis * t_m;
+    const double level_m = std::hypot(dot(point, station.geodesy.east), dot(point, station.geodesy.north));
+    return refractionLift_m(station, foot.distance_m, level_m, heightMsl_m(column, t_m));
+  };
+  const double lift_m = liftAt(middle_m);
+  // In an exponential atmosphere the lift falls with height: the column's line is turned by that.
+  double lift_rise = 0;
+  if (station.refraction.exponential && middle_m != 0) {
+    lift_rise = (liftAt(1.5 * middle_m) - liftAt(0.5 * middle_m)) / middle_m;
+  }
   const double numbers[kColumnNumbers] = {dot(base, station.geodesy.east),
                                           dot(base, station.geodesy.north),
-                                          dot(base, up),
+                                          dot(base, up) - lift_rise * middle_m,
                                           dot(column.axis, station.geodesy.east),
                                           dot(column.axis, station.geodesy.north),
-                                          dot(column.axis, up),
+                                          dot(column.axis, up) + lift_rise,
                                           dot(offset, offset),
                                           nearest_t_m,
-                                          refractionLift_m(station, foot.distance_m, level_m)};
+                                          lift_m};
   for (int n = 0; n < kColumnNumbers; ++n) out[n * stride] = static_cast<float>(numbers[n]);
 }
 

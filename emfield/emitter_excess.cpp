@@ -72,7 +72,8 @@ PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const St
   PathInputs inputs;
   inputs.emitter = emitterInputs(scenario, emitter);
   inputs.site = {radToDeg(station.geodesy.latitude_rad), station.height_msl_m, station.earth_radius_m,
-                 station.effective_earth_radius_m};
+                 station.effective_earth_radius_m,
+                 model.on_effective_earth ? station.effective_height_msl_m : station.height_msl_m};
   if (model.on_smooth_surface) {
     inputs.surface_msl_m = smoothSurface_msl_m(scenario, emitter, model, station, terrain);
   }

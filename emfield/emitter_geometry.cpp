@@ -17,7 +17,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
                               const scenario::Emitter& emitter, const GridColumns& columns,
                               const scenario::Terrain* terrain, Times& times) {
   Stopwatch watch;
-  const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere.k_factor);
+  const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
   locateColumns(station, columns);
   shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
   excess_.clear();

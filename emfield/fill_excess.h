@@ -91,16 +91,33 @@ struct ExcessTask {
     }
     for (int k = 0; k < part.count; ++k) {
       const auto t_m = static_cast<double>(grid.t_m[first + k]);
-      scratch.height_msl_m[first + k] = static_cast<float>(heightMsl_m(grid.columns[c], t_m));
+      scratch.height_msl_m[first + k] =
+          modelHeight_m(part.range_m, static_cast<float>(heightMsl_m(grid.columns[c], t_m)));
     }
     return part;
   }
 
+  /// Height of a voxel as the model takes it.
+  EMSCAPE_HD float modelHeight_m(double range_m, float height_msl_m) const {
+    if constexpr (propagation::OnEffectiveEarth<Model>::value) {
+      if (station.refraction.exponential) {
+        return static_cast<float>(station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m),
+                                                                       station.height_msl_m, range_m));
+      }
+    }
+    return height_msl_m;
+  }
+
   /// Adds the attenuation by the air at some heights of a segment.
-  EMSCAPE_HD void addAir(const ExcessColumn& part, int begin, int end, float* excess_db) const {
+  EMSCAPE_HD void addAir(std::size_t c, int segment, const ExcessColumn& part, int begin, int end,
+                         float* excess_db) const {
     if (air.isClear()) return;
     const propagation::AirColumn above(air, static_cast<float>(part.range_m));
-    for (int k = begin; k < end; ++k) excess_db[k] += above.lossDb(part.height_msl_m[k]);
+    const float* const t_m = grid.t_m + grid.firstLayer(segment);
+    for (int k = begin; k < end; ++k) {
+      excess_db[k] +=
+          above.lossDb(static_cast<float>(heightMsl_m(grid.columns[c], static_cast<double>(t_m[k]))));
+    }
   }
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
@@ -122,7 +139,7 @@ struct ExcessTask {
       } else {
         warnings |= model(part, scratch, excess_db);
       }
-      addAir(part, 0, part.count, excess_db);
+      addAir(c, segment, part, 0, part.count, excess_db);
     }
     return warnings;
   }

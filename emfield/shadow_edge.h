@@ -13,6 +13,13 @@ namespace emscape::emfield {
 using propagation::HorizonGeometry;
 using propagation::RangeTerms;
 
+/// Height of a point above mean sea level from that on the effective earth, in an exponential atmosphere. A
+/// call of its own, whose registers the other loops do not pay for.
+[[gnu::noinline]] EMSCAPE_HD inline float heightOfImage_m(const Station& station, float image_m,
+                                                          double range_m) {
+  return float(station.refraction.heightOfImage_m(double(image_m), station.height_msl_m, range_m));
+}
+
 /// One emitter of the model `horizon` over the columns of a grid.
 struct ShadowTask {
   Station station;
@@ -20,7 +27,7 @@ struct ShadowTask {
   const RangeTerms<float>* terms = nullptr;  ///< of the posts' ranges; not read over a smooth earth
 
   EMSCAPE_HD HorizonGeometry<float> geometry() const {
-    return {float(station.height_msl_m), float(station.effective_earth_radius_m)};
+    return {float(station.effective_height_msl_m), float(station.effective_earth_radius_m)};
   }
 
   /// z (m, in the grid's frame) of the shadow's edge in a column: voxels at or above it are lit. -infinity:
@@ -59,7 +66,9 @@ struct ShadowTask {
   EMSCAPE_HD float edgeHeight_m(float slope, double range_m) const {
     if (std::isinf(slope)) return slope;
     if (!(range_m <= 0.5 * kPi * station.earth_radius_m)) return HUGE_VALF;
-    return geometry().heightOn(slope, geometry().termsAt(range_m));
+    const float edge_m = geometry().heightOn(slope, geometry().termsAt(range_m));
+    if (!station.refraction.exponential || std::isnan(edge_m)) return edge_m;
+    return heightOfImage_m(station, edge_m, range_m);
   }
 };
 

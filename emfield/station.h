@@ -2,8 +2,10 @@
 #pragma once
 
 #include "base/fast_geodesy.h"
+#include "emfield/refraction.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/host_device.h"
+#include "emscape/propagation/settings.h"
 
 namespace emscape::emfield {
 
@@ -14,22 +16,26 @@ struct Station {
   double height_msl_m = 0;
   double earth_radius_m = 0;            ///< Gaussian radius of curvature below the station
   double effective_earth_radius_m = 0;  ///< k times that
+  Refraction refraction;
+  double effective_height_msl_m = 0;  ///< on the effective earth: Refraction::grazingHeight_m()
 };
 
-inline Station makeStation(const GeodeticPosition& position, double height_msl_m, double k_factor) {
-  Station station;
-  station.geodesy = fastGeodesy(position.latitude_deg, position.longitude_deg);
-  station.ecef_m = toEcef(position);
-  station.height_msl_m = height_msl_m;
-  station.earth_radius_m = std::sqrt(station.geodesy.meridian_radius_m * station.geodesy.prime_radius_m);
-  station.effective_earth_radius_m = k_factor * station.earth_radius_m;
-  return station;
-}
+/// Refractivity is linear in height.
+Station makeStation(const GeodeticPosition& position, double height_msl_m, double k_factor);
+/// Refractivity is that of the atmosphere.
+Station makeStation(const GeodeticPosition& position, double height_msl_m,
+                    const propagation::Atmosphere& atmosphere);
 
 /// Correction of the rise (m) of the straight line to a point, so that it starts along the refracted ray.
-/// @param range_m  over the ground
-/// @param level_m  distance of the point in the station's horizontal plane
-EMSCAPE_HD inline double refractionLift_m(const Station& station, double range_m, double level_m) {
+/// @param range_m       over the ground
+/// @param level_m       distance of the point in the station's horizontal plane
+/// @param height_msl_m  of the point
+/// @accuracy launch angle within 0.003 degree in an exponential atmosphere
+EMSCAPE_HD inline double refractionLift_m(const Station& station, double range_m, double level_m,
+                                          double height_msl_m) {
+  if (station.refraction.exponential) {
+    return range_m * level_m * station.refraction.bending(station.height_msl_m, height_msl_m, range_m);
+  }
   return range_m * level_m * (1 / station.earth_radius_m - 1 / station.effective_earth_radius_m) / 2;
 }
 

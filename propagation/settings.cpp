@@ -55,6 +55,10 @@ const char* toString(GasLosses gases) {
   return nameOf(gases, {"auto", "always", "never"});
 }
 
+const char* toString(RefractionProfile profile) {
+  return nameOf(profile, {"linear", "exponential"});
+}
+
 const char* toString(RadioClimate climate) {
   return nameOf(climate,
                 {"equatorial", "continental_subtropical", "maritime_subtropical", "desert",

@@ -32,6 +32,8 @@ PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Pla
     receiver.antenna = makeIsotropic(section.number("gain_dbi"));
   }
   receiver.scan = parseScan(section.section("scan"), receiver.antenna && receiver.antenna->is_array, context);
+  parseAntennaNoise(section, receiver.center_frequency_hz, receiver.scan, context,
+                    receiver.antenna_temperature_k);
   if (receiver.scan.kind == ScanKind::track) {
     context.problems.addWarning(
         section.section("scan").locationOf("kind"),

@@ -10,6 +10,8 @@
 #include "base/whole_file.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
+#include "emscape/base/units.h"
+#include "propagation/air/sky_noise.h"
 #include "propagation/registry/model_info.h"
 #include "scenario/antenna/shapes.h"
 
@@ -320,6 +322,21 @@ int parseCarrier(const Section& section, const std::vector<Platform>& platforms,
   return -1;
 }
 
+void parseAntennaNoise(const Section& section, double frequency_hz, const ScanSpec& scan,
+                       ParseContext& context, double& antenna_temperature_k) {
+  if (!section.has("antenna_noise")) return;
+  if (section.has("antenna_temperature_k")) {
+    context.problems.addError(section.locationOf("antenna_temperature_k"),
+                              "'antenna_temperature_k' and 'antenna_noise' exclude each other");
+  } else if (frequency_hz <= 0) {
+    context.problems.addError(section.locationOf("antenna_noise"),
+                              "'antenna_noise' needs the receiver's 'center_frequency_hz'");
+  } else {
+    antenna_temperature_k =
+        propagation::antennaTemperature_k(frequency_hz, degToRad(scan.elevation_deg), context.atmosphere);
+  }
+}
+
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
   Emitter emitter;
   emitter.name = section.text("name");
@@ -347,6 +364,8 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   if (section.has("receiver")) {
     const Section receiver = section.section("receiver");
     emitter.receiver = parseReceiver(receiver, context);
+    parseAntennaNoise(receiver, emitter.frequency_hz, emitter.scan, context,
+                      emitter.receiver.antenna_temperature_k);
     matchPulses(emitter, receiver, context);
   }
   emitter.active_s = parseActive(section, context);

@@ -27,6 +27,7 @@ struct ParseContext {
   document::ContentHash hash;
   const NamedFiles* before = nullptr;  ///< content of the files from an earlier reading; null: read them
   NamedFiles files;                    ///< content of the files from this reading
+  propagation::Atmosphere atmosphere;  ///< of the scenario
 
   /// Path of a file named in the scenario; relative names are relative to the scenario's folder.
   std::string resolve(const std::string& name) const;
@@ -46,6 +47,12 @@ int parseCarrier(const Section& section, const std::vector<Platform>& platforms,
 /// @return none if faulty, or without a waveform
 std::optional<Clutter> parseClutter(const Section& section, const Emitter& radar, ParseContext& context);
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
+
+/// Sets the noise temperature of an antenna if its receiver asks for that of the sky (antenna_noise).
+/// @param section       of the receiver
+/// @param frequency_hz  0: unknown, which is a problem
+void parseAntennaNoise(const Section& section, double frequency_hz, const ScanSpec& scan,
+                       ParseContext& context, double& antenna_temperature_k);
 
 /// @param section  with a platform
 PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Platform>& platforms,

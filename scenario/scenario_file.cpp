@@ -99,6 +99,7 @@ propagation::Atmosphere parseAtmosphere(const Section& section) {
   atmosphere.rain_mm_h = section.number("rain_mm_h");
   atmosphere.rain_height_m = section.optionalNumber("rain_height_m");
   atmosphere.gases = section.choice<propagation::GasLosses>("gases");
+  atmosphere.refraction = section.choice<propagation::RefractionProfile>("refraction");
   atmosphere.sea_level_refractivity = section.number("sea_level_refractivity");
   atmosphere.climate = section.choice<propagation::RadioClimate>("climate");
   return atmosphere;
@@ -299,7 +300,7 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
   scenario.clock = parseClock(root, context);
   scenario.region = parseRegion(root.section("region"), context);
   if (root.has("terrain")) scenario.terrain = parseTerrain(root.section("terrain"), context);
-  scenario.atmosphere = parseAtmosphere(root.section("atmosphere"));
+  scenario.atmosphere = context.atmosphere = parseAtmosphere(root.section("atmosphere"));
   scenario.ground = parseGround(root.section("ground"));
   for (const Section& item : root.sections("platforms"))
     scenario.platforms.push_back(parsePlatform(item, context));

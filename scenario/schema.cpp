@@ -30,6 +30,7 @@ using propagation::GroundKind;
 using propagation::ModelInfo;
 using propagation::Polarization;
 using propagation::RadioClimate;
+using propagation::RefractionProfile;
 
 /// The names of an enumeration that counts from 0 to `last`.
 template <class Enum>
@@ -109,10 +110,9 @@ const ObjectSpec& terrainSpec() {
       {
           required("files", listOf(kFile, 1, kMaxItems),
                    "elevation files (HGT, DTED, GeoTIFF, VRT), relative to the scenario's folder"),
-          byDefault(
-              "vertical_datum", choice({"egm96", "ellipsoid", "egm2008"}), "egm96",
-              "datum of the files' heights; egm2008 (Copernicus): taken as egm96, from which it differs by "
-              "about a metre"),
+          byDefault("vertical_datum", choice({"egm96", "ellipsoid", "egm2008"}), "egm96",
+                    "datum of the files' heights; egm2008 (Copernicus GLO-30) needs PROJ's or "
+                    "GeographicLib's grid of it"),
       }};
   return spec;
 }
@@ -131,16 +131,21 @@ const ObjectSpec& atmosphereSpec() {
           byDefault("vapour_g_m3", number("g/m3").from(0).to(100), Atmosphere{}.vapour_g_m3, "water vapour"),
           byDefault("rain_mm_h", number("mm/h").from(0).to(200), Atmosphere{}.rain_mm_h,
                     "rain rate, everywhere up to rain_height_m; its loss is added to every model's"),
-          optional(
-              "rain_height_m", number("m").from(0).to(20000),
-              "upper limit of the rain, above mean sea level; by default by latitude, 5000 in the tropics"),
+          optional("rain_height_m", number("m").from(0).to(20000),
+                   "upper limit of the rain, above mean sea level; by default by latitude (P.839-2), 5000 in "
+                   "the tropics; P.839-4's maps differ from it by up to 1.7 km at middle latitudes"),
           byDefault("gases", choiceUpTo(GasLosses::never), toString(Atmosphere{}.gases),
                     "attenuation by oxygen and water vapour; auto: with every model except free_space and "
                     "horizon; p528 and p452 include their own"),
-          byDefault(
-              "sea_level_refractivity", number().from(200).to(450), Atmosphere{}.sea_level_refractivity,
-              "N-units; for itm, whose rays are bent by it, not by k_factor, and for the troposcatter of "
-              "p1812 and p452"),
+          byDefault("refraction", choiceUpTo(RefractionProfile::exponential),
+                    toString(Atmosphere{}.refraction),
+                    "refractivity over height, for horizon, diffraction, two_ray and the directions of all "
+                    "rays: linear, by k_factor, right up to about 10 km; exponential, from "
+                    "sea_level_refractivity, at all heights"),
+          byDefault("sea_level_refractivity", number().from(200).to(450), Atmosphere{}.sea_level_refractivity,
+                    "N-units; for refraction: exponential, for itm, whose rays are bent by it, not by "
+                    "k_factor, and "
+                    "for the troposcatter of p1812 and p452"),
           byDefault("climate", choiceUpTo(RadioClimate::maritime_temperate_over_sea),
                     toString(Atmosphere{}.climate), "for itm's statistics"),
       }};
@@ -347,6 +352,13 @@ KeySpec crossPolarKey() {
                    "isolation of the orthogonal polarisation by the antenna");
 }
 
+KeySpec antennaNoiseKey() {
+  return optional(
+      "antenna_noise", choice({"sky"}),
+      "in place of antenna_temperature_k: the clear sky at the frequency and the boresight's "
+      "elevation (galaxy by P.372, gases by P.676), and the ground at 290 K in 0.124 of the pattern");
+}
+
 const ObjectSpec& radarReceiverSpec() {
   static const ObjectSpec spec{
       "radar receiver",
@@ -355,6 +367,7 @@ const ObjectSpec& radarReceiverSpec() {
           required("noise_figure_db", kNoiseFigure, "referred to 290 K"),
           byDefault("antenna_temperature_k", kNoiseTemperature, RadarReceiver{}.antenna_temperature_k,
                     "noise from sky and ground"),
+          antennaNoiseKey(),
           required("bandwidth_hz", kBandwidth, "of the noise"),
           byDefault(
               "losses_db", kLoss, RadarReceiver{}.losses_db,
@@ -494,6 +507,7 @@ const ObjectSpec& receiverSpec() {
           byDefault("losses_db", kLoss, ReceiverProfile{}.losses_db, "between antenna and receiver"),
           optional("noise_figure_db", kNoiseFigure, "referred to 290 K; required with a platform"),
           optional("antenna_temperature_k", kNoiseTemperature, "noise from sky and ground; by default 290"),
+          antennaNoiseKey(),
           optional("polarization", choiceUpTo(Polarization::circular_left),
                    "by default that of each emitter"),
           crossPolarKey(),
@@ -512,6 +526,7 @@ const ObjectSpec& receiverSpec() {
        {"scan", "antenna"},
        {"noise_figure_db", "platform"},
        {"antenna_temperature_k", "platform"},
+       {"antenna_noise", "platform"},
        {"sensitivity_dbm", "platform"},
        {"required_sinr_db", "platform"}}};
   return spec;

@@ -4,8 +4,10 @@
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
 #include "emfield/radar/detection.h"
+#include "emfield/radar/detection_losses.h"
 #include "emfield/radar/equation.h"
 #include "emscape/base/error.h"
+#include "emscape/scenario/waveform.h"
 
 namespace emscape::emfield {
 namespace {
@@ -81,6 +83,42 @@ DatasetCheck checkRadarEquation(const std::filesystem::path& file) {
     expected.compareRelative(computed, cases.number(i, "expected"), cases.location(i).line);
   }
   return {cases.rows(), {expected}};
+}
+
+DatasetCheck checkDetectionLosses(const std::filesystem::path& file) {
+  const ReferenceTable cases(
+      file, {"figure", "cells", "pfa", "planes", "prf_hz", "beamwidth_deg", "rate_rpm", "expected"});
+  FigureCheck cfar{"cfar_loss_db", 1e-5, "dB"}, blake{"blake_beam_shape_loss_db", 1e-9, "dB"},
+      barton{"barton_beam_shape_loss_db", 0.05, "dB"}, range{"unambiguous_range_m", 1e-3, "m"},
+      hits{"hits_per_scan", 1e-9, ""};
+  for (int i = 0; i < cases.rows(); ++i) {
+    const std::string& figure = cases.text(i, "figure");
+    const int line = cases.location(i).line;
+    const double expected = cases.number(i, "expected");
+    if (figure == cfar.figure) {
+      const Detector detector{Swerling::slow_exponential, 1, cases.number(i, "pfa")};
+      cfar.compare(cfarLossDb(detector, cases.integer(i, "cells")), expected, line);
+    } else if (figure == blake.figure) {
+      blake.compare(beamShapeLossDb(scenario::BeamShapeLoss::blake, cases.integer(i, "planes")), expected,
+                    line);
+    } else if (figure == barton.figure) {
+      barton.compare(beamShapeLossDb(scenario::BeamShapeLoss::barton, cases.integer(i, "planes")), expected,
+                     line);
+    } else if (figure == range.figure) {
+      range.compare(scenario::Waveform{cases.number(i, "prf_hz"), 1e-6, {}}.unambiguousRange_m(), expected,
+                    line);
+    } else if (figure == hits.figure) {
+      scenario::ScanSpec scan;
+      scan.kind = scenario::ScanKind::rotate;
+      scan.rate_rpm = cases.number(i, "rate_rpm");
+      const auto computed =
+          scenario::hitsPerScan(scan, cases.number(i, "beamwidth_deg"), cases.number(i, "prf_hz"));
+      hits.compare(computed.value_or(0), expected, line);
+    } else {
+      throw Error(ErrorCode::bad_input, cases.location(i), "figure: '" + figure + "' is not known");
+    }
+  }
+  return {cases.rows(), {cfar, blake, barton, range, hits}};
 }
 
 DatasetCheck checkFreeSpaceConversions(const std::filesystem::path& file) {

@@ -20,6 +20,7 @@ DatasetCheck checkClutterExamples(const std::filesystem::path& file);
 DatasetCheck checkSwerling(const std::filesystem::path& file);
 DatasetCheck checkDetectionProbability(const std::filesystem::path& file);
 DatasetCheck checkRadarEquation(const std::filesystem::path& file);
+DatasetCheck checkDetectionLosses(const std::filesystem::path& file);
 DatasetCheck checkFreeSpaceConversions(const std::filesystem::path& file);
 
 // check_diffraction.cpp

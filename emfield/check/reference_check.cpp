@@ -45,6 +45,7 @@ const std::vector<ReferenceDataset>& referenceDatasets() {
       {"radar/radar_equation_worked_examples.csv", checkRadarEquation},
       {"radar/sea_clutter_nathanson.csv", checkSeaClutter},
       {"radar/clutter_worked_examples.csv", checkClutterExamples},
+      {"radar/detection_losses_published.csv", checkDetectionLosses},
       {"radar/knife_edge_J_nu_derived.csv", checkKnifeEdge},
       {"radar/two_ray_flat_pec_derived.csv", checkTwoRay},
       {"radar/freespace_conversions_derived.csv", checkFreeSpaceConversions},

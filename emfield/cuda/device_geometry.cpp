@@ -74,7 +74,7 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   Work work;
   const scenario::Scenario& scenario = *setup_.scenario;
   const Station station =
-      makeStation(request.state.position, request.state.height_msl_m, scenario.atmosphere.k_factor);
+      makeStation(request.state.position, request.state.height_msl_m, scenario.atmosphere);
   const scenario::Emitter& emitter = scenario.emitters[request.emitter];
   const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   work.has_shadow = model.casts_shadow;

@@ -141,6 +141,12 @@ struct Tiles {
   int along_x, along_y, count;
 };
 
+/// A call of its own: its registers are not those of the columns.
+__device__ __noinline__ float effectiveHeight_m(const Station& station, float height_msl_m, double range_m) {
+  return static_cast<float>(
+      station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));
+}
+
 /// The column of a thread in a tile.
 __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGrid& grid, int c,
                                     const ProfileMemory& memory, int thread) {
@@ -175,11 +181,16 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
         float rx_msl_m[kReceivers], loss_db[kReceivers];
 #pragma unroll
         for (int j = 0; j < kReceivers; ++j) rx_msl_m[j] = heightOf(k + j);
+        if (task.station.refraction.exponential) {
+          for (int j = 0; j < kReceivers; ++j) {
+            rx_msl_m[j] = effectiveHeight_m(task.station, rx_msl_m[j], path.distance_m);
+          }
+        }
         is_free = receivers.losses(rx_msl_m, loss_db);
 #pragma unroll
         for (int j = 0; j < kReceivers; ++j) {
           if (k + j >= end) break;
-          if (!air.isClear()) loss_db[j] += above.lossDb(rx_msl_m[j]);
+          if (!air.isClear()) loss_db[j] += above.lossDb(heightOf(k + j));
           codes[(k + j) * layer] = excessCode(loss_db[j]);
         }
         k += kReceivers;
@@ -313,7 +324,7 @@ __global__ void __launch_bounds__(kThreads)
   float* const excess_db = scratch.excess_db + first;
   float other_db[kBisectionStep + 1];
   note(to, run.first + n, task.model.fill(begun.column, scratch, {begin, end, other_db}, excess_db));
-  task.addAir(begun.column, begin, end, excess_db);
+  task.addAir(static_cast<std::size_t>(run.first + n), run.segment, begun.column, begin, end, excess_db);
   for (int k = begin; k < end; ++k) {
     to.out.codes[(first + k) * task.grid.column_count + run.first + n] = excessCode(excess_db[k]);
   }

@@ -42,13 +42,12 @@ std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int rada
                                     std::string* warning) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const EmitterState& at = snapshot.emitters[radar];
-  const double k_factor = scenario.atmosphere.k_factor;
-  const Station station = makeStation(at.position, at.height_msl_m, k_factor);
+  const Station station = makeStation(at.position, at.height_msl_m, scenario.atmosphere);
   std::vector<JammerPath> all;
   for (int j : jammers) {
     const EmitterState& from = snapshot.emitters[j];
     if (!from.active) continue;
-    const Station jammer_station = makeStation(from.position, from.height_msl_m, k_factor);
+    const Station jammer_station = makeStation(from.position, from.height_msl_m, scenario.atmosphere);
     Vec3d ray = lineBetween(station, from.position);
     const double level_m = std::hypot(ray.x, ray.y);
     JammerPath jammer;
@@ -63,7 +62,7 @@ std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int rada
         const PathBudget budget = pathBudget(snapshot, j, {at.position, at.height_msl_m},
                                              scenario.emitters[j].propagation.model, terrain);
         jammer.power_density_wm2 = dbToRatio(budget.find("power_density_dbwm2")->value);
-        ray.z += refractionLift_m(station, budget.profile.range_m, level_m);
+        ray.z += refractionLift_m(station, budget.profile.range_m, level_m, from.height_msl_m);
         if (const auto& reflection = budget.excess.reflection) {
           jammer.power_density_wm2 = dbToRatio(budget.boresight_dbwm2);
           jammer.reflected = {

@@ -157,9 +157,10 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
   }
   keepWarnings(warnings, scenario.emitters[emitter].name, own.name, *wave.budget);
   wave.is_present = from.active;
-  const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere.k_factor);
+  const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
   Vec3d ray = lineBetween(station, from.position);
-  ray.z += refractionLift_m(station, wave.budget->profile.range_m, std::hypot(ray.x, ray.y));
+  ray.z +=
+      refractionLift_m(station, wave.budget->profile.range_m, std::hypot(ray.x, ray.y), from.height_msl_m);
   const double amplitude = own.antenna->amplitudeTowards(inAxesOf(state.beam, ray * (1 / length(ray))),
                                                          state.beam.steer_u, state.beam.steer_v);
   wave.pattern_db = 2 * ratioToDb(std::abs(amplitude));
@@ -232,7 +233,7 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
   row.time_s = snapshot.time_s;
   row.active = radar_state.active;
 
-  const Station station = makeStation(carrier.position, carrier.height_msl_m, own_->atmosphere.k_factor);
+  const Station station = makeStation(carrier.position, carrier.height_msl_m, own_->atmosphere);
   const Vec3d aspect =
       inAxesOf(scenario::platformAxes(carrier.attitude), lineBetween(station, radar_state.position));
   row.rcs_m2 = target.rcsTowards_m2(radToDeg(std::atan2(aspect.y, aspect.x)),

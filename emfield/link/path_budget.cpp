@@ -308,22 +308,25 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   const PathEnd begin{state.position, state.height_msl_m};
   const bool is_still =
       earlier != nullptr && isAt(earlier->profile.begin, begin) && isAt(earlier->profile.end, point);
-  budget.profile = is_still ? earlier->profile : readPathProfile(begin, point, budget.k_factor, terrain);
+  budget.profile = is_still ? earlier->profile : readPathProfile(begin, point, scenario.atmosphere, terrain);
   const PathProfile& profile = budget.profile;
-  const Station station = makeStation(state.position, state.height_msl_m, profile.k_factor);
+  const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
   const double wavelength = wavelength_m(emitter.frequency_hz);
 
   PathGeometry& geometry = budget.geometry;
   const Vec3d line = lineTo(station, point.position);
   Vec3d ray = line;
-  ray.z += refractionLift_m(station, profile.range_m, std::hypot(line.x, line.y));
+  ray.z += refractionLift_m(station, profile.range_m, std::hypot(line.x, line.y), point.height_msl_m);
   geometry.slant_range_m = length(line);
   geometry.straight_elevation_rad = elevationOf_rad(line);
   geometry.launch_elevation_rad = elevationOf_rad(ray);
   geometry.begin_ground_msl_m = static_cast<double>(profile.ground_msl_m.front());
   geometry.end_ground_msl_m = static_cast<double>(profile.ground_msl_m.back());
-  geometry.horizon_range_m = smoothHorizon_m(profile.begin.height_msl_m, station.effective_earth_radius_m) +
-                             smoothHorizon_m(profile.end.height_msl_m, station.effective_earth_radius_m);
+  const auto horizonOf_m = [&](double height_msl_m) {
+    return smoothHorizon_m(station.refraction.grazingHeight_m(height_msl_m),
+                           station.effective_earth_radius_m);
+  };
+  geometry.horizon_range_m = horizonOf_m(profile.begin.height_msl_m) + horizonOf_m(profile.end.height_msl_m);
   const double aperture_m = emitter.antenna->apertureDimension_m(wavelength);
   geometry.far_field_m = 2 * aperture_m * aperture_m / wavelength;
 

@@ -31,13 +31,19 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
                       const PathProfile& profile, const scenario::Terrain* terrain) {
   PathExcess excess;
   excess.warnings = checkModel(scenario, emitter);
-  const Station station = makeStation(profile.begin.position, profile.begin.height_msl_m, profile.k_factor);
+  const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+  propagation::Atmosphere atmosphere = scenario.atmosphere;
+  atmosphere.k_factor = profile.k_factor;
+  const Station station = makeStation(profile.begin.position, profile.begin.height_msl_m, atmosphere);
+  double end_msl_m = profile.end.height_msl_m;
+  if (model.on_effective_earth) {
+    end_msl_m = station.refraction.effectiveHeight_m(end_msl_m, station.height_msl_m, profile.range_m);
+  }
   const PathInputs inputs = pathInputs(scenario, emitter, station, terrain,
                                        {profile.range_m, profile.end.height_msl_m, profile.end.height_msl_m});
   propagation::PathColumn path({profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()},
-                               profile.range_m, profile.end.height_msl_m);
-  static_cast<propagation::Explanation&>(excess) =
-      propagation::modelInfo(emitter.propagation.model).explain(inputs, path);
+                               profile.range_m, end_msl_m);
+  static_cast<propagation::Explanation&>(excess) = model.explain(inputs, path);
   if (propagation::hasAirLoss(inputs.emitter)) {
     std::vector<float> tables;
     addAir(propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), tables), profile, excess);

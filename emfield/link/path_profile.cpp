@@ -63,9 +63,16 @@ double PathProfile::fresnelRadius_m(int i, double wavelength_m) const {
 
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
                             const scenario::Terrain* terrain) {
+  propagation::Atmosphere atmosphere;
+  atmosphere.k_factor = k_factor;
+  return readPathProfile(begin, end, atmosphere, terrain);
+}
+
+PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
+                            const propagation::Atmosphere& atmosphere, const scenario::Terrain* terrain) {
   PathProfile profile;
-  const Station station = makeStation(begin.position, begin.height_msl_m, k_factor);
-  profile.k_factor = k_factor;
+  const Station station = makeStation(begin.position, begin.height_msl_m, atmosphere);
+  profile.k_factor = atmosphere.k_factor;
   profile.effective_earth_radius_m = station.effective_earth_radius_m;
   profile.begin = begin;
   profile.end = end;
@@ -92,10 +99,16 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_f
   }
   if (terrain != nullptr) checkTerrain(profile, *terrain);
 
-  const propagation::HorizonGeometry<double> geometry{begin.height_msl_m, station.effective_earth_radius_m};
-  const double slope = geometry.slopeTo(end.height_msl_m, geometry.termsAt(profile.range_m));
-  for (const double range_m : profile.ranges_m)
-    profile.ray_msl_m.push_back(geometry.heightOn(slope, geometry.termsAt(range_m)));
+  const Refraction& refraction = station.refraction;
+  const propagation::HorizonGeometry<double> geometry{station.effective_height_msl_m,
+                                                      station.effective_earth_radius_m};
+  const double end_msl_m =
+      refraction.effectiveHeight_m(end.height_msl_m, begin.height_msl_m, profile.range_m);
+  const double slope = geometry.slopeTo(end_msl_m, geometry.termsAt(profile.range_m));
+  for (const double range_m : profile.ranges_m) {
+    profile.ray_msl_m.push_back(refraction.heightOfImage_m(
+        geometry.heightOn(slope, geometry.termsAt(range_m)), begin.height_msl_m, range_m));
+  }
   return profile;
 }
 

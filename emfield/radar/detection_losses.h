@@ -19,9 +19,11 @@ struct DetectionLosses {
 DetectionLosses detectionLosses(const scenario::Emitter& radar);
 
 /// Loss (dB) of the pulses that a beam receives off its peak as it scans past the target.
-/// blake: 1.6 dB for each plane; L. V. Blake, Prediction of Radar Range (Radar Handbook, 1970, ch. 2).
+/// blake: 1.6 dB for each plane; L. V. Blake, The effective number of pulses per beamwidth for a scanning
+/// radar, Proc. IRE 41 (1953): 0.47 of the pulses within the half-power beamwidth count, 5 log(1 / 0.47) dB.
 /// barton: (8 ln 2 / pi)^(1/2), 1.23 dB, for each plane: a Gaussian beam, pulses counted between the one-way
-/// half-power points and dense; D. K. Barton, Radar Equations for Modern Radar, 2013, ch. 5.
+/// half-power points and dense; D. K. Barton and S. A. Leonov, Radar Technology Encyclopedia, 1998, "loss,
+/// beamshape": 1.2 dB.
 /// @param planes  scanned, 0..2
 double beamShapeLossDb(scenario::BeamShapeLoss rule, int planes);
 
@@ -30,13 +32,13 @@ double beamShapeLossDb(scenario::BeamShapeLoss rule, int planes);
 ///   Pfa = sum over k < N of C(M N + k - 1, k) a^k / (1 + a)^(M N + k),
 /// and Pd the same with a / (1 + S): N pulses, M reference cells, threshold a times the cells' sum.
 /// @param cells  M, >= 1
-/// @see H. M. Finn, R. S. Johnson, RCA Review 29 (1968), p. 414, for N = 1
+/// @see H. M. Finn, R. S. Johnson, RCA Review 29 (1968), pp. 414-464, for N = 1; derived here, not copied
 double cfarLossDb(const Detector& detector, int cells);
 
 /// Loss (dB) at a probability of detection of 1/2, for a steady target, of a detector that decides on each
 /// pulse and declares a target from `needed` detections in Detector::pulses, against the sum of the pulses.
 /// @param needed  1..Detector::pulses
-/// @see M. Schwartz, IRE Trans. IT-2 (1956), p. 135
+/// @see M. Schwartz, IRE Trans. IT-2 (1956), p. 135 (citation not checked); derived here
 double binaryIntegrationLossDb(const Detector& detector, int needed);
 
 }  // namespace emscape::emfield

@@ -22,9 +22,9 @@ auto membersOf(const propagation::Ground& ground) {
 }
 auto membersOf(const propagation::Atmosphere& atmosphere) {
   const auto& [k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
-               sea_level_refractivity, climate] = atmosphere;
+               refraction, sea_level_refractivity, climate] = atmosphere;
   return std::tie(k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
-                  sea_level_refractivity, climate);
+                  refraction, sea_level_refractivity, climate);
 }
 
 auto membersOf(const RadarLook& look) {

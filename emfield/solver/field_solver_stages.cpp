@@ -46,7 +46,7 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
                                  emitter.name)];
   }
   const Station station =
-      makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere.k_factor);
+      makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere);
   const propagation::PathInputs inputs =
       pathInputs(*setup.scenario, emitter, station, setup.terrain.get(), pathExtent(station, setup.columns));
   for (const std::string& warning : pathWarnings(emitter, inputs, geometry_result.warnings)) {

@@ -10,6 +10,7 @@ namespace emscape::propagation {
 
 struct EdgeExcess {
   static constexpr bool kNeedsTerrain = true;
+  static constexpr bool kOnEffectiveEarth = true;
   static constexpr bool kInParts = true;
   static constexpr float kTolerance_db = 0.1f;
 

@@ -10,6 +10,7 @@ namespace emscape::propagation {
 /// Delta-Bullington over the column's own profile, several heights at a time.
 struct DiffractionExcess {
   static constexpr bool kNeedsTerrain = true;
+  static constexpr bool kOnEffectiveEarth = true;
   static constexpr bool kInParts = false;
 
   DiffractionModel<float> model;

@@ -22,7 +22,10 @@ std::vector<std::string> diffractionPathWarnings(const PathInputs& inputs) {
   const auto check = [&](const ModelLimit& limit, double value_si) {
     if (!limit.holds(value_si)) messages.push_back(outsideMessage(limit, value_si));
   };
-  check(kDiffractionHeight, std::max(inputs.site.height_msl_m, inputs.extent.highest_msl_m));
+  const bool is_exponential = inputs.emitter.atmosphere.refraction == RefractionProfile::exponential &&
+                              inputs.emitter.settings.model == PropagationModel::diffraction;
+  if (!is_exponential)
+    check(kDiffractionHeight, std::max(inputs.site.height_msl_m, inputs.extent.highest_msl_m));
   check(kDiffractionDistance, std::max(inputs.extent.farthest_m, 1e3));
   return messages;
 }
@@ -33,7 +36,7 @@ DiffractionExcess diffractionExcess(const PathInputs& inputs) {
   parameters.effective_earth_radius_m = inputs.site.effective_earth_radius_m;
   parameters.polarization = linearPolarization(inputs.emitter.polarization);
   parameters.land = groundConstants(inputs.emitter.ground, inputs.emitter.frequency_hz);
-  return {diffractionModel<float>(parameters), static_cast<float>(inputs.site.height_msl_m)};
+  return {diffractionModel<float>(parameters), static_cast<float>(inputs.site.effective_height_msl_m)};
 }
 
 EdgeExcess edgeExcess(const PathInputs& inputs) {

@@ -11,15 +11,19 @@
 namespace emscape::propagation {
 
 std::vector<std::string> horizonPathWarnings(const PathInputs& inputs) {
-  if (std::max(inputs.site.height_msl_m, inputs.extent.highest_msl_m) <= kLinearRefractivityHeight_m)
+  if (inputs.emitter.atmosphere.refraction == RefractionProfile::exponential ||
+      std::max(inputs.site.height_msl_m, inputs.extent.highest_msl_m) <= kLinearRefractivityHeight_m) {
     return {};
-  return {fmt::format("takes refractivity as linear in height, which does not hold above {:.0f} m",
-                      kLinearRefractivityHeight_m)};
+  }
+  return {
+      fmt::format("takes refractivity as linear in height, which does not hold above {:.0f} m; "
+                  "'atmosphere: {{refraction: exponential}}' does",
+                  kLinearRefractivityHeight_m)};
 }
 
 Explanation explainHorizon(const PathInputs& inputs, PathColumn& path) {
   // Slopes in single precision, as in the field.
-  const HorizonGeometry<float> geometry{static_cast<float>(inputs.site.height_msl_m),
+  const HorizonGeometry<float> geometry{static_cast<float>(inputs.site.effective_height_msl_m),
                                         static_cast<float>(inputs.site.effective_earth_radius_m)};
   const TerrainProfile& profile = path.column().profile;
   const int last = profile.count - 1;  // below the point

@@ -13,6 +13,8 @@
 ///     static constexpr bool kReflects = true;
 ///     EMSCAPE_HD ReflectedRay reflectedRay(double range_m, float height_msl_m, float& excess_db) const;
 /// for one voxel, which gives the ray and the excess between isotropic antennas.
+/// A model whose row says on_effective_earth has
+///     static constexpr bool kOnEffectiveEarth = true;
 #pragma once
 
 #include <type_traits>
@@ -37,5 +39,11 @@ template <class Model, class = void>
 struct Reflects : std::false_type {};
 template <class Model>
 struct Reflects<Model, std::void_t<decltype(Model::kReflects)>> : std::true_type {};
+
+/// True for models whose rays are straight over the effective earth: their heights are those on it.
+template <class Model, class = void>
+struct OnEffectiveEarth : std::false_type {};
+template <class Model>
+struct OnEffectiveEarth<Model, std::void_t<decltype(Model::kOnEffectiveEarth)>> : std::true_type {};
 
 }  // namespace emscape::propagation

@@ -34,10 +34,11 @@ struct ModelInfo {
   std::vector<std::string> reference_datasets;  ///< of `emscape check` that test the model
 
   GasRole gases = GasRole::added;
-  bool casts_shadow = false;       ///< no field behind terrain
-  bool on_smooth_surface = false;  ///< PathInputs::surface_msl_m is read
-  bool has_reflected_ray = false;  ///< its excess has one: Reflects in excess_model.h
-  bool needs_extent = false;       ///< PathInputs::extent is read to make the excess
+  bool casts_shadow = false;        ///< no field behind terrain
+  bool on_effective_earth = false;  ///< rays by k_factor or the atmosphere's refraction, not its own
+  bool on_smooth_surface = false;   ///< PathInputs::surface_msl_m is read
+  bool has_reflected_ray = false;   ///< its excess has one: Reflects in excess_model.h
+  bool needs_extent = false;        ///< PathInputs::extent is read to make the excess
 
   /// Checks before anything is computed.
   InputFaults (*check)(const EmitterInputs&) = [](const EmitterInputs&) { return InputFaults{}; };

@@ -45,6 +45,7 @@ ModelInfo horizonRow() {
   row.gases = GasRole::on_request;
   row.casts_shadow = true;
   row.pathWarnings = horizonPathWarnings;
+  row.on_effective_earth = true;
   row.explain = explainHorizon;
   return row;
 }
@@ -57,6 +58,7 @@ ModelInfo diffractionRow() {
   row.reference_datasets = {"p526_delta_bullington", "radar/knife_edge_J_nu_derived.csv"};
   row.check = checkDiffraction;
   row.pathWarnings = diffractionPathWarnings;
+  row.on_effective_earth = true;
   row.explain = explainDiffraction;
   row.excess = [](const PathInputs& inputs, std::vector<float>&) -> ExcessModel {
     const bool is_bullington =
@@ -76,6 +78,7 @@ ModelInfo twoRayRow() {
   row.has_reflected_ray = true;
   row.check = checkTwoRay;
   row.pathWarnings = twoRayPathWarnings;
+  row.on_effective_earth = true;
   row.explain = explainTwoRay;
   row.excess = [](const PathInputs& inputs, std::vector<float>&) -> ExcessModel {
     return twoRayExcess(inputs);

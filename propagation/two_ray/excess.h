@@ -13,6 +13,7 @@ namespace emscape::propagation {
 /// In double precision: phases are path differences of many wavelengths.
 struct TwoRayExcess {
   static constexpr bool kNeedsTerrain = false;
+  static constexpr bool kOnEffectiveEarth = true;
   static constexpr bool kInParts = false;
   static constexpr bool kReflects = true;
 

@@ -40,7 +40,7 @@ TwoRayExcess twoRayExcess(const PathInputs& inputs) {
   parameters.polarization = LinearPolarization::vertical;
   excess.vertical = twoRayModel<double>(parameters);
   excess.surface_msl_m = inputs.surface_msl_m;
-  excess.tx_msl_m = inputs.site.height_msl_m;
+  excess.tx_msl_m = inputs.site.effective_height_msl_m;
   return excess;
 }
 

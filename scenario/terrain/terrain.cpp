@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "base/geoid_grid.h"
 #include "emscape/base/geoid.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
@@ -31,14 +33,26 @@ const GeoBox& checked(const GeoBox& box) {
   return box;
 }
 
-/// Heights above the ellipsoid become heights above mean sea level.
-void subtractGeoid(TerrainSheet& sheet) {
+/// Heights above a datum become heights above mean sea level (EGM96).
+/// @param location  of the elevation files, for errors
+void toMeanSeaLevel(TerrainSheet& sheet, VerticalDatum datum, const SourceLocation& location) {
+  std::optional<GeoidGrid> egm2008;
+  if (datum == VerticalDatum::egm2008) {
+    try {
+      egm2008 = egm2008Grid({sheet.lattice.y(0), sheet.lattice.y(sheet.rows - 1), sheet.lattice.x(0),
+                             sheet.lattice.x(sheet.columns - 1)});
+    } catch (const Error& error) {
+      throw Error(error.code(), location, error.message());
+    }
+  }
   parallelFor(sheet.rows, 16, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) {
       for (int column = 0; column < sheet.columns; ++column) {
         if (sheet.kind(column, row) != PostKind::known) continue;
-        sheet.heights_m[sheet.index(column, row)] -=
-            static_cast<float>(geoidUndulation_m(sheet.lattice.y(row), sheet.lattice.x(column)));
+        const double latitude_deg = sheet.lattice.y(row), longitude_deg = sheet.lattice.x(column);
+        double datum_msl_m = -geoidUndulation_m(latitude_deg, longitude_deg);
+        if (egm2008) datum_msl_m += egm2008->undulation_m(latitude_deg, longitude_deg);
+        sheet.heights_m[sheet.index(column, row)] += static_cast<float>(datum_msl_m);
       }
     }
   });
@@ -64,8 +78,9 @@ std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& bo
   }
   std::stable_sort(sheets.begin(), sheets.end(),
                    [](const TerrainSheet& a, const TerrainSheet& b) { return a.spacing_m < b.spacing_m; });
-  if (spec.vertical_datum == VerticalDatum::ellipsoid) {
-    for (TerrainSheet& sheet : sheets) subtractGeoid(sheet);
+  if (spec.vertical_datum != VerticalDatum::egm96) {
+    const SourceLocation location = spec.locations.empty() ? SourceLocation{} : spec.locations.front();
+    for (TerrainSheet& sheet : sheets) toMeanSeaLevel(sheet, spec.vertical_datum, location);
   }
   closeSeams(sheets);
   return sheets;

@@ -118,6 +118,34 @@ TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverASmoothEarth) {
   }
 }
 
+TEST(PathBudget, IsWhatTheFieldHoldsInAnExponentialAtmosphere) {
+  for (const PropagationModel model : {PropagationModel::free_space, PropagationModel::horizon,
+                                       PropagationModel::diffraction, PropagationModel::two_ray}) {
+    SCOPED_TRACE(toString(model));
+    const auto scenario = whiteMountains(model);
+    scenario->terrain.reset();
+    scenario->region.size_m = {500e3, 500e3, 25e3};
+    scenario->region.dims = {40, 40, 25};
+    scenario->atmosphere.refraction = propagation::RefractionProfile::exponential;
+    Compared compared = compareWithField(scenario, nullptr, 200);
+    EXPECT_EQ(compared.other_shadow, 0);
+    EXPECT_LT(compared.quantile(1), 0.02);
+  }
+}
+
+TEST(PathBudget, TheWarningOfGreatHeightsEndsWithAnExponentialAtmosphere) {
+  const auto scenario = whiteMountains(PropagationModel::horizon);
+  scenario->terrain.reset();
+  const PathEnd end{{44.6, -69, 20e3}, 20e3};
+  const auto warnings = [&] {
+    const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
+    return pathBudget(snapshot, 0, end, PropagationModel::horizon, nullptr).warnings;
+  };
+  EXPECT_THAT(warnings(), ::testing::Contains(HasSubstr("'atmosphere: {refraction: exponential}' does")));
+  scenario->atmosphere.refraction = propagation::RefractionProfile::exponential;
+  EXPECT_THAT(warnings(), ::testing::IsEmpty());
+}
+
 TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverRealTerrain) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   for (const PropagationModel model : kModels) {

@@ -185,7 +185,8 @@ Reference reference(const scenario::Snapshot& snapshot, const volume::Grid& grid
   const Vec3d line = toEcef(end) - station.ecef_m;
   Vec3d direct{dot(line, station.geodesy.east), dot(line, station.geodesy.north),
                dot(line, station.geodesy.station.up)};
-  direct.z += refractionLift_m(station, path.distance_m, std::hypot(direct.x, direct.y));
+  direct.z +=
+      refractionLift_m(station, path.distance_m, std::hypot(direct.x, direct.y), frame.heightMsl_m(center));
   const auto amplitude = [&](const Vec3d& ray) {
     const Vec3d unit = ray / length(ray);
     return emitter.antenna->signedAmplitudeTowards(

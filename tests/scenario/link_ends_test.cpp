@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "emscape/base/units.h"
 #include "emscape/scenario/scenario_file.h"
+#include "propagation/air/sky_noise.h"
 #include "tests/scenario/scenario_files.h"
 
 namespace emscape::scenario {
@@ -66,6 +68,38 @@ TEST_F(LinkEnds, AReceiverWithAPlatformStandsThereAndOneWithoutIsAtEveryVoxel) {
   const PlacedReceiver& whip = scenario->placed_receivers[1];
   EXPECT_EQ(whip.antenna->gain_dbi, 2);
   EXPECT_EQ(whip.required_sinr_db, 10);
+}
+
+TEST_F(LinkEnds, TheSkysNoiseGoesByFrequencyAndElevation) {
+  const auto scenario = valid(R"(atmosphere: {refraction: exponential, vapour_g_m3: 3}
+receivers:
+  - name: post
+    platform: site
+    antenna: {pattern: gaussian, gain_dbi: 12, beamwidth_az_deg: 30, beamwidth_el_deg: 30}
+    scan: {kind: fixed, elevation_deg: 20}
+    noise_figure_db: 6
+    bandwidth_hz: 25.0e3
+    center_frequency_hz: 10.0e9
+    antenna_noise: sky
+)");
+  ASSERT_TRUE(scenario);
+  EXPECT_EQ(scenario->atmosphere.refraction, propagation::RefractionProfile::exponential);
+  propagation::Atmosphere air;
+  air.vapour_g_m3 = 3;
+  EXPECT_DOUBLE_EQ(scenario->placed_receivers[0].antenna_temperature_k,
+                   propagation::antennaTemperature_k(10e9, degToRad(20.0), air));
+}
+
+TEST_F(LinkEnds, TheSkysNoiseNeedsAFrequencyAndNoOtherTemperature) {
+  const auto receiver = [this](const std::string& keys) {
+    return refusal(
+        "receivers: [{name: post, platform: site, noise_figure_db: 6, bandwidth_hz: 1.0e6, antenna_noise: "
+        "sky" +
+        keys + "}]\n");
+  };
+  EXPECT_THAT(receiver(""), HasSubstr("'antenna_noise' needs the receiver's 'center_frequency_hz'"));
+  EXPECT_THAT(receiver(", center_frequency_hz: 1.0e9, antenna_temperature_k: 50"),
+              HasSubstr("'antenna_temperature_k' and 'antenna_noise' exclude each other"));
 }
 
 TEST_F(LinkEnds, IncompleteReceiversAreRefused) {

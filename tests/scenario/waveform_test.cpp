@@ -5,6 +5,7 @@
 
 #include "emscape/base/units.h"
 #include "emscape/scenario/scenario_file.h"
+#include "propagation/air/sky_noise.h"
 #include "tests/scenario/scenario_files.h"
 
 namespace emscape::scenario {
@@ -84,6 +85,18 @@ TEST(Waveform, GivesTheIntegratedPulses) {
   EXPECT_EQ(radar.receiver.pulses, 15);
   EXPECT_DOUBLE_EQ(radar.dutyCycle(), 6e-4);
   EXPECT_EQ(radar.waveform->instrumented_range_m, 2e5);
+}
+
+TEST(RadarReceiver, TakesTheSkysNoiseAtItsOwnFrequency) {
+  const std::string waveform = "{prf_hz: 300, pulse_width_s: 2.0e-6}";
+  const ParseResult fixed = parsed("", waveform), sky = parsed(", antenna_noise: sky", waveform);
+  ASSERT_TRUE(fixed.scenario && sky.scenario);
+  const Emitter& radar = sky.scenario->emitters.front();
+  EXPECT_EQ(fixed.scenario->emitters.front().receiver.antenna_temperature_k, 290);
+  EXPECT_DOUBLE_EQ(
+      radar.receiver.antenna_temperature_k,
+      propagation::antennaTemperature_k(radar.frequency_hz, degToRad(radar.scan.elevation_deg), {}));
+  EXPECT_LT(radar.receiver.antenna_temperature_k, 200);
 }
 
 TEST(Waveform, PulsesThatAreGivenStayAndMoreThanTheHitsAreAWarning) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "emscape/base/geo_frame.h"
+#include "emscape/propagation/settings.h"
 #include "emscape/scenario/terrain.h"
 
 namespace emscape::emfield {
@@ -42,6 +43,9 @@ struct PathProfile {
 /// @param terrain  null: a smooth earth at mean sea level
 /// @throws Error (bad_input) that names the first position without terrain, and for ends that are above one
 /// another (nearer than 1 m along the ground) or more than a quarter of the earth apart
+PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
+                            const propagation::Atmosphere& atmosphere, const scenario::Terrain* terrain);
+/// The same in air whose refractivity is linear in height.
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
                             const scenario::Terrain* terrain);
 

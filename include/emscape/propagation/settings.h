@@ -144,6 +144,13 @@ enum class RadioClimate {
 };
 const char* toString(RadioClimate climate);
 
+/// Refractivity over height.
+enum class RefractionProfile {
+  linear,      ///< rays are straight over an earth of k_factor times its radius
+  exponential  ///< the CRPL exponential reference atmosphere of sea_level_refractivity
+};
+const char* toString(RefractionProfile profile);
+
 /// The air that the waves travel through.
 struct Atmosphere {
   double k_factor = 4.0 / 3.0;  ///< effective earth radius over earth radius
@@ -153,7 +160,8 @@ struct Atmosphere {
   double rain_mm_h = 0;
   std::optional<double> rain_height_m;  ///< above mean sea level, upper limit of the rain; none: by latitude
   GasLosses gases = GasLosses::automatic;
-  double sea_level_refractivity = 301;  ///< N-units, for itm, which derives the curvature of rays from it
+  RefractionProfile refraction = RefractionProfile::linear;
+  double sea_level_refractivity = 301;  ///< N-units; itm derives the curvature of rays from it
   RadioClimate climate = RadioClimate::continental_temperate;
 };
 

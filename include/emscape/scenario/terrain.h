@@ -12,8 +12,8 @@ namespace emscape::scenario {
 
 struct TerrainView;  // scenario/terrain/view.h
 
-/// Datum of the heights in the elevation files. EGM2008's are taken as EGM96's, from which they differ by
-/// about a metre.
+/// Datum of the heights in the elevation files. EGM2008 needs its geoid grid on the machine
+/// (base/geoid_grid.h).
 enum class VerticalDatum { egm96, ellipsoid, egm2008 };
 
 /// A box of latitude and longitude (deg). east may exceed 180 where the box crosses the antimeridian; west is

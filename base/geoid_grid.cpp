@@ -1,0 +1,181 @@
+#include "base/geoid_grid.h"
+
+#include <cpl_conv.h>
+#include <gdal_priv.h>
+#include <ogr_srs_api.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+
+#include "emscape/base/error.h"
+
+namespace emscape {
+namespace {
+
+/// Lagrange's weights of the posts at -1, 0, 1, 2 for a point at t in 0..1.
+void cubicWeights(double t, double weights[4]) {
+  const double a = t + 1.0, b = t - 1.0, c = t - 2.0;
+  weights[0] = -t * b * c / 6.0;
+  weights[1] = a * b * c / 2.0;
+  weights[2] = -a * t * c / 2.0;
+  weights[3] = a * t * b / 6.0;
+}
+
+int wrapped(int index, int count) {
+  return (index % count + count) % count;
+}
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// Undulation = offset + scale * value, in the comments of GeographicLib's PGM files.
+struct PgmScale {
+  double offset_m = 0, scale_m = 0;  ///< scale 0: not given
+};
+
+PgmScale readPgmScale(const std::string& file) {
+  PgmScale scale;
+  std::ifstream in(file, std::ios::binary);
+  std::string line;
+  std::getline(in, line);  // P5
+  while (in.peek() == '#' && std::getline(in, line)) {
+    if (line.rfind("# Offset ", 0) == 0) scale.offset_m = std::atof(line.c_str() + 9);
+    if (line.rfind("# Scale ", 0) == 0) scale.scale_m = std::atof(line.c_str() + 8);
+  }
+  return scale;
+}
+
+void addPaths(char** paths, std::vector<std::string>& folders) {
+  for (char** path = paths; path != nullptr && *path != nullptr; ++path) folders.emplace_back(*path);
+  CSLDestroy(paths);
+}
+
+/// Folders in which PROJ and GeographicLib look for their grids, those of the environment first.
+std::vector<std::string> gridFolders() {
+  std::vector<std::string> folders;
+  for (const char* variable : {"PROJ_DATA", "PROJ_LIB", "GEOGRAPHICLIB_GEOID_PATH"})
+    addPaths(CSLTokenizeString2(CPLGetConfigOption(variable, ""), ":", 0), folders);
+  const std::string geographiclib = CPLGetConfigOption("GEOGRAPHICLIB_DATA", "");
+  if (!geographiclib.empty()) folders.push_back(geographiclib + "/geoids");
+  addPaths(OSRGetPROJSearchPaths(), folders);
+  for (const char* prefix : {"/usr/share", "/usr/local/share"}) {
+    folders.push_back(std::string(prefix) + "/proj");
+    folders.push_back(std::string(prefix) + "/GeographicLib/geoids");
+  }
+  return folders;
+}
+
+}  // namespace
+
+GeoidGrid::GeoidGrid(const std::string& file, const GeoidArea& area) {
+  CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
+  GDALAllRegister();
+  read(file, area);
+}
+
+void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
+  const std::unique_ptr<GDALDataset> dataset(
+      GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  const int columns = dataset ? dataset->GetRasterXSize() : 0, rows = dataset ? dataset->GetRasterYSize() : 0;
+  double west_deg = 0;  // of the file's first post; PGM files, which say nothing, begin at Greenwich
+  PgmScale scale{0, 1};
+  double transform[6];
+  bool is_placed = dataset != nullptr;
+  if (endsWith(file, ".pgm")) {
+    scale = readPgmScale(file);
+    is_placed = is_placed && scale.scale_m > 0;
+  } else if (is_placed && dataset->GetGeoTransform(transform) == CE_None) {
+    west_deg = transform[0] + 0.5 * transform[1];
+  } else {
+    is_placed = false;
+  }
+  if (!is_placed || columns == 0 || columns % 360 != 0 || rows != columns / 2 + 1) {
+    throw Error(ErrorCode::bad_input, SourceLocation{file},
+                "not a global geoid grid (360 n x (180 n + 1) posts) " + std::string(CPLGetLastErrorMsg()));
+  }
+  posts_per_degree_ = columns / 360;
+  const double n = posts_per_degree_;
+  // The cubic needs a post more to the south and west, and two to the north and east.
+  first_row_ = static_cast<int>(std::floor((area.south_deg + 90) * n)) - 1;
+  row_count_ = std::min(static_cast<int>(std::floor((area.north_deg + 90) * n)) + 2, rows) - first_row_ + 1;
+  const bool is_round = area.east_deg - area.west_deg >= 360;
+  first_column_ = is_round ? -1 : static_cast<int>(std::floor((area.west_deg + 180) * n)) - 1;
+  column_count_ = is_round ? columns + 3
+                           : static_cast<int>(std::floor((area.east_deg + 180) * n)) + 2 - first_column_ + 1;
+
+  const int file_first = static_cast<int>(std::lround((west_deg + 180.0) * n));
+  posts_.reserve(static_cast<std::size_t>(row_count_) * static_cast<std::size_t>(column_count_));
+  std::vector<float> line(static_cast<std::size_t>(columns));
+  for (int r = 0; r < row_count_; ++r) {
+    // Rows continue over the poles, on the opposite meridian.
+    int row = first_row_ + r, turn = 0;
+    if (row < 0 || row > rows - 1) {
+      row = row < 0 ? -row : 2 * (rows - 1) - row;
+      turn = columns / 2;
+    }
+    if (dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, rows - 1 - row, columns, 1, line.data(), columns, 1,
+                                            GDT_Float32, 0, 0, nullptr) != CE_None) {
+      throw Error(ErrorCode::bad_input, SourceLocation{file}, CPLGetLastErrorMsg());
+    }
+    for (int c = 0; c < column_count_; ++c) {
+      const float value =
+          line[static_cast<std::size_t>(wrapped(first_column_ + c + turn - file_first, columns))];
+      posts_.push_back(static_cast<float>(scale.offset_m + scale.scale_m * static_cast<double>(value)));
+    }
+  }
+}
+
+double GeoidGrid::undulation_m(double latitude_deg, double longitude_deg) const {
+  const int columns = 360 * posts_per_degree_, rows = 180 * posts_per_degree_ + 1;
+  const double u =
+      (longitude_deg - 360.0 * std::floor((longitude_deg + 180.0) / 360.0) + 180.0) * posts_per_degree_;
+  const double v = (std::clamp(latitude_deg, -90.0, 90.0) + 90.0) * posts_per_degree_;
+  if (!(u >= 0.0 && u <= columns && v >= 0.0)) return std::nan("");
+  const int column = std::min(static_cast<int>(u), columns - 1);
+  const int row = std::min(static_cast<int>(v), rows - 2);
+  const int i = wrapped(column - 1 - first_column_, columns), j = row - 1 - first_row_;
+  if (i + 4 > column_count_ || j < 0 || j + 4 > row_count_) return std::nan("");
+  double x[4], y[4];
+  cubicWeights(u - column, x);
+  cubicWeights(v - row, y);
+  double sum = 0.0;
+  for (int k = 0; k < 4; ++k) {
+    const float* p = &posts_[static_cast<std::size_t>(j + k) * column_count_ + i];
+    sum += y[k] * (x[0] * p[0] + x[1] * p[1] + x[2] * p[2] + x[3] * p[3]);
+  }
+  return sum;
+}
+
+std::string findGeoidFile(const std::vector<std::string>& names, std::string& searched) {
+  const std::vector<std::string> folders = gridFolders();
+  for (const std::string& name : names) {
+    for (const std::string& folder : folders) {
+      VSIStatBufL status;
+      if (VSIStatL((folder + "/" + name).c_str(), &status) == 0) return folder + "/" + name;
+    }
+  }
+  searched.clear();
+  for (const std::string& folder : folders) searched += (searched.empty() ? "" : ", ") + folder;
+  return {};
+}
+
+GeoidGrid egm2008Grid(const GeoidArea& area) {
+  std::string searched;
+  const std::string file = findGeoidFile(
+      {"us_nga_egm08_25.tif", "egm08_25.gtx", "egm2008-2_5.pgm", "egm2008-5.pgm", "egm2008-1.pgm"}, searched);
+  if (!file.empty()) return GeoidGrid(file, area);
+  throw Error(
+      ErrorCode::bad_input,
+      "heights above EGM2008 need its geoid grid, which was not found. Install one: 'projsync --file "
+      "us_nga_egm08_25' (PROJ) or 'geographiclib-get-geoids egm2008-5' (Debian package geographiclib-tools). "
+      "With 'vertical_datum: egm96' the heights are taken as above EGM96, which differs by 0.2 m in the "
+      "median and by up to 12 m in high mountains. "
+      "Searched: " +
+          searched);
+}
+
+}  // namespace emscape

@@ -1,0 +1,22 @@
+/// Noise that an antenna receives from the sky and the ground.
+#pragma once
+
+#include "emscape/propagation/settings.h"
+
+namespace emscape::propagation {
+
+/// Brightness temperature (K) of the clear sky: the galaxy, the cosmic background of 2.7 K and the radiation
+/// of oxygen and water vapour (radiative transfer through the standard atmosphere). Without the sun, rain and
+/// man-made noise.
+/// Galaxy: P.372-16 eq. (13), Fam = 52 - 23 log f, up to 100 MHz; above by (f / 100 MHz)^-2.75 (P.372 Part
+/// 4). Gases: P.676-13 line by line.
+/// @param frequency_hz   1e6..1e12; below 10 MHz the ionosphere, which is not taken into account, shields
+/// @param elevation_rad  0..pi/2 from sea level; below the horizon it is the ground: 290 K
+double skyTemperature_k(double frequency_hz, double elevation_rad, const Atmosphere& atmosphere);
+
+/// Noise temperature (K) of an antenna whose main beam has an elevation: the sky there, and the ground at 290
+/// K in 0.124 of its pattern. The share is that of Blake's T_a = (0.876 T_sky - 254) / L + 290, quoted here
+/// without the publication at hand.
+double antennaTemperature_k(double frequency_hz, double elevation_rad, const Atmosphere& atmosphere);
+
+}  // namespace emscape::propagation
