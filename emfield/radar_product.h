@@ -23,6 +23,8 @@ enum class RadarMeasure {
   signal_to_jamming,  ///< S / J, times a factor, within RadarTask::lowest..ceiling: the ceiling without
                       ///< jamming, the lowest without echo; 0 (nothing) without both
   detection,          ///< probability of detection from S / (N + J); 0 without echo
+  detection_age,  ///< RadarTask::ceiling less the age (s) of the last pass, if its probability is at least
+                  ///< RadarTask::lowest; 0 (nothing) if not
 };
 
 /// Jamming at a radar.
@@ -44,10 +46,11 @@ struct RadarTask {
   RadarLook look;
   bool is_cumulative = false;  ///< detection: at least one in all looks
   LookCount looks;             ///< of is_cumulative
+  LastPasses last_passes;      ///< of detection_age
   float echo_root = 0;         ///< (m2/W)
   float factor = 1;            ///< of signal_to_jamming
   float lowest = 0, ceiling = 1e30f;
-  DetectionCurveView curve;  ///< detection
+  DetectionCurveView curve;  ///< detection and its age
   const JammerAtRadar* jammers = nullptr;
   int jammer_count = 0;
 };
@@ -104,6 +107,11 @@ EMSCAPE_HD inline float looksAt(const RadarTask& task, const EmitterBeam& beam, 
   return task.looks.towards(voxelRay(beam, column, t_m).direction);
 }
 
+/// Age (s) of the last pass of a voxel.
+EMSCAPE_HD inline float ageAt(const RadarTask& task, const EmitterBeam& beam, std::size_t column, float t_m) {
+  return task.last_passes.ageTowards(voxelRay(beam, column, t_m).direction);
+}
+
 /// Probability of at least one detection in independent looks.
 EMSCAPE_HD inline float inAllLooks(float probability, float looks) {
   const float missed = 1 - probability;
@@ -111,7 +119,7 @@ EMSCAPE_HD inline float inAllLooks(float probability, float looks) {
 }
 
 /// Adds a radar's echo to a channel's accumulator. Without branches, for SIMD.
-/// @param looks  of RadarTask::is_cumulative
+/// @param looks  of RadarTask::is_cumulative; of detection_age: the age
 template <RadarMeasure measure>
 EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
                                  float looks, float accumulated) {
@@ -129,6 +137,9 @@ EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root
     value = task.is_cumulative ? inAllLooks(value, looks) : value;
     const float either = accumulated + value * (1 - accumulated);
     value = task.reduction == Reduction::sum ? either : value;
+  } else if constexpr (measure == RadarMeasure::detection_age) {
+    const float probability = task.curve(fastRatioToDb(echo_to_noise / (1 + jamming_to_noise)));
+    value = (echo_to_noise > 0) & (probability >= task.lowest) ? task.ceiling - looks : 0.0f;
   }
   return value > accumulated ? value : accumulated;
 }
@@ -143,6 +154,7 @@ EMSCAPE_HD inline float withRadar(const RadarTask& task, float echo_to_noise_roo
     case RadarMeasure::detection:
       return withEcho<RadarMeasure::detection>(task, echo_to_noise_root, jamming_to_noise, looks,
                                                accumulated);
+    case RadarMeasure::detection_age:  // addEcho() has it as a template parameter
     case RadarMeasure::root_of_signal_to_noise:
       break;
   }
@@ -163,7 +175,8 @@ struct RadarPass {
 
 /// One voxel of a pass. The CPU does the same row by row.
 /// @tparam kReflected  false: for passes without reflected rays
-template <scenario::PatternKind kind, bool kReflected = true>
+/// @tparam kAge        true: for RadarMeasure::detection_age
+template <scenario::PatternKind kind, bool kReflected = true, bool kAge = false>
 EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k) {
   const RadarTask& task = pass.task;
   const std::size_t voxel = static_cast<std::size_t>(k) * pass.dims.x * pass.dims.y + column;
@@ -182,8 +195,14 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
                    ? jammingOfBothRaysToNoise<kind>(task, pass.beam, jammer, column, t_m)
                    : jammingToNoise<kind>(task, pass.beam, jammer, column, t_m);
   }
-  const float looks = task.is_cumulative ? looksAt(task, pass.beam, column, t_m) : 1.0f;
-  pass.accumulator[voxel] = withRadar(task, root, jamming, looks, pass.accumulator[voxel]);
+  if constexpr (kAge) {
+    const float age_s = ageAt(task, pass.beam, column, t_m);
+    pass.accumulator[voxel] =
+        withEcho<RadarMeasure::detection_age>(task, root, jamming, age_s, pass.accumulator[voxel]);
+  } else {
+    const float looks = task.is_cumulative ? looksAt(task, pass.beam, column, t_m) : 1.0f;
+    pass.accumulator[voxel] = withRadar(task, root, jamming, looks, pass.accumulator[voxel]);
+  }
 }
 
 /// Runs a pass on the CPU. Voxels below first_row_k are not changed.

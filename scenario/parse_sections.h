@@ -44,6 +44,8 @@ ScanSpec parseScan(const Section& section, bool steers_electronically, ParseCont
 int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
 
+/// What receivers with and without a platform have in common.
+ReceiverProfile parseReceiverProfile(const Section& section);
 /// @param section  with a platform
 PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Platform>& platforms,
                                    ParseContext& context);
