@@ -126,7 +126,7 @@ enum class Reduction {
 };
 
 /// True for reductions with a second accumulator.
-constexpr bool hasSecond(Reduction reduction) {
+EMSCAPE_HD constexpr bool hasSecond(Reduction reduction) {
   return reduction == Reduction::dominant || reduction == Reduction::signal;
 }
 
