@@ -82,21 +82,14 @@ PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const St
 }
 
 PathExtent pathExtent(const Station& station, const GridColumns& columns) {
-  // The farthest columns are at a grid's corners; the extreme heights are there or in its middle.
   PathExtent extent;
-  extent.lowest_msl_m = HUGE_VAL;
-  extent.highest_msl_m = -HUGE_VAL;
-  const auto take = [&](int i, int j) {
-    const GridColumn& column = columns.columns[static_cast<std::size_t>(j) * columns.dims.x + i];
+  extent.lowest_msl_m = columns.lowest_msl_m;
+  extent.highest_msl_m = columns.highest_msl_m;
+  for (const GridColumn& column : columns.outline) {
     for (const float t_m : {columns.t_m.front(), columns.t_m.back()}) {
-      const double height_m = heightMsl_m(column, static_cast<double>(t_m));
-      extent.lowest_msl_m = std::min(extent.lowest_msl_m, height_m);
-      extent.highest_msl_m = std::max(extent.highest_msl_m, height_m);
-      extent.farthest_m = std::max(extent.farthest_m, footInverse(station, column, t_m).distance_m);
+      extent.farthest_m = std::max(extent.farthest_m,
+                                   footInverse(station, column, t_m).distance_m + columns.beyond_outline_m);
     }
-  };
-  for (const int i : {0, columns.dims.x / 2, columns.dims.x - 1}) {
-    for (const int j : {0, columns.dims.y / 2, columns.dims.y - 1}) take(i, j);
   }
   return extent;
 }

@@ -29,6 +29,10 @@ unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
     for (int block = begin; block < end; ++block) {
       const int first = block * kBlock, count = std::min(kBlock, columns - first);
       for (int i = 0; i < count; ++i) {
+        if (grid.isLeftOut(static_cast<std::size_t>(first + i))) {
+          for (int k = 0; k < grid.layers; ++k) codes[static_cast<std::size_t>(k) * kBlock + i] = 0;
+          continue;
+        }
         const unsigned of_column =
             task.fillColumn(static_cast<std::size_t>(first + i), scratch, readPostsCpu, out.reflected);
         if (of_column & kMissingTerrain) out.markUnknown(static_cast<std::size_t>(first + i));
@@ -56,6 +60,8 @@ ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terra
   grid.t_m = columns.t_m.data();
   grid.layers = static_cast<int>(columns.t_m.size());
   grid.tilted = columns.tilted;
+  grid.every_height = columns.every_height;
+  if (!columns.first_valid_k.empty()) grid.first_valid_k = columns.first_valid_k.data();
   if (columns.tilted) {
     // The ground track of a segment is not longer than the distance between posts.
     constexpr double kMaxTrack_m = 100;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "emfield/emitter_excess.h"
 #include "emfield/excess_code.h"
@@ -24,14 +25,28 @@ struct ExcessGrid {
   std::size_t column_count = 0;
   const float* t_m = nullptr;
   int layers = 0;
-  bool tilted = false;  ///< columns are not vertical
+  bool tilted = false;        ///< columns are not vertical
+  bool every_height = false;  ///< see ExcessColumn
   /// Ground below each column; null: read at the end of each profile (tilted columns), or none.
   const float* ground_msl_m = nullptr;
+  /// Lowest layer of each column that counts; null: all do.
+  const std::uint16_t* first_valid_k = nullptr;
   /// Number of segments of a tilted column, each above one point of the ground; 1 for vertical columns.
   int segments = 1;
 
   EMSCAPE_HD int firstLayer(int segment) const {
     return static_cast<int>(static_cast<long long>(layers) * segment / segments);
+  }
+  /// The first layer of a column that counts.
+  EMSCAPE_HD int firstValid(std::size_t column) const {
+    if (first_valid_k == nullptr) return 0;
+    return first_valid_k[column] < layers ? first_valid_k[column] : layers;
+  }
+  /// True if no layer of a column counts, but not for want of terrain, which is reported. A tilted column may
+  /// want it anywhere.
+  EMSCAPE_HD bool isLeftOut(std::size_t column) const {
+    return !tilted && first_valid_k != nullptr && first_valid_k[column] >= layers &&
+           !(ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column]);
   }
   /// From a station to below the middle of a segment.
   EMSCAPE_HD FastInverse coordinatesOf(const Station& station, std::size_t column, int segment) const {
@@ -68,6 +83,7 @@ struct ExcessTask {
     part.range_m = point.distance_m;
     part.height_msl_m = scratch.height_msl_m + first;
     part.count = grid.firstLayer(segment + 1) - first;
+    part.every_height = grid.every_height;
     if constexpr (Model::kNeedsTerrain) {
       part.ground_msl_m =
           grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(station, ground, point);
@@ -83,9 +99,8 @@ struct ExcessTask {
   /// Adds the attenuation by the air at some heights of a segment.
   EMSCAPE_HD void addAir(const ExcessColumn& part, int begin, int end, float* excess_db) const {
     if (air.isClear()) return;
-    for (int k = begin; k < end; ++k) {
-      excess_db[k] += air.lossDb(static_cast<float>(part.range_m), part.height_msl_m[k]);
-    }
+    const propagation::AirColumn above(air, static_cast<float>(part.range_m));
+    for (int k = begin; k < end; ++k) excess_db[k] += above.lossDb(part.height_msl_m[k]);
   }
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/foot_inverse.h"
+#include "emscape/base/error.h"
+#include "emscape/base/geoid.h"
 #include "emscape/base/parallel.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {
@@ -44,6 +48,75 @@ GridColumn tiltedColumn(const GeoFrame& frame, const Vec3d& base_m, double upper
   column.height_msl_m[1] = (4 * middle - high - 3 * low) / upper_m;
   column.height_msl_m[2] = 2 * (high - 2 * middle + low) / (upper_m * upper_m);
   return column;
+}
+
+/// The vertical column whose t = 0 is at a height above a place.
+GridColumn columnAbove(const Surface::Place& place, double base_msl_m) {
+  const double latitude_rad = degToRad(place.latitude_deg), longitude_rad = degToRad(place.longitude_deg);
+  const double base_ellipsoid_m = base_msl_m + geoidUndulation_m(place.latitude_deg, place.longitude_deg);
+  GridColumn column;
+  column.axis = {std::cos(latitude_rad) * std::cos(longitude_rad),
+                 std::cos(latitude_rad) * std::sin(longitude_rad), std::sin(latitude_rad)};
+  column.foot_ecef_m = toEcef({place.latitude_deg, place.longitude_deg, 0});
+  column.base_ecef_m = column.foot_ecef_m + column.axis * base_ellipsoid_m;
+  column.foot_drift = {0, 0, 0};
+  column.height_msl_m[0] = base_msl_m;
+  column.height_msl_m[1] = 1;
+  column.height_msl_m[2] = 0;
+  return column;
+}
+
+/// Extends the range of heights by those of a column.
+void addHeights(const GridColumn& column, GridColumns& columns) {
+  for (const float t_m : {columns.t_m.front(), columns.t_m.back()}) {
+    const double height_m = heightMsl_m(column, static_cast<double>(t_m));
+    columns.lowest_msl_m = std::min(columns.lowest_msl_m, height_m);
+    columns.highest_msl_m = std::max(columns.highest_msl_m, height_m);
+  }
+}
+
+/// The farthest columns are at a grid's corners; the extreme heights are there or in its middle.
+void setOutlineOfGrid(GridColumns& columns) {
+  const Dims& dims = columns.dims;
+  for (const int i : {0, dims.x / 2, dims.x - 1}) {
+    for (const int j : {0, dims.y / 2, dims.y - 1}) {
+      columns.outline.push_back(columns.columns[static_cast<std::size_t>(j) * dims.x + i]);
+      addHeights(columns.outline.back(), columns);
+    }
+  }
+}
+
+/// A circle around all places.
+void setOutlineOfPlaces(const Surface& surface, GridColumns& columns) {
+  const auto isKnown = [&](std::size_t c) {
+    return !std::isnan(surface.places[c].latitude_deg) &&
+           (columns.ground_msl_m.empty() || !std::isnan(columns.ground_msl_m[c]));
+  };
+  Vec3d sum{0, 0, 0};
+  for (std::size_t c = 0; c < surface.places.size(); ++c) {
+    if (!isKnown(c)) continue;
+    sum = sum + columns.columns[c].foot_ecef_m;
+    addHeights(columns.columns[c], columns);
+  }
+  if (length(sum) == 0) {
+    throw Error(ErrorCode::bad_input,
+                columns.ground_msl_m.empty()
+                    ? "there is no place to compute the field over"
+                    : "the terrain is missing below all places to compute the field over");
+  }
+  const GeodeticPosition middle = fromEcef(sum * (kWgs84SemiMajor_m / length(sum)));
+  columns.outline.push_back(columnAbove({middle.latitude_deg, middle.longitude_deg}, 0));
+  const Station station = makeStation({middle.latitude_deg, middle.longitude_deg, 0}, 0, 1);
+  for (std::size_t c = 0; c < surface.places.size(); ++c) {
+    if (!isKnown(c)) continue;
+    columns.beyond_outline_m =
+        std::max(columns.beyond_outline_m, footInverse(station, columns.columns[c], 0).distance_m);
+  }
+}
+
+void countHole(std::size_t c, GridColumns& columns) {
+  if (columns.first_hole < 0) columns.first_hole = static_cast<long long>(c);
+  ++columns.hole_columns;
 }
 
 double groundBelow(const scenario::Terrain& terrain, const GridColumn& column, double t_m) {
@@ -96,10 +169,52 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
     }
   });
 
+  setOutlineOfGrid(result);
   for (std::size_t c = 0; c < result.ground_msl_m.size(); ++c) {
-    if (!std::isnan(result.ground_msl_m[c])) continue;
-    if (result.first_hole < 0) result.first_hole = static_cast<long long>(c);
-    ++result.hole_columns;
+    if (std::isnan(result.ground_msl_m[c])) countHole(c, result);
+  }
+  return result;
+}
+
+GridColumns makeGridColumns(const Surface& surface, const scenario::Terrain* terrain) {
+  GridColumns result;
+  result.every_height = true;
+  result.dims = {surface.width, surface.height, static_cast<int>(surface.heights_m.size())};
+  result.columns.resize(surface.places.size());
+  for (const double height_m : surface.heights_m) result.t_m.push_back(static_cast<float>(height_m));
+  if (terrain != nullptr) result.ground_msl_m.resize(surface.places.size());
+  result.first_valid_k.assign(surface.places.size(), 0);
+  const bool above_ground = surface.reference == HeightReference::ground;
+  parallelFor(static_cast<int>(surface.places.size()), 1024, [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      const Surface::Place& place = surface.places[c];
+      if (std::isnan(place.latitude_deg)) {
+        result.first_valid_k[c] = static_cast<std::uint16_t>(result.dims.z);
+        continue;
+      }
+      const double ground_msl_m =
+          terrain != nullptr ? terrain->heightMsl_m(place.latitude_deg, place.longitude_deg) : 0;
+      const double base_msl_m = (above_ground && !std::isnan(ground_msl_m) ? ground_msl_m : 0) +
+                                (surface.offsets_m.empty() ? 0 : static_cast<double>(surface.offsets_m[c]));
+      result.columns[c] = columnAbove(place, base_msl_m);
+      if (terrain == nullptr) continue;
+      result.ground_msl_m[c] = static_cast<float>(ground_msl_m);
+      int k = 0;
+      if (std::isnan(ground_msl_m)) {
+        k = result.dims.z;
+      } else if (!above_ground) {
+        while (k < result.dims.z && !(base_msl_m + surface.heights_m[k] >= ground_msl_m)) ++k;
+      }
+      result.first_valid_k[c] = static_cast<std::uint16_t>(k);
+    }
+  });
+  setOutlineOfPlaces(surface, result);
+  for (std::size_t c = 0; c < surface.places.size(); ++c) {  // so that their numbers are finite
+    if (std::isnan(surface.places[c].latitude_deg)) result.columns[c] = result.outline[0];
+  }
+  for (std::size_t c = 0; c < result.ground_msl_m.size(); ++c) {
+    const bool is_place = !std::isnan(surface.places[c].latitude_deg);
+    if (is_place && std::isnan(result.ground_msl_m[c])) countHole(c, result);
   }
   return result;
 }

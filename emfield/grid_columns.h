@@ -1,18 +1,21 @@
 /// The columns of a grid on the earth; the same for every emitter.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
+#include "emscape/emfield/surface.h"
 #include "emscape/scenario/terrain.h"
 #include "emscape/volume/grid.h"
 
 namespace emscape::emfield {
 
-/// One column of voxels: the line base + t * axis, where t is the frame's z (m).
+/// One column of voxels: the line base + t * axis, where t is the frame's z (m). Over a surface t is its
+/// height (Surface::heights_m), and base the point from which that counts.
 struct GridColumn {
   Vec3d base_ecef_m;       ///< at t = 0
   Vec3d axis;              ///< unit vector of growing t
@@ -29,12 +32,17 @@ EMSCAPE_HD inline double heightMsl_m(const GridColumn& column, double t_m) {
 /// All columns of a grid, x fastest. Immutable once made.
 struct GridColumns {
   Dims dims;
-  bool tilted = false;  ///< columns are not vertical (enu frame)
+  bool tilted = false;        ///< columns are not vertical (enu frame)
+  bool every_height = false;  ///< models do not interpolate between layers
+  /// No column is farther from any point than one of these, and beyond_outline_m (along the ground).
+  std::vector<GridColumn> outline;
+  double beyond_outline_m = 0;
+  double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;  ///< of the columns' points
   std::vector<GridColumn> columns;
   std::vector<float> t_m;           ///< z of each layer
   std::vector<float> ground_msl_m;  ///< ground below each column (m); NaN over holes; empty without terrain
   std::vector<std::uint16_t>
-      first_valid_k;  ///< lowest layer whose centre is not below ground; dims.z over holes
+      first_valid_k;  ///< lowest layer whose centre is not below ground; dims.z over holes and where left out
   long long hole_columns = 0;
   /// A column over a hole, for messages; -1 if there is none.
   long long first_hole = -1;
@@ -49,5 +57,7 @@ double tiltOf(const GridColumns& columns);
 /// @param terrain  null: nothing is below ground
 /// @accuracy enu: heights along a column within 1 mm, its foot within 1 m, for regions to 500 km
 GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* terrain);
+/// The same over the places of a surface. dims: its width, its height, its number of heights.
+GridColumns makeGridColumns(const Surface& surface, const scenario::Terrain* terrain);
 
 }  // namespace emscape::emfield

@@ -20,7 +20,10 @@ void findShadowEdgesCpu(const Station& station, const GroundPosts& ground, const
       readPostsCpu(station, ground, path, count, heights_m.data());
       return grazingSlopeCpu(task.geometry(), heights_m.data() + 1, terms.data() + 1, count - 1);
     };
-    for (int c = begin; c < end; ++c) edges_m[c] = task.edge_m(grid, static_cast<std::size_t>(c), slopeTo);
+    for (int c = begin; c < end; ++c) {
+      if (grid.isLeftOut(static_cast<std::size_t>(c))) continue;
+      edges_m[c] = task.edge_m(grid, static_cast<std::size_t>(c), slopeTo);
+    }
   });
 }
 

@@ -31,7 +31,8 @@ struct ShadowTask {
   EMSCAPE_HD float edge_m(const ExcessGrid& grid, std::size_t c, const SlopeTo& slopeTo) const {
     if (!grid.tilted) {
       const FastInverse point = grid.coordinatesOf(station, c, 0);
-      return edgeHeight_m(slopeBefore(point, slopeTo), point.distance_m);
+      const float edge_msl_m = edgeHeight_m(slopeBefore(point, slopeTo), point.distance_m);
+      return edge_msl_m - float(grid.columns[c].height_msl_m[0]);
     }
     float above_m = HUGE_VALF;
     for (int segment = grid.segments - 1; segment >= 0; --segment) {

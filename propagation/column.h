@@ -16,6 +16,11 @@ struct ExcessColumn {
   TerrainProfile profile;  ///< from the emitter to below the column; no posts for models without terrain
   const float* height_msl_m = nullptr;  ///< of the voxels, rising
   int count = 0;
+  /// True: models evaluate every height. False: they may interpolate between some.
+  bool every_height = false;
+
+  /// The tolerance of an interpolation between heights: none of theirs if every height is evaluated.
+  EMSCAPE_HD float tolerance_db(float of_model_db) const { return every_height ? -1.0f : of_model_db; }
 };
 
 /// Warning bit that models return for missing terrain; their other bits are their own.

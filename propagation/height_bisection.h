@@ -13,6 +13,7 @@ constexpr int kBisectionStep = 16;
 /// Evaluates a function at some indices of 0..count - 1 and draws straight lines between them: every
 /// kBisectionStep indices and at the last one, and between two evaluations if the value half way differs from
 /// their line by more than a tolerance, or if the slope is so large that a bend may be missed.
+/// @param tolerance_db  negative: every index is evaluated
 /// @param evaluate  double or float of an index; called no more than once for each
 /// @param out       `count` values
 template <class Evaluate>

@@ -50,6 +50,7 @@ DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots) : setup_(setu
   excess_grid_ = excessGrid(setup.columns, setup.terrain.get());
   excess_grid_.columns = grid_columns_.data();
   excess_grid_.t_m = t_m_.data();
+  excess_grid_.first_valid_k = firstValidK();
   if (excess_grid_.ground_msl_m != nullptr) {
     ground_msl_m_.upload(setup.columns.ground_msl_m);
     excess_grid_.ground_msl_m = ground_msl_m_.data();
@@ -205,7 +206,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<Work>& works, cudaStream
   }
   if (tasks.empty()) return;
   fillDiffraction(sent(diffraction_, tasks, stream), static_cast<int>(tasks.size()), most_ranges,
-                  excess_grid_, columns_.row, firstValidK(), scratch(), stream);
+                  excess_grid_, columns_.row, scratch(), stream);
 }
 
 ScratchMemory DeviceGeometry::scratch() {

@@ -142,11 +142,13 @@ struct Tiles {
 };
 
 /// The column of a thread in a tile.
-__device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGrid& grid, int c, int lowest,
+__device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGrid& grid, int c,
                                     const ProfileMemory& memory, int thread) {
   const auto layer = static_cast<long long>(grid.column_count);
   ExcessCode* const codes = task.to.out.codes + c;
+  const int lowest = grid.firstValid(static_cast<std::size_t>(c));
   for (int below = 0; below < lowest; ++below) codes[below * layer] = 0;
+  if (grid.isLeftOut(static_cast<std::size_t>(c))) return;
   const AirLoss& air = task.air;
   const GridColumn& column = grid.columns[c];
   bool is_unknown = false;
@@ -158,7 +160,7 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
       return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[here])));
     };
     const FastInverse path = grid.coordinatesOf(task.station, static_cast<std::size_t>(c), segment);
-    const auto range_m = static_cast<float>(path.distance_m);
+    const propagation::AirColumn above(air, static_cast<float>(path.distance_m));
     bool is_free = !(path.distance_m > 0);  // at the emitter itself
     if (!is_free) {
       const float ground_msl_m =
@@ -177,21 +179,20 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
 #pragma unroll
         for (int j = 0; j < kReceivers; ++j) {
           if (k + j >= end) break;
-          if (!air.isClear()) loss_db[j] += air.lossDb(range_m, rx_msl_m[j]);
+          if (!air.isClear()) loss_db[j] += above.lossDb(rx_msl_m[j]);
           codes[(k + j) * layer] = excessCode(loss_db[j]);
         }
         k += kReceivers;
       }
     }
-    for (; k < end; ++k) codes[k * layer] = air.isClear() ? 0 : excessCode(air.lossDb(range_m, heightOf(k)));
+    for (; k < end; ++k) codes[k * layer] = air.isClear() ? 0 : excessCode(above.lossDb(heightOf(k)));
   }
   if (is_unknown) markUnknown(task.to, c);
 }
 
 __global__ void __launch_bounds__(kThreads, 5)
     diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid, int row,
-                      const std::uint16_t* first_valid_k, const __grid_constant__ ProfileMemory memory,
-                      Tiles tiles) {
+                      const __grid_constant__ ProfileMemory memory, Tiles tiles) {
   const int lane = static_cast<int>(threadIdx.x) % 32, warp = static_cast<int>(threadIdx.x) / 32;
   constexpr int kWarpsX = kTileX / kWarpX;
   const int in_tile_x = warp % kWarpsX * kWarpX + lane % kWarpX;
@@ -202,8 +203,7 @@ __global__ void __launch_bounds__(kThreads, 5)
     const int y = tile / tiles.along_x % tiles.along_y * kTileY + in_tile_y;
     if (x >= row || static_cast<std::size_t>(y) * row >= grid.column_count) continue;
     const int c = y * row + x;
-    const int lowest = first_valid_k == nullptr ? 0 : min(static_cast<int>(first_valid_k[c]), grid.layers);
-    diffractionOfColumn(tasks[tile / (tiles.along_x * tiles.along_y)], grid, c, lowest, memory, thread);
+    diffractionOfColumn(tasks[tile / (tiles.along_x * tiles.along_y)], grid, c, memory, thread);
   }
 }
 
@@ -253,6 +253,10 @@ __global__ void __launch_bounds__(kThreads)
   const ExcessGrid& grid = task.grid;
   const ExcessScratch scratch = memory.scratch(thread);
   for (std::size_t c = thread; c < grid.column_count; c += threads) {
+    if (grid.isLeftOut(c)) {
+      for (int k = 0; k < grid.layers; ++k) to.out.codes[k * grid.column_count + c] = 0;
+      continue;
+    }
     const unsigned warnings = task.fillColumn(c, scratch, PostReader{}, to.out.reflected);
     note(to, static_cast<int>(c), warnings);
     for (int k = 0; k < grid.layers; ++k) {
@@ -274,6 +278,11 @@ __global__ void __launch_bounds__(kThreads)
                 const __grid_constant__ ColumnMemory memory, ColumnRun run) {
   const int n = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
   if (n >= run.count) return;
+  if (task.grid.isLeftOut(run.first + n)) {
+    memory.begun(n).is_open = false;
+    for (int k = 0; k < task.grid.layers; ++k) to.out.codes[k * task.grid.column_count + run.first + n] = 0;
+    return;
+  }
   const ExcessScratch scratch = memory.scratch(n);
   const ExcessColumn column = task.readSegment(run.first + n, run.segment, scratch, PostReader{});
   const int first = task.grid.firstLayer(run.segment);
@@ -338,14 +347,13 @@ void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const 
 }  // namespace
 
 void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
-                     const std::uint16_t* first_valid_k, const ScratchMemory& scratch, cudaStream_t stream) {
+                     const ScratchMemory& scratch, cudaStream_t stream) {
   const int rows = static_cast<int>(grid.column_count) / row;
   Tiles tiles{(row + kTileX - 1) / kTileX, (rows + kTileY - 1) / kTileY, 0};
   tiles.count = tiles.along_x * tiles.along_y * count;
   const ProfileMemory memory(scratch, ranges);
   const int blocks = std::min(tiles.count, memory.threads() / kThreads);
-  diffractionKernel<<<static_cast<unsigned>(blocks), kThreads, 0, stream>>>(tasks, grid, row, first_valid_k,
-                                                                            memory, tiles);
+  diffractionKernel<<<static_cast<unsigned>(blocks), kThreads, 0, stream>>>(tasks, grid, row, memory, tiles);
   checkLaunch("diffraction");
 }
 

@@ -33,12 +33,11 @@ struct DiffractionTask {
 };
 /// Several emitters at once: one thread per column, which keeps its profile and the maxima of its blocks of
 /// posts.
-/// @param ranges         the largest number of posts of a task
-/// @param grid           of device memory
-/// @param row            columns along x
-/// @param first_valid_k  voxels below get no excess; null: none is below
+/// @param ranges  the largest number of posts of a task
+/// @param grid    of device memory; layers that do not count get no excess
+/// @param row     columns along x
 void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
-                     const std::uint16_t* first_valid_k, const ScratchMemory& scratch, cudaStream_t stream);
+                     const ScratchMemory& scratch, cudaStream_t stream);
 
 /// Any model: one thread per column, with its own scratch memory.
 /// @param excess        its tables in device memory

@@ -40,7 +40,7 @@ __global__ void termsKernel(const DeviceShadowTask* tasks) {
 __global__ void __launch_bounds__(kThreads)
     edgesKernel(const DeviceShadowTask* tasks, const __grid_constant__ ExcessGrid grid) {
   const auto c = static_cast<std::size_t>(blockIdx.x * blockDim.x + threadIdx.x);
-  if (c >= grid.column_count) return;
+  if (c >= grid.column_count || grid.isLeftOut(c)) return;
   const DeviceShadowTask& shadow = tasks[blockIdx.y];
   const ShadowTask& task = shadow.task;
   const HorizonGeometry<float> geometry = task.geometry();

@@ -47,8 +47,14 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
     : options(std::move(options_in)) {
   static_cast<FieldPlan&>(setup) = makePlan(std::move(scenario), options.quantities);
   setup.terrain = std::move(terrain);
-  setup.grid = gridOf(setup.scenario->region);
-  setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
+  if (options.surface != nullptr) {
+    setup.columns = makeGridColumns(*options.surface, setup.terrain.get());
+    setup.grid.dims = setup.columns.dims;
+    setup.grid.spacing_m = {1, 1, 1};
+  } else {
+    setup.grid = gridOf(setup.scenario->region);
+    setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
+  }
   checkHoles();
   emitters.resize(setup.scenario->emitters.size());
   masks.resize(setup.channels.size());
@@ -133,7 +139,9 @@ bool FieldSolver::Impl::canKeep(const FieldPlan& plan, const scenario::TerrainPt
   };
   const std::vector<scenario::Emitter>& old = setup.scenario->emitters;
   const std::vector<scenario::Emitter>& edited = plan.scenario->emitters;
-  if (terrain != setup.terrain || !sameRegion(setup.scenario->region, plan.scenario->region) ||
+  const bool same_places =
+      options.surface != nullptr || sameRegion(setup.scenario->region, plan.scenario->region);
+  if (terrain != setup.terrain || !same_places ||
       !std::equal(old.begin(), old.end(), edited.begin(), edited.end(), sameName)) {
     return false;
   }

@@ -20,6 +20,7 @@
 #include "emscape/emfield/path_profile.h"
 #include "emscape/emfield/path_report.h"
 #include "emscape/emfield/reference_check.h"
+#include "emscape/emfield/surface.h"
 #include "emscape/playback/async_task.h"
 #include "emscape/playback/autosave.h"
 #include "emscape/playback/clock.h"

@@ -1,8 +1,11 @@
 #include "propagation/air/air_loss.h"
 
 #include <algorithm>
+#include <array>
+#include <list>
+#include <memory>
+#include <mutex>
 
-#include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "propagation/air/gases.h"
 #include "propagation/air/rain.h"
@@ -16,54 +19,91 @@ double tilt_rad(Polarization polarization) {
   return polarization == Polarization::vertical ? kPi / 2 : kPi / 4;
 }
 
-/// Specific attenuation of the air (dB/m) at every height. The standard atmosphere, its pressure and
-/// temperature scaled to the scenario's values at sea level, with the scenario's vapour.
-class GasProfile {
- public:
-  GasProfile(const Atmosphere& atmosphere, double frequency_hz, double highest_msl_m) {
+/// Specific attenuation of the air (dB/m) over height: the standard atmosphere, its pressure and temperature
+/// scaled to the scenario's values at sea level, with the scenario's vapour.
+struct GasProfile {
+  static constexpr float kStep_m = 50;
+  static constexpr float kLowest_m = static_cast<float>(kGasesHeight.min * kGasesHeight.si_per_unit);
+
+  std::vector<float> gamma;  ///< every kStep_m from kLowest_m up
+
+  GasProfile(double frequency_hz, const AirState& at_sea_level, int count) {
     const AirState sea = standardAtmosphere(0);
-    const double lowest_m = kGasesHeight.min * kGasesHeight.si_per_unit;
-    const double top_m = std::min(std::max(highest_msl_m, 0.0), kGasesHeight.max * kGasesHeight.si_per_unit);
-    const int count = static_cast<int>((top_m - lowest_m) / kStep_m) + 2;
     for (int i = 0; i < count; ++i) {
-      const double height_m = lowest_m + i * kStep_m;
-      AirState air = standardAtmosphere(height_m, atmosphere.vapour_g_m3);
-      air.pressure_hpa *= atmosphere.pressure_hpa / sea.pressure_hpa;
-      air.temperature_k *= atmosphere.temperature_k / sea.temperature_k;
+      AirState air =
+          standardAtmosphere(static_cast<double>(kLowest_m + i * kStep_m), at_sea_level.vapour_g_m3);
+      air.pressure_hpa *= at_sea_level.pressure_hpa / sea.pressure_hpa;
+      air.temperature_k *= at_sea_level.temperature_k / sea.temperature_k;
       const double vapour_hpa = std::min(air.vapourPressure_hpa(), air.pressure_hpa);
       // The line-by-line sum also below 1 GHz, where the value of P.676 at 1 GHz would be too large.
-      gamma_.push_back(lineByLineGasAttenuation(frequency_hz, air.pressure_hpa - vapour_hpa,
-                                                air.temperature_k, air.vapour_g_m3)
-                           .total_db_per_km() /
-                       1000);
+      const double per_km = lineByLineGasAttenuation(frequency_hz, air.pressure_hpa - vapour_hpa,
+                                                     air.temperature_k, air.vapour_g_m3)
+                                .total_db_per_km();
+      gamma.push_back(static_cast<float>(per_km / 1000));
     }
   }
-
-  double at(double height_msl_m) const {
-    const double position =
-        std::clamp(height_msl_m / kStep_m - kGasesHeight.min * kGasesHeight.si_per_unit / kStep_m, 0.0,
-                   static_cast<double>(gamma_.size()) - 1.001);
-    const auto below = static_cast<std::size_t>(position);
-    return gamma_[below] + (position - static_cast<double>(below)) * (gamma_[below + 1] - gamma_[below]);
-  }
-
- private:
-  static constexpr double kStep_m = 50;
-  std::vector<double> gamma_;
 };
 
-/// Mean along the ray, straight over the effective earth, by Simpson's rule.
-double meanAlong(const GasProfile& profile, double from_msl_m, double to_msl_m, double range_m,
-                 double effective_earth_radius_m) {
-  constexpr int kIntervals = 64;
-  const double sag_m = range_m * range_m / (2 * effective_earth_radius_m);
-  double sum = 0;
-  for (int i = 0; i <= kIntervals; ++i) {
-    const double t = static_cast<double>(i) / kIntervals;
-    const double height_m = from_msl_m + t * (to_msl_m - from_msl_m) - t * (1 - t) * sag_m;
-    sum += (i == 0 || i == kIntervals ? 1 : i % 2 == 1 ? 4 : 2) * profile.at(height_m);
+/// The profile up to a height. Those used last are kept: emitters that move need theirs again at each step.
+std::shared_ptr<const GasProfile> gasProfile(double frequency_hz, const Atmosphere& atmosphere,
+                                             double highest_msl_m) {
+  struct Kept {
+    std::array<double, 4> key;
+    std::shared_ptr<const GasProfile> profile;
+  };
+  static std::mutex mutex;
+  static std::list<Kept> kept;  // the last used first
+  constexpr std::size_t kMostKept = 256;
+  constexpr double kRounding_m = 2000;  // so that small changes of height find a profile
+  const double top_m = std::clamp(kRounding_m * std::ceil(highest_msl_m / kRounding_m), 0.0,
+                                  kGasesHeight.max * kGasesHeight.si_per_unit);
+  const auto count = static_cast<std::size_t>((top_m - static_cast<double>(GasProfile::kLowest_m)) /
+                                              static_cast<double>(GasProfile::kStep_m)) +
+                     2;
+  const std::array<double, 4> key{frequency_hz, atmosphere.pressure_hpa, atmosphere.temperature_k,
+                                  atmosphere.vapour_g_m3};
+  const auto isEnough = [&](const Kept& one) { return one.key == key && one.profile->gamma.size() >= count; };
+  {
+    const std::lock_guard lock(mutex);
+    const auto found = std::find_if(kept.begin(), kept.end(), isEnough);
+    if (found != kept.end()) {
+      kept.splice(kept.begin(), kept, found);
+      return kept.front().profile;
+    }
   }
-  return sum / (3 * kIntervals);
+  auto made = std::make_shared<const GasProfile>(
+      frequency_hz, AirState{atmosphere.pressure_hpa, atmosphere.temperature_k, atmosphere.vapour_g_m3},
+      static_cast<int>(count));
+  const std::lock_guard lock(mutex);
+  kept.push_front({key, made});
+  if (kept.size() > kMostKept) kept.pop_back();
+  return made;
+}
+
+/// Means along rays that are straight over the effective earth, from a station to points of one range.
+/// @param to_msl_m, means  `count` numbers each
+void meansAlong(const GasProfile& profile, float from_msl_m, const float* to_msl_m, int count, float sag_m,
+                float* means) {
+  // Gauss-Legendre: Abramowitz and Stegun, table 25.4, n = 16.
+  constexpr float kNodes[] = {0.095012509837637f, 0.281603550779259f, 0.458016777657227f, 0.617876244402644f,
+                              0.755404408355003f, 0.865631202387832f, 0.944575023073233f, 0.989400934991650f};
+  constexpr float kWeights[] = {0.189450610455068f, 0.182603415044924f, 0.169156519395003f,
+                                0.149595988816577f, 0.124628971255534f, 0.095158511682493f,
+                                0.062253523938648f, 0.027152459411754f};
+  const float* const gamma = profile.gamma.data();
+  const float last = static_cast<float>(profile.gamma.size() - 1) - 0.001f;
+  std::fill_n(means, count, 0.0f);
+  for (int n = 0; n < 16; ++n) {
+    const float t = 0.5f + (n < 8 ? -0.5f : 0.5f) * kNodes[n % 8], weight = kWeights[n % 8] / 2;
+    const float begin_m = from_msl_m - t * (1 - t) * sag_m - GasProfile::kLowest_m;
+    for (int i = 0; i < count; ++i) {
+      const float at = (begin_m + t * (to_msl_m[i] - from_msl_m)) * (1 / GasProfile::kStep_m);
+      const float position = at < 0 ? 0.0f : at > last ? last : at;
+      const int below = static_cast<int>(position);
+      const float part = position - static_cast<float>(below);
+      means[i] += weight * (gamma[below] + part * (gamma[below + 1] - gamma[below]));
+    }
+  }
 }
 
 }  // namespace
@@ -106,17 +146,19 @@ AirLoss airLoss(const PathInputs& inputs, bool with_gases, std::vector<float>& g
     air.ranges_per_m = static_cast<float>(1 / range_step_m);
     air.lowest_msl_m = static_cast<float>(extent.lowest_msl_m);
     air.heights_per_m = static_cast<float>(1 / height_step_m);
-    const GasProfile profile(atmosphere, emitter.frequency_hz, std::max(extent.highest_msl_m, station_msl_m));
+    const auto profile =
+        gasProfile(emitter.frequency_hz, atmosphere, std::max(extent.highest_msl_m, station_msl_m));
+    std::vector<float> heights_msl_m;
+    for (int h = 0; h < air.height_count; ++h) {
+      heights_msl_m.push_back(static_cast<float>(extent.lowest_msl_m + h * height_step_m));
+    }
     gases.resize(static_cast<std::size_t>(air.range_count) * air.height_count);
-    parallelFor(air.range_count, 1, [&](int begin, int end) {
-      for (int r = begin; r < end; ++r) {
-        for (int h = 0; h < air.height_count; ++h) {
-          gases[static_cast<std::size_t>(r) * air.height_count + h] =
-              static_cast<float>(meanAlong(profile, station_msl_m, extent.lowest_msl_m + h * height_step_m,
-                                           r * range_step_m, earth_radius_m * atmosphere.k_factor));
-        }
-      }
-    });
+    for (int r = 0; r < air.range_count; ++r) {
+      const double range_m = r * range_step_m;
+      meansAlong(*profile, air.station_msl_m, heights_msl_m.data(), air.height_count,
+                 static_cast<float>(range_m * range_m / (2 * earth_radius_m * atmosphere.k_factor)),
+                 gases.data() + static_cast<std::size_t>(r) * air.height_count);
+    }
     air.gases = gases.data();
   }
   return air;

@@ -32,26 +32,7 @@ struct AirLoss {
   EMSCAPE_HD bool isClear() const { return gases == nullptr && level_rain == 0; }
 
   /// @param range_m  along the ground
-  EMSCAPE_HD float lossDb(float range_m, float height_msl_m) const {
-    const float length_m = slantRange_m(range_m, height_msl_m);
-    float loss_db = 0;
-    if (gases != nullptr) loss_db += length_m * meanGases(range_m, height_msl_m);
-    if (level_rain > 0) {
-      const float rise = (height_msl_m - station_msl_m) / (length_m > 1 ? length_m : 1.0f);
-      const float upright = rise * rise < 1 ? rise * rise : 1.0f;
-      loss_db += length_m * partBelowRainTop(range_m, height_msl_m) *
-                 (level_rain + upright * (upright_rain - level_rain));
-    }
-    return loss_db;
-  }
-
-  /// Straight distance (m).
-  EMSCAPE_HD float slantRange_m(float range_m, float height_msl_m) const {
-    const float rise_m = height_msl_m - station_msl_m;
-    const float chord_m = 2 * earth_radius_m * std::sin(range_m / (2 * earth_radius_m));
-    return std::sqrt(rise_m * rise_m + chord_m * chord_m * (1 + station_msl_m / earth_radius_m) *
-                                           (1 + height_msl_m / earth_radius_m));
-  }
+  EMSCAPE_HD float lossDb(float range_m, float height_msl_m) const;
 
   /// Fraction (0..1) of the ray below the top of the rain. The ray's height over the range is a parabola.
   EMSCAPE_HD float partBelowRainTop(float range_m, float height_msl_m) const {
@@ -74,25 +55,70 @@ struct AirLoss {
     const auto within = [range_m](float x_m) { return x_m < 0 ? 0.0f : x_m > range_m ? range_m : x_m; };
     return (within(far_m) - within(near_m)) / range_m;
   }
+};
+
+/// The paths to the points above one place.
+class AirColumn {
+ public:
+  /// @param air      must outlive this object
+  /// @param range_m  along the ground
+  EMSCAPE_HD AirColumn(const AirLoss& air, float range_m) : air_(air), range_m_(range_m) {
+    const float chord_m = 2 * air.earth_radius_m * std::sin(range_m / (2 * air.earth_radius_m));
+    per_radius_m_ = 1 / air.earth_radius_m;
+    chord2_m2_ = chord_m * chord_m * (1 + air.station_msl_m * per_radius_m_);
+    if (air.gases == nullptr) return;
+    int near = 0;
+    in_range_ = place(range_m * air.ranges_per_m, air.range_count, near);
+    near_row_ = air.gases + near * air.height_count;
+  }
+
+  EMSCAPE_HD float lossDb(float height_msl_m) const {
+    const float length_m = slantRange_m(height_msl_m);
+    float loss_db = 0;
+    if (air_.gases != nullptr) loss_db += length_m * meanGases(height_msl_m);
+    if (air_.level_rain > 0) {
+      const float rise = (height_msl_m - air_.station_msl_m) / (length_m > 1 ? length_m : 1.0f);
+      const float upright = rise * rise < 1 ? rise * rise : 1.0f;
+      loss_db += length_m * air_.partBelowRainTop(range_m_, height_msl_m) *
+                 (air_.level_rain + upright * (air_.upright_rain - air_.level_rain));
+    }
+    return loss_db;
+  }
+
+  /// Straight distance (m).
+  EMSCAPE_HD float slantRange_m(float height_msl_m) const {
+    const float rise_m = height_msl_m - air_.station_msl_m;
+    return std::sqrt(rise_m * rise_m + chord2_m2_ * (1 + height_msl_m * per_radius_m_));
+  }
 
  private:
-  EMSCAPE_HD float meanGases(float range_m, float height_msl_m) const {
-    const auto place = [](float position, int count, int& index) {
-      const float last = static_cast<float>(count - 1);
-      position = position < 0 ? 0.0f : position > last ? last : position;
-      index = static_cast<int>(position) < count - 2 ? static_cast<int>(position) : count - 2;
-      return position - static_cast<float>(index);
-    };
-    int r = 0, h = 0;
-    const float in_range = place(range_m * ranges_per_m, range_count, r);
-    const float in_height = place((height_msl_m - lowest_msl_m) * heights_per_m, height_count, h);
-    const float* const near_row = gases + r * height_count + h;
-    const float* const far_row = near_row + height_count;
-    const float near_value = near_row[0] + in_height * (near_row[1] - near_row[0]);
-    const float far_value = far_row[0] + in_height * (far_row[1] - far_row[0]);
-    return near_value + in_range * (far_value - near_value);
+  /// Splits a position among `count` nodes into the node below and the part beyond it.
+  static EMSCAPE_HD float place(float position, int count, int& node) {
+    const float last = static_cast<float>(count - 1);
+    position = position < 0 ? 0.0f : position > last ? last : position;
+    node = static_cast<int>(position) < count - 2 ? static_cast<int>(position) : count - 2;
+    return position - static_cast<float>(node);
   }
+  EMSCAPE_HD float meanGases(float height_msl_m) const {
+    int h = 0;
+    const float in_height =
+        place((height_msl_m - air_.lowest_msl_m) * air_.heights_per_m, air_.height_count, h);
+    const float* const near = near_row_ + h;
+    const float* const far = near + air_.height_count;
+    const float near_value = near[0] + in_height * (near[1] - near[0]);
+    const float far_value = far[0] + in_height * (far[1] - far[0]);
+    return near_value + in_range_ * (far_value - near_value);
+  }
+
+  const AirLoss& air_;
+  float range_m_, per_radius_m_, chord2_m2_;
+  const float* near_row_ = nullptr;  ///< of air_.gases
+  float in_range_ = 0;
 };
+
+EMSCAPE_HD inline float AirLoss::lossDb(float range_m, float height_msl_m) const {
+  return AirColumn(*this, range_m).lossDb(height_msl_m);
+}
 
 /// Height (m above mean sea level) up to which it rains, in the mean year.
 /// @see ITU-R P.839-2, by latitude; later editions have maps

@@ -59,7 +59,7 @@ struct ClearAirExcess {
     const ClearAirColumn<float> path = clearAirColumn(model.clear_air, postsOf(column, scratch),
                                                       zonesOf(ground.zone, column.profile), tx_msl_m);
     fillByBisection([&](int k) { return model.excessDb(path, column.height_msl_m[part.begin + k]); },
-                    part.reach(column.count), kTolerance_db, part.memory_db);
+                    part.reach(column.count), column.tolerance_db(kTolerance_db), part.memory_db);
     for (int k = part.begin; k < part.end; ++k) excess_db[k] = part.memory_db[k - part.begin];
     unsigned warnings = isHigh(path.tx_m) ? kClearAirTransmitterHeight : 0u;
     if (isHigh(column.height_msl_m[part.end - 1] - column.ground_msl_m)) warnings |= kClearAirVoxelHeight;

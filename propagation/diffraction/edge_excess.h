@@ -41,7 +41,7 @@ struct EdgeExcess {
       return three_edges ? deygoutLossDb(model, profile, tx_m, rx_m)
                          : singleEdgeLossDb(model, profile, tx_m, rx_m);
     };
-    fillByBisection(lossAt, part.reach(column.count), kTolerance_db, part.memory_db);
+    fillByBisection(lossAt, part.reach(column.count), column.tolerance_db(kTolerance_db), part.memory_db);
     for (int k = part.begin; k < part.end; ++k) excess_db[k] = part.memory_db[k - part.begin];
     return 0;
   }

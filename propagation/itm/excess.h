@@ -80,7 +80,7 @@ struct ItmExcess {
       warnings |= result.refused() ? kItmRefused : result.warnings;
       return result.loss_db - result.free_space_db;
     };
-    fillByBisection(lossAt, in_zone - part.begin, kTolerance_db, part.memory_db);
+    fillByBisection(lossAt, in_zone - part.begin, column.tolerance_db(kTolerance_db), part.memory_db);
     for (int k = part.begin; k < part.end && k < in_zone; ++k) {
       const float other = part.memory_db[k - part.begin];
       if (!(other == other)) continue;  // refused

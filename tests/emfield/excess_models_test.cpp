@@ -373,7 +373,7 @@ TEST(ExcessModels, GasesBetweenTheTablesNodesAreThoseOfTheRay) {
           mean_db_per_m += gamma / kSteps;
         }
         const double expected =
-            mean_db_per_m * static_cast<double>(air.slantRange_m(float(range_m), float(height_m)));
+            mean_db_per_m * static_cast<double>(AirColumn(air, float(range_m)).slantRange_m(float(height_m)));
         spread.add((static_cast<double>(air.lossDb(float(range_m), float(height_m))) - expected) /
                    std::max(expected, 0.5));
       }

@@ -8,6 +8,7 @@
 
 #include "emscape/base/backend.h"
 #include "emscape/base/progress.h"
+#include "emscape/emfield/surface.h"
 #include "emscape/scenario/quantities.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/volume/device_volume.h"
@@ -35,6 +36,9 @@ struct FieldOptions {
   bool allow_missing_terrain =
       false;  ///< true: columns over holes, and those that are seen only across one, are masked
   Backend backend = Backend::cpu;  ///< automatic: the GPU if there is one with the memory, else the CPU
+  /// Null: the voxels of the scenario's region. Else these places, whatever the region: volumes then have its
+  /// width x height x heights, in that order, and no position on the earth.
+  std::shared_ptr<const Surface> surface;
   /// cuda: storage of volumes. float16 needs less memory.
   volume::VoxelPrecision device_precision = volume::VoxelPrecision::float32;
   /// An emitter that moved less than this (m) with time keeps its geometry. Edits are exact.

@@ -1,0 +1,161 @@
+// The field over a surface equals the budgets of the paths to its places.
+
+#include "emscape/emfield/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "emscape/base/error.h"
+#include "emscape/base/geoid.h"
+#include "emscape/base/units.h"
+#include "emscape/emfield/path_budget.h"
+#include "tests/emfield/test_scenario.h"
+#include "tests/support/files.h"
+#include "tests/support/on_backends.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using propagation::PropagationModel;
+
+class SurfaceField : public test::OnBackends {
+ protected:
+  SurfaceField() {
+    scenario::TerrainSpec spec;
+    spec.files = {test::sourceFile("scenarios/data/jacksboro.tif")};
+    spec.locations = {{spec.files[0]}};
+    terrain_ = scenario::Terrain::load(spec, scenario::Terrain::describe(spec.files[0]).box);
+  }
+
+  /// A radar 20 m above a ridge, of a narrow beam.
+  std::shared_ptr<scenario::Scenario> radarOnRidge(PropagationModel model) const {
+    auto scenario = emptyScenario(FrameKind::altitude, 36.303, -84.246, {10e3, 10e3, 1e3}, {4, 4, 4});
+    scenario->terrain = scenario::TerrainSpec{};
+    scenario::Emitter emitter = plainEmitter("radar", 0);
+    emitter.kind = scenario::EmitterKind::radar;
+    emitter.frequency_hz = 3e9;
+    emitter.power_w = 20e3;
+    emitter.antenna = scenario::makeGaussian(34, 3, 8, -40);
+    emitter.receiver.bandwidth_hz = 1e6;
+    emitter.propagation.model = model;
+    emitter.scan.kind = scenario::ScanKind::track;
+    addEmitter(*scenario, {36.27, -84.24167, 0}, emitter);
+    scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
+    scenario->platforms[0].track[0].position.height_agl_m = 20;
+    return scenario;
+  }
+
+  std::shared_ptr<Surface> places(HeightReference reference, std::vector<double> heights_m) const {
+    auto surface = std::make_shared<Surface>();
+    surface->width = 8;
+    surface->height = 5;
+    surface->reference = reference;
+    surface->heights_m = std::move(heights_m);
+    std::mt19937 random(23);
+    std::uniform_real_distribution<double> within(-0.13, 0.13);
+    for (int n = 0; n < 40; ++n)
+      surface->places.push_back({36.303 + within(random), -84.246 + within(random)});
+    return surface;
+  }
+
+  /// Compares a quantity at all places and heights above ground.
+  /// @param term  of the budget
+  /// @return the number of points compared
+  int expectTheBudgets(const std::shared_ptr<scenario::Scenario>& scenario,
+                       const std::shared_ptr<Surface>& surface, const char* term, double tolerance) const {
+    FieldOptions options;
+    options.backend = GetParam();
+    options.surface = surface;
+    const auto volume = solve(scenario, terrain_, options);
+    const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain_.get(), 0);
+    int compared = 0;
+    for (std::size_t p = 0; p < surface->places.size(); ++p) {
+      const auto [latitude_deg, longitude_deg] = surface->places[p];
+      const double ground_msl_m = terrain_->heightMsl_m(latitude_deg, longitude_deg);
+      for (std::size_t k = 0; k < surface->heights_m.size(); ++k) {
+        const double offset_m = surface->offsets_m.empty() ? 0 : static_cast<double>(surface->offsets_m[p]);
+        const bool above_ground = surface->reference == HeightReference::ground;
+        const double height_msl_m = surface->heights_m[k] + offset_m + (above_ground ? ground_msl_m : 0);
+        const float found = volume->values[k * surface->places.size() + p];
+        EXPECT_EQ(volume->first_valid_k[p] > k, height_msl_m < ground_msl_m);
+        if (height_msl_m < ground_msl_m) continue;
+        const PathEnd end{
+            {latitude_deg, longitude_deg, height_msl_m + geoidUndulation_m(latitude_deg, longitude_deg)},
+            height_msl_m};
+        const PathBudget budget =
+            pathBudget(snapshot, 0, end, scenario->emitters[0].propagation.model, terrain_.get());
+        const double expected = budget.find(term)->value;
+        ++compared;
+        if (std::isinf(expected)) {
+          EXPECT_EQ(found, volume->info.floor);
+        } else {
+          EXPECT_NEAR(static_cast<double>(found), expected, tolerance)
+              << term << " at " << latitude_deg << ", " << longitude_deg << ", " << height_msl_m << " m";
+        }
+      }
+    }
+    return compared;
+  }
+
+  scenario::TerrainPtr terrain_;
+};
+
+TEST_P(SurfaceField, IsThatOfThePathsAtHeightsAboveGroundWithEveryModel) {
+  for (const auto model :
+       {PropagationModel::free_space, PropagationModel::horizon, PropagationModel::diffraction,
+        PropagationModel::itm, PropagationModel::two_ray, PropagationModel::p1812, PropagationModel::p452}) {
+    SCOPED_TRACE(propagation::toString(model));
+    const auto scenario = radarOnRidge(model);
+    const auto surface = places(HeightReference::ground, {2, 30, 75, 150, 300, 800, 2000});
+    // ITM's own in single precision.
+    const double tolerance_db = model == PropagationModel::itm ? 0.02 : 0.01;
+    EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", tolerance_db), 280);
+    scenario->output.quantities = {"detection_probability"};
+    scenario->output.radar_look = scenario::RadarLook::target;
+    expectTheBudgets(scenario, surface, "detection_probability", 8e-4);
+  }
+}
+
+TEST_P(SurfaceField, AboveSeaLevelIsMaskedBelowGround) {
+  const auto scenario = radarOnRidge(PropagationModel::diffraction);
+  const int compared = expectTheBudgets(scenario, places(HeightReference::mean_sea_level, {350, 600, 2000}),
+                                        "power_density_dbwm2", 0.01);
+  EXPECT_GT(compared, 40);
+  EXPECT_LT(compared, 120);
+}
+
+TEST_P(SurfaceField, TakesALowestHeightPerPlace) {
+  const auto scenario = radarOnRidge(PropagationModel::diffraction);
+  const auto surface = places(HeightReference::ground, {0, 10});
+  for (std::size_t p = 0; p < surface->places.size(); ++p) {
+    surface->offsets_m.push_back(5 + 30 * static_cast<float>(p));
+  }
+  EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01), 80);
+}
+
+TEST_P(SurfaceField, LeavesOutPlacesWithoutALatitude) {
+  const auto scenario = radarOnRidge(PropagationModel::diffraction);
+  const auto surface = places(HeightReference::ground, {100});
+  FieldOptions options;
+  options.backend = GetParam();
+  options.surface = surface;
+  const auto all = solve(scenario, terrain_, options);
+  auto fewer = std::make_shared<Surface>(*surface);
+  for (std::size_t p = 0; p < fewer->places.size(); p += 3) fewer->places[p].latitude_deg = NAN;
+  options.surface = fewer;
+  const auto some = solve(scenario, terrain_, options);
+  for (std::size_t p = 0; p < fewer->places.size(); ++p) {
+    EXPECT_EQ(some->first_valid_k[p], p % 3 == 0 ? 1 : 0);
+    EXPECT_EQ(some->values[p], p % 3 == 0 ? some->info.floor : all->values[p]);
+  }
+  for (Surface::Place& place : fewer->places) place.latitude_deg = NAN;
+  EXPECT_THROW(solve(scenario, terrain_, options), Error);
+}
+
+EMSCAPE_ON_BACKENDS(SurfaceField);
+
+}  // namespace
+}  // namespace emscape::emfield
