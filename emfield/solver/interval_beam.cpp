@@ -41,8 +41,9 @@ BeamPose sweepFrame(const Emitter& emitter, const EmitterState& state) {
 /// on them alone, so that intervals of a sweep there and back or more have the same pattern whenever they
 /// begin.
 void joinArcs(std::vector<SweptArc>& arcs) {
-  constexpr double kRounding_deg = 1e-9;
-  const auto rounded = [](double angle_deg) { return std::round(angle_deg / kRounding_deg) * kRounding_deg; };
+  if (arcs.size() < 2) return;
+  constexpr double kPerDegree = 1e9, kRounding_deg = 1 / kPerDegree;
+  const auto rounded = [](double angle_deg) { return std::round(angle_deg * kPerDegree) / kPerDegree; };
   std::sort(arcs.begin(), arcs.end(), [](const SweptArc& a, const SweptArc& b) {
     return std::tie(a.elevation_deg, a.first_deg) < std::tie(b.elevation_deg, b.first_deg);
   });
