@@ -51,6 +51,7 @@ void addRender(CLI::App& app, const GlobalOptions& global, Action& action);
 void addView(CLI::App& app, const GlobalOptions& global, Action& action);
 void addProfile(CLI::App& app, const GlobalOptions& global, Action& action);
 void addLink(CLI::App& app, const GlobalOptions& global, Action& action);
+void addCoverage(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCheck(CLI::App& app, const GlobalOptions& global, Action& action);
 void addBench(CLI::App& app, const GlobalOptions& global, Action& action);
 

@@ -123,6 +123,7 @@ int emscapeMain(int argc, char** argv) {
   addView(app, global, action);
   addProfile(app, global, action);
   addLink(app, global, action);
+  addCoverage(app, global, action);
   addCheck(app, global, action);
   addBench(app, global, action);
 

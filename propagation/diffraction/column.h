@@ -14,12 +14,11 @@
 
 #include "emscape/base/host_device.h"
 #include "propagation/diffraction/diffraction.h"
+#include "propagation/diffraction/profile_summary.h"
 #include "propagation/diffraction/smooth_earth.h"
 
 namespace emscape::propagation {
 
-/// Posts per block.
-constexpr int kDiffractionBlock = 16;
 /// Receivers that share a visit of the posts.
 constexpr int kDiffractionReceivers = 8;
 

@@ -3,6 +3,7 @@
 
 #include "emscape/base/host_device.h"
 #include "propagation/diffraction/column.h"
+#include "propagation/diffraction/profile_summary.h"
 
 namespace emscape::propagation {
 
@@ -18,34 +19,39 @@ class ProfilePosts {
   /// @param highest_msl_m, lowered_msl_m  blockCount(profile) elements each; overwritten
   EMSCAPE_HD ProfilePosts(const TerrainProfile& profile, double half_curvature, float* highest_msl_m,
                           float* lowered_msl_m)
-      : profile_(profile), highest_msl_m_(highest_msl_m), lowered_msl_m_(lowered_msl_m) {
-    const auto curvature = float(half_curvature);
-    const int last_block = blockCount(profile) - 1;
-    for (int b = 0; b <= last_block; ++b) {
-      const int begin = b * kDiffractionBlock;
-      const int end = begin + kDiffractionBlock < count() ? begin + kDiffractionBlock : count();
-      float highest = -HUGE_VALF, lowered = -HUGE_VALF;
-      for (int i = begin; i < end; ++i) {
-        const float height = profile.height_msl_m[i], range = float(profile.range_m[i]);
-        const float here = height - curvature * range * range;
-        highest = height > highest ? height : highest;
-        lowered = here > lowered ? here : lowered;
-      }
-      highest_msl_m_[b] = highest;
-      lowered_msl_m_[b] = lowered;
-    }
-    for (int i = 1; i < last_block * kDiffractionBlock; ++i) before_last_.add(profile, i);
+      : profile_(profile), maxima_{highest_msl_m, lowered_msl_m} {
+#ifdef __CUDA_ARCH__
+    before_last_ = summarize(profile, count(), float(half_curvature), maxima_);
+#else
+    before_last_ = summarizeCpu(profile, count(), float(half_curvature), maxima_);
+#endif
   }
 
-  EMSCAPE_HD int count() const { return profile_.count - 1; }
-  EMSCAPE_HD double range_m(int i) const { return profile_.range_m[i]; }
-  EMSCAPE_HD float height_msl_m(int i) const { return profile_.height_msl_m[i]; }
-  EMSCAPE_HD float highest_msl_m(int block) const { return highest_msl_m_[block]; }
-  EMSCAPE_HD float lowered_msl_m(int block) const { return lowered_msl_m_[block]; }
+  EMSCAPE_HD int count() const {
+    return profile_.count - 1;
+  }
+  EMSCAPE_HD double range_m(int i) const {
+    return profile_.range_m[i];
+  }
+  EMSCAPE_HD float height_msl_m(int i) const {
+    return profile_.height_msl_m[i];
+  }
+  EMSCAPE_HD float highest_msl_m(int block) const {
+    return maxima_.highest_msl_m[block];
+  }
+  EMSCAPE_HD float lowered_msl_m(int block) const {
+    return maxima_.lowered_msl_m[block];
+  }
   /// Those before the last block: DiffractionColumn reads no others.
-  EMSCAPE_HD TerrainSums sumsBefore(int) const { return before_last_; }
-  EMSCAPE_HD double distance_m() const { return profile_.range_m[count()]; }
-  EMSCAPE_HD float ground_msl_m() const { return profile_.height_msl_m[count()]; }
+  EMSCAPE_HD TerrainSums sumsBefore(int) const {
+    return before_last_;
+  }
+  EMSCAPE_HD double distance_m() const {
+    return profile_.range_m[count()];
+  }
+  EMSCAPE_HD float ground_msl_m() const {
+    return profile_.height_msl_m[count()];
+  }
   EMSCAPE_HD int lastBefore(double range_m) const {
     int begin = 0, end = count();  // the first that is not nearer
     while (begin < end) {
@@ -61,8 +67,7 @@ class ProfilePosts {
 
  private:
   TerrainProfile profile_;
-  float* highest_msl_m_;
-  float* lowered_msl_m_;
+  BlockMaxima maxima_;
   TerrainSums before_last_;
 };
 

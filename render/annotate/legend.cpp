@@ -156,7 +156,7 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
     canvas.rectangle({bar_left - 3 * style.unit - width, y, width, 1.5}, {ink.color, 0.55});
     curve.push_back({bar_left - 3 * style.unit - width, y});
   }
-  canvas.outline(curve, style.mutedInk(), 1.1 * style.unit, false);
+  if (largest > 0) canvas.outline(curve, style.mutedInk(), 1.1 * style.unit, false);
   canvas.outline(
       {{bar_left, top}, {bar_left + bar_width, top}, {bar_left + bar_width, bottom}, {bar_left, bottom}},
       style.mutedInk(0.8), style.unit, true);
@@ -175,8 +175,10 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
     drawIsoMark(canvas, style, bar_left, y, bar_width);
   }
   drawHeading(canvas, style, legend, left, top - 10 * style.unit);
-  canvas.textWithRim("opacity", {left, bottom + 12 * style.unit}, 0.85 * style.small_px, style.mutedInk(0.9),
-                     style.rimInk());
+  if (largest > 0) {
+    canvas.textWithRim("opacity", {left, bottom + 12 * style.unit}, 0.85 * style.small_px,
+                       style.mutedInk(0.9), style.rimInk());
+  }
   canvas.textWithRim(legend.note, {left, bottom + 32 * style.unit}, 0.85 * style.small_px,
                      style.mutedInk(0.9), style.rimInk());
 }

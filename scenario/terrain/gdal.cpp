@@ -12,6 +12,7 @@
 
 #include "emscape/base/units.h"
 #include "scenario/terrain/file.h"
+#include "scenario/terrain/gdal_messages.h"
 #include "scenario/terrain/vrt.h"
 
 namespace emscape::scenario {
@@ -37,28 +38,6 @@ constexpr int kMaxPostsPerAxis = 1 << 22;  ///< the whole earth in a third of an
 /// Elevation formats; GDAL's other drivers read databases, network services and application files.
 constexpr const char* kAllowedDrivers[] = {"GTiff",   "SRTMHGT", "DTED", "VRT",
                                            "AAIGrid", "USGSDEM", "EHdr", nullptr};
-
-/// Keeps GDAL from printing and stores its first message.
-class GdalMessages {
- public:
-  GdalMessages() { CPLPushErrorHandlerEx(&GdalMessages::take, this); }
-  ~GdalMessages() { CPLPopErrorHandler(); }
-  GdalMessages(const GdalMessages&) = delete;
-  GdalMessages& operator=(const GdalMessages&) = delete;
-
-  /// `problem`, with GDAL's reason if it gave one.
-  std::string explain(const std::string& problem) const {
-    return first_failure_.empty() ? problem : problem + " (" + first_failure_ + ")";
-  }
-
- private:
-  static void CPL_STDCALL take(CPLErr severity, CPLErrorNum, const char* message) {
-    auto* self = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
-    if (severity >= CE_Failure && self->first_failure_.empty()) self->first_failure_ = message;
-  }
-
-  std::string first_failure_;
-};
 
 /// Metres of a band's unit; 0 if it is unknown.
 double metresOf(std::string unit) {

@@ -1,0 +1,55 @@
+/// The pixels of a map: squares of a projection, and their places on the earth.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/emfield/surface.h"
+#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/terrain.h"
+
+namespace emscape::study {
+
+/// Area of a map: a box, or a circle in it, beyond which pixels are left out.
+struct MapArea {
+  struct Circle {
+    double latitude_deg = 0, longitude_deg = 0, radius_m = 0;
+  };
+  scenario::GeoBox box;
+  std::optional<Circle> circle;
+};
+
+/// The area of a scenario's region.
+MapArea areaOf(const scenario::Region& region);
+/// @throws Error (usage) for a position that is none or a radius outside 10 m..2000 km
+MapArea circularArea(const MapArea::Circle& circle);
+
+/// The terrain that a scenario names, over an area and all platforms; null if it names none.
+/// @throws Error (bad_input) naming the file
+scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapArea& area);
+
+/// Rows run from north to south, pixels in them from west to east.
+struct MapGrid {
+  int width = 0, height = 0;
+  double cell_m = 0;                            ///< side of a pixel in the projection
+  double left_m = 0, top_m = 0;                 ///< outer corner of the first pixel
+  std::string crs;                              ///< "EPSG:32616", or "local"
+  std::string wkt;                              ///< WKT2
+  std::vector<emfield::Surface::Place> places;  ///< the pixels' centres; latitude NaN: left out
+  std::vector<float> areas_m2;                  ///< of the pixels, on the ellipsoid
+
+  std::size_t pixels() const { return places.size(); }
+  /// The pixel that holds a position; -1: none.
+  long long pixelAt(double latitude_deg, double longitude_deg) const;
+};
+
+/// The pixels that cover an area. Their corners are at whole multiples of cell_m, so that maps of one
+/// projection and cell fit each other.
+/// @param crs  "utm" (the zone of the area's middle), "local" (azimuthal equidistant about it), or "EPSG:N",
+/// a projection in metres
+/// @throws Error (usage) for an unknown or unsuitable crs, a cell that is not positive, more than 2^26 pixels
+/// @accuracy places within 2 cm of the projection's for cells to 1 km
+MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs);
+
+}  // namespace emscape::study

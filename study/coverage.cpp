@@ -1,0 +1,286 @@
+#include "emscape/study/coverage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/volume/dense_volume.h"
+#include "study/least_heights.h"
+#include "study/time_figures.h"
+
+namespace emscape::study {
+namespace {
+
+using emfield::FieldSolver;
+using emfield::HeightReference;
+using scenario::Quantity;
+
+bool isIn(const std::vector<Product>& products, std::initializer_list<Product> any) {
+  return std::find_first_of(products.begin(), products.end(), any.begin(), any.end()) != products.end();
+}
+
+/// @throws Error (usage)
+void checkRequest(const CoverageRequest& request) {
+  const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
+  if (request.heights.empty()) throw Error(ErrorCode::usage, "a map needs a height");
+  if (request.times_s.empty()) throw Error(ErrorCode::usage, "a map needs a time");
+  const bool in_decibels = std::string(quantity.unit).rfind("dB", 0) == 0;
+  for (const Product product : request.products) {
+    const auto refuse = [&](const std::string& why) {
+      throw Error(ErrorCode::usage, fmt::format("product '{}' {}", info(product).name, why));
+    };
+    if (product == Product::margin && !in_decibels) {
+      refuse(fmt::format("is a difference of decibels; quantity '{}' has none", quantity.name));
+    }
+    if (product == Product::jam_loss && !scenario::needsJammer(request.quantity)) {
+      refuse(fmt::format("asks for a quantity that jamming changes; '{}' is none", quantity.name));
+    }
+    if (product != Product::value && quantity.categorical) {
+      refuse(fmt::format("asks for a level; quantity '{}' is an index", quantity.name));
+    }
+    if (info(product).over_time && request.times_s.size() < 2) {
+      refuse("is over time: give two times or more");
+    }
+  }
+}
+
+/// @param height  none: for all heights
+CoverageMap emptyMap(const CoverageRequest& request, Product product,
+                     const std::optional<MapHeight>& height) {
+  const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
+  const ProductInfo& of_product = info(product);
+  CoverageMap map;
+  map.product = product;
+  map.height = height;
+  map.unit = of_product.unit != nullptr ? of_product.unit : quantity.unit;
+  map.description = product == Product::value
+                        ? quantity.name
+                        : fmt::format("{} ({} >= {})", of_product.name, quantity.name, request.threshold);
+  if (height) map.description += " at " + describe(*height);
+  return map;
+}
+
+/// Sets the values of a map, and its areas.
+template <class Value>
+void fill(CoverageMap& map, const MapGrid& grid, const Value& valueAtPixel) {
+  map.values.resize(grid.pixels());
+  parallelFor(static_cast<int>(grid.pixels()), 1 << 14, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) map.values[p] = valueAtPixel(static_cast<std::size_t>(p));
+  });
+  const bool is_area = map.product == Product::covered || map.product == Product::jam_loss;
+  for (std::size_t p = 0; p < grid.pixels(); ++p) {
+    if (std::isnan(map.values[p])) continue;
+    const auto area_m2 = static_cast<double>(grid.areas_m2[p]);
+    map.known_area_m2 += area_m2;
+    if (is_area && map.values[p] == 1) map.covered_area_m2 += area_m2;
+  }
+}
+
+/// The maps of one reference of height.
+class SurfaceMaps {
+ public:
+  SurfaceMaps(const std::shared_ptr<const scenario::Scenario>& scenario, const scenario::TerrainPtr& terrain,
+              const MapGrid& grid, const CoverageRequest& request, HeightReference reference,
+              const emfield::FieldOptions& options)
+      : request_(request), grid_(grid) {
+    auto surface = std::make_shared<emfield::Surface>();
+    surface->width = grid.width;
+    surface->height = grid.height;
+    surface->places = grid.places;
+    surface->reference = reference;
+    for (const MapHeight& height : request.heights) {
+      if (height.reference == reference) surface->heights_m.push_back(height.metres);
+    }
+    std::sort(surface->heights_m.begin(), surface->heights_m.end());
+    surface->heights_m.erase(std::unique(surface->heights_m.begin(), surface->heights_m.end()),
+                             surface->heights_m.end());
+    for (const double metres : surface->heights_m) heights_.push_back({reference, metres});
+    emfield::FieldOptions on_surface = options;
+    on_surface.surface = surface;
+    on_surface.allow_missing_terrain = true;  // masked, and reported by the maps' known area
+    all_scenario_ = scenario;
+    all_.emplace(scenario, terrain, on_surface);
+    if (isIn(request.products, {Product::count, Product::best})) {
+      auto each = std::make_shared<scenario::Scenario>(*scenario);
+      each->output.combine = scenario::CombineMode::per_emitter;
+      each_scenario_ = each;
+      each_.emplace(each_scenario_, terrain, on_surface);
+    }
+    for (std::size_t k = 0; k < heights_.size(); ++k) {
+      figures_.emplace_back(isOverTime() ? grid.pixels() : 0, request.times_s);
+    }
+  }
+
+  void addTime(const scenario::Terrain* terrain, double time_s, const MapSink& take) {
+    scenario::Snapshot snapshot = scenario::snapshotAt(all_scenario_, terrain, time_s);
+    std::shared_ptr<const volume::DenseVolume> unjammed;
+    if (isIn(request_.products, {Product::jam_loss})) {
+      scenario::Snapshot quiet = snapshot;
+      for (std::size_t e = 0; e < quiet.emitters.size(); ++e) {
+        if (all_scenario_->emitters[e].kind == scenario::EmitterKind::jammer)
+          quiet.emitters[e].active = false;
+      }
+      all_->update(quiet);
+      unjammed = all_->volumes().front().host();
+    }
+    all_->update(snapshot);
+    const std::shared_ptr<const volume::DenseVolume> all = all_->volumes().front().host();
+    std::vector<std::shared_ptr<const volume::DenseVolume>> each;
+    if (each_) {
+      each_->update(scenario::snapshotAt(each_scenario_, terrain, time_s));
+      for (const volume::Volume& one : each_->volumes()) each.push_back(one.host());
+    }
+    for (std::size_t k = 0; k < heights_.size(); ++k) {
+      if (isOverTime()) {
+        figures_[k].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*all, k, p)); });
+      }
+      for (const Product product : request_.products) {
+        if (info(product).over_time || !info(product).at_heights) continue;
+        CoverageMap map = emptyMap(request_, product, heights_[k]);
+        map.time_s = time_s;
+        fill(map, grid_, [&](std::size_t p) { return valueOf(product, *all, unjammed.get(), each, k, p); });
+        take(std::move(map));
+      }
+    }
+  }
+
+  /// The maps over all times.
+  void finish(const MapSink& take) {
+    for (std::size_t k = 0; k < heights_.size(); ++k) {
+      for (const Product product : request_.products) {
+        if (!info(product).over_time) continue;
+        const std::shared_ptr<const volume::DenseVolume> last = all_->volumes().front().host();
+        CoverageMap map = emptyMap(request_, product, heights_[k]);
+        fill(map, grid_, [&](std::size_t p) {
+          return std::isnan(valueAt(*last, k, p)) ? NAN : figures_[k].figure(product, p);
+        });
+        take(std::move(map));
+      }
+    }
+  }
+
+  std::vector<std::string> warnings() const { return all_->warnings(); }
+
+ private:
+  bool isOverTime() const {
+    return std::any_of(request_.products.begin(), request_.products.end(),
+                       [](Product product) { return info(product).over_time; });
+  }
+  bool isCovered(float value) const { return static_cast<double>(value) >= request_.threshold; }
+
+  float valueAt(const volume::DenseVolume& volume, std::size_t k, std::size_t p) const {
+    const bool is_valid = volume.first_valid_k.empty() || k >= volume.first_valid_k[p];
+    return is_valid ? volume.values[k * grid_.pixels() + p] : NAN;
+  }
+
+  float valueOf(Product product, const volume::DenseVolume& all, const volume::DenseVolume* unjammed,
+                const std::vector<std::shared_ptr<const volume::DenseVolume>>& each, std::size_t k,
+                std::size_t p) const {
+    const float value = valueAt(all, k, p);
+    if (std::isnan(value)) return value;
+    switch (product) {
+      case Product::covered:
+        return isCovered(value) ? 1.0f : 0.0f;
+      case Product::margin:
+        return value - static_cast<float>(request_.threshold);
+      case Product::jam_loss:
+        return !isCovered(value) && isCovered(valueAt(*unjammed, k, p)) ? 1.0f : 0.0f;
+      case Product::count:
+      case Product::best: {
+        int count = 0, best = -1;
+        float largest = 0;
+        for (std::size_t c = 0; c < each.size(); ++c) {
+          const float own = valueAt(*each[c], k, p);
+          if (!isCovered(own)) continue;
+          if (count++ == 0 || own > largest) {
+            best = each_->channels()[c].emitters.front();
+            largest = own;
+          }
+        }
+        return static_cast<float>(product == Product::count ? count : best);
+      }
+      default:
+        return value;
+    }
+  }
+
+  const CoverageRequest& request_;
+  const MapGrid& grid_;
+  std::vector<MapHeight> heights_;
+  std::shared_ptr<const scenario::Scenario> all_scenario_, each_scenario_;
+  std::optional<FieldSolver> all_, each_;  ///< of all emitters together, and of each
+  std::vector<TimeFigures> figures_;       ///< one per height
+};
+
+}  // namespace
+
+std::optional<double> defaultThreshold(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::detection_probability:
+      return 0.5;
+    case Quantity::burn_through_margin_db:
+      return 0.0;
+    case Quantity::emitter_count:
+      return 1.0;
+    default:
+      return std::nullopt;
+  }
+}
+
+std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::Scenario>& scenario,
+                                         const scenario::TerrainPtr& terrain, const MapGrid& grid,
+                                         const CoverageRequest& request, emfield::FieldOptions options,
+                                         const MapSink& take, const ProgressSink& progress) {
+  checkRequest(request);
+  const auto at_targets = std::make_shared<scenario::Scenario>(*scenario);
+  at_targets->output.quantities = {scenario::info(request.quantity).name};
+  at_targets->output.radar_look = scenario::RadarLook::target;
+  if (at_targets->output.combine != scenario::CombineMode::max) {
+    at_targets->output.combine = scenario::CombineMode::sum;
+  }
+  options.quantities.clear();
+  std::vector<std::unique_ptr<SurfaceMaps>> maps;
+  for (const HeightReference reference : {HeightReference::ground, HeightReference::mean_sea_level}) {
+    const bool is_asked = std::any_of(request.heights.begin(), request.heights.end(),
+                                      [&](const MapHeight& height) { return height.reference == reference; });
+    if (is_asked) {
+      maps.push_back(std::make_unique<SurfaceMaps>(at_targets, terrain, grid, request, reference, options));
+    }
+  }
+  const bool has_least = isIn(request.products, {Product::min_height});
+  const double steps = static_cast<double>(request.times_s.size() * (maps.size() + (has_least ? 1 : 0)));
+  double done = 0;
+  for (const double time_s : request.times_s) {
+    for (const auto& of_reference : maps) {
+      if (progress) progress("maps", done / steps);
+      of_reference->addTime(terrain.get(), time_s, take);
+      ++done;
+    }
+    if (!has_least) continue;
+    if (progress) progress("maps", done / steps);
+    const std::vector<float> heights_m =
+        leastHeights(at_targets, terrain, grid, request.threshold, time_s, options);
+    CoverageMap map = emptyMap(request, Product::min_height, std::nullopt);
+    map.time_s = time_s;
+    fill(map, grid, [&](std::size_t p) { return heights_m[p]; });
+    take(std::move(map));
+    ++done;
+  }
+  std::vector<std::string> warnings;
+  for (const auto& of_reference : maps) {
+    of_reference->finish(take);
+    for (std::string& warning : of_reference->warnings()) {
+      if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) {
+        warnings.push_back(std::move(warning));
+      }
+    }
+  }
+  if (progress) progress("maps", 1);
+  return warnings;
+}
+
+}  // namespace emscape::study

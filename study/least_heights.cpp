@@ -1,0 +1,95 @@
+#include "study/least_heights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/parallel.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/volume/dense_volume.h"
+
+namespace emscape::study {
+namespace {
+
+constexpr int kFirstSteps = 64, kLaterSteps = 16;
+/// Voxels at a time, which bounds the memory.
+constexpr int kMostVoxels = 1 << 25;
+
+/// Some rows of a map.
+class Strip {
+ public:
+  Strip(const MapGrid& grid, int first_row, int rows) {
+    surface_.width = grid.width;
+    surface_.height = rows;
+    const auto begin = grid.places.begin() + static_cast<std::ptrdiff_t>(first_row) * grid.width;
+    surface_.places.assign(begin, begin + static_cast<std::ptrdiff_t>(rows) * grid.width);
+    surface_.offsets_m.assign(surface_.places.size(), 0.0f);
+    found_m_.assign(surface_.places.size(), NAN);
+  }
+
+  bool hasPlaces() const {
+    return std::any_of(surface_.places.begin(), surface_.places.end(),
+                       [](const auto& place) { return !std::isnan(place.latitude_deg); });
+  }
+
+  /// Looks for the threshold above each place's offset, and sets the offset to the step below it. Places
+  /// without one, and those that have it at once, are left out from now on.
+  template <class Solve>
+  void search(double step_m, int steps, double threshold, const Solve& solve) {
+    surface_.heights_m.clear();
+    for (int k = 0; k <= steps; ++k) surface_.heights_m.push_back(k * step_m);
+    const std::shared_ptr<const volume::DenseVolume> volume = solve(surface_);
+    const std::size_t places = surface_.places.size();
+    parallelFor(static_cast<int>(places), 4096, [&](int begin, int end) {
+      for (int p = begin; p < end; ++p) {
+        if (std::isnan(surface_.places[p].latitude_deg)) continue;
+        int k = volume->first_valid_k.empty() ? 0 : volume->first_valid_k[p];
+        while (k <= steps && !(static_cast<double>(volume->values[k * places + p]) >= threshold)) ++k;
+        const bool is_found = k <= steps;
+        if (is_found) {
+          found_m_[p] = surface_.offsets_m[p] + static_cast<float>(k * step_m);
+          surface_.offsets_m[p] += static_cast<float>((k - 1) * step_m);
+        }
+        if (!is_found || k == 0) surface_.places[p].latitude_deg = NAN;
+      }
+    });
+  }
+
+  const std::vector<float>& found_m() const { return found_m_; }
+
+ private:
+  emfield::Surface surface_;
+  std::vector<float> found_m_;
+};
+
+}  // namespace
+
+std::vector<float> leastHeights(const std::shared_ptr<const scenario::Scenario>& scenario,
+                                const scenario::TerrainPtr& terrain, const MapGrid& grid, double threshold,
+                                double time_s, const emfield::FieldOptions& options) {
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), time_s);
+  const auto solve = [&](const emfield::Surface& surface) {
+    emfield::FieldOptions on_surface = options;
+    on_surface.surface = std::make_shared<const emfield::Surface>(surface);
+    on_surface.allow_missing_terrain = true;
+    emfield::FieldSolver solver(scenario, terrain, on_surface);
+    solver.update(snapshot);
+    return solver.volumes().front().host();
+  };
+  std::vector<float> heights_m;
+  const int rows_at_once = std::max(1, kMostVoxels / (grid.width * (kFirstSteps + 1)));
+  for (int row = 0; row < grid.height; row += rows_at_once) {
+    Strip strip(grid, row, std::min(rows_at_once, grid.height - row));
+    double step_m = kHighestSearched_m / kFirstSteps;
+    int steps = kFirstSteps;
+    while (strip.hasPlaces()) {
+      strip.search(step_m, steps, threshold, solve);
+      if (step_m <= kLeastHeightAccuracy_m) break;
+      steps = kLaterSteps;
+      step_m /= kLaterSteps;
+    }
+    heights_m.insert(heights_m.end(), strip.found_m().begin(), strip.found_m().end());
+  }
+  return heights_m;
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,244 @@
+#include "emscape/study/map_picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/parallel.h"
+#include "emscape/playback/scene.h"
+#include "emscape/render/annotate/legend.h"
+#include "render/annotate/canvas.h"
+#include "render/annotate/overlay_parts.h"
+
+namespace emscape::study {
+namespace {
+
+using render::Align;
+using render::Canvas;
+using render::Ink;
+using render::Point2;
+using render::Rgb;
+using render::Weight;
+
+constexpr double kOpacity = 0.72;  ///< of the colours over the ground
+constexpr float kNoPart = 0.005f;  ///< probabilities and fractions below it leave the ground as it is
+
+/// Index of a colour of render::categoryColor().
+int categoryOf(Product product, int value) {
+  constexpr int kGreen = 2, kVermilion = 5;
+  if (product == Product::covered) return kGreen;
+  return product == Product::jam_loss ? kVermilion : value;
+}
+
+/// Colours and legend of a map.
+render::Legend legendOf(const CoverageMap& map, const std::vector<std::string>& labels) {
+  const ProductInfo& product = info(map.product);
+  render::Legend legend;
+  std::string name = product.name;
+  if (map.product == Product::value) name = map.description.substr(0, map.description.find(" at "));
+  legend.quantity = render::quantityTitle(name, map.unit);
+  legend.unit = render::unitText(map.unit);
+  float least = INFINITY, largest = -INFINITY;
+  for (const float value : map.values) {
+    if (std::isnan(value)) continue;
+    least = std::min(least, value);
+    largest = std::max(largest, value);
+  }
+  if (product.categorical) {
+    legend.function.categorical = true;
+    const int first = map.product == Product::best ? 0 : 1;
+    const int last = std::min(std::isfinite(largest) ? static_cast<int>(largest) : 0, first + 15);
+    for (int n = first; n <= last; ++n) {
+      const bool is_named = map.product == Product::best && n < static_cast<int>(labels.size());
+      const bool is_yes = map.product == Product::covered || map.product == Product::jam_loss;
+      legend.categories.push_back({categoryOf(map.product, n), is_named ? labels[n]
+                                                               : is_yes ? "yes"
+                                                                        : std::to_string(n)});
+    }
+    return legend;
+  }
+  if (!(least <= largest)) least = largest = 0;
+  const bool is_part = map.unit.empty();  // probabilities and fractions
+  double low = is_part ? 0 : static_cast<double>(least), high = is_part ? 1 : static_cast<double>(largest);
+  if (high - low < 1e-6) high = low + 1;
+  for (const render::ColorMap::Point& point : render::colorMap("viridis").points) {
+    legend.function.colors.push_back({low + point.at * (high - low), point.color});
+  }
+  legend.function.opacities = {{low, 0}, {high, 0}};
+  return legend;
+}
+
+/// Lambert's shading, from the north-west, 45 degrees high. 0..1; 0.7 where the slope is unknown.
+std::vector<float> shadesOf(const MapGrid& grid, const std::vector<float>& ground_msl_m) {
+  std::vector<float> shades(grid.pixels(), 0.7f);
+  if (ground_msl_m.empty()) return shades;
+  parallelFor(grid.height - 2, 16, [&](int begin, int end) {
+    for (int j = begin + 1; j < end + 1; ++j) {
+      for (int i = 1; i + 1 < grid.width; ++i) {
+        const std::size_t p = static_cast<std::size_t>(j) * grid.width + i;
+        const auto scale = static_cast<float>(0.5 / grid.cell_m);
+        const float east = (ground_msl_m[p + 1] - ground_msl_m[p - 1]) * scale;
+        const float south = (ground_msl_m[p + grid.width] - ground_msl_m[p - grid.width]) * scale;
+        const float toward = (0.5f * (east + south) + 0.7071f) / std::sqrt(1 + east * east + south * south);
+        if (!std::isnan(toward)) shades[p] = std::clamp(0.25f + 0.75f * toward, 0.05f, 1.0f);
+      }
+    }
+  });
+  return shades;
+}
+
+class MapPicture {
+ public:
+  MapPicture(const MapGrid& grid, const CoverageMap& map, const MapPictureOptions& options)
+      : grid_(grid),
+        map_(map),
+        options_(options),
+        legend_(legendOf(map, options.labels)),
+        style_({options.width, options.width * 3 / 4}, render::Theme::light),
+        left_(84 * style_.unit),
+        top_(96 * style_.unit) {
+    const double room =
+        options.width - left_ - std::max(190 * style_.unit, render::legendWidth(style_, legend_));
+    scale_ = room / grid.width;
+    const double height = scale_ * grid.height;
+    size_ = {options.width, static_cast<int>(std::max(top_ + height + 76 * style_.unit, 420 * style_.unit))};
+  }
+
+  render::Image8 draw() {
+    Canvas canvas(size_);
+    canvas.rectangle({0, 0, static_cast<double>(size_.width), static_cast<double>(size_.height)},
+                     {{1, 1, 1}});
+    drawPixels(canvas);
+    drawAxes(canvas);
+    drawMarkers(canvas);
+    render::drawLegend(canvas, style_, legend_);
+    canvas.text(options_.title, {left_, 34 * style_.unit}, 1.35 * style_.text_px, style_.textInk(),
+                Align::left, Weight::bold);
+    canvas.text(options_.subtitle, {left_, 64 * style_.unit}, style_.text_px, style_.mutedInk());
+    return canvas.pixels();
+  }
+
+ private:
+  void drawPixels(Canvas& canvas) const {
+    const std::vector<float> shades = shadesOf(grid_, options_.ground_msl_m);
+    canvas.changeRows([&](int y, std::uint32_t* row) {
+      const int j = static_cast<int>(std::floor((y + 0.5 - top_) / scale_));
+      if (j < 0 || j >= grid_.height) return;
+      for (int x = 0; x < size_.width; ++x) {
+        const int i = static_cast<int>(std::floor((x + 0.5 - left_) / scale_));
+        if (i < 0 || i >= grid_.width) continue;
+        row[x] = pixelAt(static_cast<std::size_t>(j) * grid_.width + i, shades);
+      }
+    });
+  }
+
+  std::uint32_t pixelAt(std::size_t p, const std::vector<float>& shades) const {
+    const float value = map_.values[p];
+    const double shade = 0.25 + 0.7 * static_cast<double>(shades[p]);
+    const bool is_left_out = std::isnan(grid_.places[p].latitude_deg);
+    Rgb color{static_cast<float>(shade), static_cast<float>(shade), static_cast<float>(shade)};
+    if (is_left_out) color = {1, 1, 1};
+    const int none = map_.product == Product::best ? -1 : 0;
+    const bool is_index = info(map_.product).categorical;
+    const bool is_blank = std::isnan(value) ||
+                          (is_index ? static_cast<int>(value) == none : map_.unit.empty() && value < kNoPart);
+    if (!is_blank) {
+      const Rgb over = is_index ? render::categoryColor(categoryOf(map_.product, static_cast<int>(value)))
+                                : legend_.function.color(static_cast<double>(value));
+      // Multiplied by the shade, so that hills show through.
+      const auto mix = [&](float ground, float colour) {
+        return static_cast<float>((1 - kOpacity) * static_cast<double>(ground) +
+                                  kOpacity * static_cast<double>(colour) * (0.45 + 0.6 * shade));
+      };
+      color = {mix(color.r, over.r), mix(color.g, over.g), mix(color.b, over.b)};
+    }
+    const auto level = [](float part) {
+      return static_cast<std::uint32_t>(std::lround(255 * std::clamp(part, 0.0f, 1.0f)));
+    };
+    return 0xff000000u | level(color.r) << 16 | level(color.g) << 8 | level(color.b);
+  }
+
+  /// Kilometres of the projection.
+  void drawAxes(Canvas& canvas) const {
+    const double right = left_ + scale_ * grid_.width, bottom = top_ + scale_ * grid_.height;
+    canvas.outline({{left_, top_}, {right, top_}, {right, bottom}, {left_, bottom}}, style_.mutedInk(),
+                   style_.unit, true);
+    const double pixels_per_km = scale_ / grid_.cell_m * 1000;
+    const double east_km = grid_.left_m / 1000, north_km = grid_.top_m / 1000;
+    const double step = stepOf(render::roundTicks(east_km, east_km + (right - left_) / pixels_per_km, 8));
+    for (const double tick : render::roundTicks(east_km, east_km + (right - left_) / pixels_per_km, 8)) {
+      const double x = left_ + (tick - east_km) * pixels_per_km;
+      canvas.line({x, bottom}, {x, bottom + 6 * style_.unit}, style_.mutedInk(), style_.unit);
+      canvas.text(render::tickText(tick, step), {x, bottom + 18 * style_.unit}, style_.small_px,
+                  style_.textInk(), Align::center);
+    }
+    const double south_km = north_km - (bottom - top_) / pixels_per_km;
+    const double step_y = stepOf(render::roundTicks(south_km, north_km, 8));
+    for (const double tick : render::roundTicks(south_km, north_km, 8)) {
+      const double y = top_ + (north_km - tick) * pixels_per_km;
+      canvas.line({left_ - 6 * style_.unit, y}, {left_, y}, style_.mutedInk(), style_.unit);
+      canvas.text(render::tickText(tick, step_y), {left_ - 10 * style_.unit, y}, style_.small_px,
+                  style_.textInk(), Align::right);
+    }
+    canvas.text(fmt::format("east, north in km of {}; pixels of {} m", grid_.crs, grid_.cell_m),
+                {left_, bottom + 48 * style_.unit}, style_.small_px, style_.mutedInk());
+  }
+  static double stepOf(const std::vector<double>& ticks) {
+    return ticks.size() > 1 ? ticks[1] - ticks[0] : 1;
+  }
+
+  void drawMarkers(Canvas& canvas) const {
+    for (const MapMarker& marker : options_.markers) {
+      const long long pixel = grid_.pixelAt(marker.latitude_deg, marker.longitude_deg);
+      if (pixel < 0) continue;
+      const Point2 at{left_ + (static_cast<double>(pixel % grid_.width) + 0.5) * scale_,
+                      top_ + (static_cast<double>(pixel / grid_.width) + 0.5) * scale_};
+      canvas.disc(at, 6.5 * style_.unit, {{0.1f, 0.12f, 0.15f}});
+      canvas.disc(at, 4.6 * style_.unit, {render::colorOf(marker.kind)});
+      canvas.textWithRim(marker.label, {at.x + 10 * style_.unit, at.y}, style_.small_px,
+                         {{0.05f, 0.06f, 0.08f}}, {{1, 1, 1}, 0.85});
+    }
+  }
+
+  const MapGrid& grid_;
+  const CoverageMap& map_;
+  const MapPictureOptions& options_;
+  render::Legend legend_;
+  render::Style style_;
+  double left_, top_;  ///< of the map in the picture
+  double scale_ = 1;   ///< pixels of the picture in one of the map
+  render::ImageSize size_;
+};
+
+}  // namespace
+
+std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot) {
+  std::vector<MapMarker> markers;
+  for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
+    const scenario::EmitterState& state = snapshot.emitters[e];
+    const scenario::Emitter& emitter = snapshot.scenario->emitters[e];
+    if (!state.active) continue;
+    markers.push_back({state.position.latitude_deg, state.position.longitude_deg, emitter.name,
+                       playback::markerKindOf(emitter.kind)});
+  }
+  return markers;
+}
+
+std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrain) {
+  std::vector<float> heights(grid.pixels(), NAN);
+  parallelFor(static_cast<int>(grid.pixels()), 4096, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) {
+      const auto [latitude_deg, longitude_deg] = grid.places[p];
+      if (std::isnan(latitude_deg)) continue;
+      heights[p] = static_cast<float>(terrain.heightMsl_m(latitude_deg, longitude_deg));
+    }
+  });
+  return heights;
+}
+
+render::Image8 drawMap(const MapGrid& grid, const CoverageMap& map, const MapPictureOptions& options) {
+  return MapPicture(grid, map, options).draw();
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,127 @@
+// The products' names and units, and heights as text.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/error.h"
+#include "emscape/study/coverage.h"
+
+namespace emscape::study {
+namespace {
+
+constexpr std::size_t kMaxHeights = 1000;
+
+[[noreturn]] void refuseHeights(const std::string& text, const std::string& part) {
+  throw Error(ErrorCode::usage,
+              fmt::format("heights '{}': '{}' is none of agl:H,H,... agl:BEGIN:END:STEP msl:H,H,... "
+                          "msl:BEGIN:END:STEP (metres; several with ';' between them)",
+                          text, part));
+}
+
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator) {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+}  // namespace
+
+const std::vector<ProductInfo>& productTable() {
+  static const std::vector<ProductInfo> kTable{
+      {Product::value, "value", nullptr, "the quantity"},
+      {Product::covered, "covered", "", "1 where the quantity reaches the threshold, else 0", false, true},
+      {Product::margin, "margin", "dB", "the quantity less the threshold"},
+      {Product::count, "count", "", "number of emitters that reach the threshold by themselves", false, true},
+      {Product::best, "best", "", "the emitter with the largest value that reaches it", false, true},
+      {Product::min_height, "min_height", "m",
+       "least height above ground that reaches the threshold, to 10 km", false, false, false},
+      {Product::jam_loss, "jam_loss", "", "1 where jamming takes the coverage away", false, true},
+      {Product::first_detection, "first_detection", "s", "time of the first coverage", true},
+      {Product::fraction, "fraction", "", "fraction of the time with coverage", true},
+      {Product::longest_gap, "longest_gap", "s", "longest time without coverage", true},
+      {Product::mean_gap, "mean_gap", "s", "mean time of the gaps in coverage", true},
+  };
+  return kTable;
+}
+
+const ProductInfo& info(Product product) {
+  return productTable()[static_cast<std::size_t>(product)];
+}
+
+Product productNamed(const std::string& name) {
+  std::string known;
+  for (const ProductInfo& entry : productTable()) {
+    if (name == entry.name) return entry.product;
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw Error(ErrorCode::usage, "unknown product '" + name + "'; one of " + known);
+}
+
+std::string describe(const MapHeight& height) {
+  const bool above_ground = height.reference == emfield::HeightReference::ground;
+  return fmt::format("{} m above {}", height.metres, above_ground ? "ground" : "mean sea level");
+}
+
+std::string nameOf(const MapHeight& height) {
+  const bool above_ground = height.reference == emfield::HeightReference::ground;
+  return fmt::format("{}{}m", above_ground ? "agl" : "msl", height.metres);
+}
+
+std::vector<MapHeight> parseHeights(const std::string& text) {
+  std::vector<MapHeight> heights;
+  for (const std::string& part : split(text, ';')) {
+    MapHeight height;
+    if (part.rfind("msl:", 0) == 0) {
+      height.reference = emfield::HeightReference::mean_sea_level;
+    } else if (part.rfind("agl:", 0) != 0) {
+      refuseHeights(text, part);
+    }
+    const auto numberOf = [&](const std::string& word) {
+      std::size_t used = 0;
+      double metres = NAN;
+      try {
+        metres = std::stod(word, &used);
+      } catch (const std::exception&) {
+        refuseHeights(text, part);
+      }
+      const bool above_ground = height.reference == emfield::HeightReference::ground;
+      if (used != word.size() || !std::isfinite(metres)) refuseHeights(text, part);
+      if (metres < (above_ground ? 0 : -500) || metres > 100e3) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("heights '{}': {} m; {} to 100000 m above {}", text, word,
+                                above_ground ? 0 : -500, above_ground ? "ground" : "mean sea level"));
+      }
+      return metres;
+    };
+    for (const std::string& item : split(part.substr(4), ',')) {
+      const std::vector<std::string> range = split(item, ':');
+      if (range.size() != 1 && range.size() != 3) refuseHeights(text, part);
+      const double begin = numberOf(range[0]);
+      double end = begin, step = 1;
+      if (range.size() == 3) {
+        end = numberOf(range[1]);
+        step = numberOf(range[2]);
+        if (!(step > 0) || end < begin) refuseHeights(text, part);
+      }
+      const double count = std::floor((end - begin) / step + 1e-9) + 1;
+      if (static_cast<double>(heights.size()) + count > kMaxHeights) {
+        throw Error(ErrorCode::usage, fmt::format("heights '{}': more than {}", text, kMaxHeights));
+      }
+      for (int n = 0; n < static_cast<int>(count); ++n) {
+        height.metres = begin + n * step;
+        heights.push_back(height);
+      }
+    }
+  }
+  return heights;
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,83 @@
+// emscape coverage: files, the keys that others rely on, and what is refused. The figures are study's tests.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Arguments coverage(const TemporaryFolder& folder, const Arguments& more) {
+  Arguments arguments{"coverage", shippedScenario("jacksboro.yaml"), "-o", folder / "out", "--cell", "500"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(Coverage, WritesMapsPicturesAndAReport) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run(coverage(folder, {"--heights", "agl:50;msl:1200.5", "--products",
+                                                     "covered,best", "--times", "80", "--json", "--quiet"}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report, json::parse(readFile(folder / "out/report.json")));
+  for (const char* key : {"emscape", "scenario", "scenario_hash", "quantity", "threshold", "crs", "cell_m",
+                          "pixels", "emitters", "warnings"}) {
+    EXPECT_TRUE(report.contains(key)) << key;
+  }
+  ASSERT_EQ(report["maps"].size(), 4u);
+  for (const json& map : report["maps"]) {
+    for (const char* key :
+         {"product", "files", "description", "unit", "time_s", "min", "max", "known_area_km2"}) {
+      EXPECT_TRUE(map.contains(key)) << key;
+    }
+    EXPECT_EQ(map.contains("area_km2"), map["product"] == "covered");
+    EXPECT_NEAR(map["known_area_km2"], 842, 40);
+  }
+  EXPECT_EQ(report["maps"][2]["height_msl_m"], 1200.5);
+  EXPECT_THAT(folder.files(),
+              ElementsAre("out/maps/best_agl50m_t80s.png", "out/maps/best_agl50m_t80s.tif",
+                          "out/maps/best_msl1200.5m_t80s.png", "out/maps/best_msl1200.5m_t80s.tif",
+                          "out/maps/covered_agl50m_t80s.png", "out/maps/covered_agl50m_t80s.tif",
+                          "out/maps/covered_msl1200.5m_t80s.png", "out/maps/covered_msl1200.5m_t80s.tif",
+                          "out/report.json"));
+}
+
+TEST(Coverage, TwoRunsWriteTheSameBytes) {
+  const TemporaryFolder first, second;
+  for (const TemporaryFolder* folder : {&first, &second}) {
+    const ProgramResult result =
+        run(coverage(*folder, {"--products", "value,fraction", "--times", "70:80:10"}));
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  ASSERT_EQ(first.files(), second.files());
+  for (const std::string& file : first.files())
+    EXPECT_EQ(readFile(first / file), readFile(second / file)) << file;
+}
+
+TEST(Coverage, RefusesWhatItCannotDo) {
+  const TemporaryFolder folder;
+  const auto errorOf = [&](const Arguments& more, int status) {
+    const ProgramResult result = run(coverage(folder, more));
+    EXPECT_EQ(result.status, status) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(errorOf({"--products", "gaps"}, 2), HasSubstr("unknown product 'gaps'"));
+  EXPECT_THAT(errorOf({"--heights", "100"}, 2), HasSubstr("'100' is none of agl:"));
+  EXPECT_THAT(errorOf({"--area", "36,-84"}, 2), HasSubstr("2 numbers"));
+  EXPECT_THAT(errorOf({"--area", "bbox:1,2,x,4"}, 2), HasSubstr("'x' is no number"));
+  EXPECT_THAT(errorOf({"--quantity", "power_density_dbwm2"}, 2), HasSubstr("--threshold"));
+  EXPECT_THAT(errorOf({"--quantity", "loudness"}, 3), HasSubstr("unknown quantity 'loudness'"));
+  EXPECT_THAT(errorOf({"--products", "fraction"}, 2), HasSubstr("two times"));
+  EXPECT_THAT(errorOf({"--crs", "EPSG:4326"}, 2), HasSubstr("no projection in metres"));
+  EXPECT_THAT(errorOf({"--area", "10,10,5000"}, 3), HasSubstr("terrain is missing"));
+  EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
+}
+
+}  // namespace
+}  // namespace emscape::test

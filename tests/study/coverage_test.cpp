@@ -1,0 +1,246 @@
+#include "emscape/study/coverage.h"
+
+#include <gdal_priv.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include "emscape/base/geoid.h"
+#include "emscape/emfield/path_budget.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/study/geotiff.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::study {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Maps of a shipped scenario by product, height and time.
+class CoverageOf {
+ public:
+  CoverageOf(const std::string& name, double cell_m, CoverageRequest request)
+      : scenario(scenario::loadScenario(test::shippedScenario(name))),
+        area(areaOf(scenario->region)),
+        grid(makeMapGrid(area, cell_m, "utm")),
+        terrain(loadTerrain(*scenario, area)) {
+    computeCoverage(scenario, terrain, grid, request, {},
+                    [&](CoverageMap map) { maps.push_back(std::move(map)); });
+  }
+
+  const CoverageMap& find(Product product, const MapHeight& height, std::optional<double> time_s = {}) const {
+    for (const CoverageMap& map : maps) {
+      if (map.product == product && map.height && map.height->metres == height.metres &&
+          map.height->reference == height.reference && map.time_s == time_s) {
+        return map;
+      }
+    }
+    throw std::runtime_error("no such map");
+  }
+
+  std::shared_ptr<const scenario::Scenario> scenario;
+  MapArea area;
+  MapGrid grid;
+  scenario::TerrainPtr terrain;
+  std::vector<CoverageMap> maps;
+};
+
+const MapHeight kLow{emfield::HeightReference::ground, 100},
+    kHigh{emfield::HeightReference::mean_sea_level, 1500};
+
+TEST(Coverage, APixelIsThePathOfProfileThere) {
+  CoverageRequest request{
+      {kLow, kHigh}, {Product::value}, scenario::Quantity::power_density_dbwm2, -60, {80}};
+  const CoverageOf coverage("jamming.yaml", 400, request);
+  // One emitter alone, so that the sum is its budget.
+  const scenario::Snapshot snapshot = scenario::snapshotAt(coverage.scenario, coverage.terrain.get(), 80);
+  std::mt19937 random(5);
+  int compared = 0;
+  for (int n = 0; n < 60; ++n) {
+    const std::size_t pixel = random() % coverage.grid.pixels();
+    const auto [latitude_deg, longitude_deg] = coverage.grid.places[pixel];
+    if (std::isnan(latitude_deg)) continue;
+    for (const MapHeight& height : {kLow, kHigh}) {
+      const float value = coverage.find(Product::value, height, 80).values[pixel];
+      if (std::isnan(value)) continue;
+      const double ground_m =
+          coverage.terrain != nullptr ? coverage.terrain->heightMsl_m(latitude_deg, longitude_deg) : 0;
+      const double height_m =
+          height.metres + (height.reference == emfield::HeightReference::ground ? ground_m : 0);
+      const emfield::PathEnd end{
+          {latitude_deg, longitude_deg, height_m + geoidUndulation_m(latitude_deg, longitude_deg)}, height_m};
+      double sum = 0;
+      for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
+        if (!snapshot.emitters[e].active) continue;
+        const auto budget =
+            emfield::powerBudget(snapshot, static_cast<int>(e), end,
+                                 coverage.scenario->emitters[e].propagation.model, coverage.terrain.get());
+        sum += std::pow(10, budget.find("power_density_dbwm2")->value / 10);
+      }
+      const double expected = std::max(10 * std::log10(sum), coverage.scenario->output.floor);
+      EXPECT_NEAR(static_cast<double>(value), expected, 0.01);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 80);
+}
+
+TEST(Coverage, ProductsFollowFromTheValues) {
+  const std::vector<double> times_s{70, 80, 90};
+  CoverageRequest request{{kLow},
+                          {Product::value, Product::covered, Product::count, Product::best, Product::jam_loss,
+                           Product::fraction, Product::first_detection},
+                          scenario::Quantity::detection_probability,
+                          0.5,
+                          times_s};
+  const CoverageOf coverage("jacksboro.yaml", 500, request);
+  double lost_m2 = 0;
+  std::vector<int> times_covered(coverage.grid.pixels(), 0);
+  for (const double time_s : times_s) {
+    const CoverageMap& value = coverage.find(Product::value, kLow, time_s);
+    const CoverageMap& covered = coverage.find(Product::covered, kLow, time_s);
+    const CoverageMap& count = coverage.find(Product::count, kLow, time_s);
+    const CoverageMap& best = coverage.find(Product::best, kLow, time_s);
+    const CoverageMap& lost = coverage.find(Product::jam_loss, kLow, time_s);
+    double area_m2 = 0;
+    for (std::size_t p = 0; p < coverage.grid.pixels(); ++p) {
+      ASSERT_EQ(std::isnan(value.values[p]), std::isnan(coverage.grid.places[p].latitude_deg));
+      if (std::isnan(value.values[p])) continue;
+      ASSERT_EQ(covered.values[p], value.values[p] >= 0.5f ? 1 : 0);
+      ASSERT_EQ(best.values[p] >= 0, count.values[p] > 0);
+      if (count.values[p] > 0) {
+        ASSERT_EQ(covered.values[p], 1) << "two radars detect more than one";
+      }
+      if (covered.values[p] == 1) {
+        ASSERT_EQ(lost.values[p], 0);
+        area_m2 += static_cast<double>(coverage.grid.areas_m2[p]);
+        ++times_covered[p];
+      }
+    }
+    EXPECT_NEAR(covered.covered_area_m2, area_m2, 1);
+    EXPECT_GT(covered.covered_area_m2, 0);
+    lost_m2 = lost.covered_area_m2;
+  }
+  EXPECT_GT(lost_m2, 0) << "the jammer is above the ridge";
+  const CoverageMap& first = coverage.find(Product::first_detection, kLow);
+  const CoverageMap& fraction = coverage.find(Product::fraction, kLow);
+  for (std::size_t p = 0; p < coverage.grid.pixels(); ++p) {
+    if (times_covered[p] == 3) {
+      ASSERT_EQ(first.values[p], 70);
+      ASSERT_EQ(fraction.values[p], 1);
+    } else if (times_covered[p] == 0) {
+      ASSERT_TRUE(std::isnan(first.values[p]));
+    }
+  }
+}
+
+TEST(Coverage, TheLeastHeightIsTheLowestThatIsCovered) {
+  // Beside ridges there are places where a lower height is seen and a higher one is not; few.
+  const CoverageOf coverage(
+      "jacksboro.yaml", 1000,
+      {{kLow}, {Product::min_height}, scenario::Quantity::detection_probability, 0.5, {10}});
+  ASSERT_EQ(coverage.maps.size(), 1u);
+  const std::vector<float>& least_m = coverage.maps[0].values;
+  auto edited = std::make_shared<scenario::Scenario>(*coverage.scenario);
+  edited->output.radar_look = scenario::RadarLook::target;
+  edited->output.quantities = {"detection_probability"};
+  auto surface = std::make_shared<emfield::Surface>();
+  surface->width = coverage.grid.width;
+  surface->height = coverage.grid.height;
+  surface->places = coverage.grid.places;
+  surface->heights_m = {0, 1};  // the metre below, and the height itself
+  for (const float height_m : least_m) {
+    surface->offsets_m.push_back(height_m >= 1 ? height_m - 1 : 0);
+  }
+  emfield::FieldOptions options;
+  options.surface = surface;
+  emfield::FieldSolver solver(edited, coverage.terrain, options);
+  solver.update(scenario::snapshotAt(edited, coverage.terrain.get(), 10));
+  const auto volume = solver.volumes().front().host();
+  int found = 0, above = 0;
+  for (std::size_t p = 0; p < least_m.size(); ++p) {
+    if (std::isnan(least_m[p])) continue;
+    ++found;
+    if (least_m[p] < 1) continue;
+    ++above;
+    EXPECT_LT(volume->values[p], 0.5f) << least_m[p];
+    EXPECT_GE(volume->values[least_m.size() + p], 0.5f) << least_m[p];
+  }
+  EXPECT_GT(found, 500);
+  EXPECT_GT(above, 200);
+}
+
+TEST(Coverage, RefusesProductsThatTheQuantityOrTheTimesDoNotHave) {
+  const auto messageOf = [](Product product, scenario::Quantity quantity) {
+    return test::errorOf([&] { CoverageOf("quick.yaml", 5000, {{kLow}, {product}, quantity, 0, {0}}); });
+  };
+  using scenario::Quantity;
+  EXPECT_THAT(messageOf(Product::margin, Quantity::detection_probability), HasSubstr("decibels"));
+  EXPECT_THAT(messageOf(Product::jam_loss, Quantity::power_density_dbwm2), HasSubstr("jamming"));
+  EXPECT_THAT(messageOf(Product::covered, Quantity::dominant_emitter), HasSubstr("index"));
+  EXPECT_THAT(messageOf(Product::fraction, Quantity::power_density_dbwm2), HasSubstr("two times"));
+  EXPECT_THAT(test::errorOf([] { productNamed("gap"); }), HasSubstr("longest_gap"));
+}
+
+TEST(Coverage, HeightsAreListsAndRanges) {
+  const std::vector<MapHeight> heights = parseHeights("agl:30,150;msl:500:1500:500");
+  ASSERT_EQ(heights.size(), 5u);
+  EXPECT_EQ(describe(heights[1]), "150 m above ground");
+  EXPECT_EQ(describe(heights[4]), "1500 m above mean sea level");
+  EXPECT_EQ(nameOf(heights[2]), "msl500m");
+  for (const char* text :
+       {"", "30", "agl:", "agl:x", "msl:1:2", "msl:3:2:1", "agl:1:2:0", "agl:-1", "msl:1e9", "agl:0:1e5:1"}) {
+    EXPECT_THAT(test::errorOf([&] { parseHeights(text); }), HasSubstr("heights '" + std::string(text)))
+        << text;
+  }
+}
+
+TEST(Coverage, AGeoTiffHoldsTheMapAndSaysWhatItIs) {
+  const test::TemporaryFolder folder;
+  const CoverageOf coverage(
+      "quick.yaml", 2000,
+      {{kLow}, {Product::value, Product::best}, scenario::Quantity::power_density_dbwm2, -90, {0}});
+  for (const CoverageMap& map : coverage.maps) {
+    const std::filesystem::path file = folder.path() / "map.tif";
+    writeGeoTiff(file, coverage.grid, map, {"first", "second"}, {{"EMSCAPE_TIME_S", "0"}});
+    GDALAllRegister();
+    auto* const dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_ReadOnly));
+    ASSERT_NE(dataset, nullptr);
+    GDALRasterBand* const band = dataset->GetRasterBand(1);
+    EXPECT_STREQ(band->GetDescription(), map.description.c_str());
+    EXPECT_STREQ(band->GetUnitType(), map.unit.c_str());
+    EXPECT_STREQ(dataset->GetMetadataItem("EMSCAPE_TIME_S"), "0");
+    EXPECT_STREQ(dataset->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
+    double transform[6];
+    ASSERT_EQ(dataset->GetGeoTransform(transform), CE_None);
+    EXPECT_EQ(transform[0], coverage.grid.left_m);
+    EXPECT_EQ(transform[3], coverage.grid.top_m);
+    EXPECT_EQ(transform[1], 2000);
+    std::vector<float> values(coverage.grid.pixels());
+    ASSERT_EQ(band->RasterIO(GF_Read, 0, 0, coverage.grid.width, coverage.grid.height, values.data(),
+                             coverage.grid.width, coverage.grid.height, GDT_Float32, 0, 0, nullptr),
+              CE_None);
+    for (std::size_t p = 0; p < values.size(); ++p) {
+      if (map.product == Product::best) {
+        ASSERT_EQ(values[p], map.values[p] >= 0 ? map.values[p] : 255);
+      } else if (std::isnan(map.values[p])) {
+        ASSERT_TRUE(std::isnan(values[p]));
+      } else {
+        ASSERT_EQ(values[p], map.values[p]);
+      }
+    }
+    GDALClose(dataset);
+  }
+  EXPECT_THAT(test::errorOf([&] {
+                writeGeoTiff(folder.path() / "none" / "map.tif", coverage.grid, coverage.maps[0], {}, {});
+              }),
+              HasSubstr("none/map.tif"));
+}
+
+}  // namespace
+}  // namespace emscape::study

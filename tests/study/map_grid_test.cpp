@@ -1,0 +1,86 @@
+#include "emscape/study/map_grid.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <GeographicLib/UTMUPS.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "emscape/base/geo_frame.h"
+#include "emscape/base/units.h"
+#include "tests/support/errors.h"
+
+namespace emscape::study {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(MapGrid, PixelsOfUtmAreWhereTheProjectionPutsThem) {
+  for (const auto& [latitude_deg, longitude_deg] : {std::pair{44.3, -71.4}, {-33.9, 151.2}, {0.01, 2.99}}) {
+    const MapArea area = circularArea({latitude_deg, longitude_deg, 20e3});
+    const MapGrid grid = makeMapGrid(area, 90, "utm");
+    const int zone = GeographicLib::UTMUPS::StandardZone(latitude_deg, longitude_deg);
+    EXPECT_EQ(grid.crs, "EPSG:" + std::to_string((latitude_deg < 0 ? 32700 : 32600) + zone));
+    EXPECT_EQ(std::fmod(grid.left_m, 90), 0);
+    EXPECT_EQ(std::fmod(grid.top_m, 90), 0);
+    int inside = 0;
+    for (int j = 0; j < grid.height; j += 7) {
+      for (int i = 0; i < grid.width; i += 5) {
+        const auto [lat, lon] = grid.places[static_cast<std::size_t>(j) * grid.width + i];
+        if (std::isnan(lat)) continue;
+        ++inside;
+        int found_zone = 0;
+        bool is_north = false;
+        double x = 0, y = 0;
+        GeographicLib::UTMUPS::Forward(lat, lon, found_zone, is_north, x, y, zone);
+        if (latitude_deg < 0 && is_north) y += 10e6;
+        if (latitude_deg > 0 && !is_north) y -= 10e6;
+        EXPECT_NEAR(x, grid.left_m + (i + 0.5) * 90, 0.02);
+        EXPECT_NEAR(y, grid.top_m - (j + 0.5) * 90, 0.02);
+      }
+    }
+    EXPECT_GT(inside, 3000);
+  }
+}
+
+TEST(MapGrid, ACirclesPixelsHaveItsArea) {
+  constexpr double kRadius_m = 30e3;
+  for (const char* crs : {"utm", "local"}) {
+    const MapGrid grid = makeMapGrid(circularArea({61.2, 20.9, kRadius_m}), 60, crs);
+    const double area_m2 = std::accumulate(grid.areas_m2.begin(), grid.areas_m2.end(), 0.0);
+    EXPECT_NEAR(area_m2 / (kPi * kRadius_m * kRadius_m), 1, 2e-4) << crs;
+  }
+}
+
+TEST(MapGrid, ABoxMayCrossTheAntimeridian) {
+  MapArea area;
+  area.box = {-17.2, -17.0, 179.9, 180.2};
+  const MapGrid grid = makeMapGrid(area, 500, "local");
+  int west = 0, east = 0;
+  for (const auto& [latitude_deg, longitude_deg] : grid.places) {
+    if (std::isnan(latitude_deg)) continue;
+    ASSERT_TRUE(longitude_deg >= 179.9 - 1e-6 || longitude_deg <= -179.8 + 1e-6) << longitude_deg;
+    ++(longitude_deg > 0 ? west : east);
+  }
+  EXPECT_GT(west, 500);
+  EXPECT_GT(east, 1000);
+  EXPECT_GE(grid.pixelAt(-17.1, 179.95), 0);
+  EXPECT_GE(grid.pixelAt(-17.1, -179.95), 0);
+  EXPECT_EQ(grid.pixelAt(-17.1, 178), -1);
+}
+
+TEST(MapGrid, RefusesWhatIsNoMap) {
+  const MapArea area = circularArea({44, -71, 10e3});
+  EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100, "EPSG:4326"); }),
+              HasSubstr("no projection in metres"));
+  EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100, "EPSG:99999"); }), HasSubstr("EPSG:NUMBER"));
+  EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100, "mercator"); }), HasSubstr("'mercator'"));
+  EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 0, "utm"); }), HasSubstr("positive"));
+  EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 0.5, "utm"); }), HasSubstr("larger cell"));
+  EXPECT_THAT(test::errorOf([&] { circularArea({91, 0, 1e3}); }), HasSubstr("-90..90"));
+  EXPECT_THAT(test::errorOf([&] { circularArea({1, 0, 1e7}); }), HasSubstr("2000000"));
+}
+
+}  // namespace
+}  // namespace emscape::study

@@ -1,0 +1,38 @@
+#include "study/time_figures.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+namespace emscape::study {
+namespace {
+
+TEST(TimeFigures, AreThoseOfTheRow) {
+  // Covered at each of the times; a time stands for the interval up to the next.
+  const std::vector<double> times_s{0, 1, 2, 4, 5, 8};
+  const std::vector<std::string> rows{"......", "xxxxxx", "..x.x.", "x....x", ".....x"};
+  TimeFigures figures(rows.size(), times_s);
+  for (std::size_t t = 0; t < times_s.size(); ++t) {
+    figures.add(times_s[t], [&](std::size_t row) { return rows[row][t] == 'x'; });
+  }
+  const auto of = [&](Product product, std::size_t row) { return figures.figure(product, row); };
+  EXPECT_TRUE(std::isnan(of(Product::first_detection, 0)));
+  EXPECT_EQ(of(Product::fraction, 0), 0);
+  EXPECT_EQ(of(Product::longest_gap, 0), 8);
+  EXPECT_EQ(of(Product::mean_gap, 0), 8);
+  EXPECT_EQ(of(Product::first_detection, 1), 0);
+  EXPECT_EQ(of(Product::fraction, 1), 1);
+  EXPECT_EQ(of(Product::longest_gap, 1), 0);
+  EXPECT_EQ(of(Product::mean_gap, 1), 0);
+  EXPECT_EQ(of(Product::first_detection, 2), 2);
+  EXPECT_EQ(of(Product::fraction, 2), 5.0f / 8);
+  EXPECT_EQ(of(Product::longest_gap, 2), 2);
+  EXPECT_EQ(of(Product::mean_gap, 2), 1.5f);
+  EXPECT_EQ(of(Product::longest_gap, 3), 7);
+  EXPECT_EQ(of(Product::fraction, 4), 0) << "the last time stands for no interval";
+  EXPECT_EQ(of(Product::first_detection, 4), 8);
+}
+
+}  // namespace
+}  // namespace emscape::study
