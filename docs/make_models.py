@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws the pictures of models.md: a vertical slice of each scenario in scenarios/models.
+"""Draws the pictures of models.md: a slice of each scenario in scenarios/models and scenarios/level.
 
     docs/make_models.py [EMSCAPE] [NAME...]      writes docs/images/model_NAME.png; by default all
 """
@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-# Name: colours (dBW/m2). The slices lie east to west; the camera looks north.
+# Name: colours (dBW/m2; dB). The slices lie east to west and the camera looks north, or they are level, seen from above.
 PICTURES = {
     "horizon": "-130:-50",
     "diffraction": "-130:-50",
@@ -23,18 +23,22 @@ PICTURES = {
     "p452": "-130:-70",
     "gases": "-160:-60",
     "rain": "-140:-60",
+    "clutter": "-10:50",
+    "clutter_mti": "-10:50",
 }
+LEVEL = {"clutter", "clutter_mti"}
 
 
 def draw(emscape, name, colours):
     picture = ROOT / "docs" / "images" / f"model_{name}.png"
+    size, elevation_deg, distance = ("480x420", 90, 2) if name in LEVEL else ("640x280", 0, 1.3)
     with tempfile.TemporaryDirectory() as folder:
         full = pathlib.Path(folder) / "full.png"
         subprocess.run(
-            [emscape, "render", ROOT / "scenarios" / "models" / f"{name}.yaml", "-o", full, "--quiet",
-             "--backend", "cpu", "--size", "640x280", "--mode", "mip", f"--range={colours}", "--theme", "light",
+            [emscape, "render", ROOT / "scenarios" / ("level" if name in LEVEL else "models") / f"{name}.yaml", "-o", full, "--quiet",
+             "--backend", "cpu", "--size", size, "--mode", "mip", f"--range={colours}", "--theme", "light",
              "--terrain", "off", "--transfer", ROOT / "scenarios" / "transfer" / "slice_viridis.json", "--camera",
-             "orbit:azimuth_deg=180,elevation_deg=0,distance=1.3,fov_deg=20,projection=orthographic"],
+             f"orbit:azimuth_deg=180,elevation_deg={elevation_deg},distance={distance},fov_deg=20,projection=orthographic"],
             check=True)
         # 96 colours are enough, and take a quarter of the space.
         subprocess.run(

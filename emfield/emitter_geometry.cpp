@@ -28,8 +28,8 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
 
   const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   const ExcessGrid grid = excessGrid(columns, terrain);
-  const std::vector<double> ranges_m =
-      postRanges(pathExtent(station, columns).farthest_m, postSpacing_m(terrain));
+  const propagation::PathExtent extent = pathExtent(station, columns);
+  const std::vector<double> ranges_m = postRanges(extent.farthest_m, postSpacing_m(terrain));
   const GroundPosts ground = groundPosts(terrain, ranges_m);
   if (model.casts_shadow) findShadowEdgesCpu(station, ground, grid, shadow_edge_m_.data());
   if (hasExcess(scenario, emitter)) {
@@ -41,7 +41,21 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
+  mapClutter(scenario, emitter, station, extent, terrain);
   times.excess_ms += watch.lap_ms();
+}
+
+void EmitterGeometry::mapClutter(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                                 const Station& station, const propagation::PathExtent& extent,
+                                 const scenario::Terrain* terrain) {
+  clutter_.clear();
+  std::optional<ClutterMapTask> task = clutterMapTask(scenario, emitter, station, &extent);
+  if (!task) return;
+  const std::vector<double> ranges_m = clutterPostRanges(task->grid, postSpacing_m(terrain));
+  task->ground = groundPosts(terrain, ranges_m);
+  clutter_grid_ = task->grid;
+  clutter_.resize(clutter_grid_.cells());
+  fillClutterMapCpu(*task, clutter_.data());
 }
 
 std::size_t EmitterGeometry::bytesPerVoxel(const scenario::Scenario& scenario,
@@ -53,7 +67,8 @@ std::size_t EmitterGeometry::bytesPerVoxel(const scenario::Scenario& scenario,
 
 std::size_t EmitterGeometry::bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                      std::size_t columns, int layers) {
-  return columns * (kBytesPerColumn + static_cast<std::size_t>(layers) * bytesPerVoxel(scenario, emitter));
+  return columns * (kBytesPerColumn + static_cast<std::size_t>(layers) * bytesPerVoxel(scenario, emitter)) +
+         clutterMapBytes(emitter);
 }
 
 void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns) {

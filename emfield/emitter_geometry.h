@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "emfield/clutter_map.h"
 #include "emfield/column_geometry.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/snapshot.h"
@@ -26,6 +27,10 @@ class EmitterGeometry {
                Times& times);
 
   ColumnGeometryView view() const;
+  /// Of a radar with clutter of the surface; else without cells.
+  ClutterMapView clutterMap() const {
+    return clutterMapView(clutter_grid_, clutter_.empty() ? nullptr : clutter_.data());
+  }
   /// Columns whose path crosses missing terrain.
   long long unknownColumns() const { return unknown_columns_; }
   bool isUnknown(std::size_t column) const;
@@ -40,10 +45,13 @@ class EmitterGeometry {
                              std::size_t columns, int layers);
   std::size_t bytes() const {
     return (arrays_.size() + shadow_edge_m_.size()) * sizeof(float) + excess_.size() * sizeof(ExcessCode) +
-           reflected_.size() * sizeof(ReflectedRayCode);
+           reflected_.size() * sizeof(ReflectedRayCode) + clutter_.size() * sizeof(ClutterCell);
   }
 
  private:
+  void mapClutter(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                  const Station& station, const propagation::PathExtent& extent,
+                  const scenario::Terrain* terrain);
   void locateColumns(const Station& station, const GridColumns& columns);
 
   std::size_t column_count_ = 0;
@@ -51,6 +59,8 @@ class EmitterGeometry {
   std::vector<float> shadow_edge_m_;
   std::vector<ExcessCode> excess_;           ///< columns x layers, or empty
   std::vector<ReflectedRayCode> reflected_;  ///< the same
+  ClutterGrid clutter_grid_;
+  std::vector<ClutterCell> clutter_;  ///< empty: no clutter of the surface
   long long unknown_columns_ = 0;
   unsigned warnings_ = 0;
 };

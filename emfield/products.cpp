@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "emfield/radar/receiver.h"
+#include "emfield/radar_clutter.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/volume/dense_volume.h"
@@ -17,11 +19,22 @@ namespace {
 using scenario::Emitter;
 using scenario::Quantity;
 
+/// True for quantities of an echo behind the radar's filter, against clutter.
+bool isAgainstClutter(Quantity quantity) {
+  return quantity == Quantity::detection_probability || quantity == Quantity::detection_age_s ||
+         quantity == Quantity::sclnr_db;
+}
+
 /// The task of a radar in a channel of a radar quantity, without the look.
-RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::OutputSpec& output) {
+RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Scenario& scenario) {
+  const scenario::OutputSpec& output = scenario.output;
   RadarTask task;
   task.echo_root = static_cast<float>(echoRoot_m2_w(radar));
-  const bool looks_at_scan = quantity == Quantity::snr_db || quantity == Quantity::detection_probability;
+  if (radar.clutter && isAgainstClutter(quantity)) {
+    task.echo_root = static_cast<float>(echoRoot_m2_w(radar) * std::sqrt(filterResponse(radar)));
+    task.clutter = clutterTask(scenario, radar);
+  }
+  const bool looks_at_scan = quantity == Quantity::snr_db || isAgainstClutter(quantity);
   const bool is_instant = output.interval.kind == scenario::IntervalKind::instant;
   task.look = lookOf(radar, looks_at_scan && is_instant ? output.radar_look : scenario::RadarLook::target);
   task.is_cumulative = output.interval.kind == scenario::IntervalKind::cumulative;
@@ -41,6 +54,9 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Out
       task.factor = static_cast<float>(dbToRatio(-requiredSignalToJammerDb(radar)));
       task.lowest = 1 / kMaxMargin;
       task.ceiling = kMaxMargin;
+      break;
+    case Quantity::sclnr_db:
+      task.measure = RadarMeasure::root_of_signal_to_clutter_and_noise;
       break;
     case Quantity::detection_age_s:
       task.measure = RadarMeasure::detection_age;
@@ -145,6 +161,7 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       break;
     }
     case Quantity::snr_db:
+    case Quantity::sclnr_db:
       plan.reduction = Reduction::maximum;
       plan.product.scale = 2;
       weigh(echoRoot_m2_w);
@@ -186,7 +203,7 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
   if (!needsRadar(channel.quantity) || is_plain) return plan;
   for (int e : channel.emitters) {
     const Emitter& radar = scenario.emitters[e];
-    plan.radars.push_back(radarTask(channel.quantity, radar, scenario.output));
+    plan.radars.push_back(radarTask(channel.quantity, radar, scenario));
     const bool is_age = channel.quantity == Quantity::detection_age_s;
     if (is_age) plan.radars.back().ceiling = plan.product.offset;
     if (!is_age && channel.quantity != Quantity::detection_probability) continue;

@@ -3,12 +3,14 @@
 ///
 /// With S the radar's one-way power density at the voxel, an echo's signal-to-noise is (root S)^2: S contains
 /// all effects of the path, which enter twice. Jamming is one-way; its power over the noise at the radar's
-/// receiver, on boresight, does not depend on the voxel, but the beam's direction does.
+/// receiver, on boresight, does not depend on the voxel, but the beam's direction does. Clutter adds to the
+/// jamming (clutter_echo.h).
 #pragma once
 
 #include <vector>
 
 #include "base/fast_math.h"
+#include "emfield/clutter_echo.h"
 #include "emfield/combine.h"
 #include "emfield/radar/detection.h"
 #include "emfield/radar/look.h"
@@ -22,7 +24,8 @@ enum class RadarMeasure {
   root_of_signal_to_noise,
   signal_to_jamming,  ///< S / J, times a factor, within RadarTask::lowest..ceiling: the ceiling without
                       ///< jamming, the lowest without echo; 0 (nothing) without both
-  detection,          ///< probability of detection from S / (N + J); 0 without echo
+  detection,          ///< probability of detection from S / (C + N + J); 0 without echo
+  root_of_signal_to_clutter_and_noise,
   detection_age,  ///< RadarTask::ceiling less the age (s) of the last pass, if its probability is at least
                   ///< RadarTask::lowest; 0 (nothing) if not
 };
@@ -51,6 +54,7 @@ struct RadarTask {
   float factor = 1;            ///< of signal_to_jamming
   float lowest = 0, ceiling = 1e30f;
   DetectionCurveView curve;  ///< detection and its age
+  ClutterTask clutter;
   const JammerAtRadar* jammers = nullptr;
   int jammer_count = 0;
 };
@@ -119,6 +123,7 @@ EMSCAPE_HD inline float inAllLooks(float probability, float looks) {
 }
 
 /// Adds a radar's echo to a channel's accumulator. Without branches, for SIMD.
+/// @param jamming_to_noise  clutter included
 /// @param looks  of RadarTask::is_cumulative; of detection_age: the age
 template <RadarMeasure measure>
 EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
@@ -140,6 +145,8 @@ EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root
   } else if constexpr (measure == RadarMeasure::detection_age) {
     const float probability = task.curve(fastRatioToDb(echo_to_noise / (1 + jamming_to_noise)));
     value = (echo_to_noise > 0) & (probability >= task.lowest) ? task.ceiling - looks : 0.0f;
+  } else if constexpr (measure == RadarMeasure::root_of_signal_to_clutter_and_noise) {
+    value = echo_to_noise_root / std::sqrt(1 + jamming_to_noise);
   }
   return value > accumulated ? value : accumulated;
 }
@@ -154,6 +161,9 @@ EMSCAPE_HD inline float withRadar(const RadarTask& task, float echo_to_noise_roo
     case RadarMeasure::detection:
       return withEcho<RadarMeasure::detection>(task, echo_to_noise_root, jamming_to_noise, looks,
                                                accumulated);
+    case RadarMeasure::root_of_signal_to_clutter_and_noise:
+      return withEcho<RadarMeasure::root_of_signal_to_clutter_and_noise>(
+          task, echo_to_noise_root, jamming_to_noise, looks, accumulated);
     case RadarMeasure::detection_age:  // addEcho() has it as a template parameter
     case RadarMeasure::root_of_signal_to_noise:
       break;
@@ -171,12 +181,14 @@ struct RadarPass {
   const int* first_row_k = nullptr;  ///< for each y the lowest layer with a voxel above ground; null: 0
   float* accumulator = nullptr;      ///< dense order
   bool has_reflected_rays = false;   ///< some ray, also of a jammer, has a reflected one that is weighed
+  ClutterMapView clutter_map;        ///< without cells: no clutter of the surface
 };
 
 /// One voxel of a pass. The CPU does the same row by row.
 /// @tparam kReflected  false: for passes without reflected rays
+/// @tparam kClutter    false: for passes without clutter
 /// @tparam kAge        true: for RadarMeasure::detection_age
-template <scenario::PatternKind kind, bool kReflected = true, bool kAge = false>
+template <scenario::PatternKind kind, bool kReflected = true, bool kClutter = true, bool kAge = false>
 EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k) {
   const RadarTask& task = pass.task;
   const std::size_t voxel = static_cast<std::size_t>(k) * pass.dims.x * pass.dims.y + column;
@@ -194,6 +206,12 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
     jamming += kReflected && jammer.has_reflected_ray
                    ? jammingOfBothRaysToNoise<kind>(task, pass.beam, jammer, column, t_m)
                    : jammingToNoise<kind>(task, pass.beam, jammer, column, t_m);
+  }
+  if constexpr (kClutter) {
+    if (!task.clutter.isNone()) {
+      const AimedVoxel aimed = aimedVoxel(task.look, pass.beam, column, t_m);
+      jamming += clutterToNoise<kind>(task.clutter, pass.clutter_map, pass.beam, aimed.aim, aimed.range_m);
+    }
   }
   if constexpr (kAge) {
     const float age_s = ageAt(task, pass.beam, column, t_m);
@@ -217,12 +235,14 @@ struct RadarShare {
   std::vector<JammerAtRadar> jammers;
 };
 
-/// @param beam  with views of its geometry and pattern
-/// @param task  the pass over the other emitters
-inline RadarPass radarPass(const RadarShare& share, const EmitterBeam& beam, const CombineTask& task,
-                           float* accumulator) {
+/// @param beam         with views of its geometry and pattern
+/// @param clutter_map  of the radar
+/// @param task         the pass over the other emitters
+inline RadarPass radarPass(const RadarShare& share, const EmitterBeam& beam,
+                           const ClutterMapView& clutter_map, const CombineTask& task, float* accumulator) {
   RadarPass pass{
-      share.task, beam, task.dims, task.t_m, task.first_row_k, accumulator, weighsReflectedRays(beam)};
+      share.task, beam, task.dims, task.t_m, task.first_row_k, accumulator, weighsReflectedRays(beam),
+      clutter_map};
   for (const JammerAtRadar& jammer : share.jammers) pass.has_reflected_rays |= jammer.has_reflected_ray;
   pass.beam.forward = share.forward;
   pass.beam.right = share.right;

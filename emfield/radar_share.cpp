@@ -1,6 +1,7 @@
 #include "emfield/radar_share.h"
 
 #include "emfield/radar/receiver.h"
+#include "emfield/radar_clutter.h"
 
 namespace emscape::emfield {
 
@@ -18,6 +19,7 @@ RadarShare radarShare(const scenario::Scenario& scenario, int radar, const Emitt
   share.forward = vecCast<float>(frame.forward);
   share.right = vecCast<float>(frame.right);
   share.up = vecCast<float>(frame.up);
+  share.task.clutter = placedAt(state, scenario, task.clutter);
   const auto inFrame = [&frame](const Vec3d& ray) {
     return vecCast<float>(Vec3d{dot(ray, frame.forward), dot(ray, frame.right), dot(ray, frame.up)});
   };

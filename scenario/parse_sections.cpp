@@ -343,6 +343,7 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
                     emitter.name, toString(emitter.kind)));
   }
   if (section.has("waveform")) emitter.waveform = parseWaveform(section.section("waveform"), context);
+  if (section.has("clutter")) emitter.clutter = parseClutter(section.section("clutter"), emitter, context);
   if (section.has("receiver")) {
     const Section receiver = section.section("receiver");
     emitter.receiver = parseReceiver(receiver, context);

@@ -42,6 +42,9 @@ AntennaPtr parseAntenna(const Section& section, ParseContext& context);  ///< nu
 ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context);
 /// Index of the platform that a section names; -1, and a problem, if there is none.
 int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
+/// @param radar  with its frequency and its waveform
+/// @return none if faulty, or without a waveform
+std::optional<Clutter> parseClutter(const Section& section, const Emitter& radar, ParseContext& context);
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
 
 /// What receivers with and without a platform have in common.

@@ -26,6 +26,8 @@ const std::vector<QuantityInfo>& quantityTable() {
        "index of the emitter with the largest power density", true},
       {Quantity::mean_power_density_dbwm2, "mean_power_density_dbwm2", "dBW/m2", QuantityKind::of_emitters,
        "power density averaged over the radars' pulses and pauses"},
+      {Quantity::sclnr_db, "sclnr_db", "dB", QuantityKind::of_radars,
+       "single-pulse echo over clutter and noise of the best radar for its target, after its filter"},
       {Quantity::sinr_db, "sinr_db", "dB", QuantityKind::of_receiver,
        "wanted emitter's power at a receiver, over noise and all other emitters in its band"},
       {Quantity::intercept_margin_db, "intercept_margin_db", "dB", QuantityKind::of_receiver,

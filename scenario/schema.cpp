@@ -404,9 +404,52 @@ const ObjectSpec& waveformSpec() {
   return spec;
 }
 
+const ObjectSpec& mtiSpec() {
+  const ValueSpec spread = number("m/s").from(0).to(1000);
+  static const ObjectSpec spec{
+      "mti",
+      "",
+      {
+          required(
+              "kind", choiceUpTo(MtiKind::pulse_doppler),
+              "canceller: binomial weights of alternating sign; pulse_doppler: a bank of coherent filters"),
+          byDefault("pulses", kInteger.from(2).to(1024), double(Mti{}.pulses), "that the filter weighs"),
+          byDefault("surface_spread_m_s", spread, Mti{}.surface_spread_mps,
+                    "standard deviation of the radial velocities of land and sea, the scanning included"),
+          byDefault("rain_spread_m_s", spread, Mti{}.rain_spread_mps, "the same of rain"),
+          optional("improvement_limit_db", number("dB").from(0).to(200),
+                   "largest improvement that the radar's stability permits"),
+      }};
+  return spec;
+}
+
+const ObjectSpec& clutterSpec() {
+  static const ObjectSpec spec{
+      "clutter",
+      "",
+      {
+          optional("land", choiceUpTo(LandKind::urban),
+                   "kind of land, for its constant gamma; posts above 0 m, and all others without sea_state"),
+          optional("land_gamma_db", number("dB").from(-80).to(30),
+                   "gamma at the radar's frequency, in place of land"),
+          optional("sea_state", kInteger.from(0).to(6), "of the posts at or below mean sea level"),
+          optional("rain", simple(ValueType::boolean), "true: echo of the atmosphere's rain_mm_h"),
+          optional("range_cell_m", number("m").above(0).to(1e6),
+                   "length of the resolution cell; by default c pulse_width_s / 2, that of a pulse without "
+                   "compression"),
+          optional("mti", object(mtiSpec()), "Doppler filter; by default none"),
+          optional(
+              "target_radial_speed_m_s", number("m/s").from(-20000).to(20000),
+              "in volumes; by default the mean response of all speeds (canceller), the middle between two "
+              "blind speeds (pulse_doppler)"),
+      }};
+  return spec;
+}
+
 const ObjectSpec& emitterSpec() {
   static const ObjectSpec spec{
-      "emitter", "kind",
+      "emitter",
+      "kind",
       withPropagation(
           {
               required("name", kName, "on pictures and in volumes"),
@@ -426,9 +469,14 @@ const ObjectSpec& emitterSpec() {
               required("receiver", object(radarReceiverSpec()), "the radar's own", {"radar"}),
               optional("waveform", object(waveformSpec()),
                        "the pulses; without it the mean power is taken as power_w", {"radar"}),
+              optional("clutter", object(clutterSpec()),
+                       "echoes of land, sea and rain, for sclnr_db and detection_probability; needs waveform",
+                       {"radar"}),
               optional("active_s", listOf(listOf(kTime, 2, 2), 1, kMaxItems),
                        "[begin, end) of the times at which it radiates; always by default"),
-          })};
+          }),
+      {},
+      {{"clutter", "waveform"}}};
   return spec;
 }
 

@@ -244,7 +244,7 @@ DIR/maps holds a cloud-optimised GeoTIFF and a picture of each map, DIR/report.j
 Examples:
   emscape coverage scenarios/jacksboro.yaml -o out --heights agl:30,150,300
   emscape coverage scenarios/jacksboro.yaml -o out --heights "agl:150;msl:1000:3000:500" --products covered,count,best
-  emscape coverage scenarios/jamming.yaml -o out --products covered,jam_loss --cell 100
+  emscape coverage scenarios/jamming.yaml -o out --products min_height,jam_loss --cell 100 --format png
   emscape coverage scenarios/jacksboro.yaml -o out --times 0:120:5 --products fraction,first_detection,longest_gap
   emscape coverage scenarios/jacksboro.yaml -o out --quantity power_density_dbwm2 --threshold -60 --area 36.3,-84.2,8000)",
                               products));
@@ -272,6 +272,8 @@ Examples:
   command->add_option(
       "--crs", options->crs,
       "Projection: utm (zone of the area's middle), local (azimuthal equidistant) or EPSG:NUMBER");
+  addListOption(*command, "--format", options->formats, "Files of each map, with commas between them")
+      ->check(CLI::IsMember({"cog", "png"}));
   command->callback(
       [options, &global, &action] { action = [options, &global] { return coverage(*options, global); }; });
 }

@@ -53,6 +53,10 @@ Json toJson(const DetectionRow& row) {
   Json json = pathJson(row);
   json["rcs_dbsm"] = ratioToDb(row.rcs_m2);
   json["snr_db"] = number(row.snr_db);
+  if (row.radial_speed_mps) {
+    json["sclnr_db"] = number(row.sclnr_db);
+    json["radial_speed_mps"] = *row.radial_speed_mps;
+  }
   json["jammer_to_signal_db"] = number(row.jammer_to_signal_db);
   json["detection_probability"] = row.detection_probability;
   json["looks"] = row.looks;
@@ -159,12 +163,19 @@ void printLink(const NamedLinks& links, const Link& link) {
 
 void printDetection(const NamedLinks& links, const Detection& detection) {
   print("Radar '{}' and target '{}'\n", emitterName(links, detection.radar), targetName(links, detection));
-  print("  {:>8} {:>9} {:>9} {:>8} {:>8} {:>6} {:>6} {:>10}  {}\n", "time s", "range km", "RCS dBsm",
-        "SNR dB", "J/S dB", "Pd", "looks", "cumulative", "path, where it changes");
-  printThinned(detection.rows, [](const DetectionRow& row, const std::string& path) {
-    print("  {:>8g} {:>9.3f} {:>9} {:>8} {:>8} {:>6} {:>6} {:>10}  {}\n", row.time_s, row.range_m / 1000,
-          cell(ratioToDb(row.rcs_m2)), cell(row.snr_db), cell(row.jammer_to_signal_db),
-          cell(row.detection_probability, 3), row.looks, cell(row.cumulative_probability, 3), path);
+  const bool has_clutter = detection.rows.front().radial_speed_mps.has_value();
+  const auto ofClutter = [&](const std::string& speed, const std::string& ratio) {
+    return has_clutter ? fmt::format(" {:>9} {:>10}", speed, ratio) : std::string();
+  };
+  print("  {:>8} {:>9} {:>9} {:>8}{} {:>8} {:>6} {:>6} {:>10}  {}\n", "time s", "range km", "RCS dBsm",
+        "SNR dB", ofClutter("speed m/s", "S/(C+N) dB"), "J/S dB", "Pd", "looks", "cumulative",
+        "path, where it changes");
+  printThinned(detection.rows, [&](const DetectionRow& row, const std::string& path) {
+    print("  {:>8g} {:>9.3f} {:>9} {:>8}{} {:>8} {:>6} {:>6} {:>10}  {}\n", row.time_s, row.range_m / 1000,
+          cell(ratioToDb(row.rcs_m2)), cell(row.snr_db),
+          ofClutter(cell(row.radial_speed_mps.value_or(0)), cell(row.sclnr_db)),
+          cell(row.jammer_to_signal_db), cell(row.detection_probability, 3), row.looks,
+          cell(row.cumulative_probability, 3), path);
   });
   print("\n");
 }
@@ -223,11 +234,12 @@ void writeCsv(const NamedLinks& links, const std::string& file) {
   writeWhole(file, [&](std::ostream& out) {
     out << "kind,time_s,emitter,to,active,range_m,power_density_dbwm2,pattern_db,blocked,jammer_to_signal_db,"
            "received_power_dbm,interference_dbm,noise_dbm,sinr_db,received,"
-           "rcs_dbsm,snr_db,detection_probability,looks,cumulative_probability,verdict\n";
+           "rcs_dbsm,snr_db,sclnr_db,radial_speed_mps,detection_probability,looks,cumulative_probability,"
+           "verdict\n";
     for (const Link& link : links.report.links) {
       for (const LinkRow& row : link.rows) {
         out << csvPath("receiver", emitterName(links, link.emitter), receiverOf(links, link).name, row)
-            << fmt::format(",{},{},{},{},{},{},,,,,,{}\n", csvNumber(row.jammer_to_signal_db),
+            << fmt::format(",{},{},{},{},{},{},,,,,,,,{}\n", csvNumber(row.jammer_to_signal_db),
                            csvNumber(row.received_power_dbm), csvNumber(row.interference_dbm),
                            csvNumber(row.noise_dbm), csvNumber(row.sinr_db), int(row.is_received),
                            csvText(row.verdict));
@@ -236,8 +248,9 @@ void writeCsv(const NamedLinks& links, const std::string& file) {
     for (const Detection& detection : links.report.detections) {
       for (const DetectionRow& row : detection.rows) {
         out << csvPath("target", emitterName(links, detection.radar), targetName(links, detection), row)
-            << fmt::format(",{},,,,,,{},{},{},{},{},{}\n", csvNumber(row.jammer_to_signal_db),
-                           csvNumber(ratioToDb(row.rcs_m2)), csvNumber(row.snr_db),
+            << fmt::format(",{},,,,,,{},{},{},{},{},{},{},{}\n", csvNumber(row.jammer_to_signal_db),
+                           csvNumber(ratioToDb(row.rcs_m2)), csvNumber(row.snr_db), csvNumber(row.sclnr_db),
+                           csvNumber(row.radial_speed_mps.value_or(std::nan(""))),
                            csvNumber(row.detection_probability), row.looks,
                            csvNumber(row.cumulative_probability), csvText(row.verdict));
       }

@@ -1,10 +1,38 @@
 #include "apps/emscape/waveform_report.h"
 
 #include "base/quantity_text.h"
+#include "emfield/radar_clutter.h"
+#include "emscape/base/units.h"
 
 namespace emscape::app {
 
 using scenario::Waveform;
+
+namespace {
+
+Json clutterJson(const scenario::Emitter& emitter) {
+  if (!emitter.clutter) return nullptr;
+  const scenario::Clutter& clutter = *emitter.clutter;
+  return {{"land_gamma_db", number(clutter.land_gamma_db)},
+          {"sea_state", clutter.sea_state ? Json(*clutter.sea_state) : Json(nullptr)},
+          {"rain", clutter.rain},
+          {"range_cell_m", clutter.range_cell_m},
+          {"surface_improvement_db", number(ratioToDb(emfield::surfaceImprovement(emitter)))},
+          {"rain_improvement_db", number(ratioToDb(emfield::rainImprovement(emitter)))},
+          {"filter_response_db", number(ratioToDb(emfield::filterResponse(emitter)))}};
+}
+
+/// "land (gamma -15.0 dB), sea (state 4), rain"
+std::string sourcesOf(const scenario::Clutter& clutter) {
+  std::string text;
+  const auto add = [&text](const std::string& source) { text += (text.empty() ? "" : ", ") + source; };
+  if (clutter.land_gamma_db) add(fmt::format("land (gamma {:.1f} dB)", *clutter.land_gamma_db));
+  if (clutter.sea_state) add(fmt::format("sea (state {})", *clutter.sea_state));
+  if (clutter.rain) add("rain");
+  return text;
+}
+
+}  // namespace
 
 Json waveformJson(const scenario::Emitter& emitter) {
   if (!emitter.waveform) return nullptr;
@@ -19,7 +47,8 @@ Json waveformJson(const scenario::Emitter& emitter) {
           {"first_blind_speed_mps", waveform.firstBlindSpeed_mps(emitter.frequency_hz)},
           {"hits_per_scan",
            number(scenario::hitsPerScan(emitter.scan, emitter.antenna->beamwidth_az_deg, waveform.prf_hz))},
-          {"pulses", emitter.receiver.pulses}};
+          {"pulses", emitter.receiver.pulses},
+          {"clutter", clutterJson(emitter)}};
 }
 
 void printWaveform(const scenario::Emitter& emitter) {
@@ -42,6 +71,20 @@ void printWaveform(const scenario::Emitter& emitter) {
        fmt::format("{:.1f} m/s, radial", waveform.firstBlindSpeed_mps(emitter.frequency_hz)));
   const auto hits = scenario::hitsPerScan(emitter.scan, emitter.antenna->beamwidth_az_deg, waveform.prf_hz);
   if (hits) line("hits per scan", fmt::format("{:.4g}; {} are integrated", *hits, emitter.receiver.pulses));
+  if (!emitter.clutter) return;
+  const scenario::Clutter& clutter = *emitter.clutter;
+  line("clutter", fmt::format("{}; range cell {:g} m", sourcesOf(clutter), clutter.range_cell_m));
+  if (!clutter.mti) return;
+  line("filter", fmt::format("{} of {} pulses", toString(clutter.mti->kind), clutter.mti->pulses));
+  if (clutter.hasSurface())
+    line("improvement, surface", fmt::format("{:.1f} dB", ratioToDb(emfield::surfaceImprovement(emitter))));
+  if (clutter.rain)
+    line("improvement, rain", fmt::format("{:.1f} dB", ratioToDb(emfield::rainImprovement(emitter))));
+  line("response to the target",
+       fmt::format("{:.1f} dB, {}", ratioToDb(emfield::filterResponse(emitter)),
+                   clutter.target_radial_speed_mps
+                       ? fmt::format("at {:g} m/s", *clutter.target_radial_speed_mps)
+                       : std::string("mean of all radial speeds")));
 }
 
 }  // namespace emscape::app

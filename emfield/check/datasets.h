@@ -12,6 +12,10 @@ DatasetCheck checkSpecificGasAttenuation(const std::filesystem::path& folder);
 DatasetCheck checkSlantGasAttenuation(const std::filesystem::path& folder);
 DatasetCheck checkRain(const std::filesystem::path& folder);
 
+// check_clutter.cpp
+DatasetCheck checkSeaClutter(const std::filesystem::path& file);
+DatasetCheck checkClutterExamples(const std::filesystem::path& file);
+
 // check_detection.cpp
 DatasetCheck checkSwerling(const std::filesystem::path& file);
 DatasetCheck checkDetectionProbability(const std::filesystem::path& file);

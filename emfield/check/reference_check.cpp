@@ -43,6 +43,8 @@ const std::vector<ReferenceDataset>& referenceDatasets() {
       {"radar/swerling_exact_derived.csv", checkSwerling},
       {"radar/roc_pd_reference.csv", checkDetectionProbability},
       {"radar/radar_equation_worked_examples.csv", checkRadarEquation},
+      {"radar/sea_clutter_nathanson.csv", checkSeaClutter},
+      {"radar/clutter_worked_examples.csv", checkClutterExamples},
       {"radar/knife_edge_J_nu_derived.csv", checkKnifeEdge},
       {"radar/two_ray_flat_pec_derived.csv", checkTwoRay},
       {"radar/freespace_conversions_derived.csv", checkFreeSpaceConversions},

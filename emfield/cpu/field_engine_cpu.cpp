@@ -141,7 +141,7 @@ void CpuEngine::combine(const CombinePass& pass) {
     for (const RadarShare& share : pass.members[m].radars) {
       float* const accumulator = task.accumulators[share.channel].value;
       if (accumulator == nullptr) continue;
-      radarCpu(radarPass(share, beam, task, accumulator));
+      radarCpu(radarPass(share, beam, slots_[pass.members[m].slot].clutterMap(), task, accumulator));
     }
   }
   times_.combine_ms += watch.lap_ms();

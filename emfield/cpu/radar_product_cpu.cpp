@@ -3,6 +3,7 @@
 
 #include "base/simd.h"
 #include "emfield/cpu/both_rays.h"
+#include "emfield/cpu/clutter_rows.h"
 #include "emfield/cpu/echo_rows.h"
 #include "emfield/cpu/row.h"
 #include "emfield/radar_product.h"
@@ -94,6 +95,9 @@ EMSCAPE_SIMD_CLONES void accumulateRow(const RadarTask& task, int count, const f
       return accumulate<RadarMeasure::detection>(task, count, root, jamming, looks, accumulator);
     case RadarMeasure::detection_age:
       return accumulate<RadarMeasure::detection_age>(task, count, root, jamming, looks, accumulator);
+    case RadarMeasure::root_of_signal_to_clutter_and_noise:
+      return accumulate<RadarMeasure::root_of_signal_to_clutter_and_noise>(task, count, root, jamming, looks,
+                                                                           accumulator);
   }
 }
 
@@ -113,6 +117,7 @@ void radarCpu(const RadarPass& pass) {
         } else {
           fillRow(pass, row, root.data(), jamming.data());
         }
+        if (!pass.task.clutter.isNone()) addClutter(pass, row, jamming.data());
         if (pass.task.measure == RadarMeasure::detection_age) {
           findAges(pass, row, looks.data());
         } else if (pass.task.is_cumulative) {

@@ -65,6 +65,11 @@ ColumnGeometryView DeviceGeometry::view(int slot) const {
                             slots_[slot].has_reflected ? slots_[slot].reflected.data() : nullptr);
 }
 
+ClutterMapView DeviceGeometry::clutterMap(int slot) const {
+  const Slot& from = slots_[slot];
+  return clutterMapView(from.clutter_grid, from.has_clutter ? from.clutter.data() : nullptr);
+}
+
 DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) const {
   Work work;
   const scenario::Scenario& scenario = *setup_.scenario;
@@ -77,11 +82,19 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   if (hasExcess(scenario, emitter)) {
     work.model = makeExcess(scenario, emitter, station, setup_.terrain.get(), setup_.columns);
   }
-  work.ranges_m =
-      postRanges(pathExtent(station, setup_.columns).farthest_m, postSpacing_m(setup_.terrain.get()));
+  const propagation::PathExtent extent = pathExtent(station, setup_.columns);
+  work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
   work.ground.is_smooth = setup_.terrain == nullptr;
   work.ground.terrain = terrain_.view();
   work.ground.range_count = static_cast<int>(work.ranges_m.size());
+  work.clutter = clutterMapTask(scenario, emitter, station, &extent);
+  if (work.clutter) {
+    std::vector<double> farther_m =
+        clutterPostRanges(work.clutter->grid, postSpacing_m(setup_.terrain.get()));
+    work.clutter->ground = work.ground;
+    work.clutter->ground.range_count = static_cast<int>(farther_m.size());
+    if (farther_m.size() > work.ranges_m.size()) work.ranges_m = std::move(farther_m);
+  }
   const double far_m = setup_.far_field_m[request.emitter];
   work.task.station = station;
   work.task.near2_m2 = static_cast<float>(far_m * far_m);
@@ -101,6 +114,7 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   std::vector<float> tables;
   for (Work& work : works) {
     work.ground.ranges_m = ranges_m;
+    if (work.clutter) work.clutter->ground.ranges_m = ranges_m;
     work.task.counts = work.excess.counts = counts++;
     tasks.push_back(work.task);
     if (!work.model) continue;
@@ -133,6 +147,11 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     task.shadow_edge_m = task.numbers + kColumnNumbers * columns;
     slot.has_excess = works[r].model.has_value();
     slot.has_reflected = works[r].has_reflected_ray;
+    slot.has_clutter = works[r].clutter.has_value();
+    if (slot.has_clutter) {
+      slot.clutter_grid = works[r].clutter->grid;
+      atLeast(slot.clutter, slot.clutter_grid.cells());
+    }
     if (!slot.has_excess) continue;
     const std::size_t voxels = columns * static_cast<std::size_t>(columns_.layers);
     works[r].excess.out = {atLeast(slot.excess, voxels),
@@ -149,6 +168,9 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   for (const Work& work : works) {
     if (!work.model || isDiffraction(work.model->model)) continue;
     fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
+  }
+  for (std::size_t r = 0; r < requests.size(); ++r) {
+    if (works[r].clutter) fillClutterMap(*works[r].clutter, slots_[requests[r].slot].clutter.data(), stream);
   }
   clock.end(&StageTimes::excess_ms, stream);
 
@@ -219,7 +241,7 @@ std::size_t DeviceGeometry::bytes() const {
                       bytesOf(ranges_m_) + bytesOf(shadows_) + bytesOf(terms_) + bytesOf(diffraction_) +
                       bytesOf(scratch_) + bytesOf(ground_msl_m_) + bytesOf(model_tables_);
   for (const Slot& slot : slots_) {
-    bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.reflected);
+    bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.reflected) + bytesOf(slot.clutter);
   }
   return bytes + (setup_.terrain == nullptr ? 0 : postBytes(setup_.terrain->view()));
 }

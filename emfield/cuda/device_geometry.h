@@ -24,6 +24,8 @@ class DeviceGeometry {
                                       StageClock& clock);
   /// Inputs of the last computation of a slot.
   ColumnGeometryView view(int slot) const;
+  /// Surface clutter of the last computation of a slot; without cells: none.
+  ClutterMapView clutterMap(int slot) const;
   const DeviceColumns& columns() const { return columns_; }
   /// Null without terrain.
   const std::uint16_t* firstValidK() const {
@@ -39,6 +41,7 @@ class DeviceGeometry {
     GroundPosts ground;                  ///< on the device, from place() on
     std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on
     ExcessOutputs excess;
+    std::optional<ClutterMapTask> clutter;  ///< its ground on the device, from place() on
     bool has_shadow = false, has_reflected_ray = false;
   };
 
@@ -60,7 +63,9 @@ class DeviceGeometry {
     emscape::cuda::Buffer<float> numbers;  ///< of the columns, then the shadow's edges
     emscape::cuda::Buffer<ExcessCode> excess;
     emscape::cuda::Buffer<ReflectedRayCode> reflected;
-    bool has_excess = false, has_reflected = false;
+    emscape::cuda::Buffer<ClutterCell> clutter;
+    ClutterGrid clutter_grid;
+    bool has_excess = false, has_reflected = false, has_clutter = false;
   };
   std::vector<Slot> slots_;
 

@@ -160,7 +160,7 @@ void CudaEngine::combine(const CombinePass& pass) {
     for (const RadarShare& share : pass.members[m].radars) {
       float* const accumulator = task.accumulators[share.channel].value;
       if (accumulator == nullptr) continue;
-      RadarPass radar = radarPass(share, beam, task, accumulator);
+      RadarPass radar = radarPass(share, beam, geometry_.clutterMap(pass.members[m].slot), task, accumulator);
       RadarTables& tables = radar_tables_[{share.channel, pass.members[m].emitter.emitter_index}];
       if (tables.knots.size() == 0) {
         tables.knots.upload(share.task.curve.knots, static_cast<std::size_t>(share.task.curve.count),

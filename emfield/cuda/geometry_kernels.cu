@@ -1,4 +1,5 @@
 #include "base/cuda/cuda_memory.h"
+#include "emfield/clutter_map.h"
 #include "emfield/column_geometry.h"
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/solver/field_engine.h"
@@ -56,7 +57,21 @@ __global__ void __launch_bounds__(kThreads)
   if (isnan(edge_m)) atomicAdd(&shadow.counts->unknown_columns, 1);
 }
 
+/// One thread per azimuth.
+__global__ void clutterKernel(const __grid_constant__ ClutterMapTask task, ClutterCell* cells) {
+  const int azimuth = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (azimuth < task.grid.azimuths)
+    task(azimuth, cells + static_cast<std::size_t>(azimuth) * task.grid.ranges);
+}
+
 }  // namespace
+
+void fillClutterMap(const ClutterMapTask& task, ClutterCell* cells, cudaStream_t stream) {
+  constexpr int kRowsOfBlock = 32;  // few rows: as many multiprocessors as possible
+  const auto blocks = static_cast<unsigned>((task.grid.azimuths + kRowsOfBlock - 1) / kRowsOfBlock);
+  clutterKernel<<<blocks, kRowsOfBlock, 0, stream>>>(task, cells);
+  checkLaunch("clutterMap");
+}
 
 void locateColumns(const LocateTask* tasks, int count, const DeviceColumns& columns, cudaStream_t stream) {
   const dim3 blocks(blocksFor(columns.count), static_cast<unsigned>(count));

@@ -53,4 +53,7 @@ void locateColumns(const LocateTask* tasks, int count, const DeviceColumns& colu
 void findShadowEdges(const DeviceShadowTask* tasks, int count, int ranges, const ExcessGrid& grid,
                      cudaStream_t stream);
 
+/// Fills a radar's map of surface clutter, as fillClutterMapCpu(). Pointers are to device memory.
+void fillClutterMap(const ClutterMapTask& task, ClutterCell* cells, cudaStream_t stream);
+
 }  // namespace emscape::emfield::cuda

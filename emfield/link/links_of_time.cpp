@@ -101,6 +101,19 @@ void keepWarnings(std::vector<std::string>& all, const std::string& from, const 
   }
 }
 
+/// Speed (m/s) at which a target's platform moves away from a radar, from the next tenth of a second, at the
+/// end of the scenario from the last one.
+double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platform,
+                       const scenario::Terrain* terrain) {
+  constexpr double kStep_s = 0.1;
+  const double step_s = snapshot.time_s + kStep_s > snapshot.scenario->clock.duration_s ? -kStep_s : kStep_s;
+  const scenario::Snapshot other = scenario::instantAt(snapshot.scenario, terrain, snapshot.time_s + step_s);
+  const auto range_m = [&](const scenario::Snapshot& at) {
+    return length(toEcef(at.platforms[platform].position) - toEcef(at.emitters[radar].position));
+  };
+  return (range_m(other) - range_m(snapshot)) / step_s;
+}
+
 /// Adds the ends and the time to an error of a path.
 [[noreturn]] void refuse(const std::string& from, const std::string& to, double time_s, const Error& error) {
   throw Error(error.code(), error.location(),
@@ -238,6 +251,11 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
                                     radToDeg(std::atan2(aspect.z, std::hypot(aspect.x, aspect.y))));
   radar.receiver.target_rcs_m2 = row.rcs_m2;
 
+  if (radar.clutter) {
+    row.radial_speed_mps = radialSpeed_mps(snapshot, detection.radar, target.platform, terrain);
+    radar.clutter->target_radial_speed_mps = row.radial_speed_mps;
+  }
+
   std::optional<PathBudget> budget;
   if (!isAbove(radar_state.position, carrier.position)) {
     scenario::Snapshot with_target = snapshot;
@@ -256,6 +274,7 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
     return term == nullptr ? otherwise : term->value;
   };
   row.snr_db = valueOr("snr_db", -HUGE_VAL);
+  row.sclnr_db = valueOr("sclnr_db", row.snr_db);
   row.jammer_to_signal_db = valueOr("jammer_to_signal_db", -HUGE_VAL);
   row.detection_probability = valueOr("detection_probability", 0);
   const long long before = detection.rows.empty() ? 0 : looksUntil(detection.rows.back().time_s);

@@ -163,6 +163,35 @@ std::vector<std::string> rangeWarnings(const scenario::Waveform& waveform, doubl
   return warnings;
 }
 
+void addClutterTerms(const Emitter& emitter, const RadarAtPoint::Clutter& clutter,
+                     std::vector<BudgetTerm>& terms) {
+  const auto add = [&terms](const char* key, const char* label, double value, const std::string& note) {
+    if (!std::isnan(value)) terms.push_back({key, label, value, "dB", note});
+  };
+  const auto addClutter = [&](const char* key, const char* label, double to_noise_db, double improvement_db) {
+    add(key, label, to_noise_db,
+        emitter.clutter->mti
+            ? fmt::format("before the filter, which improves the echo by {:.1f} dB", improvement_db)
+            : "");
+  };
+  if (emitter.clutter->hasSurface())
+    addClutter("surface_clutter_to_noise_db", "clutter of land and sea over noise",
+               clutter.surface_to_noise_db, clutter.surface_improvement_db);
+  if (emitter.clutter->rain)
+    addClutter("rain_clutter_to_noise_db", "clutter of rain over noise", clutter.rain_to_noise_db,
+               clutter.rain_improvement_db);
+  if (emitter.clutter->mti) {
+    const auto& speed_mps = emitter.clutter->target_radial_speed_mps;
+    terms.push_back({"filter_response_db", "filter's response to the target", clutter.response_db, "dB",
+                     fmt::format("{}; first blind speed {:.1f} m/s",
+                                 speed_mps ? fmt::format("radial speed {:.1f} m/s", *speed_mps)
+                                           : std::string("mean of all radial speeds"),
+                                 emitter.waveform->firstBlindSpeed_mps(emitter.frequency_hz))});
+  }
+  terms.push_back({"sclnr_db", "echo over clutter and noise, one pulse", clutter.sclnr_db, "dB",
+                   fmt::format("range cell of {:g} m", emitter.clutter->range_cell_m), Kind::sum});
+}
+
 void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const RadarAtPoint& radar,
                    std::vector<BudgetTerm>& terms) {
   const Emitter& emitter = scenario.emitters[emitter_index];
@@ -179,6 +208,7 @@ void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const 
     terms.push_back({"jammer_to_signal_db", "jamming over the echo", radar.jammer_to_signal_db, "dB",
                      "the beam on the target"});
   }
+  if (radar.clutter) addClutterTerms(emitter, *radar.clutter, terms);
   const std::string settings =
       fmt::format("{} pulses, Pfa {:g}, Swerling {}", receiver.pulses, receiver.pfa, receiver.swerling);
   const DetectionLosses losses = detectionLosses(emitter);

@@ -5,8 +5,10 @@
 #include <vector>
 
 #include "emfield/link/jammers.h"
+#include "emfield/link/path_clutter.h"
 #include "emfield/products.h"
 #include "emfield/radar/receiver.h"
+#include "emfield/radar_clutter.h"
 #include "emfield/two_rays.h"
 #include "emscape/base/units.h"
 
@@ -18,8 +20,10 @@ using scenario::Quantity;
 
 class RadarPoint {
  public:
-  RadarPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray, const PathBudget& path)
-      : snapshot_(snapshot),
+  RadarPoint(const scenario::Snapshot& snapshot, int radar, const Vec3d& ray, const PathBudget& path,
+             const scenario::Terrain* terrain)
+      : clutter_(snapshot, radar, path.geometry.slant_range_m, terrain),
+        snapshot_(snapshot),
         scenario_(*snapshot.scenario),
         radar_(radar),
         ray_(ray * (1 / length(ray))),
@@ -60,12 +64,35 @@ class RadarPoint {
               : toward_jammer * toward_jammer;
       jamming += static_cast<double>(jammer.boresight_to_noise) * received;
     }
+    if (!share.task.clutter.isNone()) {
+      jamming += static_cast<double>(clutter_.toNoise(share.task.clutter, beamOf(share), aim));
+    }
     const double root = static_cast<double>(task.echo_root) * boresight_wm2_ * pattern_power;
     return static_cast<double>(
         withRadar(share.task, static_cast<float>(root), static_cast<float>(jamming), 1, 0));
   }
 
+  /// Clutter over noise of a task's kind with the beam as in snr_db and detection.
+  double clutterToNoise(const ClutterTask& clutter) const {
+    RadarTask task;
+    task.look = lookOf(scenario_.emitters[radar_], scenario_.output.radar_look);
+    task.clutter = clutter;
+    const RadarShare share = radarShare(scenario_, radar_, snapshot_.emitters[radar_], task, {});
+    const EmitterBeam beam = beamOf(share);
+    return static_cast<double>(clutter_.toNoise(
+        share.task.clutter, beam, aimAt(share.task.look, inAntennaFrame(beam, vecCast<float>(ray_)))));
+  }
+
  private:
+  EmitterBeam beamOf(const RadarShare& share) const {
+    EmitterBeam beam;
+    beam.pattern = scenario_.emitters[radar_].antenna->view();
+    beam.forward = share.forward;
+    beam.right = share.right;
+    beam.up = share.up;
+    return beam;
+  }
+
   double amplitude(const Aim& aim, const Vec3f& direction) const {
     return scenario_.emitters[radar_].antenna->signedAmplitudeTowards(
         vecCast<double>(turnedBy(aim, direction)), static_cast<double>(aim.steer_u),
@@ -76,6 +103,7 @@ class RadarPoint {
         powerOfBothRays(ray, static_cast<float>(direct), static_cast<float>(reflected)));
   }
 
+  PathClutter clutter_;
   const scenario::Snapshot& snapshot_;
   const scenario::Scenario& scenario_;
   int radar_;
@@ -83,6 +111,21 @@ class RadarPoint {
   std::optional<propagation::PathReflection> reflection_;
   double boresight_wm2_;
 };
+
+RadarAtPoint::Clutter clutterAt(const RadarPoint& point, const scenario::Scenario& scenario,
+                                const scenario::Emitter& radar) {
+  RadarAtPoint::Clutter clutter;
+  scenario::Emitter unfiltered = radar;
+  unfiltered.clutter->mti.reset();
+  ClutterTask surface = clutterTask(scenario, unfiltered), rain = surface;
+  surface.rain = rain.surface = 0;
+  clutter.surface_to_noise_db = ratioToDb(point.clutterToNoise(surface));
+  clutter.rain_to_noise_db = ratioToDb(point.clutterToNoise(rain));
+  clutter.surface_improvement_db = ratioToDb(surfaceImprovement(radar));
+  clutter.rain_improvement_db = ratioToDb(rainImprovement(radar));
+  clutter.response_db = ratioToDb(filterResponse(radar));
+  return clutter;
+}
 
 }  // namespace
 
@@ -95,10 +138,16 @@ RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const V
       channel.jammers.push_back(static_cast<int>(e));
   }
   const std::vector<JammerPath> jammers = jammerPaths(snapshot, radar, channel.jammers, terrain, nullptr);
-  const RadarPoint point(snapshot, radar, ray, path);
+  const RadarPoint point(snapshot, radar, ray, path, terrain);
   RadarAtPoint result;
   channel.quantity = Quantity::snr_db;
   result.snr_db = 2 * ratioToDb(point.accumulated(channel, {}));
+  if (const scenario::Emitter& emitter = snapshot.scenario->emitters[static_cast<std::size_t>(radar)];
+      emitter.clutter) {
+    result.clutter = clutterAt(point, *snapshot.scenario, emitter);
+    channel.quantity = Quantity::sclnr_db;
+    result.clutter->sclnr_db = 2 * ratioToDb(point.accumulated(channel, {}));
+  }
   channel.quantity = Quantity::jammer_to_signal_db;
   const double signal_to_jammer = point.accumulated(channel, jammers);
   const bool is_jammed = signal_to_jammer > 0 && signal_to_jammer < static_cast<double>(RadarTask{}.ceiling);

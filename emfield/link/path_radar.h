@@ -1,6 +1,8 @@
 /// Echo, jamming and detection of a target at the end of a path.
 #pragma once
 
+#include <optional>
+
 #include "emscape/base/vec.h"
 #include "emscape/emfield/path_budget.h"
 #include "emscape/scenario/quantities.h"
@@ -12,7 +14,17 @@ namespace emscape::emfield {
 struct RadarAtPoint {
   double snr_db = 0;                 ///< -infinity without an echo
   double jammer_to_signal_db = 0;    ///< -infinity without jamming; 100 without an echo that is jammed
-  double detection_probability = 0;  ///< against noise and jamming
+  double detection_probability = 0;  ///< against clutter, noise and jamming
+
+  /// Of a radar with clutter.
+  struct Clutter {
+    double surface_to_noise_db = 0;  ///< of land and sea before the filter; -infinity: none in sight
+    double rain_to_noise_db = 0;     ///< the same of rain
+    double surface_improvement_db = 0, rain_improvement_db = 0;  ///< by the filter; 0 without one
+    double response_db = 0;  ///< of the filter at the target's radial speed; 0 without one
+    double sclnr_db = 0;     ///< echo over clutter and noise, behind the filter
+  };
+  std::optional<Clutter> clutter;
 };
 
 /// @param ray    start of the refracted ray to the point, east-north-up at the radar

@@ -43,6 +43,17 @@ auto membersOf(const DetectionCurveView& curve) {
   return std::tie(knots, count, first_snr_db, steps_per_db);
 }
 
+auto membersOf(const ClutterTask& clutter) {
+  const auto& [surface, rain, rain_octaves_per_m, rain_top_m, sea_level_m, elevation_width_rad,
+               curvature_per_m] = clutter;
+  return std::tie(surface, rain, rain_octaves_per_m, rain_top_m, sea_level_m, elevation_width_rad,
+                  curvature_per_m);
+}
+auto membersOf(const ClutterMapInputs& map) {
+  const auto& [land_gamma_db, sea_state, range_cell_m, azimuths] = map;
+  return std::tie(land_gamma_db, sea_state, range_cell_m, azimuths);
+}
+
 template <class T>
 bool same(const T& a, const T& b) {
   return membersOf(a) == membersOf(b);
@@ -79,11 +90,11 @@ bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
 bool sameTask(const RadarTask& a, const RadarTask& b) {
   // The jammers are in RadarShare.
   const auto& [measure, reduction, look, is_cumulative, looks, last_passes, echo_root, factor, lowest,
-               ceiling, curve, jammers, jammer_count] = a;
+               ceiling, curve, clutter, jammers, jammer_count] = a;
   return measure == b.measure && reduction == b.reduction && same(look, b.look) &&
          is_cumulative == b.is_cumulative && sameLooks(looks, b.looks) &&
          samePasses(last_passes, b.last_passes) && echo_root == b.echo_root && factor == b.factor &&
-         lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve);
+         lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) && same(clutter, b.clutter);
 }
 
 bool sameShare(const RadarShare& a, const RadarShare& b) {
@@ -136,10 +147,10 @@ bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const scenario::EmitterState& state) {
   // Only the listed inputs enter the geometry. Members that are not named below enter the combine stage
-  // (power_w, losses_db, antenna, receiver, bandwidth_hz), the channels (kind, waveform), the snapshot
-  // (platform, scan, active_s) or messages (name, locations).
+  // (power_w, losses_db, antenna, receiver, bandwidth_hz, the filter of clutter), the channels (kind,
+  // waveform), the snapshot (platform, scan, active_s) or messages (name, locations).
   const auto& [name, platform, kind, frequency_hz, bandwidth_hz, power_w, losses_db, polarization, antenna,
-               scan, propagation, receiver, waveform, active_s, place, frequency_place] =
+               scan, propagation, receiver, waveform, clutter, active_s, place, frequency_place] =
       plan.scenario->emitters[static_cast<std::size_t>(emitter_index)];
   GeometryInputs inputs;
   inputs.position = state.position;
@@ -147,15 +158,17 @@ GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const sc
   inputs.far_field_m = plan.far_field_m[static_cast<std::size_t>(emitter_index)];
   inputs.propagation = {frequency_hz, polarization, propagation, plan.scenario->ground,
                         plan.scenario->atmosphere};
+  inputs.clutter = clutterMapInputs(plan.scenario->emitters[static_cast<std::size_t>(emitter_index)]);
   return inputs;
 }
 
 bool haveSameSettings(const GeometryInputs& a, const GeometryInputs& b) {
-  const auto& [position, height_msl_m, far_field_m, propagation] = a;
+  const auto& [position, height_msl_m, far_field_m, propagation, clutter] = a;
   const auto& [frequency_hz, polarization, settings, ground, atmosphere] = propagation;
   return far_field_m == b.far_field_m && frequency_hz == b.propagation.frequency_hz &&
          polarization == b.propagation.polarization && areSame(settings, b.propagation.settings) &&
-         same(ground, b.propagation.ground) && same(atmosphere, b.propagation.atmosphere);
+         same(ground, b.propagation.ground) && same(atmosphere, b.propagation.atmosphere) &&
+         same(clutter, b.clutter);
 }
 
 bool areSame(const GeometryInputs& a, const GeometryInputs& b) {

@@ -18,6 +18,7 @@ struct GeometryInputs {
   double height_msl_m = 0;
   double far_field_m = 0;
   propagation::EmitterInputs propagation;
+  ClutterMapInputs clutter;
 };
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter, const scenario::EmitterState& state);

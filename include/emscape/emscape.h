@@ -67,6 +67,7 @@
 #include "emscape/render/transfer_function.h"
 #include "emscape/scenario/antenna.h"
 #include "emscape/scenario/clock.h"
+#include "emscape/scenario/clutter.h"
 #include "emscape/scenario/edit.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/interval.h"

@@ -81,7 +81,7 @@ TEST(Link, WritesRowsOfOneWidthAndAPicture) {
       if (c == '"') is_quoted = !is_quoted;
       if (c == ',' && !is_quoted) ++cells;
     }
-    EXPECT_EQ(cells, 21) << line;
+    EXPECT_EQ(cells, 23) << line;
   }
   EXPECT_EQ(rows, 1 + 5 * 4);
 }

@@ -59,8 +59,10 @@ struct Link {
 /// A target in the view of a radar at one time, with the radar's beam on the target as nearly as its scan
 /// permits.
 struct DetectionRow : PathRow {
-  double rcs_m2 = 0;  ///< from the radar's aspect
-  double snr_db = 0;  ///< one pulse
+  double rcs_m2 = 0;    ///< from the radar's aspect
+  double snr_db = 0;    ///< one pulse
+  double sclnr_db = 0;  ///< echo over clutter and noise behind the radar's filter; snr_db without clutter
+  std::optional<double> radial_speed_mps;  ///< of the target, positive away from a radar with clutter
   double jammer_to_signal_db = 0;
   double detection_probability = 0;   ///< of one look
   int looks = 0;                      ///< since the row before

@@ -9,6 +9,7 @@
 #include "emscape/base/error.h"
 #include "emscape/propagation/settings.h"
 #include "emscape/scenario/antenna.h"
+#include "emscape/scenario/clutter.h"
 #include "emscape/scenario/scan.h"
 #include "emscape/scenario/waveform.h"
 
@@ -82,6 +83,7 @@ struct Emitter {
   propagation::ModelSettings propagation;
   RadarReceiver receiver;              ///< radars only
   std::optional<Waveform> waveform;    ///< radars only; none: power_w is taken for the mean power too
+  std::optional<Clutter> clutter;      ///< radars with a waveform only; none: noise and jamming alone
   std::vector<TimeInterval> active_s;  ///< empty: always
   SourceLocation location;             ///< in the scenario
   SourceLocation frequency_location;   ///< of its frequency

@@ -19,6 +19,7 @@ enum class Quantity {
   emitter_count,
   dominant_emitter,
   mean_power_density_dbwm2,
+  sclnr_db,
   sinr_db,
   intercept_margin_db,
   detection_age_s,

@@ -1,0 +1,54 @@
+/// Clutter of a radar: the echoes of land, sea and rain, and the filter against them.
+#pragma once
+
+#include <optional>
+
+namespace emscape::scenario {
+
+/// Kind of land, by its gamma at 10 GHz.
+/// @see M. W. Long, Radar Reflectivity of Land and Sea, 3rd ed. 2001; F. E. Nathanson, Radar Design
+/// Principles, 2nd ed. 1999; as MATLAB's surfacegamma cites them
+enum class LandKind {
+  flatland,      ///< -20 dB
+  farmland,      ///< -15 dB
+  woods,         ///< -15 dB
+  wooded_hills,  ///< -10 dB
+  mountains,     ///< 0 dB
+  urban          ///< 0 dB
+};
+const char* toString(LandKind kind);
+
+/// Gamma (dB) of a kind of land: its value at 10 GHz + 5 log10(f / 10 GHz).
+double landGammaDb(LandKind kind, double frequency_hz);
+
+/// Doppler filter of a pulse train.
+enum class MtiKind {
+  canceller,     ///< delay-line canceller: binomial weights of alternating sign
+  pulse_doppler  ///< coherent sum of pulses, weighted, in the filter that the target is in
+};
+const char* toString(MtiKind kind);
+
+struct Mti {
+  MtiKind kind = MtiKind::canceller;
+  int pulses = 2;  ///< that the filter weighs, >= 2
+  /// Standard deviations (m/s) of the clutter's radial velocities; their spectra are Gaussian.
+  double surface_spread_mps = 0;
+  double rain_spread_mps = 0;
+  std::optional<double> improvement_limit_db;  ///< of the radar's instability; none: no limit
+};
+
+/// At least one of land, sea and rain.
+struct Clutter {
+  std::optional<double> land_gamma_db;  ///< sigma0 of land over the sine of the grazing angle; none: no echo
+  std::optional<int> sea_state;         ///< 0..6; none: no echo
+  bool rain = false;                    ///< echo of the atmosphere's rain
+  double range_cell_m = 0;              ///< length of the resolution cell after compression, > 0
+  std::optional<Mti> mti;
+  /// Radial speed of the target in volumes, either sign; none: the mean response of all speeds (canceller),
+  /// the middle between two blind speeds (pulse_doppler).
+  std::optional<double> target_radial_speed_mps;
+
+  bool hasSurface() const { return land_gamma_db || sea_state; }
+};
+
+}  // namespace emscape::scenario
