@@ -15,6 +15,11 @@ bool countsEmitters(Quantity quantity) {
   return quantity == Quantity::emitter_count || quantity == Quantity::dominant_emitter;
 }
 
+/// True if a quantity's channel has all emitters for any combination, per_band too.
+bool takesAllEmitters(Quantity quantity) {
+  return quantity == Quantity::sinr_db;
+}
+
 }  // namespace
 
 std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
@@ -31,7 +36,9 @@ std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
       throw Error(ErrorCode::bad_input, {scenario.file},
                   "quantity '" + name + "' needs an emitter of kind 'radar'");
     }
-    if (scenario.output.combine == CombineMode::per_emitter && !countsEmitters(quantity)) {
+    if (takesAllEmitters(quantity)) {
+      channels.push_back({quantity, name, emitters});
+    } else if (scenario.output.combine == CombineMode::per_emitter && !countsEmitters(quantity)) {
       for (int e : emitters) channels.push_back({quantity, name + ":" + scenario.emitters[e].name, {e}});
     } else if (scenario.output.combine == CombineMode::per_band) {
       if (scenario.bands.empty()) {

@@ -122,37 +122,47 @@ enum class Reduction {
   maximum,   ///< largest weight * S
   count,     ///< number of emitters with S > weight
   dominant,  ///< index of the emitter with the largest S, -1 if all are 0
+  signal,    ///< sum of weight * S of the emitters with weight >= 0; second: of -weight * S of the others
 };
 
-/// A channel's accumulator, dense order; `largest` holds the largest S so far for Reduction::dominant, else
-/// null.
+/// True for reductions with a second accumulator.
+EMSCAPE_HD constexpr bool hasSecond(Reduction reduction) {
+  return reduction == Reduction::dominant || reduction == Reduction::signal;
+}
+
+/// A channel's accumulator, dense order. `second` holds the largest S so far for Reduction::dominant, the
+/// signal for Reduction::signal, else null.
 struct Accumulator {
   float* value = nullptr;
-  float* largest = nullptr;
+  float* second = nullptr;
 };
 struct ConstAccumulator {
   const float* value = nullptr;
-  const float* largest = nullptr;
+  const float* second = nullptr;
 };
 
-/// Adds one emitter's power densities to some voxels of a channel.
+/// Adds one emitter's power density to a voxel of a channel without a second accumulator.
 /// @param weight  see Reduction
+EMSCAPE_HD inline void reduce(Reduction reduction, float weight, float power_density_wm2, float& value) {
+  if (reduction == Reduction::sum) {
+    value += weight * power_density_wm2;
+  } else if (reduction == Reduction::maximum) {
+    value = weight * power_density_wm2 > value ? weight * power_density_wm2 : value;
+  } else {
+    value += power_density_wm2 > weight ? 1.0f : 0.0f;
+  }
+}
+
+/// The same with a second accumulator.
 EMSCAPE_HD inline void reduce(Reduction reduction, float weight, int emitter_index, float power_density_wm2,
-                              float& value, float* largest) {
-  switch (reduction) {
-    case Reduction::sum:
-      value += weight * power_density_wm2;
-      break;
-    case Reduction::maximum:
-      value = weight * power_density_wm2 > value ? weight * power_density_wm2 : value;
-      break;
-    case Reduction::count:
-      value += power_density_wm2 > weight ? 1.0f : 0.0f;
-      break;
-    case Reduction::dominant:
-      value = power_density_wm2 > *largest ? float(emitter_index) : value;
-      *largest = power_density_wm2 > *largest ? power_density_wm2 : *largest;
-      break;
+                              float& value, float& second) {
+  if (reduction == Reduction::dominant) {
+    value = power_density_wm2 > second ? float(emitter_index) : value;
+    second = power_density_wm2 > second ? power_density_wm2 : second;
+  } else if (weight < 0) {
+    second -= weight * power_density_wm2;
+  } else {
+    value += weight * power_density_wm2;
   }
 }
 

@@ -1,13 +1,17 @@
 #include "emfield/products.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
-#include "emfield/radar/detection_losses.h"
 #include "emfield/radar/receiver.h"
 #include "emfield/radar_clutter.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/volume/dense_volume.h"
+#include "scenario/quantity_needs.h"
+#include "scenario/scan_sweep.h"
 
 namespace emscape::emfield {
 namespace {
@@ -17,7 +21,8 @@ using scenario::Quantity;
 
 /// True for quantities of an echo behind the radar's filter, against clutter.
 bool isAgainstClutter(Quantity quantity) {
-  return quantity == Quantity::detection_probability || quantity == Quantity::sclnr_db;
+  return quantity == Quantity::detection_probability || quantity == Quantity::detection_age_s ||
+         quantity == Quantity::sclnr_db;
 }
 
 /// The task of a radar in a channel of a radar quantity, without the look.
@@ -53,21 +58,33 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Sce
     case Quantity::sclnr_db:
       task.measure = RadarMeasure::root_of_signal_to_clutter_and_noise;
       break;
+    case Quantity::detection_age_s:
+      task.measure = RadarMeasure::detection_age;
+      task.lowest = static_cast<float>(output.detection_threshold);
+      break;
     default:
       break;
   }
   return task;
 }
 
-std::shared_ptr<const DetectionCurve> curveOf(
-    const Emitter& radar, const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
-  const Detector detector = detectorOf(radar.receiver);
-  const scenario::DetectionMethod method = radar.receiver.detection;
-  const double loss_db = detectionLosses(radar).total_db();
-  for (const auto& curve : known_curves) {
-    if (curve->isOf(detector, method, loss_db)) return curve;
+/// More (s) than the age of any detection in the intervals of a channel's radars.
+double longestAge_s(const Channel& channel, const scenario::Scenario& scenario) {
+  double longest_s = 0;
+  for (const int e : channel.emitters) {
+    const double duration_s =
+        scenario::intervalDuration_s(scenario.output.interval, scenario.emitters[e].scan, scenario.clock);
+    longest_s = std::max(longest_s, duration_s);
   }
-  return std::make_shared<const DetectionCurve>(detector, method, loss_db);
+  return 2 * longest_s;
+}
+
+/// The receiver of the output, tuned to the wanted emitter unless it has a frequency of its own.
+scenario::ReceiverProfile tunedToWanted(const scenario::Scenario& scenario) {
+  scenario::ReceiverProfile receiver = scenario.receivers[scenario.output.receiver];
+  if (receiver.center_frequency_hz == 0)
+    receiver.center_frequency_hz = scenario.emitters[scenario.output.wanted_emitter].frequency_hz;
+  return receiver;
 }
 
 }  // namespace
@@ -79,25 +96,29 @@ const char* scaleOf(Quantity quantity) {
     case Quantity::jammer_to_signal_db:
       return volume::kRatioBelowScale;
     case Quantity::burn_through_margin_db:
+    case Quantity::intercept_margin_db:
       return volume::kRatioAboveScale;
     default:
       return nullptr;
   }
 }
 
-const char* legendNoteOf(Quantity quantity) {
+std::string legendNoteOf(Quantity quantity, const scenario::Scenario& scenario) {
   switch (quantity) {
     case Quantity::jammer_to_signal_db:
       return "no echo: 100";
     case Quantity::burn_through_margin_db:
       return "no echo: -60";
+    case Quantity::sinr_db:
+      return "signal: " + scenario.emitters[scenario.output.wanted_emitter].name;
+    case Quantity::detection_age_s:
+      return fmt::format("Pd at least {:g}; not detected: empty", scenario.output.detection_threshold);
     default:
-      return nullptr;
+      return "";
   }
 }
 
-ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario,
-                        const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves) {
+ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario) {
   ChannelPlan plan;
   plan.product.floor = static_cast<float>(scenario.output.floor);
   if (scenario.output.combine == scenario::CombineMode::max) plan.reduction = Reduction::maximum;
@@ -107,20 +128,38 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       plan.weights[i] = static_cast<float>(weightOf(scenario.emitters[channel.emitters[i]]));
     }
   };
+  const std::string unmet = scenario::unmetNeed(channel.quantity, scenario, scenario.output);
+  if (!unmet.empty()) throw Error(ErrorCode::bad_input, {scenario.file}, unmet);
   switch (channel.quantity) {
     case Quantity::power_density_dbwm2:
       break;
     case Quantity::field_strength_dbuvm:
-      plan.product.offset_db = static_cast<float>(kFieldStrengthOfPowerDensity_db);
+      plan.product.offset = static_cast<float>(kFieldStrengthOfPowerDensity_db);
       break;
     case Quantity::received_power_dbm:
-      if (scenario.receivers.empty()) {
-        throw Error(ErrorCode::bad_input, {scenario.file},
-                    "quantity 'received_power_dbm' needs an entry under 'receivers'");
-      }
-      plan.product.offset_db = 30;
-      weigh([&](const Emitter& emitter) { return receivingArea_m2(emitter, scenario.receivers.front()); });
+      plan.product.offset = 30;
+      weigh([&](const Emitter& emitter) {
+        return receivingArea_m2(emitter, scenario.receivers[scenario.output.receiver]);
+      });
       break;
+    case Quantity::sinr_db: {
+      plan.reduction = Reduction::signal;
+      plan.product.form = ProductForm::signal_ratio;
+      const scenario::ReceiverProfile receiver = tunedToWanted(scenario);
+      const double noise_w = receiverNoise_w(receiver);
+      const Emitter* const wanted = &scenario.emitters[scenario.output.wanted_emitter];
+      weigh([&](const Emitter& emitter) {
+        return (&emitter == wanted ? -1 : 1) * receivingArea_m2(emitter, receiver) / noise_w;
+      });
+      break;
+    }
+    case Quantity::intercept_margin_db: {
+      plan.reduction = Reduction::maximum;
+      const scenario::ReceiverProfile& receiver = scenario.receivers[scenario.output.receiver];
+      const double threshold_w = interceptThreshold_w(receiver);
+      weigh([&](const Emitter& emitter) { return receivingArea_m2(emitter, receiver) / threshold_w; });
+      break;
+    }
     case Quantity::snr_db:
     case Quantity::sclnr_db:
       plan.reduction = Reduction::maximum;
@@ -128,7 +167,7 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       weigh(echoRoot_m2_w);
       break;
     case Quantity::detection_probability:
-      plan.product.decibels = false;
+      plan.product.form = ProductForm::itself;
       plan.product.floor = 0;
       break;
     case Quantity::jammer_to_signal_db:
@@ -136,15 +175,20 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       break;
     case Quantity::burn_through_margin_db:
       break;
+    case Quantity::detection_age_s:
+      plan.product.form = ProductForm::age;
+      plan.product.offset = static_cast<float>(longestAge_s(channel, scenario));
+      plan.product.floor = -1;
+      break;
     case Quantity::emitter_count:
       plan.reduction = Reduction::count;
-      plan.product.decibels = false;
+      plan.product.form = ProductForm::itself;
       plan.product.floor = 0;
       weigh([&](const Emitter&) { return dbToRatio(scenario.output.count_threshold_dbwm2); });
       break;
     case Quantity::dominant_emitter:
       plan.reduction = Reduction::dominant;
-      plan.product.decibels = false;
+      plan.product.form = ProductForm::itself;
       plan.product.floor = -1;
       break;
     case Quantity::mean_power_density_dbwm2:
@@ -160,8 +204,10 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
   for (int e : channel.emitters) {
     const Emitter& radar = scenario.emitters[e];
     plan.radars.push_back(radarTask(channel.quantity, radar, scenario));
-    if (channel.quantity != Quantity::detection_probability) continue;
-    plan.curves.push_back(curveOf(radar, known_curves));
+    const bool is_age = channel.quantity == Quantity::detection_age_s;
+    if (is_age) plan.radars.back().ceiling = plan.product.offset;
+    if (!is_age && channel.quantity != Quantity::detection_probability) continue;
+    plan.curves.push_back(detectionCurveOf(radar));
     plan.radars.back().curve = plan.curves.back()->view();
   }
   return plan;

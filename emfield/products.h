@@ -16,18 +16,38 @@
 
 namespace emscape::emfield {
 
-/// Conversion of a channel's accumulator to its quantity: decibels = scale * 10 log10(accumulator) + offset,
-/// or the accumulator itself.
+/// How a channel's accumulator becomes its quantity.
+enum class ProductForm {
+  decibels,      ///< scale * 10 log10(accumulator) + offset
+  itself,        ///< the accumulator
+  signal_ratio,  ///< 10 log10(signal / (1 + others)) of Reduction::signal
+  age            ///< offset - accumulator; the floor where it is 0
+};
+
 struct ProductScale {
-  bool decibels = true;
+  ProductForm form = ProductForm::decibels;
   float scale = 1;
-  float offset_db = 0;
+  float offset = 0;    ///< dB; of ages s
   float floor = -120;  ///< lowest value kept
 };
 
 EMSCAPE_HD inline float decibelsOf(const ProductScale& product, float accumulator) {
-  const float value = product.scale * fastRatioToDb(accumulator) + product.offset_db;
+  const float value = product.scale * fastRatioToDb(accumulator) + product.offset;
   return (accumulator > 0) & (value > product.floor) ? value : product.floor;
+}
+/// @param second  of ProductForm::signal_ratio
+EMSCAPE_HD inline float valueOf(const ProductScale& product, float accumulator, float second) {
+  switch (product.form) {
+    case ProductForm::decibels:
+      return decibelsOf(product, accumulator);
+    case ProductForm::itself:
+      return accumulator;
+    case ProductForm::signal_ratio:
+      return decibelsOf(product, second / (1 + accumulator));
+    case ProductForm::age:
+      return accumulator > 0 ? product.offset - accumulator : product.floor;
+  }
+  return accumulator;
 }
 
 /// Burn-through margins are within 60 dB of 0: the largest is that of a radar without jamming, the smallest
@@ -39,8 +59,8 @@ constexpr float kMaxJammerToSignal = 1e10f;
 /// The scale of a quantity's colours (a value of volume::kScaleKey); null: none.
 const char* scaleOf(scenario::Quantity quantity);
 
-/// Line for the legend on the quantity's bounds (volume::kLegendNoteKey); null: none.
-const char* legendNoteOf(scenario::Quantity quantity);
+/// Line for the legend on the quantity's bounds or its signal (volume::kLegendNoteKey); empty: none.
+std::string legendNoteOf(scenario::Quantity quantity, const scenario::Scenario& scenario);
 
 /// Computation of a channel: its reduction, each emitter's weight, and its scale.
 struct ChannelPlan {
@@ -53,16 +73,15 @@ struct ChannelPlan {
   std::vector<std::shared_ptr<const DetectionCurve>> curves;
 };
 
-/// @param known_curves  reused for radars with the same detector
 /// @throws Error (bad_input) if the scenario lacks what the quantity needs (a receiver, a radar)
-ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario,
-                        const std::vector<std::shared_ptr<const DetectionCurve>>& known_curves = {});
+ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario);
 
 /// Values of one channel.
 struct ProductTask {
   Dims dims;
   ProductScale product;
   const float* accumulator = nullptr;
+  const float* second = nullptr;                 ///< see Accumulator
   const std::uint16_t* first_valid_k = nullptr;  ///< per column; null: all voxels are valid
   float* values = nullptr;
 };

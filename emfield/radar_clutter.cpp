@@ -94,7 +94,7 @@ ClutterTask placedAt(const scenario::EmitterState& state, const scenario::Scenar
                      ClutterTask task) {
   if (task.rain == 0) return task;
   const propagation::Atmosphere& air = scenario.atmosphere;
-  const Station station = makeStation(state.position, state.height_msl_m, air.k_factor);
+  const Station station = makeStation(state.position, state.height_msl_m, air);
   const double top_msl_m = air.rain_height_m.value_or(propagation::rainHeight_m(state.position.latitude_deg));
   task.rain_top_m = static_cast<float>(top_msl_m - state.height_msl_m);
   task.sea_level_m = static_cast<float>(-state.height_msl_m);

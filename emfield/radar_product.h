@@ -26,6 +26,8 @@ enum class RadarMeasure {
                       ///< jamming, the lowest without echo; 0 (nothing) without both
   detection,          ///< probability of detection from S / (C + N + J); 0 without echo
   root_of_signal_to_clutter_and_noise,
+  detection_age,  ///< RadarTask::ceiling less the age (s) of the last pass, if its probability is at least
+                  ///< RadarTask::lowest; 0 (nothing) if not
 };
 
 /// Jamming at a radar.
@@ -47,10 +49,11 @@ struct RadarTask {
   RadarLook look;
   bool is_cumulative = false;  ///< detection: at least one in all looks
   LookCount looks;             ///< of is_cumulative
+  LastPasses last_passes;      ///< of detection_age
   float echo_root = 0;         ///< (m2/W)
   float factor = 1;            ///< of signal_to_jamming
   float lowest = 0, ceiling = 1e30f;
-  DetectionCurveView curve;  ///< detection
+  DetectionCurveView curve;  ///< detection and its age
   ClutterTask clutter;
   const JammerAtRadar* jammers = nullptr;
   int jammer_count = 0;
@@ -108,6 +111,11 @@ EMSCAPE_HD inline float looksAt(const RadarTask& task, const EmitterBeam& beam, 
   return task.looks.towards(voxelRay(beam, column, t_m).direction);
 }
 
+/// Age (s) of the last pass of a voxel.
+EMSCAPE_HD inline float ageAt(const RadarTask& task, const EmitterBeam& beam, std::size_t column, float t_m) {
+  return task.last_passes.ageTowards(voxelRay(beam, column, t_m).direction);
+}
+
 /// Probability of at least one detection in independent looks.
 EMSCAPE_HD inline float inAllLooks(float probability, float looks) {
   const float missed = 1 - probability;
@@ -116,7 +124,7 @@ EMSCAPE_HD inline float inAllLooks(float probability, float looks) {
 
 /// Adds a radar's echo to a channel's accumulator. Without branches, for SIMD.
 /// @param jamming_to_noise  clutter included
-/// @param looks  of RadarTask::is_cumulative
+/// @param looks  of RadarTask::is_cumulative; of detection_age: the age
 template <RadarMeasure measure>
 EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root, float jamming_to_noise,
                                  float looks, float accumulated) {
@@ -134,6 +142,9 @@ EMSCAPE_HD inline float withEcho(const RadarTask& task, float echo_to_noise_root
     value = task.is_cumulative ? inAllLooks(value, looks) : value;
     const float either = accumulated + value * (1 - accumulated);
     value = task.reduction == Reduction::sum ? either : value;
+  } else if constexpr (measure == RadarMeasure::detection_age) {
+    const float probability = task.curve(fastRatioToDb(echo_to_noise / (1 + jamming_to_noise)));
+    value = (echo_to_noise > 0) & (probability >= task.lowest) ? task.ceiling - looks : 0.0f;
   } else if constexpr (measure == RadarMeasure::root_of_signal_to_clutter_and_noise) {
     value = echo_to_noise_root / std::sqrt(1 + jamming_to_noise);
   }
@@ -153,6 +164,7 @@ EMSCAPE_HD inline float withRadar(const RadarTask& task, float echo_to_noise_roo
     case RadarMeasure::root_of_signal_to_clutter_and_noise:
       return withEcho<RadarMeasure::root_of_signal_to_clutter_and_noise>(
           task, echo_to_noise_root, jamming_to_noise, looks, accumulated);
+    case RadarMeasure::detection_age:  // addEcho() has it as a template parameter
     case RadarMeasure::root_of_signal_to_noise:
       break;
   }
@@ -175,7 +187,8 @@ struct RadarPass {
 /// One voxel of a pass. The CPU does the same row by row.
 /// @tparam kReflected  false: for passes without reflected rays
 /// @tparam kClutter    false: for passes without clutter
-template <scenario::PatternKind kind, bool kReflected = true, bool kClutter = true>
+/// @tparam kAge        true: for RadarMeasure::detection_age
+template <scenario::PatternKind kind, bool kReflected = true, bool kClutter = true, bool kAge = false>
 EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k) {
   const RadarTask& task = pass.task;
   const std::size_t voxel = static_cast<std::size_t>(k) * pass.dims.x * pass.dims.y + column;
@@ -200,8 +213,14 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
       jamming += clutterToNoise<kind>(task.clutter, pass.clutter_map, pass.beam, aimed.aim, aimed.range_m);
     }
   }
-  const float looks = task.is_cumulative ? looksAt(task, pass.beam, column, t_m) : 1.0f;
-  pass.accumulator[voxel] = withRadar(task, root, jamming, looks, pass.accumulator[voxel]);
+  if constexpr (kAge) {
+    const float age_s = ageAt(task, pass.beam, column, t_m);
+    pass.accumulator[voxel] =
+        withEcho<RadarMeasure::detection_age>(task, root, jamming, age_s, pass.accumulator[voxel]);
+  } else {
+    const float looks = task.is_cumulative ? looksAt(task, pass.beam, column, t_m) : 1.0f;
+    pass.accumulator[voxel] = withRadar(task, root, jamming, looks, pass.accumulator[voxel]);
+  }
 }
 
 /// Runs a pass on the CPU. Voxels below first_row_k are not changed.

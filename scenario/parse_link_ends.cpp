@@ -6,22 +6,29 @@
 
 namespace emscape::scenario {
 
-PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Platform>& platforms,
-                                   ParseContext& context) {
-  PlacedReceiver receiver;
+ReceiverProfile parseReceiverProfile(const Section& section) {
+  ReceiverProfile receiver;
   receiver.name = section.text("name");
-  receiver.platform = parseCarrier(section, platforms, context);
+  receiver.gain_dbi = section.number("gain_dbi");
   receiver.losses_db = section.number("losses_db");
-  receiver.noise_figure_db = section.number("noise_figure_db");
+  receiver.noise_figure_db = section.optionalNumber("noise_figure_db");
   receiver.antenna_temperature_k =
       section.optionalNumber("antenna_temperature_k").value_or(receiver.antenna_temperature_k);
   if (section.has("polarization"))
     receiver.polarization = section.choice<propagation::Polarization>("polarization");
   receiver.cross_polar_isolation_db = section.number("cross_polar_isolation_db");
   receiver.center_frequency_hz = section.optionalNumber("center_frequency_hz").value_or(0);
-  receiver.bandwidth_hz = section.number("bandwidth_hz");
+  receiver.bandwidth_hz = section.optionalNumber("bandwidth_hz").value_or(0);
   receiver.sensitivity_dbm = section.optionalNumber("sensitivity_dbm");
   receiver.required_sinr_db = section.optionalNumber("required_sinr_db");
+  return receiver;
+}
+
+PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Platform>& platforms,
+                                   ParseContext& context) {
+  PlacedReceiver receiver;
+  static_cast<ReceiverProfile&>(receiver) = parseReceiverProfile(section);
+  receiver.platform = parseCarrier(section, platforms, context);
   if (section.has("antenna")) {
     receiver.antenna = parseAntenna(section.section("antenna"), context);
     if (section.has("gain_dbi")) {

@@ -54,6 +54,8 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
 void parseAntennaNoise(const Section& section, double frequency_hz, const ScanSpec& scan,
                        ParseContext& context, double& antenna_temperature_k);
 
+/// What receivers with and without a platform have in common.
+ReceiverProfile parseReceiverProfile(const Section& section);
 /// @param section  with a platform
 PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Platform>& platforms,
                                    ParseContext& context);

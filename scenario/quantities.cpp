@@ -11,7 +11,7 @@ const std::vector<QuantityInfo>& quantityTable() {
       {Quantity::field_strength_dbuvm, "field_strength_dbuvm", "dBuV/m", QuantityKind::of_emitters,
        "RMS electric field strength"},
       {Quantity::received_power_dbm, "received_power_dbm", "dBm", QuantityKind::of_receiver,
-       "power at the scenario's first receiver"},
+       "power at the scenario's receiver"},
       {Quantity::snr_db, "snr_db", "dB", QuantityKind::of_radars,
        "single-pulse signal-to-noise of the best radar for its target"},
       {Quantity::detection_probability, "detection_probability", "", QuantityKind::of_jamming,
@@ -28,6 +28,12 @@ const std::vector<QuantityInfo>& quantityTable() {
        "power density averaged over the radars' pulses and pauses"},
       {Quantity::sclnr_db, "sclnr_db", "dB", QuantityKind::of_radars,
        "single-pulse echo over clutter and noise of the best radar for its target, after its filter"},
+      {Quantity::sinr_db, "sinr_db", "dB", QuantityKind::of_receiver,
+       "wanted emitter's power at a receiver, over noise and all other emitters in its band"},
+      {Quantity::intercept_margin_db, "intercept_margin_db", "dB", QuantityKind::of_receiver,
+       "largest power of an emitter at a receiver, over its threshold"},
+      {Quantity::detection_age_s, "detection_age_s", "s", QuantityKind::of_jamming,
+       "time since a radar last detected its target, at the end of the interval"},
   };
   return kTable;
 }
@@ -37,11 +43,12 @@ const QuantityInfo& info(Quantity quantity) {
 }
 
 bool hasInterval(const QuantityInfo& quantity, IntervalKind interval) {
+  if (quantity.quantity == Quantity::detection_age_s) return interval == IntervalKind::cumulative;
   switch (interval) {
     case IntervalKind::instant:
       return true;
-    case IntervalKind::max_hold:  // ratios to jamming have no time at which they are largest for all targets
-      return !quantity.needs_jammer;
+    case IntervalKind::max_hold:  // the largest of a ratio is not that of its parts, which change apart
+      return !quantity.needs_jammer && quantity.quantity != Quantity::sinr_db;
     case IntervalKind::mean:
       return quantity.quantity == Quantity::power_density_dbwm2 ||
              quantity.quantity == Quantity::field_strength_dbuvm ||

@@ -100,6 +100,39 @@ class SweepBuilder {
   ScanSweep& sweep_;
 };
 
+void addLastPasses(const ScanSpec& scan, double begin_s, double end_s, std::vector<TimedPass>& passes) {
+  const double cycle_s = scanCycle_s(scan);
+  const BeamDirection first = beamAt(scan, begin_s);
+  if (cycle_s == 0) {
+    passes.push_back({begin_s, end_s, first.azimuth_deg, first.azimuth_deg});
+    return;
+  }
+  const double from_s = std::max(begin_s, end_s - cycle_s);
+  if (scan.kind == ScanKind::rotate) {
+    const double from_deg = beamAt(scan, from_s).azimuth_deg;
+    passes.push_back({from_s, end_s, from_deg, from_deg + 6 * scan.rate_rpm * (end_s - from_s)});
+    return;
+  }
+  const double sweep_s = scan.width_deg / scan.rate_deg_s;
+  for (double n = std::floor(from_s / sweep_s); n * sweep_s < end_s; ++n) {
+    const double at_s = std::max(from_s, n * sweep_s), to_s = std::min(end_s, (n + 1) * sweep_s);
+    if (!(to_s > at_s)) continue;
+    const double middle_deg = beamAt(scan, (at_s + to_s) / 2).azimuth_deg;
+    const double half_deg = (std::fmod(n, 2) == 0 ? 0.5 : -0.5) * (to_s - at_s) * scan.rate_deg_s;
+    passes.push_back({at_s, to_s, middle_deg - half_deg, middle_deg + half_deg});
+  }
+}
+
+/// Calls visit(from_s, to_s) for each time in [begin, end) at which an emitter is active.
+template <class Visit>
+void visitActive(const Emitter& emitter, double begin_s, double end_s, const Visit& visit) {
+  if (emitter.active_s.empty()) visit(begin_s, end_s);
+  for (const TimeInterval& active : emitter.active_s) {
+    const double from_s = std::max(active.begin_s, begin_s), to_s = std::min(active.end_s, end_s);
+    if (to_s > from_s) visit(from_s, to_s);
+  }
+}
+
 }  // namespace
 
 bool operator==(const ScanSweep& a, const ScanSweep& b) {
@@ -137,14 +170,18 @@ ScanSweep sweepOf(const Emitter& emitter, double begin_s, double duration_s) {
   ScanSweep sweep;
   SweepBuilder builder(emitter, duration_s, sweep);
   const double end_s = begin_s + duration_s;
-  if (emitter.active_s.empty()) builder.add(begin_s, duration_s);
-  for (const TimeInterval& active : emitter.active_s) {
-    const double from_s = std::max(active.begin_s, begin_s), to_s = std::min(active.end_s, end_s);
-    if (!(to_s > from_s)) continue;
+  visitActive(emitter, begin_s, end_s, [&](double from_s, double to_s) {
     const bool is_whole = from_s == begin_s && to_s == end_s;
     builder.add(from_s, is_whole ? duration_s : to_s - from_s);
-  }
+  });
   return sweep;
+}
+
+std::vector<TimedPass> lastPassesOf(const Emitter& emitter, double begin_s, double duration_s) {
+  std::vector<TimedPass> passes;
+  visitActive(emitter, begin_s, begin_s + duration_s,
+              [&](double from_s, double to_s) { addLastPasses(emitter.scan, from_s, to_s, passes); });
+  return passes;
 }
 
 }  // namespace emscape::scenario

@@ -52,4 +52,15 @@ double intervalDuration_s(const IntervalSpec& interval, const ScanSpec& scan, co
 /// @param duration_s  > 0
 ScanSweep sweepOf(const Emitter& emitter, double begin_s, double duration_s);
 
+/// Azimuths that a beam passes once, at a constant rate.
+struct TimedPass {
+  double begin_s = 0, end_s = 0;      ///< since the epoch
+  double begin_deg = 0, end_deg = 0;  ///< azimuths as of BeamDirection, at most a turn apart
+};
+
+/// The last passes of a beam that is fixed, rotates or sweeps a sector in [begin, begin + duration): of each
+/// time at which the emitter is active those of its last turn or sweep there and back. A beam that stays
+/// has passes of one azimuth.
+std::vector<TimedPass> lastPassesOf(const Emitter& emitter, double begin_s, double duration_s);
+
 }  // namespace emscape::scenario

@@ -14,6 +14,7 @@
 #include "emscape/base/log.h"
 #include "emscape/scenario/quantities.h"
 #include "scenario/parse_sections.h"
+#include "scenario/quantity_needs.h"
 #include "scenario/scan_sampling.h"
 
 namespace emscape::scenario {
@@ -116,19 +117,6 @@ propagation::Ground parseGround(const Section& section) {
   return ground;
 }
 
-ReceiverProfile parseReceiverProfile(const Section& section) {
-  ReceiverProfile receiver;
-  receiver.name = section.text("name");
-  receiver.gain_dbi = section.number("gain_dbi");
-  receiver.losses_db = section.number("losses_db");
-  if (section.has("polarization"))
-    receiver.polarization = section.choice<propagation::Polarization>("polarization");
-  receiver.cross_polar_isolation_db = section.number("cross_polar_isolation_db");
-  receiver.center_frequency_hz = section.optionalNumber("center_frequency_hz").value_or(0);
-  receiver.bandwidth_hz = section.optionalNumber("bandwidth_hz").value_or(0);
-  return receiver;
-}
-
 Band parseBand(const Section& section, ParseContext& context) {
   const Band band{section.text("name"), section.number("begin_hz"), section.number("end_hz")};
   if (band.begin_hz >= band.end_hz) {
@@ -160,6 +148,21 @@ std::string quantitiesOver(IntervalKind interval) {
   return names;
 }
 
+/// Index of the item that a key of the output names; -1: there is none.
+template <class Named>
+int indexOfNamed(const Section& section, const char* key, const char* what, const std::vector<Named>& items,
+                 ParseContext& context) {
+  const std::string wanted = section.text(key);
+  std::vector<std::string> names;
+  for (const Named& item : items) {
+    if (item.name == wanted) return static_cast<int>(names.size());
+    names.push_back(item.name);
+  }
+  context.problems.addError(section.locationOf(key), fmt::format("there is no {} '{}'{}", what, wanted,
+                                                                 document::didYouMean(wanted, names)));
+  return -1;
+}
+
 /// Checks that the scenario has everything that the output needs.
 OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseContext& context) {
   OutputSpec output{section.texts("quantities"),
@@ -169,6 +172,15 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
                     section.number("count_threshold_dbwm2"),
                     {}};
   if (section.has("interval")) output.interval = parseInterval(section.section("interval"), context);
+  if (section.has("receiver")) {
+    output.receiver =
+        indexOfNamed(section, "receiver", "receiver without a platform", scenario.receivers, context);
+  }
+  if (section.has("wanted_emitter"))
+    output.wanted_emitter = indexOfNamed(section, "wanted_emitter", "emitter", scenario.emitters, context);
+  const bool has_unknown_name =
+      output.receiver < 0 || (section.has("wanted_emitter") && output.wanted_emitter < 0);
+  output.detection_threshold = section.number("detection_threshold");
   const auto hasKind = [&](EmitterKind kind) {
     return std::any_of(scenario.emitters.begin(), scenario.emitters.end(),
                        [kind](const Emitter& emitter) { return emitter.kind == kind; });
@@ -184,13 +196,20 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
     const auto row = std::find_if(quantityTable().begin(), quantityTable().end(),
                                   [&](const QuantityInfo& known) { return quantity == known.name; });
     if (row == quantityTable().end()) continue;  // already reported
-    if (!hasInterval(*row, output.interval.kind)) {
+    const bool has_interval = hasInterval(*row, output.interval.kind);
+    if (!has_interval) {
       context.problems.addError(
           location, fmt::format("{} has no meaning over an interval of kind {}; these have: {}", quantity,
                                 toString(output.interval.kind), quantitiesOver(output.interval.kind)));
     }
     if (row->kind == QuantityKind::of_receiver) {
       need(!scenario.receivers.empty(), location, quantity, "a receiver without a platform");
+    }
+    const bool is_reported = !has_interval || has_unknown_name ||
+                             (row->kind == QuantityKind::of_receiver && scenario.receivers.empty());
+    if (!is_reported) {
+      const std::string unmet = unmetNeed(row->quantity, scenario, output);
+      if (!unmet.empty()) context.problems.addError(location, unmet);
     }
     if (needsRadar(row->quantity)) {
       need(hasKind(EmitterKind::radar), location, quantity, "an emitter of kind radar");
@@ -243,21 +262,32 @@ void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseConte
   }
 }
 
-/// Antennas whose gain is more than their pattern can have.
-void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& context) {
+/// An antenna whose gain is more than its pattern can have.
+/// @param section  of the emitter or receiver
+void warnOfGain(const Antenna& antenna, const Section& section, const char* consequence,
+                ParseContext& context) {
   constexpr double kTolerance_db = 0.5;
-  const std::vector<Section> sections = root.sections("emitters");
-  for (std::size_t i = 0; i < sections.size(); ++i) {
-    const Antenna& antenna = *scenario.emitters[i].antenna;
-    const double directivity_dbi = antenna.directivity_dbi();
-    if (antenna.gain_dbi <= directivity_dbi + kTolerance_db) continue;
-    const Section section = sections[i].section("antenna");
-    context.problems.addWarning(
-        section.has("gain_dbi") ? section.locationOf("gain_dbi") : section.location(),
-        fmt::format(
-            "the gain of {:.2f} dBi is {:.2f} dB above the pattern's directivity, {:.2f} dBi: the antenna "
-            "would radiate more power than it is fed; lower the gain, the beamwidths or the side lobes",
-            antenna.gain_dbi, antenna.gain_dbi - directivity_dbi, directivity_dbi));
+  const double directivity_dbi = antenna.directivity_dbi();
+  if (antenna.gain_dbi <= directivity_dbi + kTolerance_db) return;
+  const Section own = section.section("antenna");
+  context.problems.addWarning(
+      own.has("gain_dbi") ? own.locationOf("gain_dbi") : own.location(),
+      fmt::format(
+          "the gain of {:.2f} dBi is {:.2f} dB above the pattern's directivity, {:.2f} dBi: the antenna "
+          "would {}; lower the gain, the beamwidths or the side lobes",
+          antenna.gain_dbi, antenna.gain_dbi - directivity_dbi, directivity_dbi, consequence));
+}
+
+void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> emitters = root.sections("emitters");
+  for (std::size_t i = 0; i < emitters.size(); ++i)
+    warnOfGain(*scenario.emitters[i].antenna, emitters[i], "radiate more power than it is fed", context);
+  std::size_t placed = 0;
+  for (const Section& item : root.sections("receivers")) {
+    if (!item.has("platform")) continue;
+    const PlacedReceiver& receiver = scenario.placed_receivers[placed++];
+    if (item.has("antenna"))
+      warnOfGain(*receiver.antenna, item, "receive more power than reaches it", context);
   }
 }
 

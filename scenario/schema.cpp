@@ -505,15 +505,17 @@ const ObjectSpec& receiverSpec() {
           optional("antenna", object(antennaSpec()), "pattern and gain, in place of gain_dbi"),
           optional("scan", object(scanSpec()), "motion of the beam; by default fixed along the heading"),
           byDefault("losses_db", kLoss, ReceiverProfile{}.losses_db, "between antenna and receiver"),
-          optional("noise_figure_db", kNoiseFigure, "referred to 290 K; required with a platform"),
+          optional("noise_figure_db", kNoiseFigure,
+                   "referred to 290 K; required with a platform and for sinr_db"),
           optional("antenna_temperature_k", kNoiseTemperature, "noise from sky and ground; by default 290"),
           antennaNoiseKey(),
           optional("polarization", choiceUpTo(Polarization::circular_left),
                    "by default that of each emitter"),
           crossPolarKey(),
-          optional("center_frequency_hz", kFrequency, "by default that of each emitter"),
+          optional("center_frequency_hz", kFrequency,
+                   "by default that of each emitter; for sinr_db that of the wanted one"),
           optional("bandwidth_hz", kBandwidth,
-                   "by default that of each emitter's signal; required with a platform"),
+                   "by default that of each emitter's signal; required with a platform and for noise"),
           optional("sensitivity_dbm", number("dBm").from(-300).to(100),
                    "smallest power, after losses_db, at which a signal is received"),
           optional("required_sinr_db", number("dB").from(-100).to(100),
@@ -524,11 +526,7 @@ const ObjectSpec& receiverSpec() {
        {"platform", "bandwidth_hz"},
        {"antenna", "platform"},
        {"scan", "antenna"},
-       {"noise_figure_db", "platform"},
-       {"antenna_temperature_k", "platform"},
-       {"antenna_noise", "platform"},
-       {"sensitivity_dbm", "platform"},
-       {"required_sinr_db", "platform"}}};
+       {"antenna_noise", "platform"}}};
   return spec;
 }
 
@@ -599,6 +597,13 @@ const ObjectSpec& outputSpec() {
           byDefault("count_threshold_dbwm2", number("dBW/m2").from(-1000).to(1000),
                     OutputSpec{}.count_threshold_dbwm2, "emitter_count counts emitters above it"),
           optional("interval", object(intervalSpec()), "of time that a volume covers; by default an instant"),
+          optional("receiver", kName,
+                   "name of the receiver, without a platform, of received_power_dbm, sinr_db and "
+                   "intercept_margin_db; by default the first"),
+          optional("wanted_emitter", kName,
+                   "name of the emitter whose signal sinr_db is of; all others are interference"),
+          byDefault("detection_threshold", number().above(0).to(1), OutputSpec{}.detection_threshold,
+                    "detection_age_s: probability from which a look counts as a detection"),
       }};
   return spec;
 }
@@ -632,7 +637,7 @@ const ObjectSpec& scenarioSpec() {
           required("emitters", listOf(object(emitterSpec()), 1, kMaxItems).distinct(),
                    "radars, transmitters and jammers"),
           optional("receivers", listOf(object(receiverSpec()), 1, kMaxItems).distinct(),
-                   "at every voxel, for received_power_dbm, which uses the first of them; with a platform "
+                   "at every voxel, for received_power_dbm, sinr_db and intercept_margin_db; with a platform "
                    "there, for `emscape link`"),
           optional("targets", listOf(object(targetSpec()), 1, kMaxItems).distinct(),
                    "of the radars, for `emscape link`"),

@@ -68,7 +68,7 @@ Json describeScenario(const std::string& file) {
                          {"platform", scenario->platforms[static_cast<std::size_t>(receiver.platform)].name},
                          {"antenna", receiver.antenna->description},
                          {"gain_dbi", receiver.antenna->gain_dbi},
-                         {"noise_figure_db", receiver.noise_figure_db},
+                         {"noise_figure_db", receiver.noise_figure_db.value_or(0)},
                          {"bandwidth_hz", receiver.bandwidth_hz}});
   }
   for (const scenario::Target& target : scenario->targets) {

@@ -87,28 +87,30 @@ EMSCAPE_SIMD_CLONES void applyExcess(const ExcessCode* excess, int count, float*
 }
 
 EMSCAPE_SIMD_CLONES void reduceRow(Reduction reduction, float weight, int emitter_index,
-                                   const float* power_density_wm2, int count, float* value, float* largest) {
+                                   const float* power_density_wm2, int count, float* value, float* second) {
   switch (reduction) {
     case Reduction::sum:
 #pragma omp simd
-      for (int i = 0; i < count; ++i)
-        reduce(Reduction::sum, weight, 0, power_density_wm2[i], value[i], nullptr);
+      for (int i = 0; i < count; ++i) reduce(Reduction::sum, weight, power_density_wm2[i], value[i]);
       break;
     case Reduction::maximum:
 #pragma omp simd
-      for (int i = 0; i < count; ++i)
-        reduce(Reduction::maximum, weight, 0, power_density_wm2[i], value[i], nullptr);
+      for (int i = 0; i < count; ++i) reduce(Reduction::maximum, weight, power_density_wm2[i], value[i]);
       break;
     case Reduction::count:
 #pragma omp simd
-      for (int i = 0; i < count; ++i)
-        reduce(Reduction::count, weight, 0, power_density_wm2[i], value[i], nullptr);
+      for (int i = 0; i < count; ++i) reduce(Reduction::count, weight, power_density_wm2[i], value[i]);
       break;
     case Reduction::dominant:
 #pragma omp simd
       for (int i = 0; i < count; ++i) {
-        reduce(Reduction::dominant, weight, emitter_index, power_density_wm2[i], value[i], largest + i);
+        reduce(Reduction::dominant, weight, emitter_index, power_density_wm2[i], value[i], second[i]);
       }
+      break;
+    case Reduction::signal:
+#pragma omp simd
+      for (int i = 0; i < count; ++i)
+        reduce(Reduction::signal, weight, 0, power_density_wm2[i], value[i], second[i]);
       break;
   }
 }
@@ -119,10 +121,10 @@ void startRow(const CombineTask& task, std::size_t channel, std::size_t first) {
   const int count = task.dims.x;
   if (from.value != nullptr) {
     std::copy_n(from.value + first, count, out.value + first);
-    if (out.largest != nullptr) std::copy_n(from.largest + first, count, out.largest + first);
+    if (out.second != nullptr) std::copy_n(from.second + first, count, out.second + first);
   } else {
     std::fill_n(out.value + first, count, task.reductions[channel] == Reduction::dominant ? -1.0f : 0.0f);
-    if (out.largest != nullptr) std::fill_n(out.largest + first, count, 0.0f);
+    if (out.second != nullptr) std::fill_n(out.second + first, count, 0.0f);
   }
 }
 
@@ -152,7 +154,7 @@ void combineRow(const CombineTask& task, int j, int k, float* buffer) {
       const Accumulator& out = task.accumulators[share.channel];
       if (out.value == nullptr) continue;
       reduceRow(task.reductions[share.channel], share.weight, emitter.emitter_index, power_wm2, count,
-                out.value + first, out.largest == nullptr ? nullptr : out.largest + first);
+                out.value + first, out.second == nullptr ? nullptr : out.second + first);
     }
   }
 }

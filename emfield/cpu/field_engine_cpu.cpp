@@ -12,8 +12,8 @@ namespace {
 
 /// Buffers of one channel.
 struct ChannelBuffers {
-  std::vector<float> value, largest;                ///< accumulator over all emitters
-  std::vector<float> static_value, static_largest;  ///< accumulator over the static emitters alone
+  std::vector<float> value, second;                ///< accumulator over all emitters
+  std::vector<float> static_value, static_second;  ///< accumulator over the static emitters alone
   std::vector<std::shared_ptr<volume::DenseVolume>> pool;
 };
 
@@ -44,8 +44,8 @@ class CpuEngine : public FieldEngine {
   void addMemory(MemoryUse& use) const override;
 
  private:
-  bool hasLargest(std::size_t channel) const {
-    return setup_.channel_plans[channel].reduction == Reduction::dominant;
+  bool hasSecond(std::size_t channel) const {
+    return emfield::hasSecond(setup_.channel_plans[channel].reduction);
   }
   std::shared_ptr<volume::DenseVolume> freeVolume(ChannelBuffers& buffers) const;
 
@@ -93,7 +93,7 @@ void CpuEngine::planChanged(bool channels_changed) {
   buffers_ = std::vector<ChannelBuffers>(setup_.channels.size());
   for (std::size_t c = 0; c < buffers_.size(); ++c) {
     buffers_[c].value.resize(voxels_);
-    if (hasLargest(c)) buffers_[c].largest.resize(voxels_);
+    if (hasSecond(c)) buffers_[c].second.resize(voxels_);
   }
 }
 
@@ -101,9 +101,9 @@ void CpuEngine::setStaticSums(const std::vector<bool>& channels) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
     ChannelBuffers& buffers = buffers_[c];
     buffers.static_value.resize(channels[c] ? voxels_ : 0);
-    buffers.static_largest.resize(channels[c] && hasLargest(c) ? voxels_ : 0);
+    buffers.static_second.resize(channels[c] && hasSecond(c) ? voxels_ : 0);
     buffers.static_value.shrink_to_fit();
-    buffers.static_largest.shrink_to_fit();
+    buffers.static_second.shrink_to_fit();
   }
 }
 
@@ -116,14 +116,14 @@ void CpuEngine::combine(const CombinePass& pass) {
   for (std::size_t c = 0; c < buffers_.size(); ++c) {
     ChannelBuffers& buffers = buffers_[c];
     auto& value = pass.into_static_sums ? buffers.static_value : buffers.value;
-    auto& largest = pass.into_static_sums ? buffers.static_largest : buffers.largest;
+    auto& second = pass.into_static_sums ? buffers.static_second : buffers.second;
     const auto orNull = [](std::vector<float>& array) { return array.empty() ? nullptr : array.data(); };
     task.reductions.push_back(setup_.channel_plans[c].reduction);
-    task.accumulators.push_back(pass.channels[c] ? Accumulator{orNull(value), orNull(largest)}
+    task.accumulators.push_back(pass.channels[c] ? Accumulator{orNull(value), orNull(second)}
                                                  : Accumulator{});
     task.initial.push_back(pass.into_static_sums ? ConstAccumulator{}
                                                  : ConstAccumulator{orNull(buffers.static_value),
-                                                                    orNull(buffers.static_largest)});
+                                                                    orNull(buffers.static_second)});
   }
   for (const CombinePass::Member& member : pass.members) {
     task.emitters.push_back(member.emitter);
@@ -168,6 +168,7 @@ std::vector<volume::Volume> CpuEngine::makeVolumes(const std::vector<VolumeReque
     task.dims = setup_.grid.dims;
     task.product = setup_.channel_plans[request.channel].product;
     task.accumulator = buffers.value.data();
+    task.second = buffers.second.data();
     task.first_valid_k = volume->first_valid_k.empty() ? nullptr : volume->first_valid_k.data();
     task.values = volume->values.data();
     volume->info = request.info;
@@ -182,7 +183,7 @@ void CpuEngine::addMemory(MemoryUse& use) const {
   std::size_t channel_bytes = 0;
   for (const ChannelBuffers& buffers : buffers_) {
     for (const auto* buffer :
-         {&buffers.value, &buffers.largest, &buffers.static_value, &buffers.static_largest}) {
+         {&buffers.value, &buffers.second, &buffers.static_value, &buffers.static_second}) {
       channel_bytes += buffer->capacity() * sizeof(float);
     }
     for (const auto& volume : buffers.pool) channel_bytes += volume->values.capacity() * sizeof(float);

@@ -21,6 +21,24 @@ EMSCAPE_SIMD_CLONES void decibelRow(const ProductScale& product, const float* ac
   for (int i = 0; i < count; ++i) values[i] = decibelsOf(local, accumulator[i]);
 }
 
+template <ProductForm form>
+__attribute__((always_inline)) inline void valueRow(const ProductScale& product, const float* accumulator,
+                                                    const float* second, int count, float* values) {
+  ProductScale local = product;
+  local.form = form;
+#pragma omp simd
+  for (int i = 0; i < count; ++i) values[i] = valueOf(local, accumulator[i], second[i]);
+}
+
+EMSCAPE_SIMD_CLONES void signalRatioRow(const ProductScale& product, const float* accumulator,
+                                        const float* second, int count, float* values) {
+  valueRow<ProductForm::signal_ratio>(product, accumulator, second, count, values);
+}
+EMSCAPE_SIMD_CLONES void ageRow(const ProductScale& product, const float* accumulator, int count,
+                                float* values) {
+  valueRow<ProductForm::age>(product, accumulator, accumulator, count, values);
+}
+
 /// Gives voxels below first_valid_k the floor.
 EMSCAPE_SIMD_CLONES void maskRow(const std::uint16_t* first_valid_k, int k, float floor, int count,
                                  float* values) {
@@ -51,10 +69,19 @@ volume::ValueRange fillRows(const ProductTask& task, int j) {
     const std::size_t first = (static_cast<std::size_t>(k) * task.dims.y + j) * count;
     const float* accumulator = task.accumulator + first;
     float* values = task.values + first;
-    if (task.product.decibels) {
-      decibelRow(task.product, accumulator, count, values);
-    } else {
-      std::copy_n(accumulator, count, values);
+    switch (task.product.form) {
+      case ProductForm::decibels:
+        decibelRow(task.product, accumulator, count, values);
+        break;
+      case ProductForm::itself:
+        std::copy_n(accumulator, count, values);
+        break;
+      case ProductForm::signal_ratio:
+        signalRatioRow(task.product, accumulator, task.second + first, count, values);
+        break;
+      case ProductForm::age:
+        ageRow(task.product, accumulator, count, values);
+        break;
     }
     if (k < all_valid_k) maskRow(first_valid_k, k, task.product.floor, count, values);
     widenRange(values, count, task.product.floor, range);

@@ -65,6 +65,13 @@ EMSCAPE_SIMD_CLONES void countLooks(const RadarPass& pass, const Row& row, float
   for (int i = 0; i < row.count; ++i) looks[i] = looksAt(task, beam, row.column + i, row.t_m);
 }
 
+EMSCAPE_SIMD_CLONES void findAges(const RadarPass& pass, const Row& row, float* ages_s) {
+  const RadarTask task = pass.task;
+  const EmitterBeam beam = pass.beam;
+#pragma omp simd
+  for (int i = 0; i < row.count; ++i) ages_s[i] = ageAt(task, beam, row.column + i, row.t_m);
+}
+
 template <RadarMeasure measure>
 __attribute__((always_inline)) inline void accumulate(const RadarTask& pass_task, int count,
                                                       const float* root, const float* jamming,
@@ -86,6 +93,8 @@ EMSCAPE_SIMD_CLONES void accumulateRow(const RadarTask& task, int count, const f
       return accumulate<RadarMeasure::signal_to_jamming>(task, count, root, jamming, looks, accumulator);
     case RadarMeasure::detection:
       return accumulate<RadarMeasure::detection>(task, count, root, jamming, looks, accumulator);
+    case RadarMeasure::detection_age:
+      return accumulate<RadarMeasure::detection_age>(task, count, root, jamming, looks, accumulator);
     case RadarMeasure::root_of_signal_to_clutter_and_noise:
       return accumulate<RadarMeasure::root_of_signal_to_clutter_and_noise>(task, count, root, jamming, looks,
                                                                            accumulator);
@@ -109,7 +118,11 @@ void radarCpu(const RadarPass& pass) {
           fillRow(pass, row, root.data(), jamming.data());
         }
         if (!pass.task.clutter.isNone()) addClutter(pass, row, jamming.data());
-        if (pass.task.is_cumulative) countLooks(pass, row, looks.data());
+        if (pass.task.measure == RadarMeasure::detection_age) {
+          findAges(pass, row, looks.data());
+        } else if (pass.task.is_cumulative) {
+          countLooks(pass, row, looks.data());
+        }
         const ExcessCode* excess = pass.beam.geometry.excess;
         if (excess != nullptr) applyExcess(excess + voxel, dims.x, root.data());
         accumulateRow(pass.task, dims.x, root.data(), jamming.data(), looks.data(), pass.accumulator + voxel);

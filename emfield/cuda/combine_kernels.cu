@@ -90,9 +90,11 @@ constexpr int kWarp = 32;
 constexpr int kWarps = 8;
 
 /// A thread processes kLayers layers of a column.
+/// @tparam kReduction  that of the channel if it has a second accumulator, else any other: then each channel
+/// has its own
 /// @tparam kReflected  some members' reflected rays are weighed; a kernel of its own, because of its
 /// registers
-template <int kChannels, int kLayers, bool kDominant, bool kReflected>
+template <int kChannels, int kLayers, Reduction kReduction, bool kReflected>
 __global__ void __launch_bounds__(kWarp* kWarps)
     combineKernel(const __grid_constant__ Launch<kChannels> launch) {
   const int columns = launch.dims.x * launch.dims.y;
@@ -103,7 +105,8 @@ __global__ void __launch_bounds__(kWarp* kWarps)
   if (launch.first_valid_k != nullptr && launch.first_valid_k[column] >= begin + kLayers) return;
 
   float t_m[kLayers], power_density_wm2[kLayers], value[kChannels][kLayers];
-  float largest[kDominant ? kLayers : 1];
+  constexpr bool kSecond = hasSecond(kReduction);
+  float second[kSecond ? kLayers : 1];
 #pragma unroll
   for (int l = 0; l < kLayers; ++l) {
     const int k = begin + l < launch.dims.z ? begin + l : launch.dims.z - 1;
@@ -112,11 +115,11 @@ __global__ void __launch_bounds__(kWarp* kWarps)
 #pragma unroll
     for (int c = 0; c < kChannels; ++c) {
       const float* from = launch.keep ? launch.accumulators[c].value : launch.initial[c].value;
-      value[c][l] = from != nullptr ? from[voxel] : kDominant ? -1.0F : 0.0F;
+      value[c][l] = from != nullptr ? from[voxel] : kReduction == Reduction::dominant ? -1.0F : 0.0F;
     }
-    if (kDominant) {
-      const float* from = launch.keep ? launch.accumulators[0].largest : launch.initial[0].largest;
-      largest[l] = from != nullptr ? from[voxel] : 0.0F;
+    if (kSecond) {
+      const float* from = launch.keep ? launch.accumulators[0].second : launch.initial[0].second;
+      second[l] = from != nullptr ? from[voxel] : 0.0F;
     }
   }
 
@@ -174,8 +177,12 @@ __global__ void __launch_bounds__(kWarp* kWarps)
       if (!member.takes_part[c]) continue;
 #pragma unroll
       for (int l = 0; l < kLayers; ++l) {
-        reduce(kDominant ? Reduction::dominant : launch.reductions[c], member.weights[c],
-               member.emitter_index, power_density_wm2[l], value[c][l], kDominant ? largest + l : nullptr);
+        if constexpr (kSecond) {
+          reduce(kReduction, member.weights[c], member.emitter_index, power_density_wm2[l], value[c][l],
+                 second[l]);
+        } else {
+          reduce(launch.reductions[c], member.weights[c], power_density_wm2[l], value[c][l]);
+        }
       }
     }
   }
@@ -186,12 +193,12 @@ __global__ void __launch_bounds__(kWarp* kWarps)
     const long long voxel = static_cast<long long>(begin + l) * columns + column;
 #pragma unroll
     for (int c = 0; c < kChannels; ++c) launch.accumulators[c].value[voxel] = value[c][l];
-    if (kDominant) launch.accumulators[0].largest[voxel] = largest[l];
+    if (kSecond) launch.accumulators[0].second[voxel] = second[l];
   }
 }
 
 /// Runs a pass for some channels of one kind, with as many launches as their members take.
-template <int kChannels, int kLayers, bool kDominant>
+template <int kChannels, int kLayers, Reduction kReduction>
 void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k, const int* channels,
                      cudaStream_t stream) {
   Launch<kChannels> launch;
@@ -211,8 +218,8 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
                     static_cast<unsigned>((task.dims.z + kBlockLayers - 1) / kBlockLayers));
   bool has_reflected = false;
   const auto run = [&] {
-    const auto kernel = has_reflected ? combineKernel<kChannels, kLayers, kDominant, true>
-                                      : combineKernel<kChannels, kLayers, kDominant, false>;
+    const auto kernel = has_reflected ? combineKernel<kChannels, kLayers, kReduction, true>
+                                      : combineKernel<kChannels, kLayers, kReduction, false>;
     kernel<<<blocks, dim3(kWarp, kWarps), 0, stream>>>(launch);
     checkLaunch("combine");
     launch.keep = true;
@@ -246,7 +253,10 @@ __device__ unsigned orderOf(float value) {
 
 constexpr int kProductLayers = 4;
 
+/// @tparam kForm  that of the task
+template <ProductForm kForm>
 __global__ void __launch_bounds__(kThreads) productKernel(DeviceProductTask task) {
+  task.product.form = kForm;
   const Dims dims = task.voxels.dims;
   const int columns = dims.x * dims.y;
   const int column = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -262,8 +272,9 @@ __global__ void __launch_bounds__(kThreads) productKernel(DeviceProductTask task
       const int from = k < first_valid ? first_valid : k;
       float value = task.product.floor;
       if (from < dims.z) {
-        const float accumulator = task.accumulator[static_cast<long long>(from) * columns + column];
-        value = task.product.decibels ? decibelsOf(task.product, accumulator) : accumulator;
+        const long long voxel = static_cast<long long>(from) * columns + column;
+        const float second = kForm == ProductForm::signal_ratio ? task.second[voxel] : 0.0F;
+        value = valueOf(task.product, task.accumulator[voxel], second);
       }
       task.voxels.write(i, j, k, value);
       if (k < first_valid || !(value > task.product.floor)) continue;
@@ -287,7 +298,9 @@ void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaSt
   for (int c = 0; c < static_cast<int>(task.accumulators.size()); ++c) {
     if (task.accumulators[c].value == nullptr) continue;
     if (task.reductions[c] == Reduction::dominant) {
-      combineChannels<1, 2, true>(task, first_valid_k, &c, stream);
+      combineChannels<1, 2, Reduction::dominant>(task, first_valid_k, &c, stream);
+    } else if (task.reductions[c] == Reduction::signal) {
+      combineChannels<1, 2, Reduction::signal>(task, first_valid_k, &c, stream);
     } else {
       channels.push_back(c);
     }
@@ -296,16 +309,16 @@ void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaSt
     const int* first = channels.data() + begin;
     switch (std::min<std::size_t>(kMaxChannels, channels.size() - begin)) {
       case 1:
-        combineChannels<1, 2, false>(task, first_valid_k, first, stream);
+        combineChannels<1, 2, Reduction::sum>(task, first_valid_k, first, stream);
         break;
       case 2:
-        combineChannels<2, 2, false>(task, first_valid_k, first, stream);
+        combineChannels<2, 2, Reduction::sum>(task, first_valid_k, first, stream);
         break;
       case 3:
-        combineChannels<3, 2, false>(task, first_valid_k, first, stream);
+        combineChannels<3, 2, Reduction::sum>(task, first_valid_k, first, stream);
         break;
       default:
-        combineChannels<4, 2, false>(task, first_valid_k, first, stream);
+        combineChannels<4, 2, Reduction::sum>(task, first_valid_k, first, stream);
     }
   }
 }
@@ -322,7 +335,20 @@ void makeProduct(const DeviceProductTask& task, cudaStream_t stream) {
   const Dims& dims = task.voxels.dims;
   const dim3 blocks(static_cast<unsigned>((dims.x * dims.y + kThreads - 1) / kThreads),
                     static_cast<unsigned>((dims.z + kProductLayers - 1) / kProductLayers));
-  productKernel<<<blocks, kThreads, 0, stream>>>(task);
+  const auto kernel = [&task] {
+    switch (task.product.form) {
+      case ProductForm::itself:
+        return productKernel<ProductForm::itself>;
+      case ProductForm::signal_ratio:
+        return productKernel<ProductForm::signal_ratio>;
+      case ProductForm::age:
+        return productKernel<ProductForm::age>;
+      case ProductForm::decibels:
+        break;
+    }
+    return productKernel<ProductForm::decibels>;
+  }();
+  kernel<<<blocks, kThreads, 0, stream>>>(task);
   checkLaunch("product");
 }
 

@@ -31,6 +31,7 @@ struct DeviceRange {
 struct DeviceProductTask {
   ProductScale product;
   const float* accumulator = nullptr;
+  const float* second = nullptr;                ///< see Accumulator
   const std::int32_t* first_valid_k = nullptr;  ///< null: all voxels are valid
   volume::VoxelWriter voxels;
   DeviceRange* range = nullptr;  ///< in device memory, reset

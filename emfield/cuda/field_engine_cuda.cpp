@@ -44,8 +44,8 @@ class DevicePattern {
 
 /// Buffers of one channel.
 struct ChannelBuffers {
-  Buffer<float> value, largest;                ///< accumulator over all emitters
-  Buffer<float> static_value, static_largest;  ///< accumulator over the static emitters alone
+  Buffer<float> value, second;                ///< accumulator over all emitters
+  Buffer<float> static_value, static_second;  ///< accumulator over the static emitters alone
   volume::DeviceVolumeRing ring;
 };
 
@@ -74,8 +74,8 @@ class CudaEngine : public FieldEngine {
 
  private:
   const scenario::PatternView& patternOf(const scenario::AntennaPtr& antenna);
-  bool hasLargest(std::size_t channel) const {
-    return setup_.channel_plans[channel].reduction == Reduction::dominant;
+  bool hasSecond(std::size_t channel) const {
+    return emfield::hasSecond(setup_.channel_plans[channel].reduction);
   }
 
   const FieldSetup& setup_;
@@ -117,14 +117,14 @@ void CudaEngine::planChanged(bool channels_changed) {
   ranges_ = Buffer<cuda::DeviceRange>(setup_.channels.size());
   for (std::size_t c = 0; c < buffers_.size(); ++c) {
     buffers_[c].value.resize(voxels_);
-    if (hasLargest(c)) buffers_[c].largest.resize(voxels_);
+    if (hasSecond(c)) buffers_[c].second.resize(voxels_);
   }
 }
 
 void CudaEngine::setStaticSums(const std::vector<bool>& channels) {
   for (std::size_t c = 0; c < channels.size(); ++c) {
     buffers_[c].static_value.resize(channels[c] ? voxels_ : 0);
-    buffers_[c].static_largest.resize(channels[c] && hasLargest(c) ? voxels_ : 0);
+    buffers_[c].static_second.resize(channels[c] && hasSecond(c) ? voxels_ : 0);
   }
 }
 
@@ -136,12 +136,12 @@ void CudaEngine::combine(const CombinePass& pass) {
   for (std::size_t c = 0; c < buffers_.size(); ++c) {
     ChannelBuffers& buffers = buffers_[c];
     auto& value = pass.into_static_sums ? buffers.static_value : buffers.value;
-    auto& largest = pass.into_static_sums ? buffers.static_largest : buffers.largest;
+    auto& second = pass.into_static_sums ? buffers.static_second : buffers.second;
     task.reductions.push_back(setup_.channel_plans[c].reduction);
-    task.accumulators.push_back(pass.channels[c] ? Accumulator{value.data(), largest.data()} : Accumulator{});
-    task.initial.push_back(
-        pass.into_static_sums ? ConstAccumulator{}
-                              : ConstAccumulator{buffers.static_value.data(), buffers.static_largest.data()});
+    task.accumulators.push_back(pass.channels[c] ? Accumulator{value.data(), second.data()} : Accumulator{});
+    task.initial.push_back(pass.into_static_sums
+                               ? ConstAccumulator{}
+                               : ConstAccumulator{buffers.static_value.data(), buffers.static_second.data()});
   }
   for (const CombinePass::Member& member : pass.members) {
     task.emitters.push_back(member.emitter);
@@ -190,6 +190,7 @@ std::vector<volume::Volume> CudaEngine::makeVolumes(const std::vector<VolumeRequ
     cuda::DeviceProductTask task;
     task.product = setup_.channel_plans[request.channel].product;
     task.accumulator = buffers.value.data();
+    task.second = buffers.second.data();
     task.first_valid_k = volume->storage().firstValidK();
     task.range = ranges_.data() + r;
     task.voxels = volume->storage().beginWriting(stream_);
@@ -210,7 +211,7 @@ void CudaEngine::addMemory(MemoryUse& use) const {
   std::size_t channel_bytes = 0;
   for (const ChannelBuffers& buffers : buffers_) {
     for (const auto* buffer :
-         {&buffers.value, &buffers.largest, &buffers.static_value, &buffers.static_largest}) {
+         {&buffers.value, &buffers.second, &buffers.static_value, &buffers.static_second}) {
       channel_bytes += buffer->size() * sizeof(float);
     }
     channel_bytes += volume::deviceBytes(setup_.grid.dims, precision_);

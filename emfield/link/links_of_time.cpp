@@ -8,6 +8,7 @@
 #include "emfield/link/path_verdict.h"
 #include "emfield/radar/receiver.h"
 #include "emfield/station.h"
+#include "emfield/two_rays.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_report.h"
@@ -43,22 +44,24 @@ Vec3d lineBetween(const Station& from, const GeodeticPosition& to) {
 
 /// A receiver with the gain that its antenna has towards a wave.
 scenario::ReceiverProfile profileOf(const PlacedReceiver& receiver, double pattern_db, double tuned_hz) {
-  scenario::ReceiverProfile profile;
+  scenario::ReceiverProfile profile = receiver;
   profile.gain_dbi = receiver.antenna->gain_dbi + pattern_db;
-  profile.losses_db = receiver.losses_db;
-  profile.polarization = receiver.polarization;
-  profile.cross_polar_isolation_db = receiver.cross_polar_isolation_db;
   profile.center_frequency_hz = tuned_hz;
-  profile.bandwidth_hz = receiver.bandwidth_hz;
   return profile;
 }
 
-/// Behind the line's losses, where received powers are.
-double noiseOf_w(const PlacedReceiver& receiver) {
-  return noisePower_w(receiver.bandwidth_hz,
-                      systemNoiseTemperature_k(receiver.antenna_temperature_k, kReferenceTemperature_K,
-                                               receiver.losses_db, receiver.noise_figure_db) /
-                          dbToRatio(receiver.losses_db));
+/// What a receiver's antenna changes (dB) in the power of both rays, of which the budget has the emitter's
+/// alone.
+/// @param direct, reflected  amplitudes of the receiver's pattern along the rays
+double gainOfBothRays_db(const ReflectedRay& ray, const PathPointing& emitter, double direct,
+                         double reflected) {
+  const auto power_db = [&ray](double along_direct, double along_reflected) {
+    return ratioToDb(static_cast<double>(
+        powerOfBothRays(ray, static_cast<float>(along_direct), static_cast<float>(along_reflected))));
+  };
+  const double of_emitter_db = power_db(emitter.amplitude, emitter.reflected->amplitude);
+  if (!std::isfinite(of_emitter_db)) return 0;  // it radiates along neither
+  return power_db(emitter.amplitude * direct, emitter.reflected->amplitude * reflected) - of_emitter_db;
 }
 
 double tunedTo_hz(const PlacedReceiver& receiver, const Emitter& wanted) {
@@ -161,9 +164,17 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
   Vec3d ray = lineBetween(station, from.position);
   ray.z +=
       refractionLift_m(station, wave.budget->profile.range_m, std::hypot(ray.x, ray.y), from.height_msl_m);
-  const double amplitude = own.antenna->amplitudeTowards(inAxesOf(state.beam, ray * (1 / length(ray))),
-                                                         state.beam.steer_u, state.beam.steer_v);
-  wave.pattern_db = 2 * ratioToDb(std::abs(amplitude));
+  const auto amplitudeTowards = [&](const Vec3d& direction) {
+    return own.antenna->signedAmplitudeTowards(inAxesOf(state.beam, direction), state.beam.steer_u,
+                                               state.beam.steer_v);
+  };
+  const double direct = amplitudeTowards(ray * (1 / length(ray)));
+  wave.pattern_db = 2 * ratioToDb(std::abs(direct));
+  if (const auto& reflection = wave.budget->excess.reflection) {
+    const Vec3f below = reflectedDirection(vecCast<float>(ray), reflection->arrival_sine);
+    wave.pattern_db = gainOfBothRays_db(*reflection, wave.budget->pointing, direct,
+                                        amplitudeTowards(vecCast<double>(below)));
+  }
 }
 
 double ReceiverListener::power_w(const Scenario& scenario, int emitter, double tuned_hz) const {
@@ -180,7 +191,7 @@ void ReceiverListener::add(const scenario::Snapshot& snapshot, const scenario::T
   for (std::size_t e = 0; e < waves_.size(); ++e) {
     if (waves_[e].is_needed) receive(static_cast<int>(e), snapshot, terrain);
   }
-  const double noise_w = noiseOf_w(own);
+  const double noise_w = receiverNoise_w(own);
   for (Link& link : links) {
     const Emitter& wanted = scenario.emitters[link.emitter];
     const double tuned_hz = tunedTo_hz(own, wanted);
@@ -217,6 +228,7 @@ TargetWatcher::TargetWatcher(const Scenario& scenario, int radar, int target, co
   detection.target = target;
   own_->output.radar_look = scenario::RadarLook::target;
   own_->emitters[radar].receiver.swerling = scenario.targets[target].swerling;
+  curve_ = detectionCurveOf(own_->emitters[radar]);
 }
 
 long long TargetWatcher::looksUntil(double time_s) const {

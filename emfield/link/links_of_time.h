@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "emfield/radar/detection.h"
 #include "emscape/emfield/link.h"
 #include "emscape/emfield/path_budget.h"
 #include "emscape/scenario/snapshot.h"
@@ -59,8 +60,9 @@ class TargetWatcher {
 
   std::shared_ptr<scenario::Scenario> own_;  ///< with the target's cross section and its fluctuation
   propagation::PropagationModel model_;
-  std::optional<double> period_s_;  ///< between looks; none: every row is a look
-  double missed_ = 1;               ///< prod(1 - Pd)
+  std::optional<double> period_s_;               ///< between looks; none: every row is a look
+  double missed_ = 1;                            ///< prod(1 - Pd)
+  std::shared_ptr<const DetectionCurve> curve_;  ///< held, so that all rows share it
 };
 
 }  // namespace emscape::emfield

@@ -16,6 +16,7 @@
 #include "emfield/two_rays.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/field_solver.h"
+#include "scenario/quantity_needs.h"
 
 namespace emscape::emfield {
 namespace {
@@ -77,8 +78,7 @@ double quantityOf(Quantity quantity, const scenario::Scenario& scenario, int emi
   channel.emitters = {emitter};
   const ChannelPlan plan = channelPlan(channel, scenario);
   const double accumulator_db = power_density_dbwm2 + ratioToDb(static_cast<double>(plan.weights.front()));
-  return static_cast<double>(plan.product.scale) * accumulator_db +
-         static_cast<double>(plan.product.offset_db);
+  return static_cast<double>(plan.product.scale) * accumulator_db + static_cast<double>(plan.product.offset);
 }
 
 /// Spreading over the slant range (dB/m2).
@@ -113,7 +113,7 @@ void addRadiatedTerms(const Emitter& emitter, const PathPointing& pointing, std:
 void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, double power_density_dbwm2,
                       std::vector<BudgetTerm>& terms) {
   const Emitter& emitter = scenario.emitters[emitter_index];
-  const scenario::ReceiverProfile& receiver = scenario.receivers.front();
+  const scenario::ReceiverProfile& receiver = scenario.receivers[scenario.output.receiver];
   const double wavelength = wavelength_m(emitter.frequency_hz);
   const double area_db = ratioToDb(wavelength * wavelength / (4 * kPi));
   const double polarization_db =
@@ -134,6 +134,10 @@ void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, dou
                    of_one_watt_dbm - 30 - area_db - antenna_db - polarization_db, "dB", ""});
   terms.push_back(
       {"received_power_dbm", "received power", of_one_watt_dbm + power_density_dbwm2, "dBm", "", Kind::sum});
+  if (!scenario::unmetNeed(Quantity::intercept_margin_db, scenario, scenario.output).empty()) return;
+  terms.push_back({"intercept_margin_db", "received power over the receiver's threshold",
+                   quantityOf(Quantity::intercept_margin_db, scenario, emitter_index, power_density_dbwm2),
+                   "dB", "", Kind::sum});
 }
 
 /// Reasons for which a radar does not detect an echo from a range whatever its strength.

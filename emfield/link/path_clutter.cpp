@@ -15,9 +15,8 @@ PathClutter::PathClutter(const scenario::Snapshot& snapshot, int radar, double r
     : range_m_(std::max(range_m, static_cast<double>(kMinDistance_m))) {
   const scenario::Scenario& scenario = *snapshot.scenario;
   const scenario::EmitterState& state = snapshot.emitters[static_cast<std::size_t>(radar)];
-  const auto task =
-      clutterMapTask(scenario, scenario.emitters[static_cast<std::size_t>(radar)],
-                     makeStation(state.position, state.height_msl_m, scenario.atmosphere.k_factor));
+  const auto task = clutterMapTask(scenario, scenario.emitters[static_cast<std::size_t>(radar)],
+                                   makeStation(state.position, state.height_msl_m, scenario.atmosphere));
   if (!task) return;
   task_ = *task;
   // Cells beyond the point do not change those before.

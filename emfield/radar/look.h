@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "base/fast_math.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "emscape/scenario/antenna.h"
@@ -47,6 +48,31 @@ struct LookCount {
       times += along >= cos_half[n] * level ? 1.0f : 0.0f;
     }
     return times < 1 ? 1.0f : times;
+  }
+};
+
+/// When a beam last passed each azimuth of the look's frame in an interval, as plain data.
+struct LastPasses {
+  static constexpr int kMaxArcs = 8;
+  static constexpr float kNever_s = 1e30f;
+  int arc_count = 0;
+  /// Of each arc: the azimuth of its middle and half its width (rad), the time (s) from the pass of its
+  /// middle to the interval's end, and how much longer it is per azimuth (s/rad).
+  float middle_rad[kMaxArcs] = {}, half_width_rad[kMaxArcs] = {}, age_s[kMaxArcs] = {},
+        age_s_rad[kMaxArcs] = {};
+
+  /// Time (s) from the last pass of a direction to the interval's end; kNever_s: none.
+  EMSCAPE_HD float ageTowards(const Vec3f& direction) const {
+    constexpr float kTurn_rad = 6.28318531f, kRounding_rad = 1e-6f;
+    const float azimuth_rad = fastAtan2(direction.y, direction.x);
+    float age = kNever_s;
+    for (int n = 0; n < arc_count; ++n) {
+      const float off_rad = azimuth_rad - middle_rad[n];
+      const float nearest_rad = off_rad - kTurn_rad * std::floor(off_rad / kTurn_rad + 0.5f);
+      const float of_arc = age_s[n] + nearest_rad * age_s_rad[n];
+      age = std::abs(nearest_rad) <= half_width_rad[n] + kRounding_rad && of_arc < age ? of_arc : age;
+    }
+    return age < 0 ? 0.0f : age;
   }
 };
 

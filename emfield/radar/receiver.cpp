@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <vector>
 
 #include "emfield/radar/detection_losses.h"
 #include "emscape/base/units.h"
@@ -80,6 +82,39 @@ double receivingArea_m2(const Emitter& emitter, const ReceiverProfile& receiver)
       receiver.bandwidth_hz > 0 ? receiver.bandwidth_hz : std::max(emitter.bandwidth_hz, 1.0);
   return wavelength * wavelength / (4 * kPi) * dbToRatio(receiver.gain_dbi - receiver.losses_db) *
          polarization * bandOverlap(emitter.frequency_hz, emitter.bandwidth_hz, center_hz, width_hz);
+}
+
+std::shared_ptr<const DetectionCurve> detectionCurveOf(const Emitter& radar) {
+  static std::mutex mutex;
+  static std::vector<std::weak_ptr<const DetectionCurve>> known;
+  const Detector detector = detectorOf(radar.receiver);
+  const scenario::DetectionMethod method = radar.receiver.detection;
+  const double loss_db = detectionLosses(radar).total_db();
+  const std::lock_guard lock(mutex);
+  known.erase(std::remove_if(known.begin(), known.end(), [](const auto& curve) { return curve.expired(); }),
+              known.end());
+  for (const auto& held : known) {
+    const std::shared_ptr<const DetectionCurve> curve = held.lock();
+    if (curve && curve->isOf(detector, method, loss_db)) return curve;
+  }
+  auto curve = std::make_shared<const DetectionCurve>(detector, method, loss_db);
+  known.push_back(curve);
+  return curve;
+}
+
+double receiverNoise_w(const ReceiverProfile& receiver) {
+  const double at_antenna_k =
+      systemNoiseTemperature_k(receiver.antenna_temperature_k, kReferenceTemperature_K, receiver.losses_db,
+                               receiver.noise_figure_db.value_or(0));
+  return noisePower_w(receiver.bandwidth_hz, at_antenna_k / dbToRatio(receiver.losses_db));
+}
+
+double interceptThreshold_w(const ReceiverProfile& receiver) {
+  double threshold_w = 0;
+  if (receiver.sensitivity_dbm) threshold_w = dbToRatio(*receiver.sensitivity_dbm - 30);
+  if (receiver.required_sinr_db && receiver.hasNoise())
+    threshold_w = std::max(threshold_w, receiverNoise_w(receiver) * dbToRatio(*receiver.required_sinr_db));
+  return threshold_w;
 }
 
 RadarLook lookOf(const Emitter& radar, scenario::RadarLook look) {

@@ -1,6 +1,8 @@
 /// A scenario's radars, jammers and receivers in the terms of the radar equation and of detection.
 #pragma once
 
+#include <memory>
+
 #include "emfield/radar/detection.h"
 #include "emfield/radar/equation.h"
 #include "emfield/radar/look.h"
@@ -34,6 +36,19 @@ double requiredSignalToJammerDb(const scenario::Emitter& radar);
 
 /// Received power (W) of a receiver for a power density of 1 W/m2 of an emitter.
 double receivingArea_m2(const scenario::Emitter& emitter, const scenario::ReceiverProfile& receiver);
+
+/// The curve of a radar's detector. Radars with the same detector share one as long as somebody holds it.
+/// Threads may call it.
+std::shared_ptr<const DetectionCurve> detectionCurveOf(const scenario::Emitter& radar);
+
+/// Noise (W) of a receiver behind its line's losses, where received powers are.
+/// @param receiver  with a noise figure and a bandwidth
+double receiverNoise_w(const scenario::ReceiverProfile& receiver);
+
+/// Smallest power (W) behind the line's losses that a receiver intercepts: its sensitivity, and its required
+/// ratio to noise; the larger of both if it has both.
+/// @param receiver  with a sensitivity, or a required ratio and noise
+double interceptThreshold_w(const scenario::ReceiverProfile& receiver);
 
 /// The radar's look at targets; `held` for RadarLook::scan, and for a fixed scan of an antenna that is no
 /// array.

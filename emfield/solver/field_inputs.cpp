@@ -68,6 +68,16 @@ bool sameLooks(const LookCount& a, const LookCount& b) {
          sameArcs(sin_middle, b.sin_middle) && sameArcs(cos_half, b.cos_half);
 }
 
+bool samePasses(const LastPasses& a, const LastPasses& b) {
+  const auto& [arc_count, middle_rad, half_width_rad, age_s, age_s_rad] = a;
+  const auto sameArcs = [](const float* x, const float* y) {
+    return std::equal(x, x + LastPasses::kMaxArcs, y);
+  };
+  return arc_count == b.arc_count && sameArcs(middle_rad, b.middle_rad) &&
+         sameArcs(half_width_rad, b.half_width_rad) && sameArcs(age_s, b.age_s) &&
+         sameArcs(age_s_rad, b.age_s_rad);
+}
+
 bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
   const auto& [direction, boresight_to_noise, has_reflected_ray, reflected, reflected_direction,
                direct_amplitude, reflected_amplitude] = a;
@@ -79,12 +89,12 @@ bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
 
 bool sameTask(const RadarTask& a, const RadarTask& b) {
   // The jammers are in RadarShare.
-  const auto& [measure, reduction, look, is_cumulative, looks, echo_root, factor, lowest, ceiling, curve,
-               clutter, jammers, jammer_count] = a;
+  const auto& [measure, reduction, look, is_cumulative, looks, last_passes, echo_root, factor, lowest,
+               ceiling, curve, clutter, jammers, jammer_count] = a;
   return measure == b.measure && reduction == b.reduction && same(look, b.look) &&
-         is_cumulative == b.is_cumulative && sameLooks(looks, b.looks) && echo_root == b.echo_root &&
-         factor == b.factor && lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) &&
-         same(clutter, b.clutter);
+         is_cumulative == b.is_cumulative && sameLooks(looks, b.looks) &&
+         samePasses(last_passes, b.last_passes) && echo_root == b.echo_root && factor == b.factor &&
+         lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) && same(clutter, b.clutter);
 }
 
 bool sameShare(const RadarShare& a, const RadarShare& b) {
@@ -166,8 +176,8 @@ bool areSame(const GeometryInputs& a, const GeometryInputs& b) {
 }
 
 bool areSame(const ProductScale& a, const ProductScale& b) {
-  const auto& [decibels, scale, offset_db, floor] = a;
-  return decibels == b.decibels && scale == b.scale && offset_db == b.offset_db && floor == b.floor;
+  const auto& [form, scale, offset, floor] = a;
+  return form == b.form && scale == b.scale && offset == b.offset && floor == b.floor;
 }
 
 bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, std::vector<bool>& channels) {

@@ -17,7 +17,7 @@ std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes) {
   const auto voxels = static_cast<std::size_t>(setup.grid.dims.count());
   std::size_t bytes = slot_bytes;
   for (const ChannelPlan& plan : setup.channel_plans) {
-    const std::size_t accumulators = plan.reduction == Reduction::dominant ? 2 : 1;
+    const std::size_t accumulators = hasSecond(plan.reduction) ? 2 : 1;
     // all emitters' and the resting ones' sums; a volume that is shown and one that is written
     bytes += (2 * accumulators + 2) * voxels * sizeof(float);
   }
@@ -30,7 +30,7 @@ std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
   const std::size_t columns = setup.columns.columns.size();
   std::size_t bytes = slot_bytes + columns * sizeof(GridColumn);
   for (const ChannelPlan& plan : setup.channel_plans) {
-    const std::size_t accumulators = plan.reduction == Reduction::dominant ? 2 : 1;
+    const std::size_t accumulators = hasSecond(plan.reduction) ? 2 : 1;
     // all emitters' and the resting ones' sums; a volume that is shown and one that is written
     bytes += 2 * voxels * accumulators * sizeof(float) + 2 * volume::deviceBytes(setup.grid.dims, precision);
   }

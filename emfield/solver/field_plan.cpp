@@ -10,21 +10,13 @@ namespace emscape::emfield {
 using scenario::Emitter;
 
 FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
-                   const std::vector<std::string>& quantities, const FieldPlan* previous) {
+                   const std::vector<std::string>& quantities) {
   FieldPlan plan;
   plan.scenario = std::move(scenario);
   plan.warnings = checkModels(*plan.scenario);
   plan.channels = channelsOf(*plan.scenario, quantities);
-  std::vector<std::shared_ptr<const DetectionCurve>> curves;
-  const auto collect = [&curves](const ChannelPlan& channel_plan) {
-    curves.insert(curves.end(), channel_plan.curves.begin(), channel_plan.curves.end());
-  };
-  if (previous != nullptr)
-    std::for_each(previous->channel_plans.begin(), previous->channel_plans.end(), collect);
-  for (const Channel& channel : plan.channels) {
-    plan.channel_plans.push_back(channelPlan(channel, *plan.scenario, curves));
-    collect(plan.channel_plans.back());
-  }
+  for (const Channel& channel : plan.channels)
+    plan.channel_plans.push_back(channelPlan(channel, *plan.scenario));
   const std::vector<Emitter>& emitters = plan.scenario->emitters;
   for (const Emitter& emitter : emitters) {
     const double wavelength = wavelength_m(emitter.frequency_hz);

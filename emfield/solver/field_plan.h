@@ -19,11 +19,9 @@ struct FieldPlan {
 };
 
 /// @param quantities  names; empty: the scenario's
-/// @param previous    plan of an earlier scenario, whose detection curves are reused if they are the same;
-/// may be null
 /// @throws Error (bad_input) for a scenario that the field or its models cannot compute
 FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
-                   const std::vector<std::string>& quantities, const FieldPlan* previous);
+                   const std::vector<std::string>& quantities);
 
 /// True if two plans have the same channels, with sums of the same kinds.
 bool haveSameChannels(const FieldPlan& a, const FieldPlan& b);

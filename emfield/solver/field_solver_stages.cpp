@@ -206,7 +206,8 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   out.floor = setup.channel_plans[c].product.floor;
   out.categorical = quantity.categorical;
   if (const char* const scale = scaleOf(channel.quantity)) out.extra[volume::kScaleKey] = scale;
-  if (const char* const note = legendNoteOf(channel.quantity)) out.extra[volume::kLegendNoteKey] = note;
+  const std::string own_note = legendNoteOf(channel.quantity, *setup.scenario);
+  if (!own_note.empty()) out.extra[volume::kLegendNoteKey] = own_note;
   const std::string interval = scenario::describe(setup.scenario->output.interval, setup.scenario->clock);
   if (!interval.empty()) {
     out.extra["interval"] = interval;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "emscape/base/units.h"
 #include "scenario/swept_antenna.h"
@@ -33,6 +35,28 @@ BeamPose sweepFrame(const Emitter& emitter, const EmitterState& state) {
   return turns_onto_dwells
              ? scenario::aimed(state.mount, emitter.scan.azimuth_deg, emitter.scan.elevation_deg)
              : state.mount;
+}
+
+/// The azimuths that a beam passes, each once: those of sweeps there and back join. The largest values depend
+/// on them alone, so that intervals of a sweep there and back or more have the same pattern whenever they
+/// begin.
+void joinArcs(std::vector<SweptArc>& arcs) {
+  if (arcs.size() < 2) return;
+  constexpr double kPerDegree = 1e9, kRounding_deg = 1 / kPerDegree;
+  const auto rounded = [](double angle_deg) { return std::round(angle_deg * kPerDegree) / kPerDegree; };
+  std::sort(arcs.begin(), arcs.end(), [](const SweptArc& a, const SweptArc& b) {
+    return std::tie(a.elevation_deg, a.first_deg) < std::tie(b.elevation_deg, b.first_deg);
+  });
+  std::vector<SweptArc> joined;
+  for (const SweptArc& arc : arcs) {
+    const double end_deg = arc.first_deg + arc.width_deg;
+    const bool joins = !joined.empty() && joined.back().elevation_deg == arc.elevation_deg &&
+                       arc.first_deg <= joined.back().first_deg + joined.back().width_deg + kRounding_deg;
+    if (!joins) joined.push_back({rounded(arc.first_deg), 0, arc.elevation_deg, 1, 1});
+    SweptArc& last = joined.back();
+    last.width_deg = std::max(last.width_deg, rounded(end_deg - last.first_deg));
+  }
+  arcs = std::move(joined);
 }
 
 /// Turns the sweep into a frame in which it does not depend on the time, if there is one: the middle of a
@@ -71,6 +95,26 @@ LookCount countLooks(const ScanSweep& sweep, double whole_deg, int bars) {
   return looks;
 }
 
+/// The last passes in a frame whose forward is at an azimuth, before an interval's end.
+/// @param is_still  the beam stays: it looks at all directions that it can all the time
+LastPasses lastPasses(std::vector<scenario::TimedPass> passes, double frame_deg, bool is_still,
+                      double end_s) {
+  std::sort(passes.begin(), passes.end(), [](const auto& a, const auto& b) { return a.end_s > b.end_s; });
+  LastPasses last;
+  for (const scenario::TimedPass& pass : passes) {
+    if (last.arc_count == LastPasses::kMaxArcs) break;
+    const int n = last.arc_count++;
+    const double width_deg = pass.end_deg - pass.begin_deg;
+    last.middle_rad[n] = static_cast<float>(
+        degToRad(std::remainder((pass.begin_deg + pass.end_deg) / 2 - frame_deg, kTurn_deg)));
+    last.half_width_rad[n] = static_cast<float>(is_still ? kPi : degToRad(std::abs(width_deg) / 2));
+    last.age_s[n] = static_cast<float>(end_s - (is_still ? pass.end_s : (pass.begin_s + pass.end_s) / 2));
+    if (width_deg != 0)
+      last.age_s_rad[n] = static_cast<float>(-(pass.end_s - pass.begin_s) / degToRad(width_deg));
+  }
+  return last;
+}
+
 /// Cycles of the dwells in an interval: a look in every direction is one of each cycle.
 float dwellLooks(const scenario::ScanSpec& scan, double duration_s) {
   return static_cast<float>(std::max(1.0, std::floor(duration_s / scenario::scanCycle_s(scan) + 1e-9)));
@@ -90,7 +134,14 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
   beam.of_sweep = scenario::sweepOf(emitter, t_s, duration_s);
   beam.antenna = emitter.antenna;
   ScanSweep& sweep = beam.of_sweep;
+  const bool counts_passes = interval.kind == IntervalKind::cumulative && scan.kind != ScanKind::raster &&
+                             scan.kind != ScanKind::dwell_list;
+  const auto passesIn = [&](double frame_deg) {
+    return lastPasses(scenario::lastPassesOf(emitter, t_s, duration_s), frame_deg, stays(sweep),
+                      t_s + duration_s);
+  };
   if (stays(sweep)) {
+    if (counts_passes) beam.last_passes = passesIn(0);
     beam.pose = state.beam;
     beam.look_frame = state.mount;
     if (interval.kind == IntervalKind::mean) {
@@ -100,9 +151,12 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
     return beam;
   }
   const bool sweeps = scan.kind == ScanKind::sector || scan.kind == ScanKind::raster;
+  const bool is_max_hold = interval.kind == IntervalKind::max_hold;
+  if (is_max_hold && sweeps) joinArcs(sweep.arcs);
   const double frame_deg = turnIntoFrame(sweep, sweeps ? scan.azimuth_deg : 0);
   beam.pose = scenario::aimed(sweepFrame(emitter, state), frame_deg, 0);
   beam.look_frame = beam.pose;
+  if (counts_passes) beam.last_passes = passesIn(frame_deg + (sweeps ? scan.azimuth_deg : 0));
   beam.looks =
       countLooks(sweep, sweeps ? scan.width_deg : kTurn_deg, scan.kind == ScanKind::raster ? scan.bars : 1);
   if (scan.kind == ScanKind::dwell_list) {
@@ -120,7 +174,6 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
       beam.look_half_width_deg = std::max(-lowest_deg, highest_deg);
   }
   if (!needs_pattern) return beam;
-  const bool is_max_hold = interval.kind == IntervalKind::max_hold;
   for (SweptArc& arc : sweep.arcs) {
     if (is_max_hold && arc.isRound()) arc.first_deg = 0;  // the largest are the same from wherever it begins
   }
@@ -138,6 +191,7 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
 
 void lookInInterval(const IntervalBeam& beam, RadarTask& task, EmitterState& state) {
   task.looks = beam.looks;
+  task.last_passes = beam.last_passes;
   if (task.look.kind != LookKind::turned) return;
   state.mount = beam.look_frame;
   if (beam.look_half_width_deg >= kTurn_deg / 2) return;

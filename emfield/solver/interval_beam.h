@@ -16,6 +16,7 @@ struct IntervalBeam {
   scenario::BeamPose look_frame;     ///< of a radar's looks at targets, in place of EmitterState::mount
   double look_half_width_deg = 180;  ///< azimuths to both sides of its forward that the beam passes
   LookCount looks;
+  LastPasses last_passes;  ///< of the kind cumulative, of scans with passes (scenario::lastPassesOf)
 
   /// From what the antenna was made.
   scenario::AntennaPtr of_antenna;

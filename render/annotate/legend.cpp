@@ -246,7 +246,8 @@ std::string quantityTitle(const std::string& quantity, const std::string& unit) 
     name.resize(last);
   }
   std::replace(name.begin(), name.end(), '_', ' ');
-  if (name.compare(0, 3, "snr") == 0) name.replace(0, 3, "SNR");
+  if (name == "snr") name = "SNR";
+  if (name == "sinr") name = "SINR";
   if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   return colon == std::string::npos ? name : name + " of " + quantity.substr(colon + 1);
 }

@@ -284,6 +284,7 @@ const std::vector<Edit>& scenarioEdits() {
                                             {"power_density_dbwm2", "snr_db"},
                                             {"detection_probability", "jammer_to_signal_db"},
                                             {"received_power_dbm", "emitter_count", "dominant_emitter"},
+                                            {"sinr_db", "intercept_margin_db"},
                                             {"burn_through_margin_db", "field_strength_dbuvm"}});
        }},
       {"output.combine",
@@ -295,6 +296,8 @@ const std::vector<Edit>& scenarioEdits() {
        [](Scenario& s, Emitter&, Random& r) {
          s.output.radar_look = oneOf(r, std::vector{scenario::RadarLook::scan, scenario::RadarLook::target});
        }},
+      {"output.wanted_emitter",
+       [](Scenario& s, Emitter&, Random& r) { s.output.wanted_emitter = below(r, 3); }},
       {"output.floor", [](Scenario& s, Emitter&, Random& r) { s.output.floor = between(r, -200, -60); }},
       {"output.count_threshold_dbwm2",
        [](Scenario& s, Emitter&, Random& r) { s.output.count_threshold_dbwm2 = between(r, -90, -40); }},
@@ -347,6 +350,10 @@ std::shared_ptr<Scenario> battlefield(Random& random, FrameKind frame, std::vect
   end.position.longitude_deg += 0.03;
   scenario->platforms[1].track.push_back(end);
   scenario->receivers.emplace_back();
+  scenario->receivers.front().noise_figure_db = 5;
+  scenario->receivers.front().bandwidth_hz = 1e6;
+  scenario->receivers.front().sensitivity_dbm = -90;
+  scenario->output.wanted_emitter = 0;
   scenario->bands = {{"low", 1e8, 2e9}, {"high", 2e9, 2e10}};
   return scenario;
 }

@@ -195,9 +195,13 @@ TEST(FieldSolver, ReceivedPowerKnowsPolarisationAndBandwidth) {
   const float matched = valueAt(*solve(scenario), 3, 3, 1);
   scenario->receivers[0].bandwidth_hz = 1e6;
   EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, -10 * std::log10(4.0), 1e-4);
-  scenario->receivers[0] = {"receiver", 3, 1, propagation::Polarization::slant_45};
+  scenario->receivers[0] = {};
+  scenario->receivers[0].gain_dbi = 3;
+  scenario->receivers[0].losses_db = 1;
+  scenario->receivers[0].polarization = propagation::Polarization::slant_45;
   EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, 2 - 10 * std::log10(2.0), 1e-4);
-  scenario->receivers[0] = {"receiver", 0, 0, propagation::Polarization::horizontal};
+  scenario->receivers[0] = {};
+  scenario->receivers[0].polarization = propagation::Polarization::horizontal;
   EXPECT_NEAR(valueAt(*solve(scenario), 3, 3, 1) - matched, -scenario::kCrossPolarIsolation_db, 1e-4);
   scenario->receivers[0].polarization.reset();
   scenario->receivers[0].center_frequency_hz = 2e9;

@@ -59,7 +59,7 @@ class FreeSpaceTable : public ::testing::Test {
     emitter.power_w = dbToRatio(row.eirp_dbw - antenna->gain_dbi);
     emitter.scan.azimuth_deg = azimuth_deg;
     addEmitter(*scenario, middleOf(*scenario), emitter);
-    scenario->receivers.push_back({"isotropic", 0, 0, std::nullopt, 0, 0});
+    scenario->receivers.emplace_back();
     scenario->output.quantities = {"power_density_dbwm2", "field_strength_dbuvm", "received_power_dbm"};
     FieldSolver solver(scenario, nullptr, {});
     solver.update(scenario::snapshotAt(scenario, nullptr, 0));

@@ -214,6 +214,16 @@ TEST_P(Intervals, OfWholeTurnsDoNotChangeWithTheTime) {
   EXPECT_TRUE(longer.update(scenario::snapshotAt(scenario, nullptr, 1.3)).volumes.empty());
 }
 
+TEST_P(Intervals, LongerThanASweepThereAndBackKeepTheirLargestAsTimeGoesOn) {
+  auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), sweeping(ScanKind::sector, 90, 50));
+  scenario->output.interval = {IntervalKind::max_hold, 4.5, {}};  // of 3.6 s there and back
+  FieldSolver solver = solverOf(scenario);
+  const std::vector<float> first = valuesOf(solver, scenario, 0);
+  for (const double t_s : {0.3, 1.1, 2.9, 17.77}) {
+    EXPECT_TRUE(solver.update(scenario::snapshotAt(scenario, nullptr, t_s)).volumes.empty()) << t_s;
+  }
+}
+
 TEST_P(Intervals, OfPartsOfATurnAreTheSameFromSolverToSolver) {
   auto scenario = around(scenario::makeSinc(30, 4, 6, -35), rotating(7, 3));
   scenario->output.interval = {IntervalKind::mean, 3.0, {}};
@@ -286,6 +296,84 @@ TEST_P(Intervals, CumulateTheLooksOfEachAzimuth) {
       }
       EXPECT_GT(compared, 50);
     }
+  }
+}
+
+// The last detection is found by walking back through the time in steps of a twentieth of the beam.
+TEST_P(Intervals, KnowTheAgeOfTheLastDetection) {
+  for (const ScanSpec& scan : {rotating(10), rotating(-8), sweeping(ScanKind::sector, 90, 50)}) {
+    for (const double seconds : {2.0, 9.5}) {
+      for (const bool pauses : {false, true}) {
+        SCOPED_TRACE(::testing::Message() << toString(scan.kind) << " " << seconds << " s " << pauses);
+        const auto scenario = radarAround(scan);
+        scenario->emitters[0].power_w = 200;
+        if (pauses)
+          scenario->emitters[0].active_s = {{0, kBegin_s + 0.4 * seconds},
+                                            {kBegin_s + 0.6 * seconds, kBegin_s + 0.9 * seconds}};
+        const auto isActive = [&](double t_s) {
+          return !pauses || t_s < scenario->emitters[0].active_s[0].end_s ||
+                 (t_s >= scenario->emitters[0].active_s[1].begin_s &&
+                  t_s < scenario->emitters[0].active_s[1].end_s);
+        };
+        FieldSolver solver = solverOf(scenario);
+        const std::vector<float> once = valuesOf(solver, scenario, kBegin_s);
+        auto aged = std::make_shared<Scenario>(*scenario);
+        aged->output.quantities = {"detection_age_s"};
+        aged->output.detection_threshold = 0.3;
+        const std::vector<float> found = overInterval(aged, IntervalKind::cumulative, seconds);
+        const double rate_deg_s =
+            scan.kind == ScanKind::rotate ? 6 * std::abs(scan.rate_rpm) : scan.rate_deg_s;
+        const double step_s = 4.0 / 20 / rate_deg_s;
+        const volume::Grid grid = gridOf(scenario->region);
+        int detected = 0, undetected = 0, at_edges = 0;
+        for (int j = 0; j < grid.dims.y; ++j) {
+          for (int i = 0; i < grid.dims.x; ++i) {
+            const Vec3d at = grid.center_m(i, j, 1) - grid.center_m(grid.dims.x / 2, grid.dims.y / 2, 0);
+            if (std::hypot(at.x, at.y) < 2000) continue;
+            const double azimuth_deg = radToDeg(std::atan2(at.x, at.y));
+            const auto v = static_cast<std::size_t>(grid.index(i, j, 1));
+            double age_s = -1, before_deg = 180;
+            for (double back_s = 0; back_s <= seconds && age_s < 0; back_s += step_s) {
+              const double t_s = kBegin_s + seconds - back_s;
+              const double off_deg = std::remainder(beamAt(scan, t_s).azimuth_deg - azimuth_deg, 360);
+              const bool passes = isActive(t_s) && std::abs(off_deg) < 90 && std::abs(before_deg) < 90 &&
+                                  (off_deg > 0) != (before_deg > 0);
+              if (passes && once[v] >= 0.3f) age_s = back_s;
+              before_deg = isActive(t_s) ? off_deg : 180;
+            }
+            if (std::abs(once[v] - 0.3f) < 0.01f) continue;
+            // At the edges of what was passed, and of the times of activity, a step decides.
+            const bool is_same =
+                (age_s < 0) == (found[v] < 0) &&
+                (age_s < 0 || std::abs(static_cast<double>(found[v]) - age_s) <= 1.01 * step_s);
+            (is_same ? age_s >= 0 ? detected : undetected : at_edges)++;
+          }
+        }
+        EXPECT_GT(detected, 5);
+        EXPECT_GT(undetected, 5);
+        EXPECT_LE(at_edges, 6);
+      }
+    }
+  }
+}
+
+TEST_P(Intervals, ARadarThatStaysDetectsAllTheTime) {
+  ScanSpec scan;
+  scan.kind = ScanKind::track;
+  const auto scenario = radarAround(scan);
+  FieldSolver solver = solverOf(scenario);
+  const std::vector<float> once = valuesOf(solver, scenario, kBegin_s);
+  scenario->output.quantities = {"detection_age_s"};
+  for (const float age_s : {0.0f, 2.0f}) {
+    if (age_s > 0) scenario->emitters[0].active_s = {{0, kBegin_s + 8}};
+    const std::vector<float> found = overInterval(scenario, IntervalKind::cumulative, 10);
+    int detected = 0;
+    for (std::size_t v = 0; v < once.size(); ++v) {
+      const bool is_detected = once[v] >= 0.5f;
+      detected += is_detected ? 1 : 0;
+      EXPECT_NEAR(found[v], is_detected ? age_s : -1, 1e-4f);
+    }
+    EXPECT_GT(detected, 5);
   }
 }
 

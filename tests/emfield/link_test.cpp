@@ -130,6 +130,38 @@ TEST(Link, AReceiversAntennaHasItsGainTowardsTheEmitter) {
   EXPECT_NEAR(gain_db(90), -10, 1e-6);
 }
 
+// Reciprocity: a pattern weighs the two rays alike at either end.
+TEST(Link, OfTwoRaysIsTheSameFromEitherEnd) {
+  const auto received_dbm = [](bool is_at_receiver, const scenario::AntennaPtr& antenna, double height_m) {
+    const auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
+    scenario->ground.kind = propagation::GroundKind::sea;
+    scenario->ground.surface_msl_m = 0;
+    GeodeticPosition low = pointAt(*scenario, 0, 0), high = pointAt(*scenario, 3e3, 0);
+    const double surface_m = low.height_ellipsoid_m;
+    low.height_ellipsoid_m = surface_m + 20;
+    high.height_ellipsoid_m = surface_m + height_m;
+    scenario::Emitter emitter = plainEmitter("emitter", 0);
+    emitter.propagation.model = propagation::PropagationModel::two_ray;
+    emitter.antenna = is_at_receiver ? scenario::makeIsotropic(kLinkGain_dbi) : antenna;
+    addEmitter(*scenario, is_at_receiver ? high : low, emitter);
+    scenario::PlacedReceiver& receiver = addReceiver(*scenario, is_at_receiver ? low : high);
+    if (is_at_receiver) receiver.antenna = antenna;
+    // The directional end is the low one; it looks east.
+    scenario->emitters[0].scan.azimuth_deg = receiver.scan.azimuth_deg = 90;
+    return linksOf(scenario).links.at(0).rows.at(0).received_power_dbm;
+  };
+  const scenario::AntennaPtr narrow = scenario::makeGaussian(kLinkGain_dbi, 60, 4, -40);
+  double farthest_db = 0;
+  for (const double height_m : {60., 90., 130., 180.}) {
+    EXPECT_NEAR(received_dbm(true, narrow, height_m), received_dbm(false, narrow, height_m), 0.02)
+        << height_m;
+    const scenario::AntennaPtr wide = scenario::makeIsotropic(kLinkGain_dbi);
+    farthest_db = std::max(
+        farthest_db, std::abs(received_dbm(true, narrow, height_m) - received_dbm(true, wide, height_m)));
+  }
+  EXPECT_GT(farthest_db, 0.5) << "the pattern must weigh";
+}
+
 TEST(Link, IsReceivedWhereItMeetsItsThresholds) {
   const auto scenario = oneLink();
   scenario::TrackPoint end = scenario->platforms[0].track.front();
@@ -220,6 +252,15 @@ TEST(Detection, OfATargetIsThatOfTheRadarEquationAndTheStatistics) {
   const Detector detector{Swerling::slow_dominant, 1, 1e-6};
   EXPECT_NEAR(row.detection_probability,
               detectionProbability(detector, detectionThreshold(detector), dbToRatio(row.snr_db)), 2e-4);
+}
+
+TEST(Detection, RowsShareTheRadarsCurve) {
+  const scenario::Emitter radar = radarOf(scenario::makeIsotropic());
+  const auto curve = detectionCurveOf(radar);
+  EXPECT_EQ(detectionCurveOf(radar), curve);
+  scenario::Emitter other = radar;
+  other.receiver.pfa = 1e-4;
+  EXPECT_NE(detectionCurveOf(other), curve);
 }
 
 TEST(Detection, AccumulatesOverTheLooksOfTheScan) {

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "emscape/base/units.h"
 #include "emscape/scenario/scenario_file.h"
 #include "propagation/air/sky_noise.h"
@@ -108,12 +110,74 @@ TEST_F(LinkEnds, IncompleteReceiversAreRefused) {
   };
   EXPECT_THAT(receiver("platform: site, bandwidth_hz: 1e6"), HasSubstr("'noise_figure_db'"));
   EXPECT_THAT(receiver("platform: site, noise_figure_db: 3"), HasSubstr("'bandwidth_hz'"));
-  EXPECT_THAT(receiver("sensitivity_dbm: -90"), HasSubstr("'platform'"));
+  EXPECT_THAT(receiver("scan: {kind: fixed}, antenna: {pattern: isotropic}"), HasSubstr("'platform'"));
   EXPECT_THAT(receiver("platform: sight, noise_figure_db: 3, bandwidth_hz: 1e6"),
               HasSubstr("there is no platform 'sight'"));
   EXPECT_THAT(receiver("platform: site, noise_figure_db: 3, bandwidth_hz: 1e6, gain_dbi: 3, antenna: "
                        "{pattern: isotropic}"),
               HasSubstr("'antenna' has its own gain"));
+}
+
+TEST_F(LinkEnds, AReceiversGainAboveItsPatternsDirectivityIsAWarning) {
+  const ParseResult result = parse(R"(receivers:
+  - {name: whip, platform: site, gain_dbi: 9, noise_figure_db: 8, bandwidth_hz: 1.0e6}
+  - name: post
+    platform: site
+    antenna: {pattern: gaussian, gain_dbi: 30, beamwidth_az_deg: 30, beamwidth_el_deg: 30}
+    noise_figure_db: 6
+    bandwidth_hz: 25.0e3
+)");
+  ASSERT_TRUE(result.scenario);
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_THAT(result.problems[0].message, HasSubstr("the gain of 30.00 dBi is "));
+  EXPECT_THAT(result.problems[0].message, HasSubstr("would receive more power than reaches it"));
+  EXPECT_EQ(result.problems[0].location.line, 11);
+}
+
+TEST_F(LinkEnds, QuantitiesOfAReceiverNameItAndTheWantedEmitter) {
+  const std::string receivers = R"(receivers:
+  - {name: plain}
+  - {name: radio, noise_figure_db: 6, bandwidth_hz: 25.0e3, required_sinr_db: 10}
+  - {name: warner, sensitivity_dbm: -60}
+)";
+  const auto scenario =
+      valid(receivers +
+            "output: {quantities: [sinr_db, intercept_margin_db], receiver: radio, wanted_emitter: mast}\n");
+  ASSERT_TRUE(scenario);
+  EXPECT_EQ(scenario->output.receiver, 1);
+  EXPECT_EQ(scenario->output.wanted_emitter, 0);
+  EXPECT_EQ(scenario->receivers[1].noise_figure_db, 6);
+  Scenario edited = *scenario;
+  edited.set({{"output.receiver", "warner"}, {"output.quantities", "[intercept_margin_db]"}});
+  EXPECT_EQ(edited.output.receiver, 2);
+}
+
+TEST_F(LinkEnds, WhatTheQuantitiesOfAReceiverLackIsNamedOnce) {
+  const std::string radio =
+      "receivers: [{name: plain}, {name: radio, noise_figure_db: 6, bandwidth_hz: 25.0e3}]\n";
+  const auto faultOf = [&](const std::string& output) {
+    const std::string all = refusal(radio + "output: {" + output + "}\n");
+    EXPECT_EQ(std::count(all.begin(), all.end(), '\n'), 1) << all;
+    return all;
+  };
+  EXPECT_THAT(faultOf("quantities: [sinr_db]"), HasSubstr("sinr_db needs 'wanted_emitter' in the output"));
+  EXPECT_THAT(faultOf("quantities: [sinr_db], receiver: radio, wanted_emitter: mist"),
+              HasSubstr("there is no emitter 'mist'; did you mean 'mast'?"));
+  EXPECT_THAT(faultOf("quantities: [sinr_db], receiver: rodio, wanted_emitter: mast"),
+              HasSubstr("there is no receiver without a platform 'rodio'"));
+  EXPECT_THAT(
+      faultOf("quantities: [sinr_db], wanted_emitter: mast"),
+      HasSubstr("sinr_db needs the noise of the receiver 'plain': its noise_figure_db and bandwidth_hz"));
+  EXPECT_THAT(faultOf("quantities: [intercept_margin_db], receiver: radio"),
+              HasSubstr("intercept_margin_db needs a threshold of the receiver 'radio'"));
+  EXPECT_THAT(faultOf("quantities: [sinr_db], receiver: radio, wanted_emitter: mast, interval: {kind: mean}"),
+              HasSubstr("sinr_db has no meaning over an interval of kind mean"));
+  EXPECT_THAT(refusal("output: {quantities: [sinr_db], wanted_emitter: mast}\n"),
+              HasSubstr("sinr_db needs a receiver without a platform; the scenario has none"));
+  EXPECT_THAT(
+      refusal("receivers: [{name: radio, noise_figure_db: 6, bandwidth_hz: 25.0e3, "
+              "center_frequency_hz: 4.1e8}]\noutput: {quantities: [sinr_db], wanted_emitter: mast}\n"),
+      HasSubstr("the wanted emitter 'mast' (400000000 Hz, 0 Hz wide) is outside the band"));
 }
 
 TEST_F(LinkEnds, ATargetHasOneCrossSectionOrATable) {

@@ -1,4 +1,4 @@
-/// Emitters and receivers.
+/// Emitters.
 #pragma once
 
 #include <optional>
@@ -61,17 +61,6 @@ struct RadarReceiver {
   /// For burn-through; none: the ratio for a probability of detection of 1/2 in noise.
   std::optional<double> required_signal_to_jammer_db;
   double target_rcs_m2 = 1;
-};
-
-/// A receiver placed at every voxel, for received_power_dbm.
-struct ReceiverProfile {
-  std::string name;
-  double gain_dbi = 0;
-  double losses_db = 0;
-  std::optional<propagation::Polarization> polarization;  ///< none: matched to every emitter
-  double center_frequency_hz = 0;                         ///< 0: tuned to every emitter
-  double bandwidth_hz = 0;                                ///< 0: that of the emitter's signal
-  double cross_polar_isolation_db = kCrossPolarIsolation_db;
 };
 
 /// [begin, end) in seconds since the epoch.

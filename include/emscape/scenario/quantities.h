@@ -20,12 +20,15 @@ enum class Quantity {
   dominant_emitter,
   mean_power_density_dbwm2,
   sclnr_db,
+  sinr_db,
+  intercept_margin_db,
+  detection_age_s,
 };
 
 /// The signals that a quantity depends on.
 enum class QuantityKind {
   of_emitters,
-  of_receiver,  ///< all emitters, at the scenario's first receiver
+  of_receiver,  ///< all emitters, at one of the scenario's receivers
   of_radars,    ///< radars and their targets; no other emitters
   of_jamming    ///< radars, their targets and jammers
 };

@@ -1,4 +1,4 @@
-/// Receivers on platforms, for links.
+/// Receivers: at every voxel, and on platforms for links.
 #pragma once
 
 #include <optional>
@@ -8,24 +8,32 @@
 
 namespace emscape::scenario {
 
-/// A receiver on a platform, with its own antenna.
-struct PlacedReceiver {
+/// A receiver without a platform: one at every voxel, for received_power_dbm, sinr_db and
+/// intercept_margin_db.
+struct ReceiverProfile {
   std::string name;
-  int platform = -1;   ///< index into Scenario::platforms
-  AntennaPtr antenna;  ///< not null
-  ScanSpec scan;
-  double losses_db = 0;  ///< between antenna and receiver
-  double noise_figure_db = 0;
-  double antenna_temperature_k = 290;                     ///< noise from sky and ground
+  double gain_dbi = 0;                                    ///< in every direction
+  double losses_db = 0;                                   ///< between antenna and receiver
   std::optional<propagation::Polarization> polarization;  ///< none: matched to every emitter
+  /// 0: tuned to every emitter; for links and sinr_db to the one that is listened to.
+  double center_frequency_hz = 0;
+  double bandwidth_hz = 0;  ///< 0: that of the emitter's signal; > 0 for noise
   double cross_polar_isolation_db = kCrossPolarIsolation_db;
-  double center_frequency_hz = 0;  ///< 0: tuned to the emitter that is listened to
-  double bandwidth_hz = 0;         ///< > 0
+  std::optional<double> noise_figure_db;  ///< referred to 290 K
+  double antenna_temperature_k = 290;     ///< noise from sky and ground
   /// Thresholds of reception; a signal is received where it meets those that are given. None: not judged.
   std::optional<double> sensitivity_dbm;   ///< smallest power after the losses
   std::optional<double> required_sinr_db;  ///< smallest signal over noise and interference
 
+  bool hasNoise() const { return noise_figure_db && bandwidth_hz > 0; }
   bool hasThreshold() const { return sensitivity_dbm || required_sinr_db; }
+};
+
+/// A receiver on a platform, with its own antenna; the gain is the antenna's, not `gain_dbi`.
+struct PlacedReceiver : ReceiverProfile {
+  int platform = -1;   ///< index into Scenario::platforms
+  AntennaPtr antenna;  ///< not null
+  ScanSpec scan;
 };
 
 }  // namespace emscape::scenario

@@ -51,7 +51,10 @@ struct OutputSpec {
   RadarLook radar_look = RadarLook::scan;
   double floor = -120;                 ///< lowest value kept, in each quantity's unit
   double count_threshold_dbwm2 = -90;  ///< emitter_count: emitters above this power density
-  IntervalSpec interval;
+  IntervalSpec interval = {};
+  int receiver = 0;                  ///< of the quantities of a receiver: index into Scenario::receivers
+  int wanted_emitter = -1;           ///< whose signal sinr_db is of: index into Scenario::emitters; -1: none
+  double detection_threshold = 0.5;  ///< detection_age_s: probability from which a look is a detection
 };
 
 struct ScenarioSource;  // scenario/source.h
@@ -70,7 +73,7 @@ struct Scenario {
   propagation::Ground ground;
   std::vector<Platform> platforms;
   std::vector<Emitter> emitters;
-  std::vector<ReceiverProfile> receivers;  ///< without a platform; the first is used for received_power_dbm
+  std::vector<ReceiverProfile> receivers;  ///< without a platform; see OutputSpec::receiver
   std::vector<PlacedReceiver> placed_receivers;
   std::vector<Target> targets;
   std::vector<Band> bands;
