@@ -316,7 +316,7 @@ TEST_F(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
     scenario->region.size_m = {60e3, 60e3, 5000};
     Pair pair(scenario, terrain, options);
     expectSameField(pair, random, 2);
-    const auto& mask = pair.gpu().volumes().front().host()->first_valid_k;
+    const auto mask = pair.gpu().volumes().front().host()->first_valid_k;
     EXPECT_GT(std::count(mask.begin(), mask.end(), 29), 20);
     options.backend = Backend::cuda;
     options.allow_missing_terrain = false;
