@@ -113,6 +113,7 @@ propagation::Ground parseGround(const Section& section) {
   ground.conductivity_s_m = section.optionalNumber("conductivity_s_m");
   ground.roughness_m = section.number("roughness_m");
   ground.surface_msl_m = section.optionalNumber("surface_msl_m");
+  ground.sea_by_height = section.optionalBoolean("sea_by_height").value_or(false);
   ground.location = section.location();
   return ground;
 }

@@ -166,6 +166,10 @@ const ObjectSpec& groundSpec() {
           optional("surface_msl_m", kHeight,
                    "height of the smooth surface of two_ray and p528; by default of the ground below each "
                    "emitter"),
+          optional(
+              "sea_by_height", simple(ValueType::boolean),
+              "true: sea where the terrain is at or below mean sea level; diffraction weighs the losses over "
+              "sea and over this ground by their parts of the path; p1812 and p452 have their own, `zone`"),
       }};
   return spec;
 }

@@ -104,6 +104,11 @@ class ColumnPosts {
   __device__ TerrainSums sumsBefore(int) const { return sums_; }
   __device__ double distance_m() const { return distance_m_; }
   __device__ float ground_msl_m() const { return ground_msl_m_; }
+  __device__ double sea_m() const {
+    return propagation::lengthOverSea_m(
+        count() + 1, [this](int i) { return i <= before_ ? ranges_m_[i] : distance_m_; },
+        [this](int i) { return i <= before_ ? height_msl_m(i) : ground_msl_m_; });
+  }
   /// Ranges are even except for the first ones: an estimate from the end, then a few steps.
   __device__ int lastBefore(double range_m) const {
     if (before_ == 0) return 0;

@@ -17,8 +17,9 @@ auto membersOf(const GeodeticPosition& position) {
   return std::tie(latitude_deg, longitude_deg, height_ellipsoid_m);
 }
 auto membersOf(const propagation::Ground& ground) {
-  const auto& [kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, place] = ground;
-  return std::tie(kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m);
+  const auto& [kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, sea_by_height,
+               place] = ground;
+  return std::tie(kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, sea_by_height);
 }
 auto membersOf(const propagation::Atmosphere& atmosphere) {
   const auto& [k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,

@@ -33,6 +33,8 @@ constexpr int kDiffractionReceivers = 8;
 ///                                              relative to the first post. Read for the last block alone
 ///     double distance_m() const              range of the receivers, beyond the last post
 ///     float ground_msl_m() const             height of the ground below them
+///     double sea_m() const                   length over sea up to the receivers (lengthOverSea_m); read if
+///                                            the model asks for it
 ///     int lastBefore(double range_m) const   last post nearer than a range; 0 if there is none
 template <class Real, class Posts>
 class DiffractionColumn {
@@ -126,6 +128,7 @@ EMSCAPE_HD DiffractionColumn<Real, Posts>::DiffractionColumn(const DiffractionMo
   sums.add(before_m, before_height_m, posts.distance_m(), double(trend_.rx_ground_msl_m));
   trend_.start_msl_m = Real(sums.start_m(posts.distance_m()));
   trend_.end_msl_m = Real(sums.end_m(posts.distance_m()));
+  if (model_.sea_by_height) model_.earth.sea_fraction = Real(posts.sea_m() / posts.distance_m());
   unknown_ = Real(sums.v1) - Real(sums.v1) + base_ - base_;
   findSteepest();
 }

@@ -53,7 +53,8 @@ struct DiffractionParameters {
   double frequency_hz = 0;
   double effective_earth_radius_m = 0;
   LinearPolarization polarization = LinearPolarization::horizontal;
-  double sea_fraction = 0;  ///< of the path, 0..1
+  double sea_fraction = 0;     ///< of the path, 0..1
+  bool sea_by_height = false;  ///< true: the fraction is that of the profile at or below mean sea level
   GroundConstants land = kDiffractionLand;
   GroundConstants sea = kDiffractionSea;
 };
@@ -63,6 +64,7 @@ template <class Real>
 struct DiffractionModel {
   SphericalEarth<Real> earth;
   Real half_curvature;  ///< 1 / (2 a): the earth's bulge is this times d1 d2
+  bool sea_by_height;   ///< see DiffractionParameters
 
   /// Height of an antenna, no lower above its ground than kDiffractionAboveGround.
   static EMSCAPE_HD Real raised_m(Real antenna_m, Real ground_m) {
@@ -85,6 +87,7 @@ DiffractionModel<Real> diffractionModel(const DiffractionParameters& parameters)
   model.earth.land = firstTermGround<Real>(parameters.frequency_hz, parameters.land, parameters.polarization);
   model.earth.sea = firstTermGround<Real>(parameters.frequency_hz, parameters.sea, parameters.polarization);
   model.half_curvature = Real(0.5 / parameters.effective_earth_radius_m);
+  model.sea_by_height = parameters.sea_by_height;
   return model;
 }
 
@@ -138,6 +141,24 @@ EMSCAPE_HD EffectiveHeights<Real> effectiveHeights(const TerrainTrend<Real>& tre
   start = start < trend.tx_ground_msl_m ? start : trend.tx_ground_msl_m;
   end = end < trend.rx_ground_msl_m ? end : trend.rx_ground_msl_m;
   return {tx_msl_m - start, rx_msl_m - end};
+}
+
+/// Length (m) of a path over sea: the parts at or below mean sea level, to half way between posts.
+/// @param count       posts, the last of which is below the receiver
+/// @param rangeOf     range (m) of a post
+/// @param heightOf    height (m above mean sea level) of a post
+template <class RangeOf, class HeightOf>
+EMSCAPE_HD double lengthOverSea_m(int count, RangeOf rangeOf, HeightOf heightOf) {
+  double sea_m = 0, before_m = 0;
+  bool before_is_sea = false;
+  for (int i = 0; i < count; ++i) {
+    const double here_m = double(rangeOf(i));
+    const bool is_sea = double(heightOf(i)) <= 0;
+    sea_m += (here_m - before_m) * ((is_sea ? 0.5 : 0.0) + (before_is_sea ? 0.5 : 0.0));
+    before_m = here_m;
+    before_is_sea = is_sea;
+  }
+  return sea_m;
 }
 
 /// Running sums of the line fitted to the terrain; in double precision.
@@ -253,7 +274,14 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
 
   result.terrain_db =
       bullingtonLossDb(bullingtonNu(model, profile.range_m, profile.count, tx, rx, heightOf), d);
-  result.spherical_db = sphericalEarthLossDb(model.earth, d, result.effective.tx_m, result.effective.rx_m);
+  SphericalEarth<Real> earth = model.earth;
+  if (model.sea_by_height) {
+    const double sea_m = lengthOverSea_m(
+        profile.count, [&](int i) { return profile.range_m[i]; },
+        [&](int i) { return profile.height_msl_m[i]; });
+    earth.sea_fraction = Real(sea_m / distance_m);
+  }
+  result.spherical_db = sphericalEarthLossDb(earth, d, result.effective.tx_m, result.effective.rx_m);
   result.loss_db = result.terrain_db;
   if (result.spherical_db > 0) {
     const auto seaLevel = [](int) { return Real(0); };

@@ -35,6 +35,7 @@ DiffractionExcess diffractionExcess(const PathInputs& inputs) {
   parameters.frequency_hz = inputs.emitter.frequency_hz;
   parameters.effective_earth_radius_m = inputs.site.effective_earth_radius_m;
   parameters.polarization = linearPolarization(inputs.emitter.polarization);
+  parameters.sea_by_height = inputs.emitter.ground.sea_by_height;
   parameters.land = groundConstants(inputs.emitter.ground, inputs.emitter.frequency_hz);
   return {diffractionModel<float>(parameters), static_cast<float>(inputs.site.effective_height_msl_m)};
 }

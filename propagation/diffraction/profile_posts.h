@@ -52,6 +52,11 @@ class ProfilePosts {
   EMSCAPE_HD float ground_msl_m() const {
     return profile_.height_msl_m[count()];
   }
+  EMSCAPE_HD double sea_m() const {
+    return lengthOverSea_m(
+        profile_.count, [this](int i) { return profile_.range_m[i]; },
+        [this](int i) { return profile_.height_msl_m[i]; });
+  }
   EMSCAPE_HD int lastBefore(double range_m) const {
     int begin = 0, end = count();  // the first that is not nearer
     while (begin < end) {

@@ -48,6 +48,16 @@ DiffractionParameters anyParameters(std::mt19937& random) {
   return parameters;
 }
 
+/// Flat land 5 m high with sea from one post to another.
+ProfileData coast(int posts, double step_m, int first_at_sea, int last_at_sea) {
+  ProfileData data;
+  for (int i = 0; i < posts; ++i) {
+    data.range_m.push_back(i * step_m);
+    data.height_msl_m.push_back(i >= first_at_sea && i <= last_at_sea ? 0.0f : 5.0f);
+  }
+  return data;
+}
+
 /// Losses of receivers above the end of a profile.
 template <class Real>
 std::vector<Real> lossesOf(const Posts& posts, const DiffractionModel<Real>& model, Real tx_msl_m,
@@ -167,6 +177,26 @@ TEST(DiffractionColumn, IsFiniteNextToTheAntenna) {
           << post << ", " << heights[j];
     }
   }
+}
+
+// P.526-15 section 3.1.2 with the parts of the path, which the posts give.
+TEST(DiffractionColumn, TakesSeaFromThePostsAtMeanSeaLevel) {
+  const ProfileData data = coast(401, 500, 100, 279);  // 90 of 200 km
+  DiffractionParameters parameters = parametersAt(60e6);
+  parameters.polarization = LinearPolarization::vertical;
+  const std::vector<double> heights{15, 40, 100, 300};
+  const Posts posts(data.view(), 0.5 / parameters.effective_earth_radius_m);
+  parameters.sea_by_height = true;
+  const std::vector<double> found = lossesOf(posts, diffractionModel<double>(parameters), 25.0, heights);
+  const double reference_db =
+      deltaBullington(diffractionModel<double>(parameters), data.view(), 25.0, heights[0]).loss_db;
+  parameters.sea_by_height = false;
+  const std::vector<double> land = lossesOf(posts, diffractionModel<double>(parameters), 25.0, heights);
+  parameters.sea_fraction = 0.45;
+  const std::vector<double> expected = lossesOf(posts, diffractionModel<double>(parameters), 25.0, heights);
+  EXPECT_NEAR(found[0], reference_db, 1e-9);
+  for (std::size_t k = 0; k < heights.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-6);
+  EXPECT_GT(land[0], found[0] + 5) << "the sea carries a vertically polarised wave of 60 MHz better";
 }
 
 }  // namespace

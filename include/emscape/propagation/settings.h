@@ -121,6 +121,8 @@ struct Ground {
   double roughness_m = 0;  ///< standard deviation of the surface's height
   /// Height of the smooth surface of models without terrain; none: that of the ground below each emitter.
   std::optional<double> surface_msl_m;
+  /// True: where the terrain is at or below mean sea level there is sea, for the earth of `diffraction`.
+  bool sea_by_height = false;
   SourceLocation location;
 };
 
