@@ -42,6 +42,12 @@ void checkRequest(const CoverageRequest& request) {
     if (product != Product::value && quantity.categorical) {
       refuse(fmt::format("asks for a level; quantity '{}' is an index", quantity.name));
     }
+    const bool is_of_all =
+        request.quantity == Quantity::sinr_db || request.quantity == Quantity::emitter_count;
+    if (is_of_all && (product == Product::count || product == Product::best)) {
+      refuse(fmt::format("asks what each emitter does by itself; quantity '{}' has one value for all",
+                         quantity.name));
+    }
     if (info(product).over_time && request.times_s.size() < 2) {
       refuse("is over time: give two times or more");
     }
@@ -223,6 +229,7 @@ std::optional<double> defaultThreshold(Quantity quantity) {
     case Quantity::detection_probability:
       return 0.5;
     case Quantity::burn_through_margin_db:
+    case Quantity::intercept_margin_db:
       return 0.0;
     case Quantity::emitter_count:
       return 1.0;

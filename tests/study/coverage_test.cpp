@@ -182,6 +182,7 @@ TEST(Coverage, RefusesProductsThatTheQuantityOrTheTimesDoNotHave) {
   using scenario::Quantity;
   EXPECT_THAT(messageOf(Product::margin, Quantity::detection_probability), HasSubstr("decibels"));
   EXPECT_THAT(messageOf(Product::jam_loss, Quantity::power_density_dbwm2), HasSubstr("jamming"));
+  EXPECT_THAT(messageOf(Product::best, Quantity::emitter_count), HasSubstr("one value for all"));
   EXPECT_THAT(messageOf(Product::covered, Quantity::dominant_emitter), HasSubstr("index"));
   EXPECT_THAT(messageOf(Product::fraction, Quantity::power_density_dbwm2), HasSubstr("two times"));
   EXPECT_THAT(test::errorOf([] { productNamed("gap"); }), HasSubstr("longest_gap"));
