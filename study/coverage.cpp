@@ -23,8 +23,16 @@ bool isIn(const std::vector<Product>& products, std::initializer_list<Product> a
   return std::find_first_of(products.begin(), products.end(), any.begin(), any.end()) != products.end();
 }
 
+bool hasChannelPerEmitter(const scenario::Scenario& scenario, const std::string& quantity) {
+  scenario::Scenario each = scenario;
+  each.output.combine = scenario::CombineMode::per_emitter;
+  const std::vector<emfield::Channel> channels = emfield::channelsOf(each, {quantity});
+  return std::all_of(channels.begin(), channels.end(),
+                     [](const emfield::Channel& channel) { return channel.emitters.size() == 1; });
+}
+
 /// @throws Error (usage)
-void checkRequest(const CoverageRequest& request) {
+void checkRequest(const scenario::Scenario& scenario, const CoverageRequest& request) {
   const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
   if (request.heights.empty()) throw Error(ErrorCode::usage, "a map needs a height");
   if (request.times_s.empty()) throw Error(ErrorCode::usage, "a map needs a time");
@@ -42,9 +50,8 @@ void checkRequest(const CoverageRequest& request) {
     if (product != Product::value && quantity.categorical) {
       refuse(fmt::format("asks for a level; quantity '{}' is an index", quantity.name));
     }
-    const bool is_of_all =
-        request.quantity == Quantity::sinr_db || request.quantity == Quantity::emitter_count;
-    if (is_of_all && (product == Product::count || product == Product::best)) {
+    if ((product == Product::count || product == Product::best) &&
+        !hasChannelPerEmitter(scenario, quantity.name)) {
       refuse(fmt::format("asks what each emitter does by itself; quantity '{}' has one value for all",
                          quantity.name));
     }
@@ -242,7 +249,7 @@ std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::S
                                          const scenario::TerrainPtr& terrain, const MapGrid& grid,
                                          const CoverageRequest& request, emfield::FieldOptions options,
                                          const MapSink& take, const ProgressSink& progress) {
-  checkRequest(request);
+  checkRequest(*scenario, request);
   const auto at_targets = std::make_shared<scenario::Scenario>(*scenario);
   at_targets->output.quantities = {scenario::info(request.quantity).name};
   at_targets->output.radar_look = scenario::RadarLook::target;

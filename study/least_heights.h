@@ -9,9 +9,9 @@
 
 namespace emscape::study {
 
-/// Heights are searched from the ground to kHighest_m in steps, and the first step that reaches the threshold
-/// again in steps, down to kAccuracy_m. A lower height that reaches it only within less than a first step
-/// (kHighest_m / 64) is not found.
+/// Heights are searched from the ground to kHighestSearched_m in 64 steps, then below the first step that
+/// reaches the threshold in 16 steps, again and again down to kLeastHeightAccuracy_m. A lower height at which
+/// the threshold is reached over less than a first step (160 m) may be missed.
 constexpr double kHighestSearched_m = 10240;
 constexpr double kLeastHeightAccuracy_m = 0.625;
 
