@@ -76,7 +76,7 @@ Image8 quantize(const Image& image) {
   return result;
 }
 
-void writePng(const std::string& file, const Image8& image) {
+std::string encodePng(const Image8& image) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.size.width);
@@ -85,14 +85,18 @@ void writePng(const std::string& file, const Image8& image) {
   png.format = opaque ? PNG_FORMAT_RGB : PNG_FORMAT_RGBA;
   png.flags = PNG_IMAGE_FLAG_FAST;
   const std::vector<std::uint8_t> pixels = opaque ? withoutAlpha(image) : straightAlpha(image);
-  const std::string partial = temporaryFor(file).string();
-  errno = 0;
-  if (png_image_write_to_file(&png, partial.c_str(), 0, pixels.data(), 0, nullptr) == 0) {
-    const std::string cause = errno != 0 ? std::strerror(errno) : png.message;
-    std::remove(partial.c_str());
-    throw Error(ErrorCode::other, "cannot write picture '" + file + "': " + cause);
+  png_alloc_size_t bytes = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string encoded(bytes, '\0');
+  if (png_image_write_to_memory(&png, encoded.data(), &bytes, 0, pixels.data(), 0, nullptr) == 0) {
+    throw Error(ErrorCode::other, std::string("cannot encode a picture: ") + png.message);
   }
-  publish(partial, file);
+  encoded.resize(bytes);
+  return encoded;
+}
+
+void writePng(const std::string& file, const Image8& image) {
+  const std::string encoded = encodePng(image);
+  writeWhole(file, [&](std::ostream& out) { out << encoded; });
 }
 
 Image8 readPng(const std::string& file) {

@@ -1,4 +1,4 @@
-// The products' names and units, and heights as text.
+#include "emscape/study/products.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
-#include "emscape/study/coverage.h"
 
 namespace emscape::study {
 namespace {

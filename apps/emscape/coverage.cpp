@@ -38,39 +38,6 @@ struct CoverageCommand {
   std::vector<std::string> formats{"cog", "png"};
 };
 
-/// "LAT,LON,RADIUS_M" or "bbox:WEST,SOUTH,EAST,NORTH". @throws Error (usage)
-study::MapArea parseArea(const std::string& text) {
-  const bool is_box = text.rfind("bbox:", 0) == 0;
-  std::vector<double> numbers;
-  std::string rest = is_box ? text.substr(5) : text;
-  const auto refuse = [&](const std::string& why) {
-    throw Error(ErrorCode::usage, fmt::format("--area '{}': {}; LATITUDE,LONGITUDE,RADIUS_M or "
-                                              "bbox:WEST,SOUTH,EAST,NORTH (degrees)",
-                                              text, why));
-  };
-  for (std::size_t begin = 0; begin <= rest.size();) {
-    const std::size_t end = std::min(rest.find(',', begin), rest.size());
-    const std::string word = rest.substr(begin, end - begin);
-    char* stop = nullptr;
-    const double number = std::strtod(word.c_str(), &stop);
-    if (word.empty() || *stop != '\0' || !std::isfinite(number)) refuse("'" + word + "' is no number");
-    numbers.push_back(number);
-    begin = end + 1;
-  }
-  if (numbers.size() != (is_box ? 4u : 3u)) refuse(fmt::format("{} numbers", numbers.size()));
-  if (!is_box) return study::circularArea({numbers[0], numbers[1], numbers[2]});
-  study::MapArea area;
-  area.box = {numbers[1], numbers[3], numbers[0], numbers[2]};
-  if (area.box.east_deg < area.box.west_deg) area.box.east_deg += 360;  // across the antimeridian
-  const bool is_on_earth = area.box.south_deg >= -90 && area.box.north_deg <= 90 &&
-                           area.box.west_deg >= -180 && area.box.west_deg <= 180 &&
-                           area.box.east_deg <= area.box.west_deg + 360;
-  if (!is_on_earth || !(area.box.south_deg < area.box.north_deg && area.box.west_deg < area.box.east_deg)) {
-    refuse("that is no box on the earth");
-  }
-  return area;
-}
-
 std::string timeName(double time_s) {
   return fmt::format("t{}s", time_s);
 }
@@ -137,7 +104,7 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
   request.times_s = scenario::parseTimes(command.times, scenario->clock);
 
   const study::MapArea area =
-      command.area.empty() ? study::areaOf(scenario->region) : parseArea(command.area);
+      command.area.empty() ? study::areaOf(scenario->region) : study::parseArea(command.area);
   const scenario::Region& region = scenario->region;
   const double usual_cell_m = std::max(1.0, std::round(region.size_m.x / region.dims.x));
   const study::MapGrid grid =

@@ -57,6 +57,9 @@ struct Image8 {
 /// The only place where a picture loses precision.
 Image8 quantize(const Image& image);
 
+/// A picture as the bytes of a PNG file (8 bit; RGB if every pixel is opaque, else RGBA).
+/// @throws Error (other)
+std::string encodePng(const Image8& image);
 /// Writes a PNG (8 bit; RGB if every pixel is opaque, else RGBA). The file appears whole or not at all.
 /// @throws Error (other) naming the file
 void writePng(const std::string& file, const Image8& image);

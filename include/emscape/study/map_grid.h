@@ -1,33 +1,13 @@
 /// The pixels of a map: squares of a projection, and their places on the earth.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "emscape/emfield/surface.h"
-#include "emscape/scenario/scenario.h"
-#include "emscape/scenario/terrain.h"
+#include "emscape/study/area.h"
 
 namespace emscape::study {
-
-/// Area of a map: a box, or a circle in it, beyond which pixels are left out.
-struct MapArea {
-  struct Circle {
-    double latitude_deg = 0, longitude_deg = 0, radius_m = 0;
-  };
-  scenario::GeoBox box;
-  std::optional<Circle> circle;
-};
-
-/// The area of a scenario's region.
-MapArea areaOf(const scenario::Region& region);
-/// @throws Error (usage) for a position that is none or a radius outside 10 m..2000 km
-MapArea circularArea(const MapArea::Circle& circle);
-
-/// The terrain that a scenario names, over an area and all platforms; null if it names none.
-/// @throws Error (bad_input) naming the file
-scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapArea& area);
 
 /// Rows run from north to south, pixels in them from west to east.
 struct MapGrid {

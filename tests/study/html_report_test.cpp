@@ -1,0 +1,43 @@
+#include "emscape/study/html_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace emscape::study {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(HtmlReport, HoldsItsPartsEscapedAndInOrder) {
+  HtmlReport report("A < B", "two radars & a jammer");
+  report.section("Areas");
+  report.table({{"height", "won (km2)"}, {{"150 m", "12.5"}, {"<none>", "0"}}, "Areas won"});
+  report.section("Inputs");
+  report.facts({{"scenario", "a \"b\""}});
+  const std::string html = report.html();
+  EXPECT_THAT(html, HasSubstr("<title>A &lt; B</title>"));
+  EXPECT_THAT(html, HasSubstr("two radars &amp; a jammer"));
+  EXPECT_THAT(html, HasSubstr("<td class=\"number\">12.5</td>"));
+  EXPECT_THAT(html, HasSubstr("<td>&lt;none&gt;</td>"));
+  EXPECT_THAT(html, HasSubstr("a &quot;b&quot;"));
+  EXPECT_THAT(html, HasSubstr("<a href=\"#section2\">Inputs</a>"));
+  EXPECT_LT(html.find("<h2 id=\"section1\">Areas"), html.find("<h2 id=\"section2\">Inputs"));
+}
+
+TEST(HtmlReport, InlinesPicturesAndFetchesNothing) {
+  HtmlReport report("maps", "");
+  render::Image8 image;
+  image.size = {2, 1};
+  image.rgba = {255, 0, 0, 255, 0, 255, 0, 255};
+  report.picture(image, "two pixels");
+  report.drawing("<?xml version=\"1.0\"?>\n<svg width=\"1\"></svg>", "a drawing");
+  const std::string html = report.html();
+  EXPECT_THAT(html, HasSubstr("data:image/png;base64,iVBORw0KGgo"));  // the signature of PNG
+  EXPECT_THAT(html, HasSubstr("<figure><svg width=\"1\"></svg>"));
+  EXPECT_THAT(html, Not(HasSubstr("<script")));
+  EXPECT_THAT(html, Not(HasSubstr("<?xml")));
+}
+
+}  // namespace
+}  // namespace emscape::study
