@@ -6,6 +6,38 @@
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
+namespace {
+
+/// Between posts heights are bilinear: no slope along a row or column is larger than one between neighbours.
+double steepestOf(const scenario::TerrainRaster& raster) {
+  std::vector<float> rises_m(static_cast<std::size_t>(raster.rows)), runs_m(rises_m.size());
+  parallelFor(raster.rows, 16, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      const float* const posts = raster.heights_msl_m + static_cast<long long>(j) * raster.columns;
+      const float* const north = j + 1 < raster.rows ? posts + raster.columns : posts;
+      float along = 0, across = 0;
+      for (int i = 0; i < raster.columns; ++i) {
+        const float to_east = i + 1 < raster.columns ? std::fabs(posts[i + 1] - posts[i]) : 0;
+        const float to_north = std::fabs(north[i] - posts[i]);
+        along = to_east > along ? to_east : along;
+        across = to_north > across ? to_north : across;
+      }
+      runs_m[j] = along;
+      rises_m[j] = across;
+    }
+  });
+  // A lower bound of the earth's radii of curvature, and of the radius of a parallel.
+  constexpr double kMinRadius_m = 6335e3;
+  const double north_rad = raster.south_rad + (raster.rows - 1) / raster.posts_per_rad_lat;
+  const double parallel_m = kMinRadius_m * std::min(std::cos(raster.south_rad), std::cos(north_rad));
+  if (!(parallel_m > 0)) return HUGE_VAL;
+  const auto along = static_cast<double>(*std::max_element(runs_m.begin(), runs_m.end()));
+  const auto across = static_cast<double>(*std::max_element(rises_m.begin(), rises_m.end()));
+  return std::hypot(along * raster.posts_per_rad_lon / parallel_m,
+                    across * raster.posts_per_rad_lat / kMinRadius_m);
+}
+
+}  // namespace
 
 TerrainBounds::TerrainBounds(const scenario::TerrainView& terrain) {
   constexpr int kMaxPosts = 1 << 15;  // of a row or column: positions within 1/256 post as float
@@ -29,6 +61,7 @@ TerrainBounds::TerrainBounds(const scenario::TerrainView& terrain) {
       }
     }
   });
+  steepest_ = steepestOf(raster);
   highest_msl_m_.assign(row_windows * rows, -HUGE_VALF);
   parallelFor(rows, 4, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {

@@ -2,6 +2,7 @@
 /// that decides leave out the parts that are too low.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "scenario/terrain/view.h"
@@ -26,10 +27,13 @@ class TerrainBounds {
   /// holds every part of a path that begins at column i kStride..(i + 1) kStride and row j kStride..(j + 1)
   /// kStride, these being its lowest, and extends by no more than kMaxExtent.
   const float* highest_msl_m() const { return highest_msl_m_.data(); }
+  /// Upper bound of the ground's slope (m per m) in any direction; infinity if it is not known.
+  double steepest() const { return steepest_; }
 
  private:
   int windows_ = 0;
   std::vector<float> highest_msl_m_;
+  double steepest_ = HUGE_VAL;
 };
 
 }  // namespace emscape::emfield

@@ -4,6 +4,9 @@
 #include <cmath>
 
 #include "base/simd.h"
+#include "emfield/read_posts.h"
+#include "emscape/base/parallel.h"
+#include "emscape/base/units.h"
 
 namespace emscape::emfield {
 namespace {
@@ -160,12 +163,13 @@ inline void visitAbove(const Paths& paths, const Path& path, const PathMemory& m
 }
 
 /// Losses of receivers clear of the smooth earth, lowest first.
+/// @param ray_bound  of the slopes from the transmitter to each block; null: none
 /// @param rx_m      heights, relative to the base
 /// @param tx_block, rx_block, nu_block  where the searches start; set to where they ended
 /// @return false if bounds are missing
 EMSCAPE_SIMD_CLONES bool findLosses(const Paths& all_paths, const Path& path, const PathMemory& path_memory,
-                                    const float* rx_m, int count, int& tx_block, int* rx_block, int* nu_block,
-                                    float* loss_db) {
+                                    const float* ray_bound, const float* rx_m, int count, int& tx_block,
+                                    int* rx_block, int* nu_block, float* loss_db) {
   const Paths paths = all_paths;  // no store changes these
   const PathMemory memory = path_memory;
   if (!boundBlocks(paths, path, memory)) return false;
@@ -178,6 +182,12 @@ EMSCAPE_SIMD_CLONES bool findLosses(const Paths& all_paths, const Path& path, co
   for (int b = 0; b < blocks; ++b) {
     const float lowered = memory.lowered_m[b] - tx_m;
     memory.tx_bound[b] = lowered / (lowered > 0 ? paths.first_m[b] : paths.last_m[b]);
+  }
+  if (ray_bound != nullptr) {
+#pragma omp simd
+    for (int b = 0; b < blocks; ++b) {
+      memory.tx_bound[b] = ray_bound[b] < memory.tx_bound[b] ? ray_bound[b] : memory.tx_bound[b];
+    }
   }
   Maximum steepest{-HUGE_VALF, tx_block};
   visitAbove(
@@ -248,7 +258,9 @@ bool findChords(const Station& station, const scenario::TerrainView& terrain, co
     const auto corner = chord.corner_msl_m - terrain.rasters[0].heights_msl_m;
     path.corner_row[n] = static_cast<float>(corner / chord.row_posts);
     path.corner_column[n] = static_cast<float>(corner % chord.row_posts);
-    range_m = path.chord_end_m[n] = walk.endOfChord_m(range_m);
+    path.chord_end_m[n] = walk.endOfChord_m(range_m);
+    constexpr double kBeyond_m = 1e-6;  // so that rounding does not find the same chord again
+    range_m = path.chord_end_m[n] + kBeyond_m;
   }
   return path.chords > 0;
 }
@@ -267,6 +279,47 @@ SurfaceDiffraction::SurfaceDiffraction(const ExcessTask<propagation::Diffraction
     last_m_.push_back(range_m_[std::max(last, first_obstacle)]);
     first_bulge_m_.push_back(task.model.model.half_curvature * first_m_.back() * first_m_.back());
   }
+  boundRays();
+}
+
+void SurfaceDiffraction::boundRays() {
+  // Rays are a small part of the paths; fewer than kMinRays bound nothing.
+  constexpr double kSpacing_m = 50;
+  constexpr int kPathsPerRay = 100, kMinRays = 360;
+  const GroundPosts& ground = task_.ground;
+  const double farthest_m = ground.ranges_m[ground.range_count - 1];
+  rays_ = static_cast<int>(std::min(2 * kPi * farthest_m / kSpacing_m,
+                                    static_cast<double>(task_.grid.column_count / kPathsPerRay)));
+  const double between = bounds_.steepest() * kPi / rays_;  // slope from a ray to half way to the next
+  if (rays_ < kMinRays || !(between < 0.1)) {
+    rays_ = 0;
+    return;
+  }
+  constexpr double kRounding = 1e-6;
+  const auto slack = static_cast<float>(between + kRounding);
+  const std::size_t blocks = begin_m_.size();
+  const float k = task_.model.model.half_curvature;
+  ray_bounds_.resize(rays_ * blocks);
+  parallelFor(rays_, 16, [&](int begin, int end) {
+    std::vector<float> heights_m(range_m_.size());
+    for (int ray = begin; ray < end; ++ray) {
+      const double azimuth_rad = 2 * kPi * ray / rays_;
+      readPostsCpu(task_.station, ground, {farthest_m, std::sin(azimuth_rad), std::cos(azimuth_rad)},
+                   ground.range_count, heights_m.data());
+      const float tx_msl_m = task_.model.model.raised_m(task_.model.tx_msl_m, heights_m[0]);
+      for (std::size_t b = 0; b < blocks; ++b) {
+        const std::size_t first = std::max<std::size_t>(b * kBlock, 1);
+        const std::size_t last = std::min((b + 1) * kBlock, heights_m.size());
+        float largest = -HUGE_VALF, unknown = 0;
+        for (std::size_t i = first; i < last; ++i) {
+          const float slope = (heights_m[i] - k * range_m_[i] * range_m_[i] - tx_msl_m) / range_m_[i];
+          largest = slope > largest ? slope : largest;
+          unknown += heights_m[i] - heights_m[i];
+        }
+        ray_bounds_[ray * blocks + b] = unknown == 0 ? largest + slack : HUGE_VALF;
+      }
+    }
+  });
 }
 
 SurfaceDiffraction::Memory SurfaceDiffraction::makeMemory() const {
@@ -318,7 +371,13 @@ bool SurfaceDiffraction::fillColumn(std::size_t c, const ExcessScratch& scratch,
                            memory.height_m.data(),
                            memory.per_block_int.data(),
                            memory.per_block_int.data() + blocks};
-  if (!findLosses(paths, path, of_path, scratch.height_msl_m, grid.layers, memory.tx_block,
+  const float* ray_bound = nullptr;
+  if (rays_ > 0) {
+    const double turns = std::atan2(point.sin_azimuth, point.cos_azimuth) / (2 * kPi);
+    const int ray = static_cast<int>(std::lround((turns < 0 ? turns + 1 : turns) * rays_)) % rays_;
+    ray_bound = ray_bounds_.data() + ray * begin_m_.size();
+  }
+  if (!findLosses(paths, path, of_path, ray_bound, scratch.height_msl_m, grid.layers, memory.tx_block,
                   memory.rx_block.data(), memory.nu_block.data(), scratch.excess_db)) {
     return false;
   }

@@ -36,11 +36,17 @@ class SurfaceDiffraction {
   bool fillColumn(std::size_t c, const ExcessScratch& scratch, Memory& memory) const;
 
  private:
+  void boundRays();
+
   const ExcessTask<propagation::DiffractionExcess>& task_;
   const TerrainBounds& bounds_;
   std::vector<float> range_m_;                           ///< of the posts
   std::vector<double> begin_m_;                          ///< range at which each block begins
   std::vector<float> first_m_, last_m_, first_bulge_m_;  ///< of each block's first and last obstacle
+  /// Rays at even azimuths around the emitter: upper bounds of the slopes from the emitter to the obstacles
+  /// of each block along any path no farther from the ray than half way to the next. Empty: none.
+  std::vector<float> ray_bounds_;
+  int rays_ = 0;
 };
 
 }  // namespace emscape::emfield
