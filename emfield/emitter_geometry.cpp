@@ -15,7 +15,7 @@
 namespace emscape::emfield {
 void EmitterGeometry::compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                               const scenario::Emitter& emitter, const GridColumns& columns,
-                              const scenario::Terrain* terrain, Times& times) {
+                              const scenario::Terrain* terrain, Times& times, const TerrainBounds* bounds) {
   Stopwatch watch;
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
   locateColumns(station, columns);
@@ -41,7 +41,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
     if (model.has_reflected_ray) reflected_.resize(voxels);
     const ExcessStore store{excess_.empty() ? nullptr : excess_.data(),
                             excess_db_.empty() ? nullptr : excess_db_.data()};
-    warnings_ = fillExcessCpu(excess, station, grid, ground, columns.terrain_bounds.get(),
+    warnings_ = fillExcessCpu(excess, station, grid, ground, bounds,
                               {store, reflected_.data(), shadow_edge_m_.data()});
   }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),

@@ -6,6 +6,7 @@
 
 #include "emfield/clutter_map.h"
 #include "emfield/column_geometry.h"
+#include "emfield/terrain_bounds.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/scenario/terrain.h"
@@ -22,9 +23,10 @@ class EmitterGeometry {
 
   /// @param emitter  of the scenario
   /// @param terrain  null: smooth earth
+  /// @param bounds   of the terrain, for surfaces; null: none
   void compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                const scenario::Emitter& emitter, const GridColumns& columns, const scenario::Terrain* terrain,
-               Times& times);
+               Times& times, const TerrainBounds* bounds = nullptr);
 
   ColumnGeometryView view() const;
   /// Of a radar with clutter of the surface; else without cells.

@@ -230,7 +230,6 @@ GridColumns makeGridColumns(const Surface& surface, const scenario::Terrain* ter
     }
   });
   setOutlineOfPlaces(surface, result);
-  if (terrain != nullptr) result.terrain_bounds = std::make_shared<TerrainBounds>(terrain->view());
   for (std::size_t c = 0; c < surface.places.size(); ++c) {  // so that their numbers are finite
     if (std::isnan(surface.places[c].latitude_deg)) result.columns[c] = result.outline[0];
   }

@@ -3,10 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
-#include "emfield/terrain_bounds.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
@@ -45,7 +43,6 @@ struct GridColumns {
   std::vector<float> ground_msl_m;  ///< ground below each column (m); NaN over holes; empty without terrain
   std::vector<std::uint16_t>
       first_valid_k;  ///< lowest layer whose centre is not below ground; dims.z over holes and where left out
-  std::shared_ptr<const TerrainBounds> terrain_bounds;  ///< of surfaces over terrain; else null
   long long hole_columns = 0;
   /// A column over a hole, for messages; -1 if there is none.
   long long first_hole = -1;
