@@ -7,8 +7,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "emfield/cpu/surface_diffraction.h"
 #include "emfield/read_posts.h"
+#include "emfield/surface_diffraction.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {

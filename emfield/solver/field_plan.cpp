@@ -10,11 +10,16 @@ namespace emscape::emfield {
 using scenario::Emitter;
 
 FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
-                   const std::vector<std::string>& quantities) {
+                   const std::vector<std::string>& quantities, bool also_per_emitter) {
   FieldPlan plan;
   plan.scenario = std::move(scenario);
   plan.warnings = checkModels(*plan.scenario);
   plan.channels = channelsOf(*plan.scenario, quantities);
+  if (also_per_emitter) {
+    const std::vector<Channel> each =
+        channelsOf(*plan.scenario, quantities, scenario::CombineMode::per_emitter);
+    plan.channels.insert(plan.channels.end(), each.begin(), each.end());
+  }
   for (const Channel& channel : plan.channels)
     plan.channel_plans.push_back(channelPlan(channel, *plan.scenario));
   const std::vector<Emitter>& emitters = plan.scenario->emitters;
@@ -31,7 +36,7 @@ bool haveSameChannels(const FieldPlan& a, const FieldPlan& b) {
     return x.quantity == y.quantity && x.name == y.name && x.emitters == y.emitters && x.jammers == y.jammers;
   };
   const auto sameSums = [](const ChannelPlan& x, const ChannelPlan& y) {
-    return x.reduction == y.reduction && x.radars.empty() == y.radars.empty();
+    return x.reduction == y.reduction && x.reducesPower() == y.reducesPower();
   };
   return std::equal(a.channels.begin(), a.channels.end(), b.channels.begin(), b.channels.end(),
                     sameChannel) &&

@@ -1,4 +1,4 @@
-#include "emfield/cpu/surface_diffraction.h"
+#include "emfield/surface_diffraction.h"
 
 #include <algorithm>
 #include <cmath>
