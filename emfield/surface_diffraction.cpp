@@ -327,7 +327,7 @@ SurfaceDiffraction::Memory SurfaceDiffraction::makeMemory() const {
   const std::size_t blocks = begin_m_.size() + 1;
   memory.per_block.resize(kBlockNumbers * blocks);
   memory.height_m.resize(blocks * kBlock);
-  memory.per_block_int.resize(2 * blocks);
+  memory.of_block.resize(2 * blocks);
   memory.rx_block.resize(task_.grid.layers);
   memory.nu_block.resize(task_.grid.layers);
   return memory;
@@ -363,14 +363,9 @@ bool SurfaceDiffraction::fillColumn(std::size_t c, const ExcessScratch& scratch,
       last_m_.data(), first_bulge_m_.data(), bounds_.highest_msl_m(), bounds_.rowWindows()};
   const std::size_t blocks = begin_m_.size() + 1;
   const auto numbers = [&](BlockNumber n) { return memory.per_block.data() + n * blocks; };
-  const PathMemory of_path{numbers(kColumn),
-                           numbers(kRow),
-                           numbers(kLowered),
-                           numbers(kTxBound),
-                           numbers(kBound),
-                           memory.height_m.data(),
-                           memory.per_block_int.data(),
-                           memory.per_block_int.data() + blocks};
+  const PathMemory of_path{
+      numbers(kColumn), numbers(kRow),          numbers(kLowered),      numbers(kTxBound),
+      numbers(kBound),  memory.height_m.data(), memory.of_block.data(), memory.of_block.data() + blocks};
   const float* ray_bound = nullptr;
   if (rays_ > 0) {
     const double turns = std::atan2(point.sin_azimuth, point.cos_azimuth) / (2 * kPi);

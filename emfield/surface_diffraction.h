@@ -13,6 +13,7 @@
 
 namespace emscape::emfield {
 
+/// One emitter. Threads may share it, each with a Memory of its own.
 class SurfaceDiffraction {
  public:
   static constexpr int kBlock = 16;  ///< posts per part of a path
@@ -20,8 +21,8 @@ class SurfaceDiffraction {
   /// Memory of one thread, with the blocks that decided on the last path: those of the next are near them.
   struct Memory {
     std::vector<float> per_block;  ///< kBlockNumbers arrays of one element per block
-    std::vector<float> height_m;   ///< of the posts of the blocks that were read
-    std::vector<int> per_block_int;
+    std::vector<int> of_block;  ///< per block: its window of the bounds; then per block: whether it was read
+    std::vector<float> height_m;  ///< of the posts of the blocks that were read
     int tx_block = 0;
     std::vector<int> rx_block, nu_block;  ///< one per height
   };
