@@ -86,11 +86,11 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
 
   std::vector<double> heights_m{options.height_m};
   MapTimes first, all;
-  openOnTarget(global, "float", [&](const ComputeTarget& target) {
+  const std::string device = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     first = timesOf(scenario, terrain, grid, heights_m, options.repeats, target);
     for (int n = 1; n <= options.further; ++n) heights_m.push_back(options.height_m + n * options.step_m);
     all = timesOf(scenario, terrain, grid, heights_m, options.repeats, target);
-    return 0;
+    return target.device();
   });
   const double first_ms = grid_ms + first.places_ms + first.update_ms;
   const double further_ms =
@@ -99,7 +99,8 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
           : (all.places_ms + all.update_ms - first.places_ms - first.update_ms) / options.further;
   const double pixels_per_s = static_cast<double>(pixels) / (first_ms / 1000);
   if (global.json) {
-    printJson({{"threads", threadCount()},
+    printJson({{"device", device},
+               {"threads", threadCount()},
                {"map", {grid.width, grid.height}},
                {"pixels", pixels},
                {"further_heights", options.further},
@@ -115,8 +116,8 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
                  {"product", first.stages.product_ms}}}});
     return 0;
   }
-  print("map of {} x {} pixels of {:g} m, {} within the area, {} threads, medians of {}\n\n", grid.width,
-        grid.height, grid.cell_m, pixels, threadCount(), options.repeats);
+  print("device {} ({} threads), map of {} x {} pixels of {:g} m, {} within the area, medians of {}\n\n",
+        device, threadCount(), grid.width, grid.height, grid.cell_m, pixels, options.repeats);
   print("first height (ms)     {:10.2f}\n", first_ms);
   print("  pixels              {:10.2f}\n  places              {:10.2f}\n", grid_ms, first.places_ms);
   print("  field: columns      {:10.2f}\n  field: excess       {:10.2f}\n", first.stages.columns_ms,
