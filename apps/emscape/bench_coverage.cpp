@@ -140,7 +140,7 @@ Time of a map from its area to the values of its pixels, without reading the ter
 further height adds. pixels: their positions in the projection; places: terrain below them; field: the stages of the computation.
 
 Example:
-  emscape bench coverage scenarios/jacksboro.yaml --area 36.59,-84.25,10000 --cell 30)");
+  emscape bench coverage scenarios/jacksboro.yaml --area 36.303,-84.246,10000 --cell 30)");
   auto options = std::make_shared<BenchCoverageOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
