@@ -36,7 +36,7 @@ GDALDriver* driverOf(const char* name) {
 }
 
 /// Colours of counts and indices: none for 0, then hues that differ.
-GDALColorTable coloursOf(Product product, int count) {
+GDALColorTable coloursOf(MapKind kind, int count) {
   // Okabe and Ito's colours for colour-blind readers.
   static constexpr GDALColorEntry kColours[] = {{230, 159, 0, 255},  {86, 180, 233, 255}, {0, 158, 115, 255},
                                                 {240, 228, 66, 255}, {0, 114, 178, 255},  {213, 94, 0, 255},
@@ -44,8 +44,8 @@ GDALColorTable coloursOf(Product product, int count) {
   GDALColorTable table;
   const GDALColorEntry none{0, 0, 0, 0};
   for (int i = 0; i < count; ++i) {
-    const bool is_none = product != Product::best && i == 0;
-    const int hue = product == Product::best ? i : i - 1;
+    const bool is_none = kind != MapKind::category && i == 0;
+    const int hue = kind == MapKind::category ? i : i - 1;
     table.SetColorEntry(i, is_none ? &none : &kColours[hue % 7]);
   }
   table.SetColorEntry(kNoIndex, &none);
@@ -54,10 +54,9 @@ GDALColorTable coloursOf(Product product, int count) {
 
 }  // namespace
 
-void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const CoverageMap& map,
-                  const std::vector<std::string>& labels,
+void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const Map& map,
                   const std::vector<std::pair<std::string, std::string>>& metadata) {
-  const bool is_index = info(map.product).categorical;
+  const bool is_index = isWhole(map.kind);
   GDALDriver* const memory = driverOf("MEM");
   GDALDriver* const cog = driverOf("COG");
   const scenario::GdalMessages messages;
@@ -69,8 +68,8 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
   dataset->SetProjection(grid.wkt.c_str());
   dataset->SetMetadataItem("AREA_OR_POINT", "Point");
   for (const auto& [name, value] : metadata) dataset->SetMetadataItem(name.c_str(), value.c_str());
-  for (std::size_t n = 0; is_index && n < labels.size(); ++n) {
-    dataset->SetMetadataItem(fmt::format("EMSCAPE_LABEL_{}", n).c_str(), labels[n].c_str());
+  for (std::size_t n = 0; is_index && n < map.labels.size(); ++n) {
+    dataset->SetMetadataItem(fmt::format("EMSCAPE_LABEL_{}", n).c_str(), map.labels[n].c_str());
   }
   GDALRasterBand* const band = dataset->GetRasterBand(1);
   band->SetDescription(map.description.c_str());
@@ -85,7 +84,7 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
       if (!is_none) largest = std::max(largest, static_cast<int>(value));
     }
     band->SetNoDataValue(kNoIndex);
-    GDALColorTable colours = coloursOf(map.product, largest + 1);
+    GDALColorTable colours = coloursOf(map.kind, largest + 1);
     band->SetColorTable(&colours);
     written = band->RasterIO(GF_Write, 0, 0, grid.width, grid.height, bytes.data(), grid.width, grid.height,
                              GDT_Byte, 0, 0, nullptr);

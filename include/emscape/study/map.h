@@ -1,0 +1,51 @@
+/// A map: values of the pixels of a grid, and what they are.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/study/map_grid.h"
+#include "emscape/study/products.h"
+
+namespace emscape::study {
+
+enum class MapKind {
+  level,       ///< of a scale, in a unit: dB, m, s
+  difference,  ///< of two levels: the sign has a meaning
+  part,        ///< 0..1: probabilities, fractions
+  mask,        ///< 1 where something holds, else 0
+  count,       ///< 0, 1, 2 ...
+  category     ///< index of a label; -1: none
+};
+/// True for kinds whose values are whole numbers that are not interpolated.
+constexpr bool isWhole(MapKind kind) {
+  return kind == MapKind::mask || kind == MapKind::count || kind == MapKind::category;
+}
+
+struct Map {
+  std::string name;  ///< of the product, for file names: "covered"; letters, digits, '_'
+  MapKind kind = MapKind::level;
+  std::string title;                ///< of its legend: a quantity's or product's name
+  std::string unit;                 ///< "": none
+  std::string description;          ///< "detection_probability at 150 m above ground"
+  std::optional<MapHeight> height;  ///< none: for all heights
+  std::optional<double> time_s;     ///< since the scenario's epoch; none: over all times
+  std::vector<std::string> labels;  ///< of a category map: names of 0, 1 ...
+  int color = 0;                    ///< of a mask: index of render::categoryColor()
+  std::vector<float> values;        ///< pixels in the grid's order; NaN: no value
+};
+
+/// Name of a map's files, layers and variables: "covered_agl150m_t80s".
+std::string fileNameOf(const Map& map);
+
+/// What a map holds.
+struct MapSummary {
+  double min = 0, max = 0;       ///< of the values; NaN: there is none
+  double known_area_m2 = 0;      ///< of the pixels with a value, on the ellipsoid
+  double marked_area_m2 = 0;     ///< of a mask: where it is 1
+  long long largest_pixel = -1;  ///< with the largest value; -1: there is none
+};
+MapSummary summaryOf(const MapGrid& grid, const Map& map);
+
+}  // namespace emscape::study
