@@ -61,10 +61,12 @@ void checkRequest(const scenario::Scenario& scenario, const CoverageRequest& req
   }
 }
 
-MapKind kindOf(const ProductInfo& product, const std::string& unit) {
+MapKind kindOf(const ProductInfo& product, scenario::Quantity quantity, const std::string& unit) {
   if (product.product == Product::covered || product.product == Product::jam_loss) return MapKind::mask;
   if (product.product == Product::best) return MapKind::category;
   if (product.categorical) return MapKind::count;
+  if (product.product == Product::value && quantity == Quantity::detection_probability)
+    return MapKind::probability;
   return unit.empty() ? MapKind::part : MapKind::level;
 }
 
@@ -81,7 +83,7 @@ CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& 
   map.height = height;
   map.color = product == Product::jam_loss ? kVermilion : kGreen;
   map.unit = of_product.unit != nullptr ? of_product.unit : quantity.unit;
-  map.kind = kindOf(of_product, map.unit);
+  map.kind = kindOf(of_product, request.quantity, map.unit);
   if (product == Product::best) {
     for (const scenario::Emitter& emitter : scenario.emitters) map.labels.push_back(emitter.name);
   }

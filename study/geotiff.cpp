@@ -1,39 +1,17 @@
 #include "emscape/study/geotiff.h"
 
-#include <cpl_conv.h>
 #include <fmt/format.h>
-#include <gdal_priv.h>
 
 #include <cmath>
-#include <memory>
-#include <mutex>
 
 #include "base/whole_file.h"
-#include "emscape/base/error.h"
-#include "scenario/terrain/gdal_messages.h"
+#include "study/gdal_support.h"
 
 namespace emscape::study {
 namespace {
 
 constexpr int kNoIndex = 255;
 constexpr int kMostIndices = 255;
-
-[[noreturn]] void fail(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
-  throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
-}
-
-struct Close {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<GDALDataset, Close>;
-
-GDALDriver* driverOf(const char* name) {
-  static std::once_flag once;
-  std::call_once(once, [] { GDALAllRegister(); });
-  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(name);
-  if (driver == nullptr) throw Error(ErrorCode::other, fmt::format("GDAL has no driver '{}'", name));
-  return driver;
-}
 
 /// Colours of counts and indices: none for 0, then hues that differ.
 GDALColorTable coloursOf(MapKind kind, int count) {
@@ -57,15 +35,9 @@ GDALColorTable coloursOf(MapKind kind, int count) {
 void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const Map& map,
                   const std::vector<std::pair<std::string, std::string>>& metadata) {
   const bool is_index = isWhole(map.kind);
-  GDALDriver* const memory = driverOf("MEM");
   GDALDriver* const cog = driverOf("COG");
   const scenario::GdalMessages messages;
-  const Dataset dataset(
-      memory->Create("", grid.width, grid.height, 1, is_index ? GDT_Byte : GDT_Float32, nullptr));
-  if (dataset == nullptr) fail(messages, file);
-  double transform[6] = {grid.left_m, grid.cell_m, 0, grid.top_m, 0, -grid.cell_m};
-  dataset->SetGeoTransform(transform);
-  dataset->SetProjection(grid.wkt.c_str());
+  const Dataset dataset = memoryRaster(grid, is_index ? GDT_Byte : GDT_Float32, file);
   dataset->SetMetadataItem("AREA_OR_POINT", "Point");
   for (const auto& [name, value] : metadata) dataset->SetMetadataItem(name.c_str(), value.c_str());
   for (std::size_t n = 0; is_index && n < map.labels.size(); ++n) {
@@ -93,7 +65,7 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
     written = band->RasterIO(GF_Write, 0, 0, grid.width, grid.height, const_cast<float*>(map.values.data()),
                              grid.width, grid.height, GDT_Float32, 0, 0, nullptr);
   }
-  if (written != CE_None) fail(messages, file);
+  if (written != CE_None) failWriting(messages, file);
 
   const std::filesystem::path temporary = temporaryFor(file);
   // COG makes its overviews beside the output.
@@ -109,7 +81,7 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
   if (!is_complete || messages.hasFailure()) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
-    fail(messages, file);
+    failWriting(messages, file);
   }
   publish(temporary, file);
 }

@@ -40,7 +40,7 @@ render::Legend legendOf(const Map& map) {
   }
   if (!(least <= largest)) least = largest = 0;
   double low = static_cast<double>(least), high = static_cast<double>(largest);
-  if (map.kind == MapKind::part) {
+  if (isPart(map.kind)) {
     low = 0;
     high = 1;
   } else if (map.kind == MapKind::difference) {
@@ -59,7 +59,7 @@ render::Legend legendOf(const Map& map) {
 std::optional<render::Rgb> colorOf(const Map& map, const render::Legend& legend, float value) {
   if (std::isnan(value)) return std::nullopt;
   if (!isWhole(map.kind)) {
-    if (map.kind == MapKind::part && value < kNoPart) return std::nullopt;
+    if (isPart(map.kind) && value < kNoPart) return std::nullopt;
     return legend.function.color(static_cast<double>(value));
   }
   const int index = static_cast<int>(value), none = map.kind == MapKind::category ? -1 : 0;

@@ -9,8 +9,10 @@
 #include "emscape/scenario/snapshot.h"
 #include "emscape/study/geotiff.h"
 #include "emscape/study/map_picture.h"
+#include "study/geopackage.h"
 #include "study/map_collection.h"
 #include "study/map_report.h"
+#include "study/netcdf.h"
 
 namespace emscape::study {
 namespace {
@@ -26,6 +28,10 @@ const std::vector<Format>& formatTable() {
   static const std::vector<Format> kTable{
       {{"cog", "cloud-optimised GeoTIFF of each map: GIS programs, GDAL"}, nullptr},
       {{"png", "picture of each map over the shaded ground, with legend and axes"}, nullptr},
+      {{"gpkg",
+        "GeoPackage of all maps as bands and contours, with emitters and tracks: QGIS, with its colours"},
+       makeGeoPackage},
+      {{"nc", "netCDF (CF-1.8) of all maps over time and height: xarray, Panoply, QGIS"}, makeNetCdf},
   };
   return kTable;
 }

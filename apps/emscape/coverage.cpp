@@ -79,7 +79,8 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
                            grid,
                            request.quantity,
                            request.threshold,
-                           request.times_s},
+                           request.times_s,
+                           request.heights},
                           command.formats);
   if (!global.json) {
     print("Coverage of {}: {} x {} pixels of {} m in {}, {} >= {}\n", scenario->name, grid->width,

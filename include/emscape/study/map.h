@@ -11,16 +11,22 @@
 namespace emscape::study {
 
 enum class MapKind {
-  level,       ///< of a scale, in a unit: dB, m, s
-  difference,  ///< of two levels: the sign has a meaning
-  part,        ///< 0..1: probabilities, fractions
-  mask,        ///< 1 where something holds, else 0
-  count,       ///< 0, 1, 2 ...
-  category     ///< index of a label; -1: none
+  level,        ///< of a scale, in a unit: dB, m, s
+  difference,   ///< of two levels: the sign has a meaning
+  probability,  ///< 0..1
+  part,         ///< 0..1: fractions
+  mask,         ///< 1 where something holds, else 0
+  count,        ///< 0, 1, 2 ...
+  category      ///< index of a label; -1: none
 };
-/// True for kinds whose values are whole numbers that are not interpolated.
+/// Kinds whose values are whole numbers that are not interpolated.
 constexpr bool isWhole(MapKind kind) {
   return kind == MapKind::mask || kind == MapKind::count || kind == MapKind::category;
+}
+
+/// Kinds whose values are 0..1.
+constexpr bool isPart(MapKind kind) {
+  return kind == MapKind::probability || kind == MapKind::part;
 }
 
 struct Map {

@@ -31,7 +31,8 @@ struct MapStudy {
   std::shared_ptr<const MapGrid> grid;
   scenario::Quantity quantity = scenario::Quantity::detection_probability;
   double threshold = 0.5;
-  std::vector<double> times_s;  ///< rising, one or more
+  std::vector<double> times_s;     ///< rising, one or more; of all maps
+  std::vector<MapHeight> heights;  ///< of all maps
 };
 
 /// A map that was written.
