@@ -9,7 +9,9 @@
 #include "emscape/scenario/snapshot.h"
 #include "emscape/study/geotiff.h"
 #include "emscape/study/map_picture.h"
+#include "study/czml.h"
 #include "study/geopackage.h"
+#include "study/kmz.h"
 #include "study/map_collection.h"
 #include "study/map_report.h"
 #include "study/netcdf.h"
@@ -32,6 +34,9 @@ const std::vector<Format>& formatTable() {
         "GeoPackage of all maps as bands and contours, with emitters and tracks: QGIS, with its colours"},
        makeGeoPackage},
       {{"nc", "netCDF (CF-1.8) of all maps over time and height: xarray, Panoply, QGIS"}, makeNetCdf},
+      {{"kmz", "overlays of all maps over time, with emitters and tracks: Google Earth"}, makeKmz},
+      {{"czml", "outlines of masks (covered, jam_loss) over time, with emitters and tracks: Cesium"},
+       makeCzml},
   };
   return kTable;
 }

@@ -2,31 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "study/xml_text.h"
+
 namespace emscape::study {
 namespace {
-
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 /// @param options  the layer's settings  @param color_property  of it, that the field "color" gives; empty:
 /// none
@@ -57,7 +36,7 @@ std::string ruleRenderer(const std::vector<StyleRule>& rules, const SymbolOf& sy
   std::string list, symbols;
   for (std::size_t n = 0; n < rules.size(); ++n) {
     list += fmt::format(R"(<rule key="{{rule{0}}}" symbol="{0}" label="{1}" filter="{2}"{3}/>)", n,
-                        escaped(rules[n].label), escaped(rules[n].filter),
+                        escapedXml(rules[n].label), escapedXml(rules[n].filter),
                         rules[n].is_on ? "" : R"( checkstate="0")");
     symbols += symbol_of(std::to_string(n));
   }
