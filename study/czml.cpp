@@ -13,6 +13,7 @@
 #include "study/gdal_support.h"
 #include "study/map_objects.h"
 #include "study/map_shapes.h"
+#include "study/xml_text.h"
 
 namespace emscape::study {
 namespace {
@@ -53,7 +54,7 @@ class Czml : public MapCollection {
   }
 
   void add(const Map& map) override {
-    if (map.kind != MapKind::mask) return;
+    if (map.kind != MapKind::classes) return;
     const std::string group = map.name + (map.height ? ", " + describe(*map.height) : "");
     if (std::find(groups_.begin(), groups_.end(), group) == groups_.end()) {
       groups_.push_back(group);
@@ -121,7 +122,8 @@ class Czml : public MapCollection {
       Json packet{
           {"id", "emitter/" + std::to_string(e)},
           {"name", emitter.name},
-          {"description", std::string(scenario::toString(emitter.kind)) + " on " + emitters[e].platform}};
+          {"description",
+                   escapedXml(std::string(scenario::toString(emitter.kind)) + " on " + emitters[e].platform)}};
       Json availability = Json::array();
       for (const scenario::TimeInterval& active : emitter.active_s) {
         const double begin_s = std::max(active.begin_s, begin_s_), end_s = std::min(active.end_s, end_s_);

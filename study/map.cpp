@@ -20,7 +20,7 @@ MapSummary summaryOf(const MapGrid& grid, const Map& map) {
     if (std::isnan(value)) continue;
     const auto area_m2 = static_cast<double>(grid.areas_m2[p]);
     summary.known_area_m2 += area_m2;
-    if (map.kind == MapKind::mask && value == 1) summary.marked_area_m2 += area_m2;
+    if (map.area_class >= 0 && value == map.area_class) summary.class_area_m2 += area_m2;
     if (!(value >= summary.min)) summary.min = value;
     if (!(value <= summary.max)) {
       summary.max = value;

@@ -10,7 +10,7 @@ constexpr float kNoPart = 0.005f;  ///< probabilities and fractions below it lea
 
 /// Index of a colour of render::categoryColor().
 int categoryOf(const Map& map, int value) {
-  return map.kind == MapKind::mask ? map.color : value;
+  return value >= 0 && value < static_cast<int>(map.colors.size()) ? map.colors[value] : value;
 }
 
 }  // namespace
@@ -30,10 +30,7 @@ render::Legend legendOf(const Map& map) {
     const int first = map.kind == MapKind::category ? 0 : 1;
     const int last = std::min(std::isfinite(largest) ? static_cast<int>(largest) : 0, first + 15);
     for (int n = first; n <= last; ++n) {
-      const bool is_named = map.kind == MapKind::category && n < static_cast<int>(map.labels.size());
-      const std::string label = is_named                    ? map.labels[n]
-                                : map.kind == MapKind::mask ? "yes"
-                                                            : std::to_string(n);
+      const std::string label = n < static_cast<int>(map.labels.size()) ? map.labels[n] : std::to_string(n);
       legend.categories.push_back({categoryOf(map, n), label});
     }
     return legend;

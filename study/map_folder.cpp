@@ -35,7 +35,8 @@ const std::vector<Format>& formatTable() {
        makeGeoPackage},
       {{"nc", "netCDF (CF-1.8) of all maps over time and height: xarray, Panoply, QGIS"}, makeNetCdf},
       {{"kmz", "overlays of all maps over time, with emitters and tracks: Google Earth"}, makeKmz},
-      {{"czml", "outlines of masks (covered, jam_loss) over time, with emitters and tracks: Cesium"},
+      {{"czml",
+        "outlines of classes (covered, jam_loss, burn_through) over time, with emitters and tracks: Cesium"},
        makeCzml},
   };
   return kTable;

@@ -34,7 +34,7 @@ Json toJson(const MapRecord& record) {
   json["min"] = number(record.summary.min);
   json["max"] = number(record.summary.max);
   json["known_area_km2"] = record.summary.known_area_m2 / 1e6;
-  if (map.kind == MapKind::mask) json["area_km2"] = record.summary.marked_area_m2 / 1e6;
+  if (map.area_class >= 0) json["area_km2"] = record.summary.class_area_m2 / 1e6;
   return json;
 }
 
@@ -202,14 +202,14 @@ ReportTable tableOf(const std::vector<MapRecord>& records) {
   for (const MapRecord& record : records) {
     const Map& map = record.map;
     const MapSummary& summary = record.summary;
-    const bool is_mask = map.kind == MapKind::mask, is_category = map.kind == MapKind::category;
-    const double share = summary.known_area_m2 > 0 ? 100 * summary.marked_area_m2 / summary.known_area_m2 : 0;
+    const bool has_area = map.area_class >= 0,
+               is_named = map.kind == MapKind::category || map.kind == MapKind::classes;
+    const double share = summary.known_area_m2 > 0 ? 100 * summary.class_area_m2 / summary.known_area_m2 : 0;
     table.rows.push_back({map.name, map.height ? describe(*map.height) : "",
                           map.time_s ? fmt::format("{}", *map.time_s) : "all",
-                          is_mask ? fmt::format("{:.3f}", summary.marked_area_m2 / 1e6) : "",
-                          is_mask ? fmt::format("{:.2f}", share) : "",
-                          is_mask || is_category ? "" : text(summary.min),
-                          is_mask || is_category ? "" : text(summary.max), map.unit});
+                          has_area ? fmt::format("{:.3f}", summary.class_area_m2 / 1e6) : "",
+                          has_area ? fmt::format("{:.2f}", share) : "", is_named ? "" : text(summary.min),
+                          is_named ? "" : text(summary.max), map.unit});
   }
   return table;
 }

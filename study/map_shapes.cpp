@@ -159,10 +159,7 @@ void addOutlines(const MapGrid& grid, const Map& map, const std::filesystem::pat
     MapBand one;
     one.min = one.max = number;
     one.color = colorOf(map, legend, static_cast<float>(number));
-    if (map.kind == MapKind::mask) one.label = map.title;
-    if (map.kind == MapKind::category && number < static_cast<int>(map.labels.size())) {
-      one.label = map.labels[number];
-    }
+    if (number < static_cast<int>(map.labels.size())) one.label = map.labels[number];
     one.geometry = std::move(outline);
     shapes.bands.push_back(std::move(one));
   }

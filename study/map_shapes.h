@@ -25,7 +25,7 @@ struct MapLine {
 
 struct MapBand {
   double min = 0, max = 0;                ///< values; of whole numbers both the same
-  std::string label;                      ///< of a category or a mask
+  std::string label;                      ///< of a class or category
   std::optional<render::Rgb> color;       ///< by the map's legend; none: nothing to show there
   std::unique_ptr<OGRGeometry> geometry;  ///< multipolygon
 };

@@ -246,19 +246,17 @@ class NetCdf : public MapCollection {
     return variable;
   }
 
-  /// What the numbers of a mask or a category mean.
+  /// What the numbers of classes or categories mean.
   static void addFlags(GDALMDArray& variable, const Map& map) {
     if (map.kind == MapKind::count) return;
-    std::vector<std::int16_t> values{0, 1};
-    std::string words = "no yes";
-    if (map.kind == MapKind::category) {
-      values = {-1};
-      words = "none";
-      for (const std::string& label : map.labels) {
-        values.push_back(static_cast<std::int16_t>(values.size() - 1));
-        words += " " + flagWord(label);
-      }
-    }
+    std::vector<std::int16_t> values;
+    std::string words;
+    const auto addFlag = [&](long long value, const std::string& label) {
+      values.push_back(static_cast<std::int16_t>(value));
+      words += (words.empty() ? "" : " ") + flagWord(label);
+    };
+    if (map.kind == MapKind::category) addFlag(-1, "none");
+    for (std::size_t n = 0; n < map.labels.size(); ++n) addFlag(static_cast<long long>(n), map.labels[n]);
     const auto attribute =
         variable.CreateAttribute("flag_values", {values.size()}, GDALExtendedDataType::Create(GDT_Int16));
     if (attribute != nullptr) attribute->Write(values.data(), values.size() * sizeof(std::int16_t));

@@ -38,10 +38,9 @@ void printRow(const study::MapRecord& record) {
   const study::MapSummary& summary = record.summary;
   const std::string time = map.time_s ? fmt::format("{}", *map.time_s) : "all";
   const std::string area =
-      map.kind != study::MapKind::mask
-          ? ""
-          : fmt::format("{:.1f} km2, {:.1f} %", summary.marked_area_m2 / 1e6,
-                        100 * summary.marked_area_m2 / std::max(summary.known_area_m2, 1.0));
+      map.area_class < 0 ? ""
+                         : fmt::format("{:.1f} km2, {:.1f} %", summary.class_area_m2 / 1e6,
+                                       100 * summary.class_area_m2 / std::max(summary.known_area_m2, 1.0));
   print("  {:<16} {:<26} {:>8}  {:<24} {}\n", map.name, map.height ? study::describe(*map.height) : "", time,
         area, record.files.empty() ? "" : record.files.front());
 }

@@ -28,8 +28,8 @@ struct CoverageRequest {
 /// out, below ground or unknown.
 struct CoverageMap : Map {
   Product product = Product::value;
-  double known_area_m2 = 0;    ///< of the pixels with a value
-  double covered_area_m2 = 0;  ///< of product covered: where it is 1; of jam_loss: lost; else 0
+  double known_area_m2 = 0;  ///< of the pixels with a value
+  double class_area_m2 = 0;  ///< of ProductInfo::area_class; 0 for products without one
 };
 
 /// The default threshold: 0.5 of a probability, 0 dB of a margin or ratio over a required level; none for

@@ -15,13 +15,13 @@ enum class MapKind {
   difference,   ///< of two levels: the sign has a meaning
   probability,  ///< 0..1
   part,         ///< 0..1: fractions
-  mask,         ///< 1 where something holds, else 0
   count,        ///< 0, 1, 2 ...
+  classes,      ///< 0, 1 ... with a label each; 0: nothing to show
   category      ///< index of a label; -1: none
 };
 /// Kinds whose values are whole numbers that are not interpolated.
 constexpr bool isWhole(MapKind kind) {
-  return kind == MapKind::mask || kind == MapKind::count || kind == MapKind::category;
+  return kind == MapKind::classes || kind == MapKind::count || kind == MapKind::category;
 }
 
 /// Kinds whose values are 0..1.
@@ -37,9 +37,10 @@ struct Map {
   std::string description;          ///< "detection_probability at 150 m above ground"
   std::optional<MapHeight> height;  ///< none: for all heights
   std::optional<double> time_s;     ///< since the scenario's epoch; none: over all times
-  std::vector<std::string> labels;  ///< of a category map: names of 0, 1 ...
-  int color = 0;                    ///< of a mask: index of render::categoryColor()
-  std::vector<float> values;        ///< pixels in the grid's order; NaN: no value
+  std::vector<std::string> labels;  ///< of classes and categories: names of 0, 1 ...
+  std::vector<int> colors;    ///< of classes: indices of render::categoryColor(); empty: the class itself
+  int area_class = -1;        ///< the class whose area is told; -1: none
+  std::vector<float> values;  ///< pixels in the grid's order; NaN: no value
 };
 
 /// Name of a map's files, layers and variables: "covered_agl150m_t80s".
@@ -49,7 +50,7 @@ std::string fileNameOf(const Map& map);
 struct MapSummary {
   double min = 0, max = 0;       ///< of the values; NaN: there is none
   double known_area_m2 = 0;      ///< of the pixels with a value, on the ellipsoid
-  double marked_area_m2 = 0;     ///< of a mask: where it is 1
+  double class_area_m2 = 0;      ///< of the pixels in Map::area_class
   long long largest_pixel = -1;  ///< with the largest value; -1: there is none
 };
 MapSummary summaryOf(const MapGrid& grid, const Map& map);
