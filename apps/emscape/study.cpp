@@ -264,8 +264,9 @@ int mergeParts(const LoadedStudy& loaded, study::StudyFolder& folder, bool parti
     return 0;
   }
   for (const study::MeasureSummary& summary : report.measures) {
-    print("{:<24} {:.6g} to {:.6g} {}; the largest: {}\n", summary.name, summary.min, summary.max,
-          summary.unit, study::describeVariant(loaded.spec, summary.max_variant));
+    const std::string unit = summary.unit.empty() ? "" : " " + summary.unit;
+    print("{:<24} {:.6g} to {:.6g}{}; the largest: {}\n", summary.name, summary.min, summary.max, unit,
+          study::describeVariant(loaded.spec, summary.max_variant));
   }
   if (!report.sites.empty()) {
     std::string names;

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/study/study_folder.h"
@@ -77,9 +76,9 @@ samples:
   ASSERT_EQ(variants.count(), 2u * 3 * 3 * 4);
   EXPECT_EQ(variants.name(0), "as it is");
   EXPECT_EQ(variants.name(71), "no jammer");
-  EXPECT_THAT(variants.paths(), ElementsAre("emitters.jammer.power_w", "atmosphere.k_factor",
-                                            "emitters.search radar.power_w",
-                                            "emitters.search radar.receiver.target_rcs_m2"));
+  EXPECT_THAT(variants.paths(),
+              ElementsAre("emitters.jammer.power_w", "atmosphere.k_factor", "emitters.search radar.power_w",
+                          "emitters.search radar.receiver.target_rcs_m2"));
   EXPECT_EQ(variants.value(0, 0), "");
   EXPECT_EQ(variants.value(36, 0), "1.0e-6");
   EXPECT_EQ(variants.value(13, 1), "1.2");
@@ -91,7 +90,7 @@ TEST(Study, TheSolverSaysWhatAParameterInvalidates) {
   const Study study(R"(
 sweep:
   emitters.search radar.power_w: {values: [100, 200]}
-  emitters.search radar.antenna.beamwidth_az_deg: {values: [2, 4]}
+  emitters.search radar.antenna.side_lobe_db: {values: [-40, -30]}
   platforms.ridge site.position.height_agl_m: {values: [10, 30]}
   atmosphere.k_factor: {values: [1, 1.2]}
   output.count_threshold_dbwm2: {values: [-80, -70]}
@@ -150,7 +149,8 @@ TEST(Study, MeasuresOverPolygonsCountTheirPixelsAlone) {
 measures:
   - {name: all, height: "agl:300"}
   - {name: west, height: "agl:300", over: )" + west + R"(}
-  - {name: share, height: "agl:300", unit: percent, over: )" + west + "}\n");
+  - {name: share, height: "agl:300", unit: percent, over: )" +
+                                                        west + "}\n");
   const std::vector<double> values = study.run({0})[0];
   EXPECT_GT(values[1], 0);
   EXPECT_LT(values[1], 0.8 * values[0]);
@@ -173,8 +173,7 @@ sweep:
     for (int part = parts; part >= 1; --part) {
       std::vector<VariantResult> results;
       StudyRunner(study.spec(), study.plan(), study.terrain(), {})
-          .run(files.variantsOf(part),
-               [&](VariantResult result) { results.push_back(std::move(result)); });
+          .run(files.variantsOf(part), [&](VariantResult result) { results.push_back(std::move(result)); });
       files.writePart(part, results, {}, "cpu");
       EXPECT_TRUE(files.hasPart(part));
     }
@@ -186,13 +185,13 @@ sweep:
     html.push_back(test::readFile(folder.path() / "report.html"));
   }
   EXPECT_THAT(csv[0], HasSubstr("variant,name,emitters.jammer.power_w,emitters.search radar.propagation,"
-                                "covered (km2),mean (1)\n0,,1,horizon,"));
+                                "covered (km2),mean\n0,,1,horizon,"));
   EXPECT_EQ(std::count(csv[0].begin(), csv[0].end(), '\n'), 11);
   EXPECT_FALSE(netcdf[0].empty());
   for (int i : {1, 2}) {
     EXPECT_EQ(csv[i], csv[0]);
-    EXPECT_EQ(netcdf[i], netcdf[0]);
-    EXPECT_EQ(html[i], html[0]);
+    EXPECT_TRUE(netcdf[i] == netcdf[0]);
+    EXPECT_TRUE(html[i] == html[0]);
   }
 }
 
@@ -203,13 +202,10 @@ TEST(Study, APartOfAnotherStudyIsRefused) {
   StudyFolder files(folder.path(), first.spec(), first.plan(), "test");
   files.begin(2);
   EXPECT_NE(first.spec().hash, second.spec().hash);
-  EXPECT_THAT(test::errorOf([&] {
-                StudyFolder(folder.path(), second.spec(), second.plan(), "test").begin(2);
-              }),
-              AllOf(HasSubstr("manifest.json"), HasSubstr("another study")));
-  EXPECT_THAT(test::errorOf([&] {
-                StudyFolder(folder.path(), first.spec(), first.plan(), "test").begin(1);
-              }),
+  EXPECT_THAT(
+      test::errorOf([&] { StudyFolder(folder.path(), second.spec(), second.plan(), "test").begin(2); }),
+      AllOf(HasSubstr("manifest.json"), HasSubstr("another study")));
+  EXPECT_THAT(test::errorOf([&] { StudyFolder(folder.path(), first.spec(), first.plan(), "test").begin(1); }),
               HasSubstr("has 2 parts, not 1"));
 }
 
@@ -236,8 +232,9 @@ TEST(Study, SitesAreChosenFromCandidates) {
 TEST(Study, RefusesFaultsWithTheirPlace) {
   EXPECT_THAT(errorOf(""), HasSubstr("none of 'variants', 'sweep', 'samples' and 'sites'"));
   EXPECT_THAT(errorOf("sweeps: {}"), HasSubstr("study.yaml:4:1: unknown key 'sweeps' of the study; did you"));
-  EXPECT_THAT(errorOf("sweep:\n  emitters.jammer.power_w: {values: [1, -2]}"),
-              AllOf(HasSubstr("study.yaml:5:3: emitters.jammer.power_w=-2"), HasSubstr("outside the allowed")));
+  EXPECT_THAT(
+      errorOf("sweep:\n  emitters.jammer.power_w: {values: [1, -2]}"),
+      AllOf(HasSubstr("study.yaml:5:3: emitters.jammer.power_w=-2"), HasSubstr("outside the allowed")));
   EXPECT_THAT(errorOf("sweep: {emitters.jamer.power_w: {values: [1]}}"), HasSubstr("jamer"));
   EXPECT_THAT(errorOf("sweep: {emitters.jammer.power_w: {linear: {from: 1, to: 2}}}"),
               HasSubstr("missing key 'count'"));
@@ -249,12 +246,12 @@ TEST(Study, RefusesFaultsWithTheirPlace) {
   EXPECT_THAT(errorOf("variants: [{name: a, set: {emitters.jammer.power_w: 1}}]\n"
                       "sweep: {emitters.jammer.power_w: {values: [1]}}"),
               HasSubstr("'emitters.jammer.power_w' is set twice"));
-  EXPECT_THAT(errorOf("samples: {count: 3, parameters: {emitters.jammer.power_w: {normal: {mean: 1, deviation: "
-                      "1000}}}}"),
-              HasSubstr("outside the allowed"));
+  EXPECT_THAT(
+      errorOf("samples: {count: 3, parameters: {emitters.jammer.power_w: {normal: {mean: 1, deviation: "
+              "1000}}}}"),
+      HasSubstr("outside the allowed"));
   const auto ofMeasure = [](const std::string& measure) {
-    return test::errorOf(
-        [&] { Study study("variants: [{name: a}]", "\nmeasures:\n  - " + measure + "\n"); });
+    return test::errorOf([&] { Study study("variants: [{name: a}]", "\nmeasures:\n  - " + measure + "\n"); });
   };
   EXPECT_THAT(ofMeasure("{name: a, product: gap}"), HasSubstr("'product' must be one of value, covered"));
   EXPECT_THAT(ofMeasure("{name: a, product: fraction}"), HasSubstr("is over time"));
