@@ -133,8 +133,13 @@ struct ExcessTask {
       float* const excess_db = scratch.excess_db + first;
       if constexpr (propagation::Reflects<Model>::value) {
         for (int k = 0; k < part.count; ++k) {
+          // Lobes are narrow: a leaning column's voxels are at ranges of their own.
+          const double range_m =
+              grid.tilted
+                  ? footInverse(station, grid.columns[c], static_cast<double>(grid.t_m[first + k])).distance_m
+                  : part.range_m;
           reflected[static_cast<std::size_t>(first + k) * grid.column_count + c] =
-              reflectedRayCode(model.reflectedRay(part.range_m, part.height_msl_m[k], excess_db[k]));
+              reflectedRayCode(model.reflectedRay(range_m, part.height_msl_m[k], excess_db[k]));
         }
       } else {
         warnings |= model(part, scratch, excess_db);

@@ -143,6 +143,10 @@ void CpuEngine::combine(const CombinePass& pass) {
       if (accumulator == nullptr) continue;
       radarCpu(radarPass(share, beam, slots_[pass.members[m].slot].clutterMap(), task, accumulator));
     }
+    for (const OccupancyShare& share : pass.members[m].occupancies) {
+      float* const accumulator = task.accumulators[share.channel].value;
+      if (accumulator != nullptr) occupancyCpu(occupancyPass(share, beam, task, accumulator));
+    }
   }
   times_.combine_ms += watch.lap_ms();
 }
