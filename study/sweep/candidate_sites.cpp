@@ -26,6 +26,11 @@ OGRSpatialReference longitudeLatitude() {
   return reference;
 }
 
+/// To a centimetre, so that names of places stay short.
+double rounded(double degrees) {
+  return std::round(degrees * 1e7) / 1e7;
+}
+
 void addLayer(OGRLayer& layer, const std::string& file, std::vector<CandidateSite>& sites) {
   const OGRSpatialReference wgs84 = longitudeLatitude();
   std::unique_ptr<OGRCoordinateTransformation> transformation;
@@ -90,8 +95,8 @@ std::vector<CandidateSite> candidatesOver(const MapArea& area, double distance_m
   std::vector<CandidateSite> sites;
   for (int row = rows; row >= -rows; --row) {
     for (int column = -columns; column <= columns; ++column) {
-      const double latitude_deg = middle_lat_deg + row * lat_step_deg;
-      const double longitude_deg = wrapLongitude_deg(middle_lon_deg + column * lon_step_deg);
+      const double latitude_deg = rounded(middle_lat_deg + row * lat_step_deg);
+      const double longitude_deg = rounded(wrapLongitude_deg(middle_lon_deg + column * lon_step_deg));
       if (area.circle &&
           geodesicInverse(area.circle->latitude_deg, area.circle->longitude_deg, latitude_deg, longitude_deg)
                   .distance_m > area.circle->radius_m) {
