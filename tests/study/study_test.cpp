@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/study/study_folder.h"
@@ -227,6 +228,16 @@ TEST(Study, SitesAreChosenFromCandidates) {
   ASSERT_EQ(summary.sites.size(), 2u);
   EXPECT_GE(summary.sites_value, summary.measures[0].max);
   EXPECT_LE(summary.sites_value, 100);
+}
+
+TEST(Study, TheShippedStudiesHaveNoFault) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(test::sourceFile("scenarios/study"))) {
+    const StudySpec spec = loadStudy(entry.path(), {}, "test");
+    EXPECT_GT(spec.variants.count(), 10u) << entry.path();
+    ++count;
+  }
+  EXPECT_EQ(count, 2);
 }
 
 TEST(Study, RefusesFaultsWithTheirPlace) {
