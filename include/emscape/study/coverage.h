@@ -10,6 +10,7 @@
 #include "emscape/base/progress.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/terrain.h"
+#include "emscape/study/map.h"
 #include "emscape/study/map_grid.h"
 #include "emscape/study/products.h"
 
@@ -23,16 +24,12 @@ struct CoverageRequest {
   std::vector<double> times_s;  ///< rising
 };
 
-/// One map: a product at a height, at a time or over all.
-struct CoverageMap {
+/// A map of a product, at a height or for all, at a time or over all. Values are NaN in pixels that are left
+/// out, below ground or unknown.
+struct CoverageMap : Map {
   Product product = Product::value;
-  std::optional<MapHeight> height;  ///< none: for all heights
-  std::optional<double> time_s;     ///< none: over all times
-  std::string unit;
-  std::string description;    ///< "detection_probability at 150 m above ground"
-  std::vector<float> values;  ///< pixels in the grid's order; NaN: left out, below ground or unknown
-  double known_area_m2 = 0;   ///< of the pixels with a value
-  double class_area_m2 = 0;   ///< of ProductInfo::area_class; 0 for products without one
+  double known_area_m2 = 0;  ///< of the pixels with a value
+  double class_area_m2 = 0;  ///< of ProductInfo::area_class; 0 for products without one
 };
 
 /// The default threshold: 0.5 of a probability, 0 dB of a margin or ratio over a required level; none for
@@ -42,17 +39,47 @@ std::optional<double> defaultThreshold(scenario::Quantity quantity);
 /// Takes a finished map; called by the thread that computes.
 using MapSink = std::function<void(CoverageMap)>;
 
+/// The same for a map of one of several scenarios, by its index.
+using ScenarioMapSink = std::function<void(std::size_t scenario, CoverageMap)>;
+
+/// Computes maps of one scenario after another on the same pixels and keeps the field between them: of a
+/// scenario that differs from the one before, only what the difference invalidates is computed
+/// (FieldSolver::update). The maps are those of computeCoverage(). One thread calls it.
+class CoverageSolver {
+ public:
+  /// @param grid     must outlive the solver
+  /// @param options  backend, memory and move_tolerance_m; the rest is set here
+  CoverageSolver(const MapGrid& grid, const CoverageRequest& request, const emfield::FieldOptions& options);
+  ~CoverageSolver();
+
+  /// Computes several scenarios together, all of them at the first time, then at the next: where platforms
+  /// move, scenarios of the same tracks share the geometry of each time. Memory for products over time grows
+  /// with their number.
+  /// @param terrain  of the whole map and all platforms; null: a smooth earth. Another object than before is
+  /// another terrain
+  /// @return warnings of each scenario
+  /// @throws Error (bad_input, usage, device) as FieldSolver does, and for a product that the quantity or the
+  /// times do not have
+  std::vector<std::vector<std::string>> compute(
+      const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
+      const scenario::TerrainPtr& terrain, const ScenarioMapSink& take, const ProgressSink& progress = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// Computes maps by the field's own functions at every pixel: a pixel's value is that of `emscape profile`
 /// there. Looks are at the target (RadarLook::target): coverage does not depend on where a scan happens to
 /// point. Maps come by time, height (those above ground first) and product; those over all times at last.
 /// @param terrain  of the whole map and all platforms; null: a smooth earth
-/// @param options  backend and memory; the rest is set here
+/// @param options  backend, memory and move_tolerance_m; the rest is set here
 /// @return warnings
 /// @throws Error (bad_input, usage, device) as FieldSolver does, and for a product that the quantity or the
 /// times do not have
 std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::Scenario>& scenario,
                                          const scenario::TerrainPtr& terrain, const MapGrid& grid,
-                                         const CoverageRequest& request, emfield::FieldOptions options,
+                                         const CoverageRequest& request, const emfield::FieldOptions& options,
                                          const MapSink& take, const ProgressSink& progress = {});
 
 }  // namespace emscape::study
