@@ -11,6 +11,7 @@
 #include "emfield/grid_columns.h"
 #include "emfield/ground_posts.h"
 #include "emfield/station.h"
+#include "emfield/terrain_bounds.h"
 #include "emfield/two_rays.h"
 #include "emscape/base/host_device.h"
 
@@ -47,6 +48,11 @@ struct ExcessGrid {
   EMSCAPE_HD bool isLeftOut(std::size_t column) const {
     return !tilted && first_valid_k != nullptr && first_valid_k[column] >= layers &&
            !(ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column]);
+  }
+  /// True if terrain is missing below a column that is not tilted: every path to it is unknown to the models
+  /// that need terrain.
+  EMSCAPE_HD bool isWithoutGround(std::size_t column) const {
+    return ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column];
   }
   /// From a station to below the middle of a segment.
   EMSCAPE_HD FastInverse coordinatesOf(const Station& station, std::size_t column, int segment) const {
@@ -152,7 +158,7 @@ struct ExcessTask {
 
 /// Arrays of the results: dense order, the columns of a layer one after another.
 struct ExcessOutput {
-  ExcessCode* codes = nullptr;
+  ExcessStore excess;
   ReflectedRayCode* reflected = nullptr;  ///< of models with a reflected ray
   float* shadow_edge_m = nullptr;         ///< set to NaN where terrain is missing: the column is unknown
 
@@ -160,8 +166,9 @@ struct ExcessOutput {
 };
 
 /// Runs a task on the CPU.
+/// @param bounds  of the terrain, for surfaces; null: none
 /// @return the models' warnings on all columns
 unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
-                       const GroundPosts& ground, const ExcessOutput& out);
+                       const GroundPosts& ground, const TerrainBounds* bounds, const ExcessOutput& out);
 
 }  // namespace emscape::emfield

@@ -170,8 +170,8 @@ template <scenario::PatternKind kind>
 EMSCAPE_HD inline float occupancyAt(const OccupancyPass& pass, std::size_t voxel, std::size_t column,
                                     float t_m) {
   const VoxelRay ray = voxelRay(pass.beam, column, t_m);
-  const ExcessCode* const excess = pass.beam.geometry.excess;
-  const float power = ray.isotropic_wm2 * (excess != nullptr ? excessFactor(excess[voxel]) : 1.0f);
+  const ExcessView& excess = pass.beam.geometry.excess;
+  const float power = ray.isotropic_wm2 * (excess.isEmpty() ? 1.0f : excess.factor(voxel));
   if (!(power > 0)) return 0;
   const float level = pass.threshold_wm2 / power;
   const Vec3f direction = ray.direction * (1 / std::sqrt(ray.length2_m2 + 1e-12f));

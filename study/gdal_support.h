@@ -1,0 +1,57 @@
+/// GDAL's datasets, for the writers of this module.
+#pragma once
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emscape/study/map_grid.h"
+#include "scenario/terrain/gdal_messages.h"
+
+namespace emscape::study {
+
+struct CloseDataset {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
+
+/// @throws Error (other) if GDAL was built without it
+GDALDriver* driverOf(const char* name);
+
+/// @throws Error (other) that names the file and GDAL's reason
+[[noreturn]] void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file);
+
+/// A file that GDAL writes under a temporary name. Removed with what GDAL keeps beside it, unless it was
+/// published.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(const std::filesystem::path& file);
+  ~UnfinishedFile();
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+  const std::filesystem::path& file() const { return file_; }
+  const char* temporary() const { return temporary_.c_str(); }
+  /// Gives the file its name. @throws Error (other) naming it
+  void publish();
+
+ private:
+  void remove() const;
+
+  const std::filesystem::path file_, temporary_;
+};
+
+/// A raster of one band in memory, of a grid's pixels and in its place.
+/// @throws Error (other) naming the file for which it is made
+Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file);
+
+/// x to the east, y to the north, whatever the authority's order.
+OGRSpatialReference referenceOf(const MapGrid& grid);
+/// WGS84: longitude, latitude.
+OGRSpatialReference wgs84Reference();
+
+}  // namespace emscape::study
