@@ -171,6 +171,7 @@ class SurfaceMaps {
     const std::vector<volume::Volume>& volumes = solver_->volumes();
     values.all = volumes.front().host();
     State& state = states_[index];
+    state.scenario = scenario;
     state.last = isOverTime() ? values.all : nullptr;
     state.warnings = solver_->warnings();
     for (std::size_t c = 1; c < volumes.size(); ++c) {
@@ -193,12 +194,12 @@ class SurfaceMaps {
   }
 
   /// The maps of a scenario over all times.
-  void finish(std::size_t index, const scenario::Scenario& scenario, const MapSink& take) {
+  void finish(std::size_t index, const MapSink& take) {
     const State& state = states_[index];
     for (std::size_t k = 0; k < heights_.size(); ++k) {
       for (const Product product : request_.products) {
         if (!info(product).over_time) continue;
-        CoverageMap map = emptyMap(scenario, request_, product, heights_[k]);
+        CoverageMap map = emptyMap(*state.scenario, request_, product, heights_[k]);
         fill(map, grid_, [&](std::size_t p) {
           return std::isnan(valueAt(*state.last, k, p)) ? NAN : state.figures[k].figure(product, p);
         });
@@ -213,6 +214,7 @@ class SurfaceMaps {
  private:
   /// A scenario between its times.
   struct State {
+    std::shared_ptr<const scenario::Scenario> scenario;
     std::vector<TimeFigures> figures;  ///< one per height
     std::shared_ptr<const volume::DenseVolume> last;
     std::vector<std::string> warnings;
@@ -385,7 +387,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
   std::vector<std::vector<std::string>> warnings(scenarios.size());
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
     for (const auto& of_reference : impl_->maps) {
-      of_reference->finish(s, *at_targets[s], [&](CoverageMap map) { take(s, std::move(map)); });
+      of_reference->finish(s, [&](CoverageMap map) { take(s, std::move(map)); });
       for (const std::string& warning : of_reference->warnings(s)) {
         if (std::find(warnings[s].begin(), warnings[s].end(), warning) == warnings[s].end()) {
           warnings[s].push_back(warning);

@@ -45,15 +45,18 @@ def check_gdal():
     for one in report["maps"]:
         for file in one["files"]:
             if file.endswith(".tif"):
-                band = gdal.Open(str(FOLDER / file)).GetRasterBand(1)
+                dataset = gdal.Open(str(FOLDER / file))
+                band = dataset.GetRasterBand(1)
                 series.check(band.GetDescription() == one["description"], f"{file} is {band.GetDescription()}")
     package = ogr.Open(str(MAPS / "coverage.gpkg"))
     names = [package.GetLayer(n).GetName() for n in range(package.GetLayerCount())]
     series.check(set(LAYERS) <= set(names), f"layers {names}")
     products = {feature["product"] for feature in package.GetLayerByName("bands")}
     series.check({one["product"] for one in report["maps"]} == products, f"bands of {products}")
-    series.check(ogr.Open(str(MAPS / "coverage.kmz")).GetLayerCount() > 0, "an empty KMZ")
-    root = gdal.OpenEx(str(MAPS / "coverage.nc"), gdal.OF_MULTIDIM_RASTER).GetRootGroup()
+    overlays = ogr.Open(str(MAPS / "coverage.kmz"))
+    series.check(overlays.GetLayerCount() > 0, "an empty KMZ")
+    variables = gdal.OpenEx(str(MAPS / "coverage.nc"), gdal.OF_MULTIDIM_RASTER)
+    root = variables.GetRootGroup()
     series.check("value_agl" in root.GetMDArrayNames(), f"variables {root.GetMDArrayNames()}")
 
 
