@@ -11,10 +11,10 @@
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/link_plot.h"
 #include "apps/emscape/link_report.h"
-#include "apps/emscape/profile_plot.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
 #include "propagation/registry/model_info.h"
+#include "render/annotate/plot.h"
 
 namespace emscape::app {
 namespace {
@@ -132,7 +132,7 @@ terrain and a scenario without receivers and targets.)");
   command->add_option("--csv", options->csv, "Write all rows into a CSV file");
   command->add_option("--plot", options->plot, "Draw SINR and probabilities over time into a .png or .svg")
       ->check([](const std::string& file) {
-        return isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+        return render::isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
       });
   command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
   command->callback(

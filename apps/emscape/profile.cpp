@@ -17,6 +17,7 @@
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
 #include "propagation/registry/model_info.h"
+#include "render/annotate/plot.h"
 
 namespace emscape::app {
 namespace {
@@ -155,7 +156,7 @@ or a path over missing terrain.)");
       ->check(CLI::IsMember(names));
   command->add_option("--plot", options->plot, "Draw the path into a file, .png or .svg")
       ->check([](const std::string& file) {
-        return isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+        return render::isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
       });
   command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
   command->callback(
