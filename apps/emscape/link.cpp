@@ -11,6 +11,7 @@
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/link_plot.h"
 #include "apps/emscape/link_report.h"
+#include "apps/emscape/study_options.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
 #include "propagation/registry/model_info.h"
@@ -37,17 +38,7 @@ std::vector<int> chosen(const std::vector<Item>& items, const std::vector<std::s
                         const char* option, const char* kind, const std::string& file) {
   std::vector<int> indices;
   for (std::size_t i = 0; names.empty() && i < items.size(); ++i) indices.push_back(static_cast<int>(i));
-  for (const std::string& name : names) {
-    const auto found =
-        std::find_if(items.begin(), items.end(), [&](const Item& item) { return item.name == name; });
-    if (found == items.end()) {
-      std::string known;
-      for (const Item& item : items) known += (known.empty() ? "'" : ", '") + item.name + "'";
-      throw Error(ErrorCode::usage, fmt::format("{}: no {} '{}' in {}; it has {}", option, kind, name, file,
-                                                known.empty() ? "none" : known));
-    }
-    indices.push_back(static_cast<int>(found - items.begin()));
-  }
+  for (const std::string& name : names) indices.push_back(namedIndex(items, name, option, kind, file));
   return indices;
 }
 

@@ -89,6 +89,7 @@
 #include "emscape/study/map_grid.h"
 #include "emscape/study/map_picture.h"
 #include "emscape/study/products.h"
+#include "emscape/study/vertical.h"
 #include "emscape/volume/dense_volume.h"
 #include "emscape/volume/device_volume.h"
 #include "emscape/volume/difference.h"
