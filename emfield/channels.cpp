@@ -24,6 +24,11 @@ bool takesAllEmitters(Quantity quantity) {
 
 std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
                                 const std::vector<std::string>& quantities) {
+  return channelsOf(scenario, quantities, scenario.output.combine);
+}
+
+std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
+                                const std::vector<std::string>& quantities, CombineMode combine) {
   std::vector<Channel> channels;
   for (const std::string& name : quantities.empty() ? scenario.output.quantities : quantities) {
     const Quantity quantity = scenario::quantityFromName(name);
@@ -38,9 +43,9 @@ std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
     }
     if (takesAllEmitters(quantity)) {
       channels.push_back({quantity, name, emitters});
-    } else if (scenario.output.combine == CombineMode::per_emitter && !countsEmitters(quantity)) {
+    } else if (combine == CombineMode::per_emitter && !countsEmitters(quantity)) {
       for (int e : emitters) channels.push_back({quantity, name + ":" + scenario.emitters[e].name, {e}});
-    } else if (scenario.output.combine == CombineMode::per_band) {
+    } else if (combine == CombineMode::per_band) {
       if (scenario.bands.empty()) {
         throw Error(ErrorCode::bad_input, {scenario.file},
                     "combine 'per_band' needs at least one entry under 'bands'");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/fast_geodesy.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/scenario/snapshot.h"
@@ -19,14 +20,19 @@ using emfield::FieldSolver;
 using emfield::HeightReference;
 using scenario::Quantity;
 
+/// Products of what each emitter does by itself.
+constexpr std::initializer_list<Product> kPerEmitter{Product::count, Product::redundancy, Product::best,
+                                                     Product::max_range};
+/// Products of what jamming changes.
+constexpr std::initializer_list<Product> kOfJamming{Product::jam_loss, Product::burn_through};
+
 bool isIn(const std::vector<Product>& products, std::initializer_list<Product> any) {
   return std::find_first_of(products.begin(), products.end(), any.begin(), any.end()) != products.end();
 }
 
 bool hasChannelPerEmitter(const scenario::Scenario& scenario, const std::string& quantity) {
-  scenario::Scenario each = scenario;
-  each.output.combine = scenario::CombineMode::per_emitter;
-  const std::vector<emfield::Channel> channels = emfield::channelsOf(each, {quantity});
+  const std::vector<emfield::Channel> channels =
+      emfield::channelsOf(scenario, {quantity}, scenario::CombineMode::per_emitter);
   return std::all_of(channels.begin(), channels.end(),
                      [](const emfield::Channel& channel) { return channel.emitters.size() == 1; });
 }
@@ -44,14 +50,13 @@ void checkRequest(const scenario::Scenario& scenario, const CoverageRequest& req
     if (product == Product::margin && !in_decibels) {
       refuse(fmt::format("is a difference of decibels; quantity '{}' has none", quantity.name));
     }
-    if (product == Product::jam_loss && !scenario::needsJammer(request.quantity)) {
+    if (isIn({product}, kOfJamming) && !scenario::needsJammer(request.quantity)) {
       refuse(fmt::format("asks for a quantity that jamming changes; '{}' is none", quantity.name));
     }
     if (product != Product::value && quantity.categorical) {
       refuse(fmt::format("asks for a level; quantity '{}' is an index", quantity.name));
     }
-    if ((product == Product::count || product == Product::best) &&
-        !hasChannelPerEmitter(scenario, quantity.name)) {
+    if (isIn({product}, kPerEmitter) && !hasChannelPerEmitter(scenario, quantity.name)) {
       refuse(fmt::format("asks what each emitter does by itself; quantity '{}' has one value for all",
                          quantity.name));
     }
@@ -84,12 +89,12 @@ void fill(CoverageMap& map, const MapGrid& grid, const Value& valueAtPixel) {
   parallelFor(static_cast<int>(grid.pixels()), 1 << 14, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) map.values[p] = valueAtPixel(static_cast<std::size_t>(p));
   });
-  const bool is_area = map.product == Product::covered || map.product == Product::jam_loss;
+  const int area_class = info(map.product).area_class;
   for (std::size_t p = 0; p < grid.pixels(); ++p) {
     if (std::isnan(map.values[p])) continue;
     const auto area_m2 = static_cast<double>(grid.areas_m2[p]);
     map.known_area_m2 += area_m2;
-    if (is_area && map.values[p] == 1) map.covered_area_m2 += area_m2;
+    if (area_class >= 0 && map.values[p] == static_cast<float>(area_class)) map.class_area_m2 += area_m2;
   }
 }
 
@@ -115,47 +120,42 @@ class SurfaceMaps {
     emfield::FieldOptions on_surface = options;
     on_surface.surface = surface;
     on_surface.allow_missing_terrain = true;  // masked, and reported by the maps' known area
-    all_scenario_ = scenario;
-    all_.emplace(scenario, terrain, on_surface);
-    if (isIn(request.products, {Product::count, Product::best})) {
-      auto each = std::make_shared<scenario::Scenario>(*scenario);
-      each->output.combine = scenario::CombineMode::per_emitter;
-      each_scenario_ = each;
-      each_.emplace(each_scenario_, terrain, on_surface);
-    }
+    on_surface.also_per_emitter = isIn(request.products, kPerEmitter);
+    scenario_ = scenario;
+    solver_.emplace(scenario, terrain, on_surface);
     for (std::size_t k = 0; k < heights_.size(); ++k) {
       figures_.emplace_back(isOverTime() ? grid.pixels() : 0, request.times_s);
     }
   }
 
   void addTime(const scenario::Terrain* terrain, double time_s, const MapSink& take) {
-    scenario::Snapshot snapshot = scenario::snapshotAt(all_scenario_, terrain, time_s);
-    std::shared_ptr<const volume::DenseVolume> unjammed;
-    if (isIn(request_.products, {Product::jam_loss})) {
+    const scenario::Snapshot snapshot = scenario::snapshotAt(scenario_, terrain, time_s);
+    Values values;
+    if (isIn(request_.products, kOfJamming)) {
       scenario::Snapshot quiet = snapshot;
       for (std::size_t e = 0; e < quiet.emitters.size(); ++e) {
-        if (all_scenario_->emitters[e].kind == scenario::EmitterKind::jammer)
-          quiet.emitters[e].active = false;
+        if (scenario_->emitters[e].kind == scenario::EmitterKind::jammer) quiet.emitters[e].active = false;
       }
-      all_->update(quiet);
-      unjammed = all_->volumes().front().host();
+      solver_->update(quiet);
+      values.unjammed = solver_->volumes().front().host();
     }
-    all_->update(snapshot);
-    const std::shared_ptr<const volume::DenseVolume> all = all_->volumes().front().host();
-    std::vector<std::shared_ptr<const volume::DenseVolume>> each;
-    if (each_) {
-      each_->update(scenario::snapshotAt(each_scenario_, terrain, time_s));
-      for (const volume::Volume& one : each_->volumes()) each.push_back(one.host());
+    solver_->update(snapshot);
+    const std::vector<volume::Volume>& volumes = solver_->volumes();
+    values.all = volumes.front().host();
+    for (std::size_t c = 1; c < volumes.size(); ++c) {
+      const int emitter = solver_->channels()[c].emitters.front();
+      const GeodeticPosition& at = snapshot.emitters[emitter].position;
+      values.each.push_back({emitter, volumes[c].host(), fastGeodesy(at.latitude_deg, at.longitude_deg)});
     }
     for (std::size_t k = 0; k < heights_.size(); ++k) {
       if (isOverTime()) {
-        figures_[k].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*all, k, p)); });
+        figures_[k].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); });
       }
       for (const Product product : request_.products) {
         if (info(product).over_time || !info(product).at_heights) continue;
         CoverageMap map = emptyMap(request_, product, heights_[k]);
         map.time_s = time_s;
-        fill(map, grid_, [&](std::size_t p) { return valueOf(product, *all, unjammed.get(), each, k, p); });
+        fill(map, grid_, [&](std::size_t p) { return valueOf(product, values, k, p); });
         take(std::move(map));
       }
     }
@@ -166,7 +166,7 @@ class SurfaceMaps {
     for (std::size_t k = 0; k < heights_.size(); ++k) {
       for (const Product product : request_.products) {
         if (!info(product).over_time) continue;
-        const std::shared_ptr<const volume::DenseVolume> last = all_->volumes().front().host();
+        const std::shared_ptr<const volume::DenseVolume> last = solver_->volumes().front().host();
         CoverageMap map = emptyMap(request_, product, heights_[k]);
         fill(map, grid_, [&](std::size_t p) {
           return std::isnan(valueAt(*last, k, p)) ? NAN : figures_[k].figure(product, p);
@@ -176,9 +176,20 @@ class SurfaceMaps {
     }
   }
 
-  std::vector<std::string> warnings() const { return all_->warnings(); }
+  std::vector<std::string> warnings() const { return solver_->warnings(); }
 
  private:
+  struct ValuesOfOne {
+    int emitter;
+    std::shared_ptr<const volume::DenseVolume> values;
+    FastGeodesy geodesy;  ///< from its position
+  };
+  /// The quantity at a time.
+  struct Values {
+    std::shared_ptr<const volume::DenseVolume> all, unjammed;
+    std::vector<ValuesOfOne> each;
+  };
+
   bool isOverTime() const {
     return std::any_of(request_.products.begin(), request_.products.end(),
                        [](Product product) { return info(product).over_time; });
@@ -190,10 +201,8 @@ class SurfaceMaps {
     return is_valid ? volume.values[k * grid_.pixels() + p] : NAN;
   }
 
-  float valueOf(Product product, const volume::DenseVolume& all, const volume::DenseVolume* unjammed,
-                const std::vector<std::shared_ptr<const volume::DenseVolume>>& each, std::size_t k,
-                std::size_t p) const {
-    const float value = valueAt(all, k, p);
+  float valueOf(Product product, const Values& values, std::size_t k, std::size_t p) const {
+    const float value = valueAt(*values.all, k, p);
     if (std::isnan(value)) return value;
     switch (product) {
       case Product::covered:
@@ -201,32 +210,56 @@ class SurfaceMaps {
       case Product::margin:
         return value - static_cast<float>(request_.threshold);
       case Product::jam_loss:
-        return !isCovered(value) && isCovered(valueAt(*unjammed, k, p)) ? 1.0f : 0.0f;
+        return !isCovered(value) && isCovered(valueAt(*values.unjammed, k, p)) ? 1.0f : 0.0f;
+      case Product::burn_through:
+        return isCovered(value) ? 2.0f : isCovered(valueAt(*values.unjammed, k, p)) ? 1.0f : 0.0f;
       case Product::count:
-      case Product::best: {
-        int count = 0, best = -1;
-        float largest = 0;
-        for (std::size_t c = 0; c < each.size(); ++c) {
-          const float own = valueAt(*each[c], k, p);
-          if (!isCovered(own)) continue;
-          if (count++ == 0 || own > largest) {
-            best = each_->channels()[c].emitters.front();
-            largest = own;
-          }
-        }
-        return static_cast<float>(product == Product::count ? count : best);
-      }
+      case Product::redundancy:
+      case Product::best:
+      case Product::max_range:
+        return ofEmitters(product, values.each, k, p);
       default:
         return value;
+    }
+  }
+
+  float ofEmitters(Product product, const std::vector<ValuesOfOne>& each, std::size_t k,
+                   std::size_t p) const {
+    int count = 0, best = -1;
+    float largest = 0;
+    double farthest_m = NAN;
+    for (const ValuesOfOne& one : each) {
+      const float value = valueAt(*one.values, k, p);
+      if (!isCovered(value)) continue;
+      if (count++ == 0 || value > largest) {
+        best = one.emitter;
+        largest = value;
+      }
+      if (product == Product::max_range) {
+        const auto [latitude_deg, longitude_deg] = grid_.places[p];
+        const double distance_m =
+            fastInverse(one.geodesy, surfacePoint(latitude_deg, longitude_deg).ecef_m).distance_m;
+        farthest_m = std::fmax(farthest_m, distance_m);
+      }
+    }
+    switch (product) {
+      case Product::count:
+        return static_cast<float>(count);
+      case Product::redundancy:
+        return static_cast<float>(std::max(count - 1, 0));
+      case Product::max_range:
+        return static_cast<float>(farthest_m);
+      default:
+        return static_cast<float>(best);
     }
   }
 
   const CoverageRequest& request_;
   const MapGrid& grid_;
   std::vector<MapHeight> heights_;
-  std::shared_ptr<const scenario::Scenario> all_scenario_, each_scenario_;
-  std::optional<FieldSolver> all_, each_;  ///< of all emitters together, and of each
-  std::vector<TimeFigures> figures_;       ///< one per height
+  std::shared_ptr<const scenario::Scenario> scenario_;
+  std::optional<FieldSolver> solver_;  ///< its first channel is of all emitters, those after it of one each
+  std::vector<TimeFigures> figures_;   ///< one per height
 };
 
 }  // namespace

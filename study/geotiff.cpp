@@ -69,8 +69,10 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
   dataset->SetProjection(grid.wkt.c_str());
   dataset->SetMetadataItem("AREA_OR_POINT", "Point");
   for (const auto& [name, value] : metadata) dataset->SetMetadataItem(name.c_str(), value.c_str());
-  for (std::size_t n = 0; is_index && n < labels.size(); ++n) {
-    dataset->SetMetadataItem(fmt::format("EMSCAPE_LABEL_{}", n).c_str(), labels[n].c_str());
+  std::vector<std::string> names = labels;
+  if (names.empty()) names.assign(info(map.product).classes.begin(), info(map.product).classes.end());
+  for (std::size_t n = 0; is_index && n < names.size(); ++n) {
+    dataset->SetMetadataItem(fmt::format("EMSCAPE_LABEL_{}", n).c_str(), names[n].c_str());
   }
   GDALRasterBand* const band = dataset->GetRasterBand(1);
   band->SetDescription(map.description.c_str());

@@ -24,10 +24,16 @@ using render::Weight;
 constexpr double kOpacity = 0.72;  ///< of the colours over the ground
 constexpr float kNoPart = 0.005f;  ///< probabilities and fractions below it leave the ground as it is
 
+/// True for probabilities and fractions: 0..1.
+bool isPart(const CoverageMap& map) {
+  return map.unit.empty() && map.product != Product::gaps;
+}
+
 /// Index of a colour of render::categoryColor().
 int categoryOf(Product product, int value) {
   constexpr int kGreen = 2, kVermilion = 5;
   if (product == Product::covered) return kGreen;
+  if (product == Product::burn_through) return value == 2 ? kGreen : kVermilion;
   return product == Product::jam_loss ? kVermilion : value;
 }
 
@@ -51,15 +57,15 @@ render::Legend legendOf(const CoverageMap& map, const std::vector<std::string>& 
     const int last = std::min(std::isfinite(largest) ? static_cast<int>(largest) : 0, first + 15);
     for (int n = first; n <= last; ++n) {
       const bool is_named = map.product == Product::best && n < static_cast<int>(labels.size());
-      const bool is_yes = map.product == Product::covered || map.product == Product::jam_loss;
-      legend.categories.push_back({categoryOf(map.product, n), is_named ? labels[n]
-                                                               : is_yes ? "yes"
-                                                                        : std::to_string(n)});
+      const bool is_class = n < static_cast<int>(product.classes.size());
+      legend.categories.push_back({categoryOf(map.product, n), is_named   ? labels[n]
+                                                               : is_class ? product.classes[n]
+                                                                          : std::to_string(n)});
     }
     return legend;
   }
   if (!(least <= largest)) least = largest = 0;
-  const bool is_part = map.unit.empty();  // probabilities and fractions
+  const bool is_part = isPart(map);
   double low = is_part ? 0 : static_cast<double>(least), high = is_part ? 1 : static_cast<double>(largest);
   if (high - low < 1e-6) high = low + 1;
   for (const render::ColorMap::Point& point : render::colorMap("viridis").points) {
@@ -141,8 +147,8 @@ class MapPicture {
     if (is_left_out) color = {1, 1, 1};
     const int none = map_.product == Product::best ? -1 : 0;
     const bool is_index = info(map_.product).categorical;
-    const bool is_blank = std::isnan(value) ||
-                          (is_index ? static_cast<int>(value) == none : map_.unit.empty() && value < kNoPart);
+    const bool is_blank =
+        std::isnan(value) || (is_index ? static_cast<int>(value) == none : isPart(map_) && value < kNoPart);
     if (!is_blank) {
       const Rgb over = is_index ? render::categoryColor(categoryOf(map_.product, static_cast<int>(value)))
                                 : legend_.function.color(static_cast<double>(value));

@@ -10,7 +10,8 @@
 namespace emscape::study {
 
 /// A time stands for the interval up to the next one; the last for none. Gaps at the beginning and at the end
-/// count.
+/// count. A coverage begins at the first time if the place is covered then; one that goes on at the last time
+/// ends there, as does a gap.
 class TimeFigures {
  public:
   /// @param places   0: nothing is kept
@@ -20,7 +21,8 @@ class TimeFigures {
   /// Adds the next of the times.
   void add(double time_s, const std::function<bool(std::size_t place)>& isCovered);
 
-  /// first_detection (NaN: never), fraction, longest_gap or mean_gap (0: no gap), after the last time.
+  /// A product that is over time, after the last of the times. NaN: first_detection of a place that is never
+  /// covered, revisit of one that is covered less than twice.
   float figure(Product product, std::size_t place) const;
 
  private:
@@ -29,7 +31,11 @@ class TimeFigures {
     float covered_s = 0;  ///< time so far
     float gap_s = 0;      ///< of the gap that goes on
     float longest_gap_s = 0, all_gaps_s = 0;
+    float gaps_squared_s2 = 0;  ///< sum of the squares of the gaps
+    float last_begin_s = 0;     ///< of the coverage that began last
     std::uint32_t gaps = 0;
+    std::uint32_t coverages = 0;
+    bool is_covered = false;  ///< at the time before
   };
   std::vector<double> times_s_;
   std::size_t next_ = 0;

@@ -69,19 +69,16 @@ Json toJson(const study::CoverageMap& map, const std::vector<std::string>& files
   json["min"] = number(static_cast<double>(least));
   json["max"] = number(static_cast<double>(largest));
   json["known_area_km2"] = map.known_area_m2 / 1e6;
-  if (map.product == study::Product::covered || map.product == study::Product::jam_loss) {
-    json["area_km2"] = map.covered_area_m2 / 1e6;
-  }
+  if (study::info(map.product).area_class >= 0) json["area_km2"] = map.class_area_m2 / 1e6;
   return json;
 }
 
 void printRow(const study::CoverageMap& map, const std::string& file) {
   const std::string time = map.time_s ? fmt::format("{}", *map.time_s) : "all";
-  const bool is_area = map.product == study::Product::covered || map.product == study::Product::jam_loss;
-  const std::string area = !is_area
-                               ? ""
-                               : fmt::format("{:.1f} km2, {:.1f} %", map.covered_area_m2 / 1e6,
-                                             100 * map.covered_area_m2 / std::max(map.known_area_m2, 1.0));
+  const bool is_area = study::info(map.product).area_class >= 0;
+  const std::string area = !is_area ? ""
+                                    : fmt::format("{:.1f} km2, {:.1f} %", map.class_area_m2 / 1e6,
+                                                  100 * map.class_area_m2 / std::max(map.known_area_m2, 1.0));
   print("  {:<16} {:<26} {:>8}  {:<24} {}\n", study::info(map.product).name,
         map.height ? study::describe(*map.height) : "", time, area, file);
 }

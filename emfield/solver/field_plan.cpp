@@ -10,11 +10,16 @@ namespace emscape::emfield {
 using scenario::Emitter;
 
 FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
-                   const std::vector<std::string>& quantities) {
+                   const std::vector<std::string>& quantities, bool also_per_emitter) {
   FieldPlan plan;
   plan.scenario = std::move(scenario);
   plan.warnings = checkModels(*plan.scenario);
   plan.channels = channelsOf(*plan.scenario, quantities);
+  if (also_per_emitter) {
+    const std::vector<Channel> each =
+        channelsOf(*plan.scenario, quantities, scenario::CombineMode::per_emitter);
+    plan.channels.insert(plan.channels.end(), each.begin(), each.end());
+  }
   for (const Channel& channel : plan.channels)
     plan.channel_plans.push_back(channelPlan(channel, *plan.scenario));
   const std::vector<Emitter>& emitters = plan.scenario->emitters;

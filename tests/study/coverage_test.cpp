@@ -93,7 +93,8 @@ TEST(Coverage, APixelIsThePathOfProfileThere) {
 TEST(Coverage, ProductsFollowFromTheValues) {
   const std::vector<double> times_s{70, 80, 90};
   CoverageRequest request{{kLow},
-                          {Product::value, Product::covered, Product::count, Product::best, Product::jam_loss,
+                          {Product::value, Product::covered, Product::count, Product::redundancy,
+                           Product::best, Product::max_range, Product::jam_loss, Product::burn_through,
                            Product::fraction, Product::first_detection},
                           scenario::Quantity::detection_probability,
                           0.5,
@@ -107,12 +108,27 @@ TEST(Coverage, ProductsFollowFromTheValues) {
     const CoverageMap& count = coverage.find(Product::count, kLow, time_s);
     const CoverageMap& best = coverage.find(Product::best, kLow, time_s);
     const CoverageMap& lost = coverage.find(Product::jam_loss, kLow, time_s);
+    const CoverageMap& spare = coverage.find(Product::redundancy, kLow, time_s);
+    const CoverageMap& range = coverage.find(Product::max_range, kLow, time_s);
+    const CoverageMap& burnt = coverage.find(Product::burn_through, kLow, time_s);
+    const scenario::Snapshot snapshot =
+        scenario::snapshotAt(coverage.scenario, coverage.terrain.get(), time_s);
     double area_m2 = 0;
     for (std::size_t p = 0; p < coverage.grid.pixels(); ++p) {
       ASSERT_EQ(std::isnan(value.values[p]), std::isnan(coverage.grid.places[p].latitude_deg));
       if (std::isnan(value.values[p])) continue;
       ASSERT_EQ(covered.values[p], value.values[p] >= 0.5f ? 1 : 0);
       ASSERT_EQ(best.values[p] >= 0, count.values[p] > 0);
+      ASSERT_EQ(burnt.values[p], covered.values[p] == 1 ? 2 : lost.values[p]);
+      ASSERT_EQ(spare.values[p], std::max(count.values[p] - 1, 0.0f));
+      ASSERT_EQ(std::isnan(range.values[p]), count.values[p] == 0);
+      if (count.values[p] == 1) {
+        const auto [latitude_deg, longitude_deg] = coverage.grid.places[p];
+        const GeodeticPosition& radar = snapshot.emitters[static_cast<int>(best.values[p])].position;
+        const double distance_m =
+            geodesicInverse(radar.latitude_deg, radar.longitude_deg, latitude_deg, longitude_deg).distance_m;
+        ASSERT_NEAR(static_cast<double>(range.values[p]), distance_m, 0.1);
+      }
       if (count.values[p] > 0) {
         ASSERT_EQ(covered.values[p], 1) << "two radars detect more than one";
       }
@@ -122,9 +138,9 @@ TEST(Coverage, ProductsFollowFromTheValues) {
         ++times_covered[p];
       }
     }
-    EXPECT_NEAR(covered.covered_area_m2, area_m2, 1);
-    EXPECT_GT(covered.covered_area_m2, 0);
-    lost_m2 = lost.covered_area_m2;
+    EXPECT_NEAR(covered.class_area_m2, area_m2, 1);
+    EXPECT_GT(covered.class_area_m2, 0);
+    lost_m2 = lost.class_area_m2;
   }
   EXPECT_GT(lost_m2, 0) << "the jammer is above the ridge";
   const CoverageMap& first = coverage.find(Product::first_detection, kLow);

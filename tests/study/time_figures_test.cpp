@@ -30,6 +30,18 @@ TEST(TimeFigures, AreThoseOfTheRow) {
   EXPECT_EQ(of(Product::longest_gap, 2), 2);
   EXPECT_EQ(of(Product::mean_gap, 2), 1.5f);
   EXPECT_EQ(of(Product::longest_gap, 3), 7);
+  EXPECT_EQ(of(Product::gaps, 0), 1);
+  EXPECT_EQ(of(Product::gaps, 1), 0);
+  EXPECT_EQ(of(Product::gaps, 2), 2);
+  EXPECT_EQ(of(Product::gaps, 3), 1);
+  EXPECT_TRUE(std::isnan(of(Product::revisit, 0)));
+  EXPECT_TRUE(std::isnan(of(Product::revisit, 1)));
+  EXPECT_EQ(of(Product::revisit, 2), 3) << "from 2 to 5";
+  EXPECT_EQ(of(Product::revisit, 3), 8) << "from 0 to 8";
+  EXPECT_EQ(of(Product::response, 0), 4) << "half the only gap";
+  EXPECT_EQ(of(Product::response, 1), 0);
+  EXPECT_EQ(of(Product::response, 2), (2 * 2 + 1 * 1) / 16.0f);
+  EXPECT_EQ(of(Product::response, 3), 7 * 7 / 16.0f);
   EXPECT_EQ(of(Product::fraction, 4), 0) << "the last time stands for no interval";
   EXPECT_EQ(of(Product::first_detection, 4), 8);
 }

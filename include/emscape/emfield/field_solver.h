@@ -30,9 +30,15 @@ struct Channel {
 /// @throws Error (bad_input)
 std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
                                 const std::vector<std::string>& quantities);
+/// The same with another combination than the scenario's.
+std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
+                                const std::vector<std::string>& quantities, scenario::CombineMode combine);
 
 struct FieldOptions {
   std::vector<std::string> quantities;  ///< empty: the scenario's
+  /// True: after the channels of the scenario's combination come those of each emitter, from the same
+  /// geometry.
+  bool also_per_emitter = false;
   bool allow_missing_terrain =
       false;  ///< true: columns over holes, and those that are seen only across one, are masked
   Backend backend = Backend::cpu;  ///< automatic: the GPU if there is one with the memory, else the CPU

@@ -29,10 +29,10 @@ struct CoverageMap {
   std::optional<MapHeight> height;  ///< none: for all heights
   std::optional<double> time_s;     ///< none: over all times
   std::string unit;
-  std::string description;     ///< "detection_probability at 150 m above ground"
-  std::vector<float> values;   ///< pixels in the grid's order; NaN: left out, below ground or unknown
-  double known_area_m2 = 0;    ///< of the pixels with a value
-  double covered_area_m2 = 0;  ///< of product covered: where it is 1; of jam_loss: lost; else 0
+  std::string description;    ///< "detection_probability at 150 m above ground"
+  std::vector<float> values;  ///< pixels in the grid's order; NaN: left out, below ground or unknown
+  double known_area_m2 = 0;   ///< of the pixels with a value
+  double class_area_m2 = 0;   ///< of ProductInfo::area_class; 0 for products without one
 };
 
 /// The default threshold: 0.5 of a probability, 0 dB of a margin or ratio over a required level; none for
