@@ -53,6 +53,7 @@ void addProfile(CLI::App& app, const GlobalOptions& global, Action& action);
 void addLink(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCoverage(CLI::App& app, const GlobalOptions& global, Action& action);
 void addVertical(CLI::App& app, const GlobalOptions& global, Action& action);
+void addExposure(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCheck(CLI::App& app, const GlobalOptions& global, Action& action);
 void addBench(CLI::App& app, const GlobalOptions& global, Action& action);
 

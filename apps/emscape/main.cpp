@@ -125,6 +125,7 @@ int emscapeMain(int argc, char** argv) {
   addLink(app, global, action);
   addCoverage(app, global, action);
   addVertical(app, global, action);
+  addExposure(app, global, action);
   addCheck(app, global, action);
   addBench(app, global, action);
 

@@ -84,6 +84,7 @@
 #include "emscape/scenario/waveform.h"
 #include "emscape/study/area.h"
 #include "emscape/study/coverage.h"
+#include "emscape/study/exposure.h"
 #include "emscape/study/geotiff.h"
 #include "emscape/study/html_report.h"
 #include "emscape/study/map_grid.h"
