@@ -66,15 +66,43 @@ void checkRequest(const scenario::Scenario& scenario, const CoverageRequest& req
   }
 }
 
+MapKind kindOf(const ProductInfo& product, Quantity quantity, const std::string& unit) {
+  if (product.product == Product::best) return MapKind::category;
+  if (!product.classes.empty()) return MapKind::classes;
+  if (product.categorical) return MapKind::count;
+  if (!unit.empty() || product.product == Product::gaps) return MapKind::level;
+  const bool is_probability =
+      product.product == Product::value && quantity == Quantity::detection_probability;
+  return is_probability ? MapKind::probability : MapKind::part;
+}
+
+/// Colours of a product's classes: indices of render::categoryColor().
+std::vector<int> classColors(Product product) {
+  constexpr int kGreen = 2, kVermilion = 5;
+  if (product == Product::covered) return {kGreen, kGreen};
+  if (product == Product::jam_loss) return {kVermilion, kVermilion};
+  if (product == Product::burn_through) return {kVermilion, kVermilion, kGreen};
+  return {};
+}
+
 /// @param height  none: for all heights
-CoverageMap emptyMap(const CoverageRequest& request, Product product,
+CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& request, Product product,
                      const std::optional<MapHeight>& height) {
   const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
   const ProductInfo& of_product = info(product);
   CoverageMap map;
   map.product = product;
+  map.name = of_product.name;
+  map.title = product == Product::value ? quantity.name : of_product.name;
   map.height = height;
+  map.labels.assign(of_product.classes.begin(), of_product.classes.end());
+  map.colors = classColors(product);
+  map.area_class = of_product.area_class;
   map.unit = of_product.unit != nullptr ? of_product.unit : quantity.unit;
+  map.kind = kindOf(of_product, request.quantity, map.unit);
+  if (product == Product::best) {
+    for (const scenario::Emitter& emitter : scenario.emitters) map.labels.push_back(emitter.name);
+  }
   map.description = product == Product::value
                         ? quantity.name
                         : fmt::format("{} ({} >= {})", of_product.name, quantity.name, request.threshold);
@@ -89,13 +117,9 @@ void fill(CoverageMap& map, const MapGrid& grid, const Value& valueAtPixel) {
   parallelFor(static_cast<int>(grid.pixels()), 1 << 14, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) map.values[p] = valueAtPixel(static_cast<std::size_t>(p));
   });
-  const int area_class = info(map.product).area_class;
-  for (std::size_t p = 0; p < grid.pixels(); ++p) {
-    if (std::isnan(map.values[p])) continue;
-    const auto area_m2 = static_cast<double>(grid.areas_m2[p]);
-    map.known_area_m2 += area_m2;
-    if (area_class >= 0 && map.values[p] == static_cast<float>(area_class)) map.class_area_m2 += area_m2;
-  }
+  const MapSummary summary = summaryOf(grid, map);
+  map.known_area_m2 = summary.known_area_m2;
+  map.class_area_m2 = summary.class_area_m2;
 }
 
 /// The maps of one reference of height.
@@ -153,7 +177,7 @@ class SurfaceMaps {
       }
       for (const Product product : request_.products) {
         if (info(product).over_time || !info(product).at_heights) continue;
-        CoverageMap map = emptyMap(request_, product, heights_[k]);
+        CoverageMap map = emptyMap(*scenario_, request_, product, heights_[k]);
         map.time_s = time_s;
         fill(map, grid_, [&](std::size_t p) { return valueOf(product, values, k, p); });
         take(std::move(map));
@@ -167,7 +191,7 @@ class SurfaceMaps {
       for (const Product product : request_.products) {
         if (!info(product).over_time) continue;
         const std::shared_ptr<const volume::DenseVolume> last = solver_->volumes().front().host();
-        CoverageMap map = emptyMap(request_, product, heights_[k]);
+        CoverageMap map = emptyMap(*scenario_, request_, product, heights_[k]);
         fill(map, grid_, [&](std::size_t p) {
           return std::isnan(valueAt(*last, k, p)) ? NAN : figures_[k].figure(product, p);
         });
@@ -311,7 +335,7 @@ std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::S
     if (progress) progress("maps", done / steps);
     const std::vector<float> heights_m =
         leastHeights(at_targets, terrain, grid, request.threshold, time_s, options);
-    CoverageMap map = emptyMap(request, Product::min_height, std::nullopt);
+    CoverageMap map = emptyMap(*scenario, request, Product::min_height, std::nullopt);
     map.time_s = time_s;
     fill(map, grid, [&](std::size_t p) { return heights_m[p]; });
     take(std::move(map));

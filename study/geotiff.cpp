@@ -1,16 +1,11 @@
 #include "emscape/study/geotiff.h"
 
-#include <cpl_conv.h>
 #include <fmt/format.h>
-#include <gdal_priv.h>
 
 #include <cmath>
-#include <memory>
-#include <mutex>
 
 #include "base/whole_file.h"
-#include "emscape/base/error.h"
-#include "scenario/terrain/gdal_messages.h"
+#include "study/gdal_support.h"
 
 namespace emscape::study {
 namespace {
@@ -18,25 +13,8 @@ namespace {
 constexpr int kNoIndex = 255;
 constexpr int kMostIndices = 255;
 
-[[noreturn]] void fail(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
-  throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
-}
-
-struct Close {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<GDALDataset, Close>;
-
-GDALDriver* driverOf(const char* name) {
-  static std::once_flag once;
-  std::call_once(once, [] { GDALAllRegister(); });
-  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(name);
-  if (driver == nullptr) throw Error(ErrorCode::other, fmt::format("GDAL has no driver '{}'", name));
-  return driver;
-}
-
 /// Colours of counts and indices: none for 0, then hues that differ.
-GDALColorTable coloursOf(Product product, int count) {
+GDALColorTable coloursOf(MapKind kind, int count) {
   // Okabe and Ito's colours for colour-blind readers.
   static constexpr GDALColorEntry kColours[] = {{230, 159, 0, 255},  {86, 180, 233, 255}, {0, 158, 115, 255},
                                                 {240, 228, 66, 255}, {0, 114, 178, 255},  {213, 94, 0, 255},
@@ -44,8 +22,8 @@ GDALColorTable coloursOf(Product product, int count) {
   GDALColorTable table;
   const GDALColorEntry none{0, 0, 0, 0};
   for (int i = 0; i < count; ++i) {
-    const bool is_none = product != Product::best && i == 0;
-    const int hue = product == Product::best ? i : i - 1;
+    const bool is_none = kind != MapKind::category && i == 0;
+    const int hue = kind == MapKind::category ? i : i - 1;
     table.SetColorEntry(i, is_none ? &none : &kColours[hue % 7]);
   }
   table.SetColorEntry(kNoIndex, &none);
@@ -54,25 +32,16 @@ GDALColorTable coloursOf(Product product, int count) {
 
 }  // namespace
 
-void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const CoverageMap& map,
-                  const std::vector<std::string>& labels,
+void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const Map& map,
                   const std::vector<std::pair<std::string, std::string>>& metadata) {
-  const bool is_index = info(map.product).categorical;
-  GDALDriver* const memory = driverOf("MEM");
+  const bool is_index = isWhole(map.kind);
   GDALDriver* const cog = driverOf("COG");
   const scenario::GdalMessages messages;
-  const Dataset dataset(
-      memory->Create("", grid.width, grid.height, 1, is_index ? GDT_Byte : GDT_Float32, nullptr));
-  if (dataset == nullptr) fail(messages, file);
-  double transform[6] = {grid.left_m, grid.cell_m, 0, grid.top_m, 0, -grid.cell_m};
-  dataset->SetGeoTransform(transform);
-  dataset->SetProjection(grid.wkt.c_str());
+  const Dataset dataset = memoryRaster(grid, is_index ? GDT_Byte : GDT_Float32, file);
   dataset->SetMetadataItem("AREA_OR_POINT", "Point");
   for (const auto& [name, value] : metadata) dataset->SetMetadataItem(name.c_str(), value.c_str());
-  std::vector<std::string> names = labels;
-  if (names.empty()) names.assign(info(map.product).classes.begin(), info(map.product).classes.end());
-  for (std::size_t n = 0; is_index && n < names.size(); ++n) {
-    dataset->SetMetadataItem(fmt::format("EMSCAPE_LABEL_{}", n).c_str(), names[n].c_str());
+  for (std::size_t n = 0; is_index && n < map.labels.size(); ++n) {
+    dataset->SetMetadataItem(fmt::format("EMSCAPE_LABEL_{}", n).c_str(), map.labels[n].c_str());
   }
   GDALRasterBand* const band = dataset->GetRasterBand(1);
   band->SetDescription(map.description.c_str());
@@ -87,7 +56,7 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
       if (!is_none) largest = std::max(largest, static_cast<int>(value));
     }
     band->SetNoDataValue(kNoIndex);
-    GDALColorTable colours = coloursOf(map.product, largest + 1);
+    GDALColorTable colours = coloursOf(map.kind, largest + 1);
     band->SetColorTable(&colours);
     written = band->RasterIO(GF_Write, 0, 0, grid.width, grid.height, bytes.data(), grid.width, grid.height,
                              GDT_Byte, 0, 0, nullptr);
@@ -96,7 +65,7 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
     written = band->RasterIO(GF_Write, 0, 0, grid.width, grid.height, const_cast<float*>(map.values.data()),
                              grid.width, grid.height, GDT_Float32, 0, 0, nullptr);
   }
-  if (written != CE_None) fail(messages, file);
+  if (written != CE_None) failWriting(messages, file);
 
   const std::filesystem::path temporary = temporaryFor(file);
   // COG makes its overviews beside the output.
@@ -112,7 +81,7 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
   if (!is_complete || messages.hasFailure()) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
-    fail(messages, file);
+    failWriting(messages, file);
   }
   publish(temporary, file);
 }

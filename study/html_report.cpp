@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "base/whole_file.h"
+#include "study/xml_text.h"
 
 namespace emscape::study {
 namespace {
@@ -22,29 +23,6 @@ figure { margin: 1.5em 0; } figure img, figure svg { max-width: 100%; height: au
 figcaption { color: #57606a; }
 @media print { h2 { break-after: avoid; } figure, table { break-inside: avoid; } }
 )";
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
 
 /// Base 64 of RFC 4648, section 4.
 std::string base64(std::string_view bytes) {
@@ -75,31 +53,31 @@ HtmlReport::HtmlReport(const std::string& title, const std::string& subtitle)
 
 void HtmlReport::section(const std::string& title) {
   sections_.push_back(title);
-  body_ += fmt::format("<h2 id=\"section{}\">{}</h2>\n", sections_.size(), escaped(title));
+  body_ += fmt::format("<h2 id=\"section{}\">{}</h2>\n", sections_.size(), escapedXml(title));
 }
 
 void HtmlReport::paragraph(const std::string& text) {
-  body_ += "<p>" + escaped(text) + "</p>\n";
+  body_ += "<p>" + escapedXml(text) + "</p>\n";
 }
 
 void HtmlReport::facts(const std::vector<std::pair<std::string, std::string>>& facts) {
   body_ += "<table>\n";
   for (const auto& [name, value] : facts) {
-    body_ += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(name), escaped(value));
+    body_ += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escapedXml(name), escapedXml(value));
   }
   body_ += "</table>\n";
 }
 
 void HtmlReport::table(const ReportTable& table) {
   body_ += "<table>\n";
-  if (!table.caption.empty()) body_ += "<caption>" + escaped(table.caption) + "</caption>\n";
+  if (!table.caption.empty()) body_ += "<caption>" + escapedXml(table.caption) + "</caption>\n";
   body_ += "<thead><tr>";
-  for (const std::string& column : table.columns) body_ += "<th>" + escaped(column) + "</th>";
+  for (const std::string& column : table.columns) body_ += "<th>" + escapedXml(column) + "</th>";
   body_ += "</tr></thead>\n<tbody>\n";
   for (const std::vector<std::string>& row : table.rows) {
     body_ += "<tr>";
     for (const std::string& cell : row) {
-      body_ += fmt::format("<td{}>{}</td>", isNumber(cell) ? " class=\"number\"" : "", escaped(cell));
+      body_ += fmt::format("<td{}>{}</td>", isNumber(cell) ? " class=\"number\"" : "", escapedXml(cell));
     }
     body_ += "</tr>\n";
   }
@@ -110,25 +88,25 @@ void HtmlReport::picture(const render::Image8& image, const std::string& caption
   body_ += fmt::format(
       "<figure><img alt=\"{0}\" width=\"{1}\" "
       "src=\"data:image/png;base64,{2}\"><figcaption>{0}</figcaption></figure>\n",
-      escaped(caption), image.size.width, base64(render::encodePng(image)));
+      escapedXml(caption), image.size.width, base64(render::encodePng(image)));
 }
 
 void HtmlReport::drawing(const std::string& svg, const std::string& caption) {
   const std::size_t begin = svg.find("<svg");  // a document in HTML has no XML declaration
   body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
-                       begin == std::string::npos ? svg : svg.substr(begin), escaped(caption));
+                       begin == std::string::npos ? svg : svg.substr(begin), escapedXml(caption));
 }
 
 std::string HtmlReport::html() const {
   std::string contents;
   for (std::size_t s = 0; s < sections_.size(); ++s) {
-    contents += fmt::format("<li><a href=\"#section{}\">{}</a></li>\n", s + 1, escaped(sections_[s]));
+    contents += fmt::format("<li><a href=\"#section{}\">{}</a></li>\n", s + 1, escapedXml(sections_[s]));
   }
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{0}</title>\n"
       "<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n<p class=\"subtitle\">{2}</p>\n"
       "<ul>\n{3}</ul>\n{4}</body>\n</html>\n",
-      escaped(title_), kStyle, escaped(subtitle_), contents, body_);
+      escapedXml(title_), kStyle, escapedXml(subtitle_), contents, body_);
 }
 
 void HtmlReport::write(const std::filesystem::path& file) const {

@@ -12,7 +12,7 @@
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
-#include "scenario/terrain/gdal_messages.h"
+#include "study/gdal_support.h"
 
 namespace emscape::study {
 namespace {
@@ -20,14 +20,6 @@ namespace {
 constexpr double kMaxPixels = 1 << 26;
 /// Pixels between places that are transformed exactly; those between are on a bilinear patch.
 constexpr int kLattice = 8;
-
-/// Longitudes and latitudes of WGS84, in that order.
-OGRSpatialReference wgs84() {
-  OGRSpatialReference reference;
-  reference.importFromEPSG(4326);
-  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return reference;
-}
 
 struct Middle {
   double latitude_deg, longitude_deg;
@@ -205,10 +197,8 @@ void leaveOut(const MapArea& area, MapGrid& grid) {
 }  // namespace
 
 long long MapGrid::pixelAt(double latitude_deg, double longitude_deg) const {
-  const OGRSpatialReference earth = wgs84();
-  OGRSpatialReference reference;
-  reference.importFromWkt(wkt.c_str());
-  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const OGRSpatialReference earth = wgs84Reference();
+  const OGRSpatialReference reference = study::referenceOf(*this);
   std::vector<double> x{longitude_deg}, y{latitude_deg};
   if (!Projection(earth, reference)(x, y)) return -1;
   const double column = std::floor((x[0] - left_m) / cell_m), row = std::floor((top_m - y[0]) / cell_m);
@@ -222,7 +212,7 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   }
   MapGrid grid;
   grid.cell_m = cell_m;
-  const OGRSpatialReference earth = wgs84();
+  const OGRSpatialReference earth = wgs84Reference();
   const OGRSpatialReference reference = referenceOf(crs, middleOf(area), grid.crs);
   grid.wkt = wkt2Of(reference);
   std::vector<double> x, y;

@@ -7,9 +7,9 @@
 
 #include "emscape/base/parallel.h"
 #include "emscape/playback/scene.h"
-#include "emscape/render/annotate/legend.h"
 #include "render/annotate/canvas.h"
 #include "render/annotate/overlay_parts.h"
+#include "study/map_colors.h"
 
 namespace emscape::study {
 namespace {
@@ -22,58 +22,6 @@ using render::Rgb;
 using render::Weight;
 
 constexpr double kOpacity = 0.72;  ///< of the colours over the ground
-constexpr float kNoPart = 0.005f;  ///< probabilities and fractions below it leave the ground as it is
-
-/// True for probabilities and fractions: 0..1.
-bool isPart(const CoverageMap& map) {
-  return map.unit.empty() && map.product != Product::gaps;
-}
-
-/// Index of a colour of render::categoryColor().
-int categoryOf(Product product, int value) {
-  constexpr int kGreen = 2, kVermilion = 5;
-  if (product == Product::covered) return kGreen;
-  if (product == Product::burn_through) return value == 2 ? kGreen : kVermilion;
-  return product == Product::jam_loss ? kVermilion : value;
-}
-
-/// Colours and legend of a map.
-render::Legend legendOf(const CoverageMap& map, const std::vector<std::string>& labels) {
-  const ProductInfo& product = info(map.product);
-  render::Legend legend;
-  std::string name = product.name;
-  if (map.product == Product::value) name = map.description.substr(0, map.description.find(" at "));
-  legend.quantity = render::quantityTitle(name, map.unit);
-  legend.unit = render::unitText(map.unit);
-  float least = INFINITY, largest = -INFINITY;
-  for (const float value : map.values) {
-    if (std::isnan(value)) continue;
-    least = std::min(least, value);
-    largest = std::max(largest, value);
-  }
-  if (product.categorical) {
-    legend.function.categorical = true;
-    const int first = map.product == Product::best ? 0 : 1;
-    const int last = std::min(std::isfinite(largest) ? static_cast<int>(largest) : 0, first + 15);
-    for (int n = first; n <= last; ++n) {
-      const bool is_named = map.product == Product::best && n < static_cast<int>(labels.size());
-      const bool is_class = n < static_cast<int>(product.classes.size());
-      legend.categories.push_back({categoryOf(map.product, n), is_named   ? labels[n]
-                                                               : is_class ? product.classes[n]
-                                                                          : std::to_string(n)});
-    }
-    return legend;
-  }
-  if (!(least <= largest)) least = largest = 0;
-  const bool is_part = isPart(map);
-  double low = is_part ? 0 : static_cast<double>(least), high = is_part ? 1 : static_cast<double>(largest);
-  if (high - low < 1e-6) high = low + 1;
-  for (const render::ColorMap::Point& point : render::colorMap("viridis").points) {
-    legend.function.colors.push_back({low + point.at * (high - low), point.color});
-  }
-  legend.function.opacities = {{low, 0}, {high, 0}};
-  return legend;
-}
 
 /// Lambert's shading, from the north-west, 45 degrees high. 0..1; 0.7 where the slope is unknown.
 std::vector<float> shadesOf(const MapGrid& grid, const std::vector<float>& ground_msl_m) {
@@ -96,11 +44,11 @@ std::vector<float> shadesOf(const MapGrid& grid, const std::vector<float>& groun
 
 class MapPicture {
  public:
-  MapPicture(const MapGrid& grid, const CoverageMap& map, const MapPictureOptions& options)
+  MapPicture(const MapGrid& grid, const Map& map, const MapPictureOptions& options)
       : grid_(grid),
         map_(map),
         options_(options),
-        legend_(legendOf(map, options.labels)),
+        legend_(legendOf(map)),
         style_({options.width, options.width * 3 / 4}, render::Theme::light),
         left_(84 * style_.unit),
         top_(96 * style_.unit) {
@@ -145,13 +93,8 @@ class MapPicture {
     const bool is_left_out = std::isnan(grid_.places[p].latitude_deg);
     Rgb color{static_cast<float>(shade), static_cast<float>(shade), static_cast<float>(shade)};
     if (is_left_out) color = {1, 1, 1};
-    const int none = map_.product == Product::best ? -1 : 0;
-    const bool is_index = info(map_.product).categorical;
-    const bool is_blank =
-        std::isnan(value) || (is_index ? static_cast<int>(value) == none : isPart(map_) && value < kNoPart);
-    if (!is_blank) {
-      const Rgb over = is_index ? render::categoryColor(categoryOf(map_.product, static_cast<int>(value)))
-                                : legend_.function.color(static_cast<double>(value));
+    if (const std::optional<Rgb> over_ground = colorOf(map_, legend_, value)) {
+      const Rgb over = *over_ground;
       // Multiplied by the shade, so that hills show through.
       const auto mix = [&](float ground, float colour) {
         return static_cast<float>((1 - kOpacity) * static_cast<double>(ground) +
@@ -208,7 +151,7 @@ class MapPicture {
   }
 
   const MapGrid& grid_;
-  const CoverageMap& map_;
+  const Map& map_;
   const MapPictureOptions& options_;
   render::Legend legend_;
   render::Style style_;
@@ -243,7 +186,7 @@ std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrai
   return heights;
 }
 
-render::Image8 drawMap(const MapGrid& grid, const CoverageMap& map, const MapPictureOptions& options) {
+render::Image8 drawMap(const MapGrid& grid, const Map& map, const MapPictureOptions& options) {
   return MapPicture(grid, map, options).draw();
 }
 

@@ -5,20 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/target.h"
-#include "apps/emscape/version.h"
-#include "base/whole_file.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/study/geotiff.h"
-#include "emscape/study/map_picture.h"
+#include "emscape/study/map_folder.h"
 
 namespace emscape::app {
 namespace {
@@ -38,49 +33,16 @@ struct CoverageCommand {
   std::vector<std::string> formats{"cog", "png"};
 };
 
-std::string timeName(double time_s) {
-  return fmt::format("t{}s", time_s);
-}
-
-/// PRODUCT_HEIGHT[_TIME]
-std::string fileNameOf(const study::CoverageMap& map) {
-  std::string name = study::info(map.product).name;
-  if (map.height) name += "_" + study::nameOf(*map.height);
-  if (map.time_s) name += "_" + timeName(*map.time_s);
-  return name;
-}
-
-Json toJson(const study::CoverageMap& map, const std::vector<std::string>& files) {
-  Json json{{"product", study::info(map.product).name},
-            {"files", files},
-            {"description", map.description},
-            {"unit", map.unit}};
-  if (map.height) {
-    const bool above_ground = map.height->reference == emfield::HeightReference::ground;
-    json[above_ground ? "height_agl_m" : "height_msl_m"] = map.height->metres;
-  }
-  if (map.time_s) json["time_s"] = *map.time_s;
-  float least = INFINITY, largest = -INFINITY;
-  for (const float value : map.values) {
-    if (std::isnan(value)) continue;
-    least = std::min(least, value);
-    largest = std::max(largest, value);
-  }
-  json["min"] = number(static_cast<double>(least));
-  json["max"] = number(static_cast<double>(largest));
-  json["known_area_km2"] = map.known_area_m2 / 1e6;
-  if (study::info(map.product).area_class >= 0) json["area_km2"] = map.class_area_m2 / 1e6;
-  return json;
-}
-
-void printRow(const study::CoverageMap& map, const std::string& file) {
+void printRow(const study::MapRecord& record) {
+  const study::Map& map = record.map;
+  const study::MapSummary& summary = record.summary;
   const std::string time = map.time_s ? fmt::format("{}", *map.time_s) : "all";
-  const bool is_area = study::info(map.product).area_class >= 0;
-  const std::string area = !is_area ? ""
-                                    : fmt::format("{:.1f} km2, {:.1f} %", map.class_area_m2 / 1e6,
-                                                  100 * map.class_area_m2 / std::max(map.known_area_m2, 1.0));
-  print("  {:<16} {:<26} {:>8}  {:<24} {}\n", study::info(map.product).name,
-        map.height ? study::describe(*map.height) : "", time, area, file);
+  const std::string area =
+      map.area_class < 0 ? ""
+                         : fmt::format("{:.1f} km2, {:.1f} %", summary.class_area_m2 / 1e6,
+                                       100 * summary.class_area_m2 / std::max(summary.known_area_m2, 1.0));
+  print("  {:<16} {:<26} {:>8}  {:<24} {}\n", map.name, map.height ? study::describe(*map.height) : "", time,
+        area, record.files.empty() ? "" : record.files.front());
 }
 
 int coverage(const CoverageCommand& command, const GlobalOptions& global) {
@@ -104,84 +66,44 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
       command.area.empty() ? study::areaOf(scenario->region) : study::parseArea(command.area);
   const scenario::Region& region = scenario->region;
   const double usual_cell_m = std::max(1.0, std::round(region.size_m.x / region.dims.x));
-  const study::MapGrid grid =
-      study::makeMapGrid(area, std::isnan(command.cell_m) ? usual_cell_m : command.cell_m, command.crs);
+  const auto grid = std::make_shared<const study::MapGrid>(
+      study::makeMapGrid(area, std::isnan(command.cell_m) ? usual_cell_m : command.cell_m, command.crs));
   const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
 
-  const std::filesystem::path folder = command.folder, maps = folder / "maps";
-  std::error_code failed;
-  std::filesystem::create_directories(maps, failed);
-  if (failed) {
-    throw Error(ErrorCode::other,
-                fmt::format("{}: the folder cannot be made ({})", maps.string(), failed.message()));
-  }
-  const FolderLock lock(folder, ".coverage.lock");
-
-  Json report{{"emscape", kVersion},          {"scenario", scenario->name},
-              {"file", scenario->file},       {"scenario_hash", scenario->hash},
-              {"quantity", command.quantity}, {"threshold", request.threshold},
-              {"radar_look", "target"},       {"crs", grid.crs},
-              {"cell_m", grid.cell_m},        {"pixels", {grid.width, grid.height}},
-              {"area_weights", "ellipsoid"}};
-  std::vector<std::string> emitters;
-  for (const scenario::Emitter& emitter : scenario->emitters) emitters.push_back(emitter.name);
-  report["emitters"] = emitters;
-  report["maps"] = Json::array();
+  study::MapFolder folder(command.folder,
+                          {"coverage",
+                           "Coverage of " + scenario->name,
+                           {scenario},
+                           terrain,
+                           grid,
+                           request.quantity,
+                           request.threshold,
+                           request.times_s,
+                           request.heights},
+                          command.formats);
   if (!global.json) {
-    print("Coverage of {}: {} x {} pixels of {} m in {}, {} >= {}\n", scenario->name, grid.width, grid.height,
-          grid.cell_m, grid.crs, command.quantity, request.threshold);
+    print("Coverage of {}: {} x {} pixels of {} m in {}, {} >= {}\n", scenario->name, grid->width,
+          grid->height, grid->cell_m, grid->crs, command.quantity, request.threshold);
   }
-  const auto has = [&](const char* format) {
-    return std::find(command.formats.begin(), command.formats.end(), format) != command.formats.end();
-  };
-  study::MapPictureOptions picture;
-  picture.labels = emitters;
-  if (has("png") && terrain != nullptr) picture.ground_msl_m = study::groundOf(grid, *terrain);
-  const auto take = [&](study::CoverageMap map) {
+  const auto take = [&](const study::CoverageMap& map) {
     stopIfInterrupted();
-    const std::string name = fileNameOf(map);
-    std::vector<std::string> files;
-    std::vector<std::pair<std::string, std::string>> metadata{
-        {"EMSCAPE_SCENARIO", scenario->name},
-        {"EMSCAPE_SCENARIO_HASH", scenario->hash},
-        {"EMSCAPE_PRODUCT", study::info(map.product).name},
-        {"EMSCAPE_QUANTITY", command.quantity},
-        {"EMSCAPE_THRESHOLD", fmt::format("{}", request.threshold)},
-        {"EMSCAPE_HEIGHT_DATUM", "EGM96 (EPSG:5773)"},
-        {"EMSCAPE_VERSION", kVersion}};
-    if (map.height) metadata.emplace_back("EMSCAPE_HEIGHT", study::describe(*map.height));
-    if (map.time_s) metadata.emplace_back("EMSCAPE_TIME_S", fmt::format("{}", *map.time_s));
-    if (has("cog")) {
-      files.push_back("maps/" + name + ".tif");
-      study::writeGeoTiff(folder / files.back(), grid, map,
-                          map.product == study::Product::best ? emitters : std::vector<std::string>{},
-                          metadata);
-    }
-    if (has("png")) {
-      files.push_back("maps/" + name + ".png");
-      const double time_s = map.time_s.value_or(request.times_s.front());
-      picture.title = fmt::format("{}: {}", scenario->name, map.description);
-      picture.subtitle = map.time_s
-                             ? fmt::format("t = {} s", time_s)
-                             : fmt::format("t = {} to {} s", request.times_s.front(), request.times_s.back());
-      picture.markers = study::markersOf(scenario::snapshotAt(scenario, terrain.get(), time_s));
-      render::writePng(folder / files.back(), study::drawMap(grid, map, picture));
-    }
-    report["maps"].push_back(toJson(map, files));
-    if (!global.json) printRow(map, files.empty() ? "" : files.front());
+    const study::MapRecord& record = folder.add(map);
+    if (!global.json) printRow(record);
   };
   const ProgressSink show = progressSink(global);
   const std::vector<std::string> warnings = openOnTarget(global, "float", [&](const ComputeTarget& target) {
-    return study::computeCoverage(scenario, terrain, grid, request, target.fieldOptions(), take,
+    return study::computeCoverage(scenario, terrain, *grid, request, target.fieldOptions(), take,
                                   [&](const std::string& step, double fraction) {
                                     stopIfInterrupted();
                                     show(step, fraction);
                                   });
   });
   logWarnings(warnings);
-  report["warnings"] = joinedWarnings(warnings);
-  writeWhole(folder / "report.json", [&](std::ostream& out) { out << report.dump(2) << "\n"; });
-  if (global.json) printJson(report);
+  folder.finish(joinedWarnings(warnings));
+  if (global.json) {
+    printResult(folder.reportJson());
+    finishResult();
+  }
   return 0;
 }
 
@@ -196,6 +118,12 @@ void addCoverage(CLI::App& app, const GlobalOptions& global, Action& action) {
   for (const study::ProductInfo& entry : study::productTable()) {
     products += fmt::format("  {:<16} {}\n", entry.name, entry.description);
   }
+  std::vector<std::string> formats;
+  std::string format_lines;
+  for (const study::MapFormat& format : study::mapFormats()) {
+    formats.emplace_back(format.name);
+    format_lines += fmt::format("  {:<5} {}\n", format.name, format.description);
+  }
   command->footer(fmt::format(R"(
 Each pixel is computed at its centre, on the surface itself, and equals `emscape profile` there. A height above ground follows the
 ground; pixels below ground, without terrain or beyond the area hold no value. Radars look at the target, wherever their scan
@@ -203,7 +131,10 @@ points. A place is covered where the quantity is at or above --threshold.
 
 Products:
 {}
-DIR/maps holds a cloud-optimised GeoTIFF and a picture of each map, DIR/report.json their areas and ranges.
+Formats of --format, in DIR/maps:
+{}
+DIR/report.html shows the maps, their areas, the inputs and the accuracy of the models; report.json holds the same figures,
+study.json the inputs with their hashes.
 
 Examples:
   emscape coverage scenarios/jacksboro.yaml -o out --heights agl:30,150,300
@@ -211,7 +142,7 @@ Examples:
   emscape coverage scenarios/jamming.yaml -o out --products min_height,jam_loss --cell 100 --format png
   emscape coverage scenarios/jacksboro.yaml -o out --times 0:120:5 --products fraction,first_detection,longest_gap
   emscape coverage scenarios/jacksboro.yaml -o out --quantity power_density_dbwm2 --threshold -60 --area 36.3,-84.2,8000)",
-                              products));
+                              products, format_lines));
   auto options = std::make_shared<CoverageCommand>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
@@ -236,8 +167,8 @@ Examples:
   command->add_option(
       "--crs", options->crs,
       "Projection: utm (zone of the area's middle), local (azimuthal equidistant) or EPSG:NUMBER");
-  addListOption(*command, "--format", options->formats, "Files of each map, with commas between them")
-      ->check(CLI::IsMember({"cog", "png"}));
+  addListOption(*command, "--format", options->formats, "Formats, with commas between them; see below")
+      ->check(CLI::IsMember(formats));
   command->callback(
       [options, &global, &action] { action = [options, &global] { return coverage(*options, global); }; });
 }

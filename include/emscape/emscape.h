@@ -87,6 +87,8 @@
 #include "emscape/study/exposure.h"
 #include "emscape/study/geotiff.h"
 #include "emscape/study/html_report.h"
+#include "emscape/study/map.h"
+#include "emscape/study/map_folder.h"
 #include "emscape/study/map_grid.h"
 #include "emscape/study/map_picture.h"
 #include "emscape/study/products.h"

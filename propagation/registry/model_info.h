@@ -26,6 +26,7 @@ struct ModelInfo {
   PropagationModel model = PropagationModel::free_space;
   std::string name;       ///< as in scenario files
   std::string reference;  ///< the publication that the model follows
+  std::string accuracy;   ///< as measured, with the names of the tests; README's table quotes it
   /// Keys of the model's own section in an emitter, and its description; none: no section.
   std::vector<Setting> settings;
   std::string settings_description;

@@ -30,6 +30,7 @@ ModelInfo rowOf(PropagationModel model, const char* reference) {
 
 ModelInfo freeSpaceRow() {
   ModelInfo row = rowOf(PropagationModel::free_space, "ITU-R P.525");
+  row.accuracy = "1e-4 dB from emitter to voxel, on and off the beam's axis (FreeSpaceTable)";
   row.reference_datasets = {"radar/freespace_conversions_derived.csv"};
   row.gases = GasRole::on_request;
   row.explain = [](const PathInputs&, PathColumn&) {
@@ -42,6 +43,7 @@ ModelInfo freeSpaceRow() {
 
 ModelInfo horizonRow() {
   ModelInfo row = rowOf(PropagationModel::horizon, "ITU-R P.834, P.453");
+  row.accuracy = "the shadow's edge within 0.1 m of a walk over the posts of the terrain (FieldAtPosts)";
   row.gases = GasRole::on_request;
   row.casts_shadow = true;
   row.pathWarnings = horizonPathWarnings;
@@ -52,6 +54,7 @@ ModelInfo horizonRow() {
 
 ModelInfo diffractionRow() {
   ModelInfo row = rowOf(PropagationModel::diffraction, "ITU-R P.526-15, section 4.5");
+  row.accuracy = "the field within 0.1 dB of path by path at 99 % of voxels (Excess)";
   row.settings = diffractionSettings();
   row.settings_description = "settings of the model; also used above itm's heights";
   row.limits = listOf(kDiffractionLimits);
@@ -70,6 +73,7 @@ ModelInfo diffractionRow() {
 
 ModelInfo twoRayRow() {
   ModelInfo row = rowOf(PropagationModel::two_ray, "Blake 1980; ITU-R P.526-15, P.527-6");
+  row.accuracy = "the formula, at each voxel";
   row.settings = twoRaySettings();
   row.settings_description = "settings of the model";
   row.limits = listOf(kTwoRayLimits);
@@ -88,6 +92,7 @@ ModelInfo twoRayRow() {
 
 ModelInfo itmRow() {
   ModelInfo row = rowOf(PropagationModel::itm, "NTIA Report 82-100");
+  row.accuracy = "0.0008 dB from NTIA's own program; the field within 1 dB of each path (Excess)";
   row.settings = itmSettings();
   row.settings_description = "settings of the model";
   row.also_uses = {PropagationModel::diffraction};
@@ -103,6 +108,7 @@ ModelInfo itmRow() {
 
 ModelInfo p528Row() {
   ModelInfo row = rowOf(PropagationModel::p528, "ITU-R P.528-5");
+  row.accuracy = "tables within 0.5 dB, more where the model steps at the horizon (Excess)";
   row.settings = p528Settings();
   row.settings_description = "settings of the model";
   row.limits = listOf(kP528Limits);
@@ -121,6 +127,8 @@ ModelInfo p528Row() {
 
 ModelInfo p1812Row() {
   ModelInfo row = rowOf(PropagationModel::p1812, "ITU-R P.1812-8");
+  row.accuracy =
+      "0.0002 dB from ITU-R's validation set; the field within 0.1 dB at 99 % of heights (ExcessModels)";
   row.settings = p1812Settings();
   row.settings_description = "settings of the model";
   row.limits = listOf(kP1812Limits);
@@ -137,6 +145,7 @@ ModelInfo p1812Row() {
 
 ModelInfo p452Row() {
   ModelInfo row = rowOf(PropagationModel::p452, "ITU-R P.452-18");
+  row.accuracy = "0.0003 dB from ITU-R's validation set; the field as p1812";
   row.settings = p452Settings();
   row.settings_description = "settings of the model";
   row.limits = listOf(kP452Limits);

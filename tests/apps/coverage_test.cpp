@@ -45,7 +45,15 @@ TEST(Coverage, WritesMapsPicturesAndAReport) {
                           "out/maps/best_msl1200.5m_t80s.png", "out/maps/best_msl1200.5m_t80s.tif",
                           "out/maps/covered_agl50m_t80s.png", "out/maps/covered_agl50m_t80s.tif",
                           "out/maps/covered_msl1200.5m_t80s.png", "out/maps/covered_msl1200.5m_t80s.tif",
-                          "out/report.json"));
+                          "out/report.html", "out/report.json", "out/study.json"));
+  const std::string html = readFile(folder / "out/report.html");
+  for (const char* text : {"Coverage of jacksboro", "1200.5 m above mean sea level", "data:image/png;base64",
+                           "FieldAtPosts", "emscape profile "}) {
+    EXPECT_THAT(html, HasSubstr(text));
+  }
+  const json study = json::parse(readFile(folder / "out/study.json"));
+  EXPECT_EQ(study["scenarios"][0]["hash"], report["scenario_hash"]);
+  EXPECT_EQ(study["outputs"].size(), 8u);
 }
 
 TEST(Coverage, TwoRunsWriteTheSameBytes) {
@@ -74,6 +82,7 @@ TEST(Coverage, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"--quantity", "power_density_dbwm2"}, 2), HasSubstr("--threshold"));
   EXPECT_THAT(errorOf({"--quantity", "loudness"}, 3), HasSubstr("unknown quantity 'loudness'"));
   EXPECT_THAT(errorOf({"--products", "fraction"}, 2), HasSubstr("two times"));
+  EXPECT_THAT(errorOf({"--format", "shp"}, 2), HasSubstr("shp"));
   EXPECT_THAT(errorOf({"--crs", "EPSG:4326"}, 2), HasSubstr("no projection in metres"));
   EXPECT_THAT(errorOf({"--area", "10,10,5000"}, 3), HasSubstr("terrain is missing"));
   EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";

@@ -6,6 +6,7 @@
 
 #include "emscape/emfield/reference_check.h"
 #include "propagation/registry/model_info.h"
+#include "tests/support/files.h"
 
 namespace emscape::propagation {
 namespace {
@@ -18,6 +19,14 @@ TEST(Registry, HoldsEveryModelOnceInTheOrderOfTheEnumeration) {
     EXPECT_EQ(&modelInfo(models()[i].model), &models()[i]);
     EXPECT_NE(models()[i].explain, nullptr) << models()[i].name;
     EXPECT_FALSE(models()[i].reference.empty()) << models()[i].name;
+  }
+}
+
+TEST(Registry, AccuracyIsThatOfTheTableInReadme) {
+  std::string readme = test::readFile(test::sourceFile("README.md"));
+  readme.erase(std::remove(readme.begin(), readme.end(), '`'), readme.end());
+  for (const ModelInfo& row : models()) {
+    EXPECT_THAT(readme, testing::HasSubstr(" | " + row.accuracy + " | ")) << row.name;
   }
 }
 

@@ -224,7 +224,7 @@ TEST(Coverage, AGeoTiffHoldsTheMapAndSaysWhatItIs) {
       {{kLow}, {Product::value, Product::best}, scenario::Quantity::power_density_dbwm2, -90, {0}});
   for (const CoverageMap& map : coverage.maps) {
     const std::filesystem::path file = folder.path() / "map.tif";
-    writeGeoTiff(file, coverage.grid, map, {"first", "second"}, {{"EMSCAPE_TIME_S", "0"}});
+    writeGeoTiff(file, coverage.grid, map, {{"EMSCAPE_TIME_S", "0"}});
     GDALAllRegister();
     auto* const dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_ReadOnly));
     ASSERT_NE(dataset, nullptr);
@@ -254,7 +254,7 @@ TEST(Coverage, AGeoTiffHoldsTheMapAndSaysWhatItIs) {
     GDALClose(dataset);
   }
   EXPECT_THAT(test::errorOf([&] {
-                writeGeoTiff(folder.path() / "none" / "map.tif", coverage.grid, coverage.maps[0], {}, {});
+                writeGeoTiff(folder.path() / "none" / "map.tif", coverage.grid, coverage.maps[0], {});
               }),
               HasSubstr("none/map.tif"));
 }

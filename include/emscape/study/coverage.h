@@ -10,6 +10,7 @@
 #include "emscape/base/progress.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/terrain.h"
+#include "emscape/study/map.h"
 #include "emscape/study/map_grid.h"
 #include "emscape/study/products.h"
 
@@ -23,16 +24,12 @@ struct CoverageRequest {
   std::vector<double> times_s;  ///< rising
 };
 
-/// One map: a product at a height, at a time or over all.
-struct CoverageMap {
+/// A map of a product, at a height or for all, at a time or over all. Values are NaN in pixels that are left
+/// out, below ground or unknown.
+struct CoverageMap : Map {
   Product product = Product::value;
-  std::optional<MapHeight> height;  ///< none: for all heights
-  std::optional<double> time_s;     ///< none: over all times
-  std::string unit;
-  std::string description;    ///< "detection_probability at 150 m above ground"
-  std::vector<float> values;  ///< pixels in the grid's order; NaN: left out, below ground or unknown
-  double known_area_m2 = 0;   ///< of the pixels with a value
-  double class_area_m2 = 0;   ///< of ProductInfo::area_class; 0 for products without one
+  double known_area_m2 = 0;  ///< of the pixels with a value
+  double class_area_m2 = 0;  ///< of ProductInfo::area_class; 0 for products without one
 };
 
 /// The default threshold: 0.5 of a probability, 0 dB of a margin or ratio over a required level; none for

@@ -6,17 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "emscape/study/coverage.h"
+#include "emscape/study/map.h"
 
 namespace emscape::study {
 
 /// Writes a map beside its final name, then renames it. Counts and indices are bytes (255: no value) with a
 /// colour table and labels in the metadata (EMSCAPE_LABEL_0 ...); all else is Float32 with NaN for no value.
-/// @param labels    names of the indices; empty: those of the product's classes
 /// @param metadata  items to add, EMSCAPE_NAME and value
 /// @throws Error (other) that names the file and GDAL's reason
-void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const CoverageMap& map,
-                  const std::vector<std::string>& labels,
+void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const Map& map,
                   const std::vector<std::pair<std::string, std::string>>& metadata);
 
 }  // namespace emscape::study

@@ -7,7 +7,7 @@
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/image.h"
 #include "emscape/scenario/snapshot.h"
-#include "emscape/study/coverage.h"
+#include "emscape/study/map.h"
 
 namespace emscape::study {
 
@@ -22,7 +22,6 @@ struct MapPictureOptions {
   int width = 1200;  ///< pixels; the height follows from the map
   std::string title, subtitle;
   std::vector<MapMarker> markers;
-  std::vector<std::string> labels;  ///< names of the indices of Product::best
   std::vector<float> ground_msl_m;  ///< of the map's pixels, for shading; empty: none
 };
 
@@ -32,6 +31,6 @@ std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot);
 /// Heights of the ground below the pixels (m); NaN where there is none.
 std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrain);
 
-render::Image8 drawMap(const MapGrid& grid, const CoverageMap& map, const MapPictureOptions& options);
+render::Image8 drawMap(const MapGrid& grid, const Map& map, const MapPictureOptions& options);
 
 }  // namespace emscape::study

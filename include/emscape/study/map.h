@@ -1,0 +1,58 @@
+/// A map: values of the pixels of a grid, and what they are.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/study/map_grid.h"
+#include "emscape/study/products.h"
+
+namespace emscape::study {
+
+enum class MapKind {
+  level,        ///< of a scale, in a unit: dB, m, s
+  difference,   ///< of two levels: the sign has a meaning
+  probability,  ///< 0..1
+  part,         ///< 0..1: fractions
+  count,        ///< 0, 1, 2 ...
+  classes,      ///< 0, 1 ... with a label each; 0: nothing to show
+  category      ///< index of a label; -1: none
+};
+/// Kinds whose values are whole numbers that are not interpolated.
+constexpr bool isWhole(MapKind kind) {
+  return kind == MapKind::classes || kind == MapKind::count || kind == MapKind::category;
+}
+
+/// Kinds whose values are 0..1.
+constexpr bool isPart(MapKind kind) {
+  return kind == MapKind::probability || kind == MapKind::part;
+}
+
+struct Map {
+  std::string name;  ///< of the product, for file names: "covered"; letters, digits, '_'
+  MapKind kind = MapKind::level;
+  std::string title;                ///< of its legend: a quantity's or product's name
+  std::string unit;                 ///< "": none
+  std::string description;          ///< "detection_probability at 150 m above ground"
+  std::optional<MapHeight> height;  ///< none: for all heights
+  std::optional<double> time_s;     ///< since the scenario's epoch; none: over all times
+  std::vector<std::string> labels;  ///< of classes and categories: names of 0, 1 ...
+  std::vector<int> colors;    ///< of classes: indices of render::categoryColor(); empty: the class itself
+  int area_class = -1;        ///< the class whose area is told; -1: none
+  std::vector<float> values;  ///< pixels in the grid's order; NaN: no value
+};
+
+/// Name of a map's files, layers and variables: "covered_agl150m_t80s".
+std::string fileNameOf(const Map& map);
+
+/// What a map holds.
+struct MapSummary {
+  double min = 0, max = 0;       ///< of the values; NaN: there is none
+  double known_area_m2 = 0;      ///< of the pixels with a value, on the ellipsoid
+  double class_area_m2 = 0;      ///< of the pixels in Map::area_class
+  long long largest_pixel = -1;  ///< with the largest value; -1: there is none
+};
+MapSummary summaryOf(const MapGrid& grid, const Map& map);
+
+}  // namespace emscape::study

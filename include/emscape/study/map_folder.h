@@ -1,0 +1,79 @@
+/// A folder of maps: their files, a report, and a record of the inputs.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/quantities.h"
+#include "emscape/scenario/scenario.h"
+#include "emscape/study/html_report.h"
+#include "emscape/study/map.h"
+
+namespace emscape::study {
+
+/// A format of maps, as an option names it.
+struct MapFormat {
+  const char* name;         ///< "cog"
+  const char* description;  ///< what it holds and what opens it, one line
+};
+const std::vector<MapFormat>& mapFormats();
+
+/// What the maps of a folder are of.
+struct MapStudy {
+  std::string command;  ///< the verb of `emscape`, and the name of the files that hold all maps: "coverage"
+  std::string title;    ///< "Coverage of jacksboro"
+  /// One or more. Emitters and tracks are those of the first one.
+  std::vector<std::shared_ptr<const scenario::Scenario>> scenarios;
+  scenario::TerrainPtr terrain;  ///< of the maps and all platforms; null: none
+  std::shared_ptr<const MapGrid> grid;
+  scenario::Quantity quantity = scenario::Quantity::detection_probability;
+  double threshold = 0.5;
+  std::vector<double> times_s;     ///< rising, one or more; of all maps
+  std::vector<MapHeight> heights;  ///< of all maps
+};
+
+/// A map that was written.
+struct MapRecord {
+  Map map;  ///< without its values
+  MapSummary summary;
+  std::vector<std::string> files;  ///< of its own, relative to the folder
+};
+
+/// Writes DIR/maps/*, DIR/report.json, DIR/report.html and DIR/study.json. Each file appears under its name
+/// when it is complete. The same maps give the same bytes. The folder is locked against other processes.
+class MapFolder {
+ public:
+  /// @param formats  names of mapFormats()
+  /// @throws Error (usage) for an unknown format; (other) naming the folder, if it cannot be made or another
+  /// process writes it
+  MapFolder(const std::filesystem::path& folder, MapStudy study, const std::vector<std::string>& formats);
+  /// Removes the files that are not complete.
+  ~MapFolder();
+  MapFolder(const MapFolder&) = delete;
+  MapFolder& operator=(const MapFolder&) = delete;
+
+  /// Writes the files of one map, and adds it to those that hold all.
+  /// @throws Error (other) naming the file
+  const MapRecord& add(const Map& map);
+
+  /// Adds sections to report.html, below the table of the maps.
+  using AddSections = std::function<void(HtmlReport&)>;
+  /// Completes the files that hold all maps, and writes the reports.
+  /// @param more  members for report.json beside the folder's own, as a JSON object; empty: none
+  /// @throws Error (other) naming the file
+  void finish(const std::vector<std::string>& warnings, const std::string& more = "",
+              const AddSections& add = {});
+
+  const std::vector<MapRecord>& records() const;
+  /// The text of report.json; after finish().
+  const std::string& reportJson() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace emscape::study

@@ -1,0 +1,47 @@
+#include "study/gdal_support.h"
+
+#include <fmt/format.h>
+
+#include <mutex>
+
+#include "emscape/base/error.h"
+
+namespace emscape::study {
+
+GDALDriver* driverOf(const char* name) {
+  static std::once_flag once;
+  std::call_once(once, [] { GDALAllRegister(); });
+  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(name);
+  if (driver == nullptr) throw Error(ErrorCode::other, fmt::format("GDAL has no driver '{}'", name));
+  return driver;
+}
+
+void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
+  throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
+}
+
+Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {
+  const scenario::GdalMessages messages;
+  Dataset dataset(driverOf("MEM")->Create("", grid.width, grid.height, 1, type, nullptr));
+  if (dataset == nullptr) failWriting(messages, file);
+  double transform[6] = {grid.left_m, grid.cell_m, 0, grid.top_m, 0, -grid.cell_m};
+  dataset->SetGeoTransform(transform);
+  dataset->SetProjection(grid.wkt.c_str());
+  return dataset;
+}
+
+OGRSpatialReference referenceOf(const MapGrid& grid) {
+  OGRSpatialReference reference;
+  reference.importFromWkt(grid.wkt.c_str());
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+OGRSpatialReference wgs84Reference() {
+  OGRSpatialReference reference;
+  reference.importFromEPSG(4326);
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,42 @@
+/// Emitters and moving platforms of a scenario, as files of maps show them.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/study/map_folder.h"
+
+namespace emscape::study {
+
+/// A position at a time.
+struct MapPosition {
+  double time_s = 0;
+  GeodeticPosition position;
+  double height_msl_m = 0;
+};
+
+struct MapEmitter {
+  const scenario::Emitter* emitter = nullptr;
+  std::string platform;
+  std::vector<MapPosition> positions;  ///< one if it stands; else one for each of the study's times
+};
+
+struct MapTrack {
+  std::string platform;
+  std::vector<MapPosition> positions;  ///< two or more, in the order of time
+};
+
+/// All emitters of the study's first scenario, active or not.
+std::vector<MapEmitter> emittersOf(const MapStudy& study);
+/// The tracks of its moving platforms within the scenario's duration: their own points and the study's times.
+/// Points over missing terrain whose height is given above ground are left out.
+std::vector<MapTrack> tracksOf(const MapStudy& study);
+
+/// ISO 8601 UTC of a time, with milliseconds. Time 0 of a scenario without an epoch is 1970-01-01T00:00:00Z.
+std::string utcOf(const MapStudy& study, double time_s);
+/// End of the interval for which the map of a time stands: the next of the study's times; after the last, as
+/// far as the one before; one second for a single time.
+double endOf(const MapStudy& study, double time_s);
+
+}  // namespace emscape::study

@@ -1,0 +1,32 @@
+/// The reports of a folder of maps, as text.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "emscape/study/html_report.h"
+#include "emscape/study/map_folder.h"
+
+namespace emscape::study {
+
+/// Items that every map's file carries, EMSCAPE_NAME and value.
+std::vector<std::pair<std::string, std::string>> metadataOf(const MapStudy& study, const Map& map);
+
+/// report.json. @param more  as in MapFolder::finish()
+std::string reportJsonOf(const MapStudy& study, const std::vector<MapRecord>& records,
+                         const std::vector<std::string>& files, const std::vector<std::string>& warnings,
+                         const std::string& more);
+
+/// study.json: inputs with their hashes, models with their accuracy, outputs.
+/// @param folder  of the outputs  @param files  relative to it
+std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& folder,
+                        const std::vector<std::string>& files);
+
+/// The table of the maps, their areas and ranges.
+ReportTable tableOf(const std::vector<MapRecord>& records);
+/// Sections on the inputs, the models and their accuracy, and the explanation of a pixel.
+void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapRecord>& records);
+
+}  // namespace emscape::study

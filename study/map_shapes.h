@@ -1,0 +1,45 @@
+/// Maps as lines and polygons.
+#pragma once
+
+#include <ogr_geometry.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/render/transfer_function.h"
+#include "emscape/study/map.h"
+
+namespace emscape::study {
+
+/// The levels of a map's contours, rising: 0.1, 0.5 and 0.9 of probabilities and fractions; multiples of 10
+/// of decibels; of other units, round steps of about a quarter of the range. None for whole numbers.
+std::vector<double> levelsOf(const Map& map);
+
+struct MapLine {
+  double level = 0;
+  std::unique_ptr<OGRGeometry> geometry;  ///< line string
+};
+
+struct MapBand {
+  double min = 0, max = 0;                ///< values; of whole numbers both the same
+  std::string label;                      ///< of a class or category
+  std::optional<render::Rgb> color;       ///< by the map's legend; none: nothing to show there
+  std::unique_ptr<OGRGeometry> geometry;  ///< multipolygon
+};
+
+struct MapShapes {
+  std::vector<MapLine> lines;
+  std::vector<MapBand> bands;
+};
+
+/// Contours are linear between the centres of pixels; those of probabilities are linear in their log-odds
+/// (clamped to 1e-6 .. 1 - 1e-6). Bands between levels tile the pixels that have a value. Whole numbers have
+/// no contours; their bands have the outlines of the pixels, one for each number but that for nothing.
+/// Coordinates are those of the grid's projection.
+/// @throws Error (other) naming the file for which they are made
+MapShapes shapesOf(const MapGrid& grid, const Map& map, const std::filesystem::path& file);
+
+}  // namespace emscape::study

@@ -1,0 +1,12 @@
+/// Text in XML and HTML.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace emscape::study {
+
+/// Text with the characters that XML reserves escaped, for elements and attributes.
+std::string escapedXml(std::string_view text);
+
+}  // namespace emscape::study
