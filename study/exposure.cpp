@@ -173,11 +173,6 @@ class Track {
   std::vector<std::size_t> channels_;  ///< of the solver, by emitter
 };
 
-/// Looks of a radar between the first time and another, the first look at the first time.
-long long looksUntil(double first_s, double time_s, double period_s) {
-  return static_cast<long long>(std::floor((time_s - first_s) / period_s + 1e-9)) + 1;
-}
-
 /// Sets the probabilities of detection in any look so far.
 void accumulate(const scenario::Scenario& scenario, Exposure& exposure) {
   const bool has_looks = exposure.request.quantity == Quantity::detection_probability &&
@@ -192,8 +187,8 @@ void accumulate(const scenario::Scenario& scenario, Exposure& exposure) {
       long long looks = 1;
       if (period_s) {
         const double first_s = exposure.rows.front().time_s;
-        looks = looksUntil(first_s, row.time_s, *period_s);
-        if (t > 0) looks -= looksUntil(first_s, exposure.rows[t - 1].time_s, *period_s);
+        looks = emfield::looksUntil(first_s, row.time_s, *period_s);
+        if (t > 0) looks -= emfield::looksUntil(first_s, exposure.rows[t - 1].time_s, *period_s);
       }
       const double probability = row.each[n] > 0 ? row.each[n] : 0;
       missed[n] *= std::pow(1 - probability, static_cast<double>(looks));

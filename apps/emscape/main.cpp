@@ -126,6 +126,7 @@ int emscapeMain(int argc, char** argv) {
   addCoverage(app, global, action);
   addVertical(app, global, action);
   addExposure(app, global, action);
+  addCompare(app, global, action);
   addCheck(app, global, action);
   addBench(app, global, action);
 

@@ -221,7 +221,7 @@ TargetWatcher::TargetWatcher(const Scenario& scenario, int radar, int target, co
 
 long long TargetWatcher::looksUntil(double time_s) const {
   const double first_s = detection.rows.empty() ? time_s : detection.rows.front().time_s;
-  return static_cast<long long>(std::floor((time_s - first_s) / *period_s_ + 1e-9)) + 1;
+  return emfield::looksUntil(first_s, time_s, *period_s_);
 }
 
 void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain) {

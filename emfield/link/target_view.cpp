@@ -31,4 +31,8 @@ double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platfo
   return (range_m(other) - range_m(snapshot)) / step_s;
 }
 
+long long looksUntil(double first_s, double time_s, double period_s) {
+  return static_cast<long long>(std::floor((time_s - first_s) / period_s + 1e-9)) + 1;
+}
+
 }  // namespace emscape::emfield

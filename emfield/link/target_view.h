@@ -15,4 +15,8 @@ double rcsTowards_m2(const scenario::Snapshot& snapshot, const scenario::Target&
 double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platform,
                        const scenario::Terrain* terrain);
 
+/// Looks of a radar from a first time, at which it looks, to another.
+/// @param period_s  between looks, > 0
+long long looksUntil(double first_s, double time_s, double period_s);
+
 }  // namespace emscape::emfield

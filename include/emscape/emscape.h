@@ -83,6 +83,7 @@
 #include "emscape/scenario/terrain.h"
 #include "emscape/scenario/waveform.h"
 #include "emscape/study/area.h"
+#include "emscape/study/compare.h"
 #include "emscape/study/coverage.h"
 #include "emscape/study/exposure.h"
 #include "emscape/study/geotiff.h"
