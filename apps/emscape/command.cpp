@@ -14,10 +14,11 @@ void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits, const s
     }
   };
   command
-      .add_option_function<std::vector<std::string>>(name, take,
-                                                     "PATH=VALUE: " + what +
-                                                         ", such as emitters.NAME.power_w=500; null removes a "
-                                                         "key; may be given several times")
+      .add_option_function<std::vector<std::string>>(
+          name, take,
+          "PATH=VALUE: " + what +
+              ", such as emitters.NAME.power_w=500; null removes a "
+              "key; may be given several times")
       ->allow_extra_args(false);
 }
 
