@@ -31,8 +31,8 @@ struct ColumnGeometryView {
   const float* lift_m = nullptr;
   /// Voxels below this z (m) are in shadow; -infinity: none is. NaN: unknown.
   const float* shadow_edge_m = nullptr;
-  /// Excess loss of each voxel, dense order; null: none.
-  const ExcessCode* excess = nullptr;
+  /// Excess loss of each voxel; empty: none.
+  ExcessView excess;
   /// Reflected ray of each voxel, dense order; null: the model has none.
   const ReflectedRayCode* reflected = nullptr;
 };
@@ -42,7 +42,7 @@ constexpr int kColumnNumbers = 9;
 
 /// @param numbers  kColumnNumbers x columns, as columnGeometry() fills them
 EMSCAPE_HD inline ColumnGeometryView columnGeometryView(const float* numbers, std::size_t columns,
-                                                        const float* shadow_edge_m, const ExcessCode* excess,
+                                                        const float* shadow_edge_m, const ExcessView& excess,
                                                         const ReflectedRayCode* reflected) {
   const auto array = [&](std::size_t n) { return numbers + n * columns; };
   return {array(0), array(1), array(2), array(3),      array(4), array(5),

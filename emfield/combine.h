@@ -72,7 +72,7 @@ EMSCAPE_HD inline Vec3f reflectedDirection(const EmitterBeam& emitter, const Ref
 }
 
 /// Power density (W/m2) of one emitter at the voxel at z = t_m of a column, without the excess loss of its
-/// path (excessFactor of ColumnGeometryView::excess, if there is one); 0 in shadow and where the path is
+/// path (ColumnGeometryView::excess, if there is one); 0 in shadow and where the path is
 /// unknown. Nearer than the far field (2 D^2 / lambda) it is the extrapolated far field.
 /// @accuracy 1e-4 dB of double precision on axis and on smooth patterns, to 500 km
 template <scenario::PatternKind kind>

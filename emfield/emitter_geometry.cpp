@@ -15,12 +15,13 @@
 namespace emscape::emfield {
 void EmitterGeometry::compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                               const scenario::Emitter& emitter, const GridColumns& columns,
-                              const scenario::Terrain* terrain, Times& times) {
+                              const scenario::Terrain* terrain, Times& times, const TerrainBounds* bounds) {
   Stopwatch watch;
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
   locateColumns(station, columns);
   shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
   excess_.clear();
+  excess_db_.clear();
   reflected_.clear();
   unknown_columns_ = 0;
   warnings_ = 0;
@@ -34,10 +35,14 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   if (model.casts_shadow) findShadowEdgesCpu(station, ground, grid, shadow_edge_m_.data());
   if (hasExcess(scenario, emitter)) {
     const EmitterExcess excess = makeExcess(scenario, emitter, station, terrain, columns);
-    excess_.resize(column_count_ * columns.t_m.size());
-    if (model.has_reflected_ray) reflected_.resize(excess_.size());
-    warnings_ = fillExcessCpu(excess, station, grid, ground,
-                              {excess_.data(), reflected_.data(), shadow_edge_m_.data()});
+    const std::size_t voxels = column_count_ * columns.t_m.size();
+    excess_.resize(columns.every_height ? 0 : voxels);
+    excess_db_.resize(columns.every_height ? voxels : 0);
+    if (model.has_reflected_ray) reflected_.resize(voxels);
+    const ExcessStore store{excess_.empty() ? nullptr : excess_.data(),
+                            excess_db_.empty() ? nullptr : excess_db_.data()};
+    warnings_ = fillExcessCpu(excess, station, grid, ground, bounds,
+                              {store, reflected_.data(), shadow_edge_m_.data()});
   }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
@@ -59,15 +64,16 @@ void EmitterGeometry::mapClutter(const scenario::Scenario& scenario, const scena
 }
 
 std::size_t EmitterGeometry::bytesPerVoxel(const scenario::Scenario& scenario,
-                                           const scenario::Emitter& emitter) {
+                                           const scenario::Emitter& emitter, bool on_surface) {
   const bool has_reflected = propagation::modelInfo(emitter.propagation.model).has_reflected_ray;
-  return (hasExcess(scenario, emitter) ? sizeof(ExcessCode) : 0) +
-         (has_reflected ? sizeof(ReflectedRayCode) : 0);
+  const std::size_t of_excess = on_surface ? sizeof(float) : sizeof(ExcessCode);
+  return (hasExcess(scenario, emitter) ? of_excess : 0) + (has_reflected ? sizeof(ReflectedRayCode) : 0);
 }
 
 std::size_t EmitterGeometry::bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                                     std::size_t columns, int layers) {
-  return columns * (kBytesPerColumn + static_cast<std::size_t>(layers) * bytesPerVoxel(scenario, emitter)) +
+                                     std::size_t columns, int layers, bool on_surface) {
+  return columns * (kBytesPerColumn +
+                    static_cast<std::size_t>(layers) * bytesPerVoxel(scenario, emitter, on_surface)) +
          clutterMapBytes(emitter);
 }
 
@@ -85,9 +91,10 @@ void EmitterGeometry::locateColumns(const Station& station, const GridColumns& c
 }
 
 ColumnGeometryView EmitterGeometry::view() const {
-  return columnGeometryView(arrays_.data(), column_count_, shadow_edge_m_.data(),
-                            excess_.empty() ? nullptr : excess_.data(),
-                            reflected_.empty() ? nullptr : reflected_.data());
+  return columnGeometryView(
+      arrays_.data(), column_count_, shadow_edge_m_.data(),
+      {excess_.empty() ? nullptr : excess_.data(), excess_db_.empty() ? nullptr : excess_db_.data()},
+      reflected_.empty() ? nullptr : reflected_.data());
 }
 
 bool EmitterGeometry::isUnknown(std::size_t column) const {

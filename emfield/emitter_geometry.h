@@ -6,6 +6,7 @@
 
 #include "emfield/clutter_map.h"
 #include "emfield/column_geometry.h"
+#include "emfield/terrain_bounds.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/scenario/terrain.h"
@@ -22,9 +23,10 @@ class EmitterGeometry {
 
   /// @param emitter  of the scenario
   /// @param terrain  null: smooth earth
+  /// @param bounds   of the terrain, for surfaces; null: none
   void compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                const scenario::Emitter& emitter, const GridColumns& columns, const scenario::Terrain* terrain,
-               Times& times);
+               Times& times, const TerrainBounds* bounds = nullptr);
 
   ColumnGeometryView view() const;
   /// Of a radar with clutter of the surface; else without cells.
@@ -39,13 +41,16 @@ class EmitterGeometry {
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
   /// Bytes per voxel of an emitter: its excess and its reflected ray, if its model has them.
-  static std::size_t bytesPerVoxel(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
+  /// @param on_surface  GridColumns::every_height
+  static std::size_t bytesPerVoxel(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                                   bool on_surface = false);
   /// Bytes per emitter for a grid of so many columns and layers.
   static std::size_t bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                             std::size_t columns, int layers);
+                             std::size_t columns, int layers, bool on_surface = false);
   std::size_t bytes() const {
-    return (arrays_.size() + shadow_edge_m_.size()) * sizeof(float) + excess_.size() * sizeof(ExcessCode) +
-           reflected_.size() * sizeof(ReflectedRayCode) + clutter_.size() * sizeof(ClutterCell);
+    return (arrays_.size() + shadow_edge_m_.size() + excess_db_.size()) * sizeof(float) +
+           excess_.size() * sizeof(ExcessCode) + reflected_.size() * sizeof(ReflectedRayCode) +
+           clutter_.size() * sizeof(ClutterCell);
   }
 
  private:
@@ -58,6 +63,7 @@ class EmitterGeometry {
   std::vector<float> arrays_;  ///< kColumnNumbers x column_count_
   std::vector<float> shadow_edge_m_;
   std::vector<ExcessCode> excess_;           ///< columns x layers, or empty
+  std::vector<float> excess_db_;             ///< the same over a surface, instead of codes
   std::vector<ReflectedRayCode> reflected_;  ///< the same
   ClutterGrid clutter_grid_;
   std::vector<ClutterCell> clutter_;  ///< empty: no clutter of the surface

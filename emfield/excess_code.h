@@ -1,9 +1,10 @@
-/// 16-bit code of a voxel's excess loss, for storage between updates.
+/// A voxel's excess loss, for storage between updates: a 16-bit code, or over a surface the number itself.
 ///
 /// Excess is a path's loss less that of free space; negative where rays add up. It depends on the emitter's
 /// position, frequency and polarisation and on terrain and air, not on its power or antenna.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "base/fast_math.h"
@@ -39,5 +40,36 @@ EMSCAPE_HD inline float excessFactor(ExcessCode code) {
   const float factor = fastDbToRatio(static_cast<float>(code) * (-1 / kExcessCodesPerDb));
   return code == kUnknownExcess ? 0.0f : factor;
 }
+/// The same of an excess in dB; 0 for NaN, the unknown one.
+EMSCAPE_HD inline float excessFactor(float excess_db) {
+  const float factor = fastDbToRatio(-excess_db);
+  return excess_db == excess_db ? factor : 0.0f;
+}
+
+/// Excess of voxels, dense order: one of the two, or none.
+struct ExcessView {
+  const ExcessCode* codes = nullptr;
+  const float* db = nullptr;
+
+  EMSCAPE_HD bool isEmpty() const { return codes == nullptr && db == nullptr; }
+  EMSCAPE_HD float factor(std::size_t voxel) const {
+    return db != nullptr ? excessFactor(db[voxel]) : excessFactor(codes[voxel]);
+  }
+};
+
+/// The same while it is filled.
+struct ExcessStore {
+  ExcessCode* codes = nullptr;
+  float* db = nullptr;
+
+  /// @param excess_db  NaN: unknown
+  EMSCAPE_HD void set(std::size_t voxel, float excess_db) const {
+    if (db != nullptr) {
+      db[voxel] = excess_db;
+    } else {
+      codes[voxel] = excessCode(excess_db);
+    }
+  }
+};
 
 }  // namespace emscape::emfield

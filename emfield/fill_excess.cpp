@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "emfield/read_posts.h"
+#include "emfield/surface_diffraction.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
@@ -16,34 +19,54 @@ using propagation::kMissingTerrain;
 /// Neighbouring columns, so that results are written in runs.
 constexpr int kBlock = 16;
 
+/// The search that leaves out most posts, where there is one; each thread has a memory of its own.
+/// @param bounds  null: there is none
 template <class Model>
-unsigned fill(const ExcessTask<Model>& task, const ExcessOutput& out) {
+std::optional<SurfaceDiffraction> surfaceSearch(const ExcessTask<Model>& task, const TerrainBounds* bounds) {
+  if constexpr (std::is_same_v<Model, propagation::DiffractionExcess>) {
+    if (bounds != nullptr && bounds->isUsable()) return std::make_optional<SurfaceDiffraction>(task, *bounds);
+  }
+  return std::nullopt;
+}
+
+template <class Model>
+unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const ExcessOutput& out) {
   const ExcessGrid& grid = task.grid;
+  const std::optional<SurfaceDiffraction> search = surfaceSearch(task, bounds);
   const int columns = static_cast<int>(grid.column_count);
   std::atomic<unsigned> all_warnings{0};
   parallelFor((columns + kBlock - 1) / kBlock, 4, [&](int begin, int end) {
     std::vector<double> memory(ExcessScratch::bytes(task.posts(), grid.layers) / sizeof(double) + 1);
     const ExcessScratch scratch = ExcessScratch::in(memory.data(), task.posts(), grid.layers);
-    std::vector<ExcessCode> codes(static_cast<std::size_t>(grid.layers) * kBlock);
+    std::vector<float> excess_db(static_cast<std::size_t>(grid.layers) * kBlock);
+    SurfaceDiffraction::Memory search_memory;
+    if (search) search_memory = search->makeMemory();
     unsigned warnings = 0;
     for (int block = begin; block < end; ++block) {
       const int first = block * kBlock, count = std::min(kBlock, columns - first);
       for (int i = 0; i < count; ++i) {
-        if (grid.isLeftOut(static_cast<std::size_t>(first + i))) {
-          for (int k = 0; k < grid.layers; ++k) codes[static_cast<std::size_t>(k) * kBlock + i] = 0;
-          continue;
+        const auto column = static_cast<std::size_t>(first + i);
+        const auto setAll = [&](float db) { std::fill_n(scratch.excess_db, grid.layers, db); };
+        unsigned of_column = 0;
+        if (grid.isLeftOut(column)) {
+          setAll(0);
+        } else if (Model::kNeedsTerrain && grid.isWithoutGround(column)) {
+          setAll(NAN);
+          of_column = kMissingTerrain;
+        } else if (!search || !search->fillColumn(column, scratch, search_memory)) {
+          of_column = task.fillColumn(column, scratch, readPostsCpu, out.reflected);
         }
-        const unsigned of_column =
-            task.fillColumn(static_cast<std::size_t>(first + i), scratch, readPostsCpu, out.reflected);
-        if (of_column & kMissingTerrain) out.markUnknown(static_cast<std::size_t>(first + i));
+        if (of_column & kMissingTerrain) out.markUnknown(column);
         warnings |= of_column;
         for (int k = 0; k < grid.layers; ++k) {
-          codes[static_cast<std::size_t>(k) * kBlock + i] = excessCode(scratch.excess_db[k]);
+          excess_db[static_cast<std::size_t>(k) * kBlock + i] = scratch.excess_db[k];
         }
       }
       for (int k = 0; k < grid.layers; ++k) {
-        ExcessCode* const row = out.codes + static_cast<std::size_t>(k) * grid.column_count + first;
-        for (int i = 0; i < count; ++i) row[i] = codes[static_cast<std::size_t>(k) * kBlock + i];
+        const std::size_t row = static_cast<std::size_t>(k) * grid.column_count + first;
+        for (int i = 0; i < count; ++i) {
+          out.excess.set(row + i, excess_db[static_cast<std::size_t>(k) * kBlock + i]);
+        }
       }
     }
     all_warnings |= warnings;
@@ -74,10 +97,10 @@ ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terra
 }
 
 unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
-                       const GroundPosts& ground, const ExcessOutput& out) {
+                       const GroundPosts& ground, const TerrainBounds* bounds, const ExcessOutput& out) {
   return std::visit(
       [&](const auto& m) {
-        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, ground}, out);
+        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, ground}, bounds, out);
       },
       excess.model);
 }

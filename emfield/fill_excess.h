@@ -11,6 +11,7 @@
 #include "emfield/grid_columns.h"
 #include "emfield/ground_posts.h"
 #include "emfield/station.h"
+#include "emfield/terrain_bounds.h"
 #include "emfield/two_rays.h"
 #include "emscape/base/host_device.h"
 
@@ -47,6 +48,11 @@ struct ExcessGrid {
   EMSCAPE_HD bool isLeftOut(std::size_t column) const {
     return !tilted && first_valid_k != nullptr && first_valid_k[column] >= layers &&
            !(ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column]);
+  }
+  /// True if terrain is missing below a column that is not tilted: every path to it is unknown to the models
+  /// that need terrain.
+  EMSCAPE_HD bool isWithoutGround(std::size_t column) const {
+    return ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column];
   }
   /// From a station to below the middle of a segment.
   EMSCAPE_HD FastInverse coordinatesOf(const Station& station, std::size_t column, int segment) const {
@@ -133,8 +139,13 @@ struct ExcessTask {
       float* const excess_db = scratch.excess_db + first;
       if constexpr (propagation::Reflects<Model>::value) {
         for (int k = 0; k < part.count; ++k) {
+          // Lobes are narrow: a leaning column's voxels are at ranges of their own.
+          const double range_m =
+              grid.tilted
+                  ? footInverse(station, grid.columns[c], static_cast<double>(grid.t_m[first + k])).distance_m
+                  : part.range_m;
           reflected[static_cast<std::size_t>(first + k) * grid.column_count + c] =
-              reflectedRayCode(model.reflectedRay(part.range_m, part.height_msl_m[k], excess_db[k]));
+              reflectedRayCode(model.reflectedRay(range_m, part.height_msl_m[k], excess_db[k]));
         }
       } else {
         warnings |= model(part, scratch, excess_db);
@@ -147,7 +158,7 @@ struct ExcessTask {
 
 /// Arrays of the results: dense order, the columns of a layer one after another.
 struct ExcessOutput {
-  ExcessCode* codes = nullptr;
+  ExcessStore excess;
   ReflectedRayCode* reflected = nullptr;  ///< of models with a reflected ray
   float* shadow_edge_m = nullptr;         ///< set to NaN where terrain is missing: the column is unknown
 
@@ -155,8 +166,9 @@ struct ExcessOutput {
 };
 
 /// Runs a task on the CPU.
+/// @param bounds  of the terrain, for surfaces; null: none
 /// @return the models' warnings on all columns
 unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
-                       const GroundPosts& ground, const ExcessOutput& out);
+                       const GroundPosts& ground, const TerrainBounds* bounds, const ExcessOutput& out);
 
 }  // namespace emscape::emfield

@@ -66,12 +66,14 @@ GridColumn columnAbove(const Surface::Place& place, double base_msl_m) {
   return column;
 }
 
-/// Extends the range of heights by those of a column.
-void addHeights(const GridColumn& column, GridColumns& columns) {
-  for (const float t_m : {columns.t_m.front(), columns.t_m.back()}) {
+/// Extends a range of heights by those of a column.
+/// @param range  with lowest_msl_m and highest_msl_m
+template <class Range>
+void addHeights(const GridColumn& column, const std::vector<float>& layers_m, Range& range) {
+  for (const float t_m : {layers_m.front(), layers_m.back()}) {
     const double height_m = heightMsl_m(column, static_cast<double>(t_m));
-    columns.lowest_msl_m = std::min(columns.lowest_msl_m, height_m);
-    columns.highest_msl_m = std::max(columns.highest_msl_m, height_m);
+    range.lowest_msl_m = std::min(range.lowest_msl_m, height_m);
+    range.highest_msl_m = std::max(range.highest_msl_m, height_m);
   }
 }
 
@@ -81,7 +83,7 @@ void setOutlineOfGrid(GridColumns& columns) {
   for (const int i : {0, dims.x / 2, dims.x - 1}) {
     for (const int j : {0, dims.y / 2, dims.y - 1}) {
       columns.outline.push_back(columns.columns[static_cast<std::size_t>(j) * dims.x + i]);
-      addHeights(columns.outline.back(), columns);
+      addHeights(columns.outline.back(), columns.t_m, columns);
     }
   }
 }
@@ -92,11 +94,29 @@ void setOutlineOfPlaces(const Surface& surface, GridColumns& columns) {
     return !std::isnan(surface.places[c].latitude_deg) &&
            (columns.ground_msl_m.empty() || !std::isnan(columns.ground_msl_m[c]));
   };
+  // By parts of the places: their sums are added in order, whatever thread computes them.
+  constexpr std::size_t kPart = 4096;
+  struct Part {
+    Vec3d sum{0, 0, 0};
+    double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL, beyond_m = 0;
+  };
+  std::vector<Part> parts((surface.places.size() + kPart - 1) / kPart);
+  const auto inParts = [&](const auto& visit) {
+    parallelFor(static_cast<int>(parts.size()), 1, [&](int begin, int end) {
+      for (std::size_t c = begin * kPart; c < std::min(end * kPart, surface.places.size()); ++c) {
+        if (isKnown(c)) visit(c, parts[c / kPart]);
+      }
+    });
+  };
+  inParts([&](std::size_t c, Part& part) {
+    part.sum = part.sum + columns.columns[c].foot_ecef_m;
+    addHeights(columns.columns[c], columns.t_m, part);
+  });
   Vec3d sum{0, 0, 0};
-  for (std::size_t c = 0; c < surface.places.size(); ++c) {
-    if (!isKnown(c)) continue;
-    sum = sum + columns.columns[c].foot_ecef_m;
-    addHeights(columns.columns[c], columns);
+  for (const Part& part : parts) {
+    sum = sum + part.sum;
+    columns.lowest_msl_m = std::min(columns.lowest_msl_m, part.lowest_msl_m);
+    columns.highest_msl_m = std::max(columns.highest_msl_m, part.highest_msl_m);
   }
   if (length(sum) == 0) {
     throw Error(ErrorCode::bad_input,
@@ -107,10 +127,11 @@ void setOutlineOfPlaces(const Surface& surface, GridColumns& columns) {
   const GeodeticPosition middle = fromEcef(sum * (kWgs84SemiMajor_m / length(sum)));
   columns.outline.push_back(columnAbove({middle.latitude_deg, middle.longitude_deg}, 0));
   const Station station = makeStation({middle.latitude_deg, middle.longitude_deg, 0}, 0, 1);
-  for (std::size_t c = 0; c < surface.places.size(); ++c) {
-    if (!isKnown(c)) continue;
-    columns.beyond_outline_m =
-        std::max(columns.beyond_outline_m, footInverse(station, columns.columns[c], 0).distance_m);
+  inParts([&](std::size_t c, Part& part) {
+    part.beyond_m = std::max(part.beyond_m, footInverse(station, columns.columns[c], 0).distance_m);
+  });
+  for (const Part& part : parts) {
+    columns.beyond_outline_m = std::max(columns.beyond_outline_m, part.beyond_m);
   }
 }
 

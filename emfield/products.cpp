@@ -92,6 +92,7 @@ scenario::ReceiverProfile tunedToWanted(const scenario::Scenario& scenario) {
 const char* scaleOf(Quantity quantity) {
   switch (quantity) {
     case Quantity::detection_probability:
+    case Quantity::occupancy:
       return volume::kProbabilityScale;
     case Quantity::jammer_to_signal_db:
       return volume::kRatioBelowScale;
@@ -111,6 +112,8 @@ std::string legendNoteOf(Quantity quantity, const scenario::Scenario& scenario) 
       return "no echo: -60";
     case Quantity::sinr_db:
       return "signal: " + scenario.emitters[scenario.output.wanted_emitter].name;
+    case Quantity::occupancy:
+      return fmt::format("above {:g} dBW/m2", scenario.output.count_threshold_dbwm2);
     case Quantity::detection_age_s:
       return fmt::format("Pd at least {:g}; not detected: empty", scenario.output.detection_threshold);
     default:
@@ -190,6 +193,11 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       plan.reduction = Reduction::dominant;
       plan.product.form = ProductForm::itself;
       plan.product.floor = -1;
+      break;
+    case Quantity::occupancy:
+      plan.product.form = ProductForm::itself;
+      plan.product.floor = 0;
+      plan.occupancy_threshold_wm2 = static_cast<float>(dbToRatio(scenario.output.count_threshold_dbwm2));
       break;
     case Quantity::mean_power_density_dbwm2:
       weigh([](const Emitter& emitter) { return emitter.dutyCycle(); });

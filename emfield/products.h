@@ -69,8 +69,13 @@ struct ChannelPlan {
   std::vector<float> weights;  ///< in the order of Channel::emitters
   /// In the same order: radars that enter by their echoes instead of their weights; empty: none.
   std::vector<RadarTask> radars;
+  /// Of channels of occupancy: the power density (W/m2) above which an emitter counts; else 0.
+  float occupancy_threshold_wm2 = 0;
   /// The curves that the tasks point to (detection_probability), in the same order.
   std::vector<std::shared_ptr<const DetectionCurve>> curves;
+
+  /// True if emitters enter by their power densities and weights.
+  bool reducesPower() const { return radars.empty() && occupancy_threshold_wm2 == 0; }
 };
 
 /// @throws Error (bad_input) if the scenario lacks what the quantity needs (a receiver, a radar)

@@ -199,7 +199,7 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
   } else {
     root = echoToNoiseRoot<kind>(task, pass.beam, column, t_m);
   }
-  if (pass.beam.geometry.excess != nullptr) root *= excessFactor(pass.beam.geometry.excess[voxel]);
+  if (!pass.beam.geometry.excess.isEmpty()) root *= pass.beam.geometry.excess.factor(voxel);
   float jamming = 0;
   for (int n = 0; n < task.jammer_count; ++n) {
     const JammerAtRadar& jammer = task.jammers[n];

@@ -10,9 +10,9 @@ const char* toString(IntervalKind kind) {
 }
 
 std::string describe(const IntervalSpec& interval, const Clock& clock) {
-  const std::string duration = interval.turns
-                                   ? fmt::format("{:g} turns", *interval.turns)
-                                   : fmt::format("{:g} s", interval.seconds.value_or(clock.step_s));
+  const std::string duration =
+      interval.turns ? fmt::format("{:g} turn{}", *interval.turns, *interval.turns == 1 ? "" : "s")
+                     : fmt::format("{:g} s", interval.seconds.value_or(clock.step_s));
   switch (interval.kind) {
     case IntervalKind::max_hold:
       return "largest in " + duration;

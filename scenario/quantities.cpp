@@ -34,6 +34,8 @@ const std::vector<QuantityInfo>& quantityTable() {
        "largest power of an emitter at a receiver, over its threshold"},
       {Quantity::detection_age_s, "detection_age_s", "s", QuantityKind::of_jamming,
        "time since a radar last detected its target, at the end of the interval"},
+      {Quantity::occupancy, "occupancy", "", QuantityKind::of_emitters,
+       "share of the interval in which an emitter's power density is above the count threshold"},
   };
   return kTable;
 }
@@ -44,6 +46,7 @@ const QuantityInfo& info(Quantity quantity) {
 
 bool hasInterval(const QuantityInfo& quantity, IntervalKind interval) {
   if (quantity.quantity == Quantity::detection_age_s) return interval == IntervalKind::cumulative;
+  if (quantity.quantity == Quantity::occupancy) return interval == IntervalKind::mean;
   switch (interval) {
     case IntervalKind::instant:
       return true;

@@ -599,7 +599,8 @@ const ObjectSpec& outputSpec() {
           byDefault("floor", number().from(-1000).to(1000), OutputSpec{}.floor,
                     "lowest stored value, in each quantity's unit"),
           byDefault("count_threshold_dbwm2", number("dBW/m2").from(-1000).to(1000),
-                    OutputSpec{}.count_threshold_dbwm2, "emitter_count counts emitters above it"),
+                    OutputSpec{}.count_threshold_dbwm2,
+                    "emitter_count counts emitters above it, occupancy the time in which they are"),
           optional("interval", object(intervalSpec()), "of time that a volume covers; by default an instant"),
           optional("receiver", kName,
                    "name of the receiver, without a platform, of received_power_dbm, sinr_db and "

@@ -59,8 +59,7 @@ MapArea circularArea(const MapArea::Circle& circle) {
   return area;
 }
 
-scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapArea& area) {
-  if (!scenario.terrain) return nullptr;
+scenario::GeoBox terrainBoxOf(const scenario::Scenario& scenario, const MapArea& area) {
   constexpr double kMargin_deg = 0.02;
   scenario::GeoBox box = scenario::terrainBox(scenario);
   const double turn_deg = 360 * std::round((box.west_deg - area.box.west_deg) / 360);
@@ -70,7 +69,12 @@ scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapAr
   const double east_deg = std::max(box.east_deg, area.box.east_deg + turn_deg + kMargin_deg);
   box.west_deg = wrapLongitude_deg(west_deg);
   box.east_deg = std::min(box.west_deg + east_deg - west_deg, box.west_deg + 360);
-  return scenario::Terrain::load(*scenario.terrain, box);
+  return box;
+}
+
+scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapArea& area) {
+  if (!scenario.terrain) return nullptr;
+  return scenario::Terrain::load(*scenario.terrain, terrainBoxOf(scenario, area));
 }
 
 MapArea parseArea(const std::string& text) {

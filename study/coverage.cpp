@@ -125,10 +125,9 @@ void fill(CoverageMap& map, const MapGrid& grid, const Value& valueAtPixel) {
 /// The maps of one reference of height.
 class SurfaceMaps {
  public:
-  SurfaceMaps(const std::shared_ptr<const scenario::Scenario>& scenario, const scenario::TerrainPtr& terrain,
-              const MapGrid& grid, const CoverageRequest& request, HeightReference reference,
+  SurfaceMaps(const MapGrid& grid, const CoverageRequest& request, HeightReference reference,
               const emfield::FieldOptions& options)
-      : request_(request), grid_(grid) {
+      : request_(request), grid_(grid), options_(options) {
     auto surface = std::make_shared<emfield::Surface>();
     surface->width = grid.width;
     surface->height = grid.height;
@@ -141,31 +140,40 @@ class SurfaceMaps {
     surface->heights_m.erase(std::unique(surface->heights_m.begin(), surface->heights_m.end()),
                              surface->heights_m.end());
     for (const double metres : surface->heights_m) heights_.push_back({reference, metres});
-    emfield::FieldOptions on_surface = options;
-    on_surface.surface = surface;
-    on_surface.allow_missing_terrain = true;  // masked, and reported by the maps' known area
-    on_surface.also_per_emitter = isIn(request.products, kPerEmitter);
-    scenario_ = scenario;
-    solver_.emplace(scenario, terrain, on_surface);
-    for (std::size_t k = 0; k < heights_.size(); ++k) {
-      figures_.emplace_back(isOverTime() ? grid.pixels() : 0, request.times_s);
+    options_.surface = surface;
+    options_.allow_missing_terrain = true;  // masked, and reported by the maps' known area
+    options_.also_per_emitter = isIn(request.products, kPerEmitter);
+  }
+
+  /// Begins with a number of scenarios.
+  void begin(std::size_t scenarios) {
+    states_.assign(scenarios, {});
+    for (State& state : states_) {
+      state.figures.assign(heights_.size(), {isOverTime() ? grid_.pixels() : 0, request_.times_s});
     }
   }
 
-  void addTime(const scenario::Terrain* terrain, double time_s, const MapSink& take) {
-    const scenario::Snapshot snapshot = scenario::snapshotAt(scenario_, terrain, time_s);
+  /// The maps of a scenario, by its index, at the next time.
+  void addTime(std::size_t index, const std::shared_ptr<const scenario::Scenario>& scenario,
+               const scenario::TerrainPtr& terrain, double time_s, const MapSink& take) {
+    const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), time_s);
+    if (!solver_) solver_.emplace(scenario, terrain, options_);
     Values values;
     if (isIn(request_.products, kOfJamming)) {
       scenario::Snapshot quiet = snapshot;
       for (std::size_t e = 0; e < quiet.emitters.size(); ++e) {
-        if (scenario_->emitters[e].kind == scenario::EmitterKind::jammer) quiet.emitters[e].active = false;
+        if (scenario->emitters[e].kind == scenario::EmitterKind::jammer) quiet.emitters[e].active = false;
       }
-      solver_->update(quiet);
+      solver_->update(quiet, terrain);
       values.unjammed = solver_->volumes().front().host();
     }
-    solver_->update(snapshot);
+    solver_->update(snapshot, terrain);
     const std::vector<volume::Volume>& volumes = solver_->volumes();
     values.all = volumes.front().host();
+    State& state = states_[index];
+    state.scenario = scenario;
+    state.last = isOverTime() ? values.all : nullptr;
+    state.warnings = solver_->warnings();
     for (std::size_t c = 1; c < volumes.size(); ++c) {
       const int emitter = solver_->channels()[c].emitters.front();
       const GeodeticPosition& at = snapshot.emitters[emitter].position;
@@ -173,11 +181,11 @@ class SurfaceMaps {
     }
     for (std::size_t k = 0; k < heights_.size(); ++k) {
       if (isOverTime()) {
-        figures_[k].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); });
+        state.figures[k].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); });
       }
       for (const Product product : request_.products) {
         if (info(product).over_time || !info(product).at_heights) continue;
-        CoverageMap map = emptyMap(*scenario_, request_, product, heights_[k]);
+        CoverageMap map = emptyMap(*scenario, request_, product, heights_[k]);
         map.time_s = time_s;
         fill(map, grid_, [&](std::size_t p) { return valueOf(product, values, k, p); });
         take(std::move(map));
@@ -185,24 +193,32 @@ class SurfaceMaps {
     }
   }
 
-  /// The maps over all times.
-  void finish(const MapSink& take) {
+  /// The maps of a scenario over all times.
+  void finish(std::size_t index, const MapSink& take) {
+    const State& state = states_[index];
     for (std::size_t k = 0; k < heights_.size(); ++k) {
       for (const Product product : request_.products) {
         if (!info(product).over_time) continue;
-        const std::shared_ptr<const volume::DenseVolume> last = solver_->volumes().front().host();
-        CoverageMap map = emptyMap(*scenario_, request_, product, heights_[k]);
+        CoverageMap map = emptyMap(*state.scenario, request_, product, heights_[k]);
         fill(map, grid_, [&](std::size_t p) {
-          return std::isnan(valueAt(*last, k, p)) ? NAN : figures_[k].figure(product, p);
+          return std::isnan(valueAt(*state.last, k, p)) ? NAN : state.figures[k].figure(product, p);
         });
         take(std::move(map));
       }
     }
   }
 
-  std::vector<std::string> warnings() const { return solver_->warnings(); }
+  /// Of a scenario, after its last time.
+  const std::vector<std::string>& warnings(std::size_t index) const { return states_[index].warnings; }
 
  private:
+  /// A scenario between its times.
+  struct State {
+    std::shared_ptr<const scenario::Scenario> scenario;
+    std::vector<TimeFigures> figures;  ///< one per height
+    std::shared_ptr<const volume::DenseVolume> last;
+    std::vector<std::string> warnings;
+  };
   struct ValuesOfOne {
     int emitter;
     std::shared_ptr<const volume::DenseVolume> values;
@@ -280,11 +296,22 @@ class SurfaceMaps {
 
   const CoverageRequest& request_;
   const MapGrid& grid_;
+  emfield::FieldOptions options_;
   std::vector<MapHeight> heights_;
-  std::shared_ptr<const scenario::Scenario> scenario_;
   std::optional<FieldSolver> solver_;  ///< its first channel is of all emitters, those after it of one each
-  std::vector<TimeFigures> figures_;   ///< one per height
+  std::vector<State> states_;          ///< one per scenario
 };
+
+/// The scenario with the output of a map.
+std::shared_ptr<const scenario::Scenario> atTargets(const scenario::Scenario& scenario, Quantity quantity) {
+  auto at_targets = std::make_shared<scenario::Scenario>(scenario);
+  at_targets->output.quantities = {scenario::info(quantity).name};
+  at_targets->output.radar_look = scenario::RadarLook::target;
+  if (at_targets->output.combine != scenario::CombineMode::max) {
+    at_targets->output.combine = scenario::CombineMode::sum;
+  }
+  return at_targets;
+}
 
 }  // namespace
 
@@ -302,56 +329,85 @@ std::optional<double> defaultThreshold(Quantity quantity) {
   }
 }
 
-std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::Scenario>& scenario,
-                                         const scenario::TerrainPtr& terrain, const MapGrid& grid,
-                                         const CoverageRequest& request, emfield::FieldOptions options,
-                                         const MapSink& take, const ProgressSink& progress) {
-  checkRequest(*scenario, request);
-  const auto at_targets = std::make_shared<scenario::Scenario>(*scenario);
-  at_targets->output.quantities = {scenario::info(request.quantity).name};
-  at_targets->output.radar_look = scenario::RadarLook::target;
-  if (at_targets->output.combine != scenario::CombineMode::max) {
-    at_targets->output.combine = scenario::CombineMode::sum;
-  }
-  options.quantities.clear();
+struct CoverageSolver::Impl {
+  const MapGrid& grid;
+  const CoverageRequest request;
+  emfield::FieldOptions options;
   std::vector<std::unique_ptr<SurfaceMaps>> maps;
+};
+
+CoverageSolver::CoverageSolver(const MapGrid& grid, const CoverageRequest& request,
+                               const emfield::FieldOptions& options)
+    : impl_(new Impl{grid, request, options, {}}) {
+  impl_->options.quantities.clear();
   for (const HeightReference reference : {HeightReference::ground, HeightReference::mean_sea_level}) {
     const bool is_asked = std::any_of(request.heights.begin(), request.heights.end(),
                                       [&](const MapHeight& height) { return height.reference == reference; });
     if (is_asked) {
-      maps.push_back(std::make_unique<SurfaceMaps>(at_targets, terrain, grid, request, reference, options));
+      impl_->maps.push_back(std::make_unique<SurfaceMaps>(grid, impl_->request, reference, impl_->options));
     }
+  }
+}
+
+CoverageSolver::~CoverageSolver() = default;
+
+std::vector<std::vector<std::string>> CoverageSolver::compute(
+    const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
+    const scenario::TerrainPtr& terrain, const ScenarioMapSink& take, const ProgressSink& progress) {
+  const CoverageRequest& request = impl_->request;
+  std::vector<std::shared_ptr<const scenario::Scenario>> at_targets;
+  for (const auto& scenario : scenarios) {
+    checkRequest(*scenario, request);
+    at_targets.push_back(atTargets(*scenario, request.quantity));
   }
   const bool has_least = isIn(request.products, {Product::min_height});
-  const double steps = static_cast<double>(request.times_s.size() * (maps.size() + (has_least ? 1 : 0)));
+  const double steps = static_cast<double>(request.times_s.size() * scenarios.size() *
+                                           (impl_->maps.size() + (has_least ? 1 : 0)));
   double done = 0;
+  for (const auto& of_reference : impl_->maps) of_reference->begin(scenarios.size());
   for (const double time_s : request.times_s) {
-    for (const auto& of_reference : maps) {
+    for (std::size_t s = 0; s < scenarios.size(); ++s) {
+      const MapSink take_map = [&](CoverageMap map) { take(s, std::move(map)); };
+      for (const auto& of_reference : impl_->maps) {
+        if (progress) progress("maps", done / steps);
+        of_reference->addTime(s, at_targets[s], terrain, time_s, take_map);
+        ++done;
+      }
+      if (!has_least) continue;
       if (progress) progress("maps", done / steps);
-      of_reference->addTime(terrain.get(), time_s, take);
+      const std::vector<float> heights_m =
+          leastHeights(at_targets[s], terrain, impl_->grid, request.threshold, time_s, impl_->options);
+      CoverageMap map = emptyMap(*at_targets[s], request, Product::min_height, std::nullopt);
+      map.time_s = time_s;
+      fill(map, impl_->grid, [&](std::size_t p) { return heights_m[p]; });
+      take_map(std::move(map));
       ++done;
     }
-    if (!has_least) continue;
-    if (progress) progress("maps", done / steps);
-    const std::vector<float> heights_m =
-        leastHeights(at_targets, terrain, grid, request.threshold, time_s, options);
-    CoverageMap map = emptyMap(*scenario, request, Product::min_height, std::nullopt);
-    map.time_s = time_s;
-    fill(map, grid, [&](std::size_t p) { return heights_m[p]; });
-    take(std::move(map));
-    ++done;
   }
-  std::vector<std::string> warnings;
-  for (const auto& of_reference : maps) {
-    of_reference->finish(take);
-    for (std::string& warning : of_reference->warnings()) {
-      if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) {
-        warnings.push_back(std::move(warning));
+  std::vector<std::vector<std::string>> warnings(scenarios.size());
+  for (std::size_t s = 0; s < scenarios.size(); ++s) {
+    for (const auto& of_reference : impl_->maps) {
+      of_reference->finish(s, [&](CoverageMap map) { take(s, std::move(map)); });
+      for (const std::string& warning : of_reference->warnings(s)) {
+        if (std::find(warnings[s].begin(), warnings[s].end(), warning) == warnings[s].end()) {
+          warnings[s].push_back(warning);
+        }
       }
     }
   }
   if (progress) progress("maps", 1);
   return warnings;
+}
+
+std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::Scenario>& scenario,
+                                         const scenario::TerrainPtr& terrain, const MapGrid& grid,
+                                         const CoverageRequest& request, const emfield::FieldOptions& options,
+                                         const MapSink& take, const ProgressSink& progress) {
+  CoverageSolver solver(grid, request, options);
+  return solver
+      .compute(
+          {scenario}, terrain, [&](std::size_t, CoverageMap map) { take(std::move(map)); }, progress)
+      .front();
 }
 
 }  // namespace emscape::study

@@ -119,11 +119,10 @@ class Czml : public MapCollection {
     const std::vector<MapEmitter> emitters = emittersOf(study_);
     for (std::size_t e = 0; e < emitters.size(); ++e) {
       const scenario::Emitter& emitter = *emitters[e].emitter;
-      Json packet{
-          {"id", "emitter/" + std::to_string(e)},
-          {"name", emitter.name},
-          {"description",
-                   escapedXml(std::string(scenario::toString(emitter.kind)) + " on " + emitters[e].platform)}};
+      Json packet{{"id", "emitter/" + std::to_string(e)},
+                  {"name", emitter.name},
+                  {"description", escapedXml(std::string(scenario::toString(emitter.kind)) + " on " +
+                                             emitters[e].platform)}};
       Json availability = Json::array();
       for (const scenario::TimeInterval& active : emitter.active_s) {
         const double begin_s = std::max(active.begin_s, begin_s_), end_s = std::min(active.end_s, end_s_);

@@ -4,6 +4,7 @@
 
 #include <mutex>
 
+#include "base/whole_file.h"
 #include "emscape/base/error.h"
 
 namespace emscape::study {
@@ -18,6 +19,26 @@ GDALDriver* driverOf(const char* name) {
 
 void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
   throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
+}
+
+UnfinishedFile::UnfinishedFile(const std::filesystem::path& file)
+    : file_(file), temporary_(temporaryFor(file)) {
+  remove();
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  remove();
+}
+
+void UnfinishedFile::publish() {
+  emscape::publish(temporary_, file_);
+}
+
+void UnfinishedFile::remove() const {
+  std::error_code ignored;
+  for (const char* ending : {"", "-journal", "-wal", "-shm"}) {
+    std::filesystem::remove(temporary_.string() + ending, ignored);
+  }
 }
 
 Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {

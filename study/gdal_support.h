@@ -25,6 +25,26 @@ GDALDriver* driverOf(const char* name);
 /// @throws Error (other) that names the file and GDAL's reason
 [[noreturn]] void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file);
 
+/// A file that GDAL writes under a temporary name. Removed with what GDAL keeps beside it, unless it was
+/// published.
+class UnfinishedFile {
+ public:
+  explicit UnfinishedFile(const std::filesystem::path& file);
+  ~UnfinishedFile();
+  UnfinishedFile(const UnfinishedFile&) = delete;
+  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
+
+  const std::filesystem::path& file() const { return file_; }
+  const char* temporary() const { return temporary_.c_str(); }
+  /// Gives the file its name. @throws Error (other) naming it
+  void publish();
+
+ private:
+  void remove() const;
+
+  const std::filesystem::path file_, temporary_;
+};
+
 /// A raster of one band in memory, of a grid's pixels and in its place.
 /// @throws Error (other) naming the file for which it is made
 Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file);

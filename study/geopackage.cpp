@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/whole_file.h"
 #include "emscape/playback/scene.h"
 #include "emscape/study/map_picture.h"
 #include "render/annotate/overlay_parts.h"
@@ -45,11 +44,9 @@ std::string hexOf(const render::Rgb& color) {
 
 class GeoPackage : public MapCollection {
  public:
-  GeoPackage(const std::filesystem::path& file, const MapStudy& study)
-      : file_(file), temporary_(temporaryFor(file)), study_(study) {
+  GeoPackage(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
     const Scope scope(*this);
-    std::filesystem::remove(temporary_);
-    dataset_.reset(driverOf("GPKG")->Create(temporary_.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    dataset_.reset(driverOf("GPKG")->Create(file_.temporary(), 0, 0, 0, GDT_Unknown, nullptr));
     check(scope, dataset_ != nullptr);
     dataset_->StartTransaction();
     const OGRSpatialReference map_reference = referenceOf(*study.grid), earth = wgs84Reference();
@@ -81,14 +78,10 @@ class GeoPackage : public MapCollection {
   ~GeoPackage() override {
     const Scope scope(*this);
     dataset_.reset();
-    std::error_code ignored;
-    for (const char* ending : {"", "-journal", "-wal", "-shm"}) {
-      std::filesystem::remove(temporary_.string() + ending, ignored);
-    }
   }
 
   void add(const Map& map) override {
-    const MapShapes shapes = shapesOf(*study_.grid, map, file_);
+    const MapShapes shapes = shapesOf(*study_.grid, map, file_.file());
     const Scope scope(*this);
     for (const MapBand& band : shapes.bands) {
       const OGRFeatureUniquePtr feature = featureOf(bands_, map);
@@ -116,7 +109,7 @@ class GeoPackage : public MapCollection {
       dataset_.reset();
       check(scope, true);
     }
-    publish(temporary_, file_);
+    file_.publish();
   }
 
  private:
@@ -129,7 +122,7 @@ class GeoPackage : public MapCollection {
   };
 
   void check(const Scope& scope, bool is_done) const {
-    if (!is_done || scope.messages.hasFailure()) failWriting(scope.messages, file_);
+    if (!is_done || scope.messages.hasFailure()) failWriting(scope.messages, file_.file());
   }
 
   OGRLayer* addLayer(const Scope& scope, const char* name, const OGRSpatialReference* reference,
@@ -266,7 +259,7 @@ class GeoPackage : public MapCollection {
     }
   }
 
-  const std::filesystem::path file_, temporary_;
+  UnfinishedFile file_;
   const MapStudy& study_;
   Dataset dataset_;
   OGRLayer *bands_ = nullptr, *contours_ = nullptr;

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "base/whole_file.h"
 #include "study/gdal_support.h"
 
 namespace emscape::study {
@@ -67,23 +66,19 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
   }
   if (written != CE_None) failWriting(messages, file);
 
-  const std::filesystem::path temporary = temporaryFor(file);
+  UnfinishedFile unfinished(file);
   // COG makes its overviews beside the output.
   const char* const options[] = {
       "COMPRESS=DEFLATE", is_index ? "PREDICTOR=NO" : "PREDICTOR=YES", "OVERVIEWS=AUTO",
       is_index ? "OVERVIEW_RESAMPLING=NEAREST" : "OVERVIEW_RESAMPLING=AVERAGE", nullptr};
   bool is_complete = false;
   {
-    const Dataset copy(cog->CreateCopy(temporary.c_str(), dataset.get(), TRUE, const_cast<char**>(options),
-                                       nullptr, nullptr));
+    const Dataset copy(cog->CreateCopy(unfinished.temporary(), dataset.get(), TRUE,
+                                       const_cast<char**>(options), nullptr, nullptr));
     is_complete = copy != nullptr;
   }
-  if (!is_complete || messages.hasFailure()) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    failWriting(messages, file);
-  }
-  publish(temporary, file);
+  if (!is_complete || messages.hasFailure()) failWriting(messages, file);
+  unfinished.publish();
 }
 
 }  // namespace emscape::study

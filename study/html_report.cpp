@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <regex>
 #include <string_view>
 
 #include "base/whole_file.h"
@@ -19,7 +20,7 @@ h1 { margin-bottom: 0; } h2 { margin-top: 2em; border-bottom: 1px solid #c9d1d9;
 table { border-collapse: collapse; margin: 1em 0; } caption { text-align: left; color: #57606a; }
 th, td { padding: 0.25em 0.8em; border-bottom: 1px solid #d8dee4; text-align: left; vertical-align: top; }
 td.number { text-align: right; font-variant-numeric: tabular-nums; }
-figure { margin: 1.5em 0; } figure img, figure svg { max-width: 100%; height: auto; }
+figure { margin: 1.5em 0; } figure img { max-width: 100%; height: auto; }
 figcaption { color: #57606a; }
 @media print { h2 { break-after: avoid; } figure, table { break-inside: avoid; } }
 )";
@@ -92,9 +93,13 @@ void HtmlReport::picture(const render::Image8& image, const std::string& caption
 }
 
 void HtmlReport::drawing(const std::string& svg, const std::string& caption) {
-  const std::size_t begin = svg.find("<svg");  // a document in HTML has no XML declaration
-  body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n",
-                       begin == std::string::npos ? svg : svg.substr(begin), escapedXml(caption));
+  // As a picture, so that the names of its parts are its own: drawings of Cairo have the same names, besides
+  // a number that counts the drawings of the process.
+  static const std::regex kNumber("\\bid=\"surface[0-9]+\"");
+  body_ += fmt::format(
+      "<figure><img alt=\"{0}\" "
+      "src=\"data:image/svg+xml;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
+      escapedXml(caption), base64(std::regex_replace(svg, kNumber, "id=\"surface\"")));
 }
 
 std::string HtmlReport::html() const {

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 
-#include "base/whole_file.h"
 #include "emscape/playback/scene.h"
 #include "emscape/render/image.h"
 #include "render/annotate/overlay_parts.h"
@@ -89,25 +88,22 @@ std::string kmlColor(const render::Rgb& color) {
 
 class Kmz : public MapCollection {
  public:
-  Kmz(const std::filesystem::path& file, const MapStudy& study)
-      : file_(file), temporary_(temporaryFor(file)), study_(study) {
+  Kmz(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
     const scenario::GdalMessages messages;
-    zip_ = CPLCreateZip(temporary_.c_str(), nullptr);
-    if (zip_ == nullptr) failWriting(messages, file_);
+    zip_ = CPLCreateZip(file_.temporary(), nullptr);
+    if (zip_ == nullptr) failWriting(messages, file_.file());
   }
 
   ~Kmz() override {
     const scenario::GdalMessages messages;
     if (zip_ != nullptr) CPLCloseZip(zip_);
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
   }
 
   void add(const Map& map) override {
     Folder& folder = folderOf(map);
     const render::Legend legend = legendOf(map);
     const std::string name = "files/" + fileNameOf(map) + ".png";
-    const Overlay overlay = overlayOf(*study_.grid, map, legend, file_);
+    const Overlay overlay = overlayOf(*study_.grid, map, legend, file_.file());
     write(name, render::encodePng(overlay.image));
     // The range of the colours may differ from time to time.
     const std::string legend_name = "files/legend_" + fileNameOf(map) + ".png";
@@ -143,9 +139,9 @@ class Kmz : public MapCollection {
       const scenario::GdalMessages messages;
       const CPLErr closed = CPLCloseZip(zip_);
       zip_ = nullptr;
-      if (closed != CE_None || messages.hasFailure()) failWriting(messages, file_);
+      if (closed != CE_None || messages.hasFailure()) failWriting(messages, file_.file());
     }
-    publish(temporary_, file_);
+    file_.publish();
   }
 
  private:
@@ -174,7 +170,7 @@ class Kmz : public MapCollection {
         CPLCreateFileInZip(zip_, name.c_str(), nullptr) == CE_None &&
         CPLWriteFileInZip(zip_, bytes.data(), static_cast<int>(bytes.size())) == CE_None &&
         CPLCloseFileInZip(zip_) == CE_None;
-    if (!is_written || messages.hasFailure()) failWriting(messages, file_);
+    if (!is_written || messages.hasFailure()) failWriting(messages, file_.file());
   }
 
   std::string emitters() const {
@@ -213,7 +209,7 @@ class Kmz : public MapCollection {
     return text + "</Folder>\n";
   }
 
-  const std::filesystem::path file_, temporary_;
+  UnfinishedFile file_;
   const MapStudy& study_;
   void* zip_ = nullptr;
   std::vector<Folder> folders_;

@@ -38,7 +38,7 @@ Json toJson(const MapRecord& record) {
   return json;
 }
 
-std::vector<std::string> emittersOf(const scenario::Scenario& scenario) {
+std::vector<std::string> emitterNames(const scenario::Scenario& scenario) {
   std::vector<std::string> names;
   for (const scenario::Emitter& emitter : scenario.emitters) names.push_back(emitter.name);
   return names;
@@ -151,7 +151,7 @@ std::string reportJsonOf(const MapStudy& study, const std::vector<MapRecord>& re
               {"cell_m", grid.cell_m},
               {"pixels", {grid.width, grid.height}},
               {"area_weights", "ellipsoid"},
-              {"emitters", emittersOf(scenario)}};
+              {"emitters", emitterNames(scenario)}};
   if (!more.empty()) report.update(Json::parse(more));
   report["files"] = files;
   report["maps"] = Json::array();

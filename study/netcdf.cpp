@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "study/gdal_support.h"
 #include "study/map_objects.h"
@@ -43,11 +42,10 @@ std::string flagWord(const std::string& label) {
 
 class NetCdf : public MapCollection {
  public:
-  NetCdf(const std::filesystem::path& file, const MapStudy& study)
-      : file_(file), temporary_(temporaryFor(file)), study_(study) {
+  NetCdf(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
     const scenario::GdalMessages messages;
     const char* const options[] = {"FORMAT=NC4", "CONVENTIONS=CF-1.8", nullptr};
-    dataset_.reset(driverOf("netCDF")->CreateMultiDimensional(temporary_.c_str(), nullptr, options));
+    dataset_.reset(driverOf("netCDF")->CreateMultiDimensional(file_.temporary(), nullptr, options));
     check(messages, dataset_ != nullptr);
     root_ = dataset_->GetRootGroup();
     setText(*root_, "title", study.title);
@@ -65,8 +63,6 @@ class NetCdf : public MapCollection {
   ~NetCdf() override {
     const scenario::GdalMessages messages;
     close();
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
   }
 
   void add(const Map& map) override {
@@ -101,12 +97,12 @@ class NetCdf : public MapCollection {
       close();
       check(messages, true);
     }
-    publish(temporary_, file_);
+    file_.publish();
   }
 
  private:
   void check(const scenario::GdalMessages& messages, bool is_done) const {
-    if (!is_done || messages.hasFailure()) failWriting(messages, file_);
+    if (!is_done || messages.hasFailure()) failWriting(messages, file_.file());
   }
 
   void close() {
@@ -125,8 +121,8 @@ class NetCdf : public MapCollection {
   std::size_t indexIn(const std::vector<double>& values, double value) const {
     const auto found = std::find(values.begin(), values.end(), value);
     if (found == values.end()) {
-      throw Error(ErrorCode::other,
-                  fmt::format("{}: {} is neither a time nor a height of the study", file_.string(), value));
+      throw Error(ErrorCode::other, fmt::format("{}: {} is neither a time nor a height of the study",
+                                                file_.file().string(), value));
     }
     return static_cast<std::size_t>(found - values.begin());
   }
@@ -185,20 +181,21 @@ class NetCdf : public MapCollection {
                   {{"standard_name", "projection_y_coordinate"}, {"long_name", "northing"}, {"axis", "Y"}});
     addCoordinate(messages, "x", GDAL_DIM_TYPE_HORIZONTAL_X, x, "m",
                   {{"standard_name", "projection_x_coordinate"}, {"long_name", "easting"}, {"axis", "X"}});
-    std::vector<double> latitudes, longitudes;
+    // Single precision, for half the size: to 2 m. x and y are exact.
+    std::vector<float> latitudes, longitudes;
     for (const emfield::Surface::Place& place : grid.places) {
-      latitudes.push_back(place.latitude_deg);
-      longitudes.push_back(std::isnan(place.latitude_deg) ? NAN : place.longitude_deg);
+      latitudes.push_back(static_cast<float>(place.latitude_deg));
+      longitudes.push_back(std::isnan(place.latitude_deg) ? NAN : static_cast<float>(place.longitude_deg));
     }
     addPlaces(messages, "lat", "latitude", "degrees_north", latitudes);
     addPlaces(messages, "lon", "longitude", "degrees_east", longitudes);
   }
 
   void addPlaces(const scenario::GdalMessages& messages, const char* name, const char* standard_name,
-                 const char* unit, const std::vector<double>& values) {
+                 const char* unit, const std::vector<float>& values) {
     const char* const options[] = {"COMPRESS=DEFLATE", nullptr};
     const Array array = root_->CreateMDArray(name, {dimensions_["y"], dimensions_["x"]},
-                                             GDALExtendedDataType::Create(GDT_Float64), options);
+                                             GDALExtendedDataType::Create(GDT_Float32), options);
     check(messages, array != nullptr);
     array->SetNoDataValue(static_cast<double>(NAN));
     setText(*array, "standard_name", standard_name);
@@ -207,7 +204,7 @@ class NetCdf : public MapCollection {
     const GUInt64 start[] = {0, 0};
     const std::size_t count[] = {static_cast<std::size_t>(study_.grid->height),
                                  static_cast<std::size_t>(study_.grid->width)};
-    check(messages, array->Write(start, count, nullptr, nullptr, GDALExtendedDataType::Create(GDT_Float64),
+    check(messages, array->Write(start, count, nullptr, nullptr, GDALExtendedDataType::Create(GDT_Float32),
                                  values.data()));
   }
 
@@ -263,7 +260,7 @@ class NetCdf : public MapCollection {
     setText(variable, "flag_meanings", words);
   }
 
-  const std::filesystem::path file_, temporary_;
+  UnfinishedFile file_;
   const MapStudy& study_;
   Dataset dataset_;
   std::shared_ptr<GDALGroup> root_;

@@ -56,6 +56,7 @@ void addCoverage(CLI::App& app, const GlobalOptions& global, Action& action);
 void addVertical(CLI::App& app, const GlobalOptions& global, Action& action);
 void addExposure(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCompare(CLI::App& app, const GlobalOptions& global, Action& action);
+void addStudy(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCheck(CLI::App& app, const GlobalOptions& global, Action& action);
 void addBench(CLI::App& app, const GlobalOptions& global, Action& action);
 

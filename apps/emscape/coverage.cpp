@@ -103,6 +103,8 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
   if (global.json) {
     printResult(folder.reportJson());
     finishResult();
+  } else {
+    print("Report: {}/report.html\n", command.folder);
   }
   return 0;
 }

@@ -127,6 +127,7 @@ int emscapeMain(int argc, char** argv) {
   addVertical(app, global, action);
   addExposure(app, global, action);
   addCompare(app, global, action);
+  addStudy(app, global, action);
   addCheck(app, global, action);
   addBench(app, global, action);
 

@@ -3,6 +3,7 @@
 
 #include "base/simd.h"
 #include "emfield/combine.h"
+#include "emfield/cpu/apply_excess.h"
 #include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/row.h"
 #include "emscape/base/parallel.h"
@@ -81,11 +82,6 @@ void powerDensityRow(const EmitterBeam& emitter, const Row& row, std::size_t fir
   }
 }
 
-EMSCAPE_SIMD_CLONES void applyExcess(const ExcessCode* excess, int count, float* power_density_wm2) {
-#pragma omp simd
-  for (int i = 0; i < count; ++i) power_density_wm2[i] *= excessFactor(excess[i]);
-}
-
 EMSCAPE_SIMD_CLONES void reduceRow(Reduction reduction, float weight, int emitter_index,
                                    const float* power_density_wm2, int count, float* value, float* second) {
   switch (reduction) {
@@ -134,8 +130,7 @@ const float* powerOf(const CombineEmitter& emitter, const Row& row, std::size_t 
   float* const power_wm2 = emitter.power_wm2 != nullptr ? emitter.power_wm2 + first : buffer;
   if (emitter.power_is_known) return power_wm2;
   powerDensityRow(emitter.beam, row, first, power_wm2);
-  if (emitter.beam.geometry.excess != nullptr)
-    applyExcess(emitter.beam.geometry.excess + first, row.count, power_wm2);
+  applyExcess(emitter.beam.geometry.excess, first, row.count, power_wm2);
   return power_wm2;
 }
 

@@ -1,6 +1,7 @@
 // The field's stages on the host.
 
 #include <algorithm>
+#include <optional>
 
 #include "base/memory.h"
 #include "base/stopwatch.h"
@@ -26,6 +27,7 @@ class CpuEngine : public FieldEngine {
         kept_power_(static_cast<std::size_t>(std::max(0, slots - 1)), voxels_,
                     availableMemory_bytes().value_or(0)) {
     planChanged(true);
+    if (setup.columns.every_height && setup.terrain != nullptr) bounds_.emplace(setup.terrain->view());
     const Dims& dims = setup.grid.dims;
     const std::vector<std::uint16_t>& valid = setup.columns.first_valid_k;
     for (int j = 0; j < dims.y && !valid.empty(); ++j) {
@@ -52,6 +54,7 @@ class CpuEngine : public FieldEngine {
   const FieldSetup& setup_;
   std::size_t voxels_;
   std::vector<int> first_row_k_;
+  std::optional<TerrainBounds> bounds_;  // of surfaces over terrain
   std::vector<EmitterGeometry> slots_;
   KeptPower<std::vector<float>> kept_power_;  // without the last slot, which emitters share
   std::vector<ChannelBuffers> buffers_;
@@ -65,7 +68,7 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     kept_power_.forget(static_cast<std::size_t>(request.slot));
     EmitterGeometry::Times spent;
     geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
-                     setup_.columns, setup_.terrain.get(), spent);
+                     setup_.columns, setup_.terrain.get(), spent, bounds_ ? &*bounds_ : nullptr);
     times_.columns_ms += spent.columns_ms;
     times_.excess_ms += spent.excess_ms;
 
@@ -142,6 +145,10 @@ void CpuEngine::combine(const CombinePass& pass) {
       float* const accumulator = task.accumulators[share.channel].value;
       if (accumulator == nullptr) continue;
       radarCpu(radarPass(share, beam, slots_[pass.members[m].slot].clutterMap(), task, accumulator));
+    }
+    for (const OccupancyShare& share : pass.members[m].occupancies) {
+      float* const accumulator = task.accumulators[share.channel].value;
+      if (accumulator != nullptr) occupancyCpu(occupancyPass(share, beam, task, accumulator));
     }
   }
   times_.combine_ms += watch.lap_ms();

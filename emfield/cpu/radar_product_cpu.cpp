@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "base/simd.h"
+#include "emfield/cpu/apply_excess.h"
 #include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/clutter_rows.h"
 #include "emfield/cpu/echo_rows.h"
@@ -51,11 +52,6 @@ void fillRow(const RadarPass& pass, const Row& row, float* root, float* jamming)
     case PatternKind::grid:
       return gridRow(pass, row, root, jamming);
   }
-}
-
-EMSCAPE_SIMD_CLONES void applyExcess(const ExcessCode* excess, int count, float* root) {
-#pragma omp simd
-  for (int i = 0; i < count; ++i) root[i] *= excessFactor(excess[i]);
 }
 
 EMSCAPE_SIMD_CLONES void countLooks(const RadarPass& pass, const Row& row, float* looks) {
@@ -123,8 +119,7 @@ void radarCpu(const RadarPass& pass) {
         } else if (pass.task.is_cumulative) {
           countLooks(pass, row, looks.data());
         }
-        const ExcessCode* excess = pass.beam.geometry.excess;
-        if (excess != nullptr) applyExcess(excess + voxel, dims.x, root.data());
+        applyExcess(pass.beam.geometry.excess, voxel, dims.x, root.data());
         accumulateRow(pass.task, dims.x, root.data(), jamming.data(), looks.data(), pass.accumulator + voxel);
       }
     }

@@ -155,12 +155,12 @@ __global__ void __launch_bounds__(kWarp* kWarps)
                                               power_density_wm2);
           break;
       }
-      if (member.beam.geometry.excess != nullptr) {
-        const ExcessCode* const excess = member.beam.geometry.excess + first;
+      if (!member.beam.geometry.excess.isEmpty()) {
+        const ExcessView& excess = member.beam.geometry.excess;
 #pragma unroll
         for (int l = 0; l < kLayers; ++l) {
           if (begin + l < launch.dims.z) {
-            power_density_wm2[l] *= excessFactor(excess[static_cast<long long>(l) * columns]);
+            power_density_wm2[l] *= excess.factor(first + static_cast<long long>(l) * columns);
           }
         }
       }

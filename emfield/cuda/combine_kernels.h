@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "emfield/combine.h"
+#include "emfield/occupancy.h"
 #include "emfield/products.h"
 #include "volume/cuda/device_storage.h"
 
@@ -18,6 +19,10 @@ void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaSt
 /// One radar's pass, as radarCpu(): all pointers are to device memory.
 /// @param first_valid_k  as for combine
 void addRadar(const RadarPass& pass, const std::uint16_t* first_valid_k, cudaStream_t stream);
+
+/// One emitter's pass, as occupancyCpu(): all pointers are to device memory.
+/// @param first_valid_k  as for combine
+void addOccupancy(const OccupancyPass& pass, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
 /// A value range while kernels widen it: floats as integers of the same order.
 struct DeviceRange {

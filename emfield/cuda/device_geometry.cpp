@@ -61,7 +61,9 @@ ColumnGeometryView DeviceGeometry::view(int slot) const {
   const float* numbers = slots_[slot].numbers.data();
   const std::size_t columns = static_cast<std::size_t>(columns_.count);
   return columnGeometryView(numbers, columns, numbers + kColumnNumbers * columns,
-                            slots_[slot].has_excess ? slots_[slot].excess.data() : nullptr,
+                            slots_[slot].has_excess
+                                ? ExcessView{slots_[slot].excess.data(), slots_[slot].excess_db.data()}
+                                : ExcessView{},
                             slots_[slot].has_reflected ? slots_[slot].reflected.data() : nullptr);
 }
 
@@ -154,9 +156,11 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     }
     if (!slot.has_excess) continue;
     const std::size_t voxels = columns * static_cast<std::size_t>(columns_.layers);
-    works[r].excess.out = {atLeast(slot.excess, voxels),
-                           slot.has_reflected ? atLeast(slot.reflected, voxels) : nullptr,
-                           task.shadow_edge_m};
+    const bool in_db = setup_.columns.every_height;
+    works[r].excess.out = {
+        {in_db ? nullptr : atLeast(slot.excess, voxels), in_db ? atLeast(slot.excess_db, voxels) : nullptr},
+        slot.has_reflected ? atLeast(slot.reflected, voxels) : nullptr,
+        task.shadow_edge_m};
   }
   clock.begin(stream);
   place(works, stream);
@@ -241,7 +245,8 @@ std::size_t DeviceGeometry::bytes() const {
                       bytesOf(ranges_m_) + bytesOf(shadows_) + bytesOf(terms_) + bytesOf(diffraction_) +
                       bytesOf(scratch_) + bytesOf(ground_msl_m_) + bytesOf(model_tables_);
   for (const Slot& slot : slots_) {
-    bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.reflected) + bytesOf(slot.clutter);
+    bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.excess_db) +
+             bytesOf(slot.reflected) + bytesOf(slot.clutter);
   }
   return bytes + (setup_.terrain == nullptr ? 0 : postBytes(setup_.terrain->view()));
 }

@@ -60,8 +60,9 @@ class DeviceGeometry {
   emscape::cuda::Buffer<float> ground_msl_m_;  ///< empty: none, or tilted columns
   ExcessGrid excess_grid_;
   struct Slot {
-    emscape::cuda::Buffer<float> numbers;  ///< of the columns, then the shadow's edges
-    emscape::cuda::Buffer<ExcessCode> excess;
+    emscape::cuda::Buffer<float> numbers;      ///< of the columns, then the shadow's edges
+    emscape::cuda::Buffer<ExcessCode> excess;  ///< or, over a surface:
+    emscape::cuda::Buffer<float> excess_db;
     emscape::cuda::Buffer<ReflectedRayCode> reflected;
     emscape::cuda::Buffer<ClutterCell> clutter;
     ClutterGrid clutter_grid;

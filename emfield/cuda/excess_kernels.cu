@@ -156,9 +156,11 @@ __device__ __noinline__ float effectiveHeight_m(const Station& station, float he
 __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGrid& grid, int c,
                                     const ProfileMemory& memory, int thread) {
   const auto layer = static_cast<long long>(grid.column_count);
-  ExcessCode* const codes = task.to.out.codes + c;
+  const auto set = [&](int layer_k, float excess_db) {
+    task.to.out.excess.set(static_cast<std::size_t>(layer_k * layer + c), excess_db);
+  };
   const int lowest = grid.firstValid(static_cast<std::size_t>(c));
-  for (int below = 0; below < lowest; ++below) codes[below * layer] = 0;
+  for (int below = 0; below < lowest; ++below) set(below, 0);
   if (grid.isLeftOut(static_cast<std::size_t>(c))) return;
   const AirLoss& air = task.air;
   const GridColumn& column = grid.columns[c];
@@ -180,7 +182,7 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
       DiffractionColumn<float, ColumnPosts> receivers(task.model.model, posts, task.model.tx_msl_m);
       if (receivers.isUnknown()) {
         is_unknown = true;
-        for (; k < end; ++k) codes[k * layer] = kUnknownExcess;
+        for (; k < end; ++k) set(k, NAN);
       }
       while (k < end && !is_free) {
         float rx_msl_m[kReceivers], loss_db[kReceivers];
@@ -196,12 +198,12 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
         for (int j = 0; j < kReceivers; ++j) {
           if (k + j >= end) break;
           if (!air.isClear()) loss_db[j] += above.lossDb(heightOf(k + j));
-          codes[(k + j) * layer] = excessCode(loss_db[j]);
+          set(k + j, loss_db[j]);
         }
         k += kReceivers;
       }
     }
-    for (; k < end; ++k) codes[k * layer] = air.isClear() ? 0 : excessCode(above.lossDb(heightOf(k)));
+    for (; k < end; ++k) set(k, air.isClear() ? 0 : above.lossDb(heightOf(k)));
   }
   if (is_unknown) markUnknown(task.to, c);
 }
@@ -270,13 +272,13 @@ __global__ void __launch_bounds__(kThreads)
   const ExcessScratch scratch = memory.scratch(thread);
   for (std::size_t c = thread; c < grid.column_count; c += threads) {
     if (grid.isLeftOut(c)) {
-      for (int k = 0; k < grid.layers; ++k) to.out.codes[k * grid.column_count + c] = 0;
+      for (int k = 0; k < grid.layers; ++k) to.out.excess.set(k * grid.column_count + c, 0);
       continue;
     }
     const unsigned warnings = task.fillColumn(c, scratch, PostReader{}, to.out.reflected);
     note(to, static_cast<int>(c), warnings);
     for (int k = 0; k < grid.layers; ++k) {
-      to.out.codes[k * grid.column_count + c] = excessCode(scratch.excess_db[k]);
+      to.out.excess.set(k * grid.column_count + c, scratch.excess_db[k]);
     }
   }
 }
@@ -296,7 +298,8 @@ __global__ void __launch_bounds__(kThreads)
   if (n >= run.count) return;
   if (task.grid.isLeftOut(run.first + n)) {
     memory.begun(n).is_open = false;
-    for (int k = 0; k < task.grid.layers; ++k) to.out.codes[k * task.grid.column_count + run.first + n] = 0;
+    for (int k = 0; k < task.grid.layers; ++k)
+      to.out.excess.set(k * task.grid.column_count + run.first + n, 0);
     return;
   }
   const ExcessScratch scratch = memory.scratch(n);
@@ -308,7 +311,7 @@ __global__ void __launch_bounds__(kThreads)
   note(to, run.first + n, warnings);
   for (int k = 0; k < column.count; ++k) {
     const float excess_db = scratch.excess_db[first + k];
-    to.out.codes[(first + k) * task.grid.column_count + run.first + n] = excessCode(excess_db);
+    to.out.excess.set((first + k) * task.grid.column_count + run.first + n, excess_db);
   }
 }
 
@@ -331,7 +334,7 @@ __global__ void __launch_bounds__(kThreads)
   note(to, run.first + n, task.model.fill(begun.column, scratch, {begin, end, other_db}, excess_db));
   task.addAir(static_cast<std::size_t>(run.first + n), run.segment, begun.column, begin, end, excess_db);
   for (int k = begin; k < end; ++k) {
-    to.out.codes[(first + k) * task.grid.column_count + run.first + n] = excessCode(excess_db[k]);
+    to.out.excess.set((first + k) * task.grid.column_count + run.first + n, excess_db[k]);
   }
 }
 

@@ -55,6 +55,13 @@ struct RadarTables {
   Buffer<JammerAtRadar> jammers;
 };
 
+/// Copies of a beam's positions.
+struct DevicePositions {
+  Buffer<BeamArc> arcs;
+  Buffer<float> cos_azimuth, sin_azimuth;
+  Buffer<PatternReach> reaches;
+};
+
 class CudaEngine : public FieldEngine {
  public:
   CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecision precision);
@@ -84,9 +91,10 @@ class CudaEngine : public FieldEngine {
   emscape::cuda::Stream stream_;
   cuda::StageClock clock_;
   cuda::DeviceGeometry geometry_;
-  KeptPower<Buffer<float>> kept_power_;                      // without the last slot, which emitters share
-  std::map<scenario::AntennaPtr, DevicePattern> patterns_;   ///< of antennas and of their intervals
-  std::map<std::pair<int, int>, RadarTables> radar_tables_;  ///< by channel and emitter
+  KeptPower<Buffer<float>> kept_power_;                       // without the last slot, which emitters share
+  std::map<scenario::AntennaPtr, DevicePattern> patterns_;    ///< of antennas and of their intervals
+  std::map<std::pair<int, int>, RadarTables> radar_tables_;   ///< by channel and emitter
+  std::map<std::pair<int, int>, DevicePositions> positions_;  ///< by channel and emitter
   std::vector<ChannelBuffers> buffers_;
   Buffer<cuda::DeviceRange> ranges_;
 };
@@ -112,6 +120,7 @@ const scenario::PatternView& CudaEngine::patternOf(const scenario::AntennaPtr& a
 
 void CudaEngine::planChanged(bool channels_changed) {
   radar_tables_.clear();
+  positions_.clear();
   if (!channels_changed) return;
   buffers_ = std::vector<ChannelBuffers>(setup_.channels.size());
   ranges_ = Buffer<cuda::DeviceRange>(setup_.channels.size());
@@ -154,7 +163,7 @@ void CudaEngine::combine(const CombinePass& pass) {
   clock_.begin(stream_);
   cuda::combine(task, geometry_.firstValidK(), stream_);
   for (std::size_t m = 0; m < pass.members.size(); ++m) {
-    if (pass.members[m].radars.empty()) continue;
+    if (pass.members[m].radars.empty() && pass.members[m].occupancies.empty()) continue;
     EmitterBeam beam = task.emitters[m].beam;
     beam.pattern = patternOf(setup_.scenario->emitters[pass.members[m].emitter.emitter_index].antenna);
     for (const RadarShare& share : pass.members[m].radars) {
@@ -170,6 +179,21 @@ void CudaEngine::combine(const CombinePass& pass) {
       radar.task.curve.knots = tables.knots.data();
       radar.task.jammers = tables.jammers.data();
       cuda::addRadar(radar, geometry_.firstValidK(), stream_);
+    }
+    for (const OccupancyShare& share : pass.members[m].occupancies) {
+      float* const accumulator = task.accumulators[share.channel].value;
+      if (accumulator == nullptr) continue;
+      OccupancyPass occupancy = occupancyPass(share, beam, task, accumulator);
+      DevicePositions& positions = positions_[{share.channel, pass.members[m].emitter.emitter_index}];
+      positions.arcs.upload(share.positions.arcs, stream_);
+      positions.cos_azimuth.upload(share.positions.cos_azimuth, stream_);
+      positions.sin_azimuth.upload(share.positions.sin_azimuth, stream_);
+      positions.reaches.upload(share.positions.reaches, stream_);
+      occupancy.arcs = positions.arcs.data();
+      occupancy.cos_azimuth = positions.cos_azimuth.data();
+      occupancy.sin_azimuth = positions.sin_azimuth.data();
+      occupancy.reaches = positions.reaches.data();
+      cuda::addOccupancy(occupancy, geometry_.firstValidK(), stream_);
     }
   }
   clock_.end(&StageTimes::combine_ms, stream_);

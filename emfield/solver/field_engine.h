@@ -9,6 +9,7 @@
 
 #include "emfield/combine.h"
 #include "emfield/grid_columns.h"
+#include "emfield/occupancy.h"
 #include "emfield/products.h"
 #include "emfield/solver/field_plan.h"
 #include "emscape/emfield/field_solver.h"
@@ -44,12 +45,14 @@ struct GeometryResult {
 struct CombinePass {
   struct Member {
     int slot = 0;
-    /// Of the beam's pattern, which may be that of an interval; radars' echoes have the emitter's own.
+    /// Of the beam's pattern, which may be that of an interval; radars' echoes and occupancy have the
+    /// emitter's own.
     scenario::AntennaPtr antenna;
     /// Without the views of geometry and pattern, which belong to the engine. Channels are those of the
     /// setup.
     CombineEmitter emitter;
-    std::vector<RadarShare> radars;  ///< its parts in channels of echoes
+    std::vector<RadarShare> radars;           ///< its parts in channels of echoes
+    std::vector<OccupancyShare> occupancies;  ///< its parts in channels of occupancy
   };
   std::vector<Member> members;
   std::vector<bool> channels;     ///< true for those of the pass

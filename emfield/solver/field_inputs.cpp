@@ -105,6 +105,24 @@ bool sameShare(const RadarShare& a, const RadarShare& b) {
          std::equal(jammers.begin(), jammers.end(), b.jammers.begin(), b.jammers.end(), sameJammer);
 }
 
+bool sameArc(const BeamArc& a, const BeamArc& b) {
+  // The azimuths follow from the arc, how far the pattern reaches from the pattern.
+  const auto& [aim, first_rad, step_rad, begin, count, reach, share] = a;
+  const auto& [cos_azimuth, sin_azimuth, cos_elevation, sin_elevation, steer_u, steer_v] = aim;
+  return first_rad == b.first_rad && step_rad == b.step_rad && begin == b.begin && count == b.count &&
+         reach == b.reach && share == b.share && cos_azimuth == b.aim.cos_azimuth &&
+         sin_azimuth == b.aim.sin_azimuth && cos_elevation == b.aim.cos_elevation &&
+         sin_elevation == b.aim.sin_elevation && steer_u == b.aim.steer_u && steer_v == b.aim.steer_v;
+}
+
+bool sameShare(const OccupancyShare& a, const OccupancyShare& b) {
+  const auto& [channel, threshold_wm2, eirp_over_4pi_w, forward, right, up, positions] = a;
+  return channel == b.channel && threshold_wm2 == b.threshold_wm2 && eirp_over_4pi_w == b.eirp_over_4pi_w &&
+         forward == b.forward && right == b.right && up == b.up &&
+         std::equal(positions.arcs.begin(), positions.arcs.end(), b.positions.arcs.begin(),
+                    b.positions.arcs.end(), sameArc);
+}
+
 bool sameBeam(const EmitterBeam& a, const EmitterBeam& b) {
   const auto& [geometry, pattern, forward, right, up, steer_u, steer_v, eirp_over_4pi_w] = a;
   return forward == b.forward && right == b.right && up == b.up && steer_u == b.steer_u &&
@@ -185,7 +203,9 @@ bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, 
   const auto markAll = [&channels](const CombineInputs& inputs) {
     for (const ChannelWeight& share : inputs.member.emitter.shares) channels[share.channel] = true;
     for (const RadarShare& share : inputs.member.radars) channels[share.channel] = true;
-    return !inputs.member.emitter.shares.empty() || !inputs.member.radars.empty();
+    for (const OccupancyShare& share : inputs.member.occupancies) channels[share.channel] = true;
+    return !inputs.member.emitter.shares.empty() || !inputs.member.radars.empty() ||
+           !inputs.member.occupancies.empty();
   };
   if (before == nullptr || now == nullptr) {
     const CombineInputs* const either = before != nullptr ? before : now;
@@ -208,6 +228,10 @@ bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, 
   // If a radar looks at targets, its share does not contain the beam's direction in the scan.
   for (const RadarShare& share : now->member.radars) {
     const RadarShare* const old = shareIn(before->member.radars, share.channel);
+    if (old == nullptr || !sameShare(*old, share)) mark(share.channel);
+  }
+  for (const OccupancyShare& share : now->member.occupancies) {
+    const OccupancyShare* const old = shareIn(before->member.occupancies, share.channel);
     if (old == nullptr || !sameShare(*old, share)) mark(share.channel);
   }
   return is_any;

@@ -36,7 +36,7 @@ bool haveSameChannels(const FieldPlan& a, const FieldPlan& b) {
     return x.quantity == y.quantity && x.name == y.name && x.emitters == y.emitters && x.jammers == y.jammers;
   };
   const auto sameSums = [](const ChannelPlan& x, const ChannelPlan& y) {
-    return x.reduction == y.reduction && x.radars.empty() == y.radars.empty();
+    return x.reduction == y.reduction && x.reducesPower() == y.reducesPower();
   };
   return std::equal(a.channels.begin(), a.channels.end(), b.channels.begin(), b.channels.end(),
                     sameChannel) &&

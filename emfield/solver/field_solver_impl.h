@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emfield/link/jammers.h"
+#include "emfield/solver/beam_positions.h"
 #include "emfield/solver/field_engine.h"
 #include "emfield/solver/field_inputs.h"
 #include "emfield/solver/interval_beam.h"
@@ -40,6 +41,7 @@ struct FieldSolver::Impl {
   std::vector<EmitterCache> emitters;
   std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
   std::vector<volume::Volume> volumes;
+  PatternReaches reaches;
 
   /// Number of emitters, counted from the first, whose sum is in the engine's static accumulators.
   int resting = 0;
@@ -76,14 +78,15 @@ struct FieldSolver::Impl {
   void findMoved(const scenario::Snapshot& snapshot, Changes& changes);
   void findIntervals(const scenario::Snapshot& snapshot);
   void findJamming(const scenario::Snapshot& snapshot, const Changes& changes);
-  void findCombined(Changes& changes);
+  void findCombined(const scenario::Snapshot& snapshot, Changes& changes);
   void findProducts(Changes& changes);
   void computeGeometry(const std::vector<int>& chosen, bool into_scratch);
   void takeGeometry(int e, GeometryResult found);
   void chooseResting(const std::vector<bool>& changed);
   void combine(int begin, int end, const std::vector<bool>& channel_chosen, bool into_static_sums);
-  CombineInputs combineInputs(int e) const;
+  CombineInputs combineInputs(int e, double t_s);
   std::vector<RadarShare> radarShares(int e) const;
+  std::vector<OccupancyShare> occupancyShares(int e, double t_s);
   void makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes);
   VolumeRequest volumeRequest(int channel, const scenario::Snapshot& snapshot);
   const std::vector<std::uint16_t>& maskOf(const Channel& channel, std::vector<std::uint16_t>& own) const;

@@ -15,6 +15,15 @@ namespace emscape::emfield {
 using scenario::Emitter;
 using scenario::EmitterState;
 
+namespace {
+
+/// Peak EIRP less losses.
+double eirpOf_w(const Emitter& emitter) {
+  return emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db);
+}
+
+}  // namespace
+
 /// Computes the geometry of some emitters, into their own slots or into that of emitters that are not cached.
 void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool into_scratch) {
   if (chosen.empty()) return;
@@ -87,7 +96,7 @@ void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
 }
 
 /// An emitter's part in the channels.
-CombineInputs FieldSolver::Impl::combineInputs(int e) const {
+CombineInputs FieldSolver::Impl::combineInputs(int e, double t_s) {
   const Emitter& emitter = setup.scenario->emitters[e];
   const EmitterState& state = emitters[e].state;
   CombineInputs inputs;
@@ -97,6 +106,7 @@ CombineInputs FieldSolver::Impl::combineInputs(int e) const {
   inputs.member.antenna = interval ? interval->antenna : emitter.antenna;
   inputs.member.slot = e;
   inputs.member.radars = radarShares(e);
+  inputs.member.occupancies = occupancyShares(e, t_s);
   CombineEmitter& part = inputs.member.emitter;
   part.emitter_index = e;
   part.beam.forward = vecCast<float>(pose.forward);
@@ -104,16 +114,33 @@ CombineInputs FieldSolver::Impl::combineInputs(int e) const {
   part.beam.up = vecCast<float>(pose.up);
   part.beam.steer_u = static_cast<float>(pose.steer_u);
   part.beam.steer_v = static_cast<float>(pose.steer_v);
-  const double eirp_w = emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db) *
-                        (interval ? interval->power_share : 1);
+  const double eirp_w = eirpOf_w(emitter) * (interval ? interval->power_share : 1);
   part.beam.eirp_over_4pi_w = static_cast<float>(eirp_w / (4 * kPi));
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     const auto& members = setup.channels[c].emitters;
     const auto place = std::find(members.begin(), members.end(), e);
-    if (place == members.end() || !setup.channel_plans[c].radars.empty()) continue;
+    if (place == members.end() || !setup.channel_plans[c].reducesPower()) continue;
     part.shares.push_back({static_cast<int>(c), setup.channel_plans[c].weights[place - members.begin()]});
   }
   return inputs;
+}
+
+/// An emitter's parts in channels of occupancy.
+std::vector<OccupancyShare> FieldSolver::Impl::occupancyShares(int e, double t_s) {
+  std::vector<OccupancyShare> shares;
+  const Emitter& emitter = setup.scenario->emitters[e];
+  for (std::size_t c = 0; c < setup.channels.size(); ++c) {
+    const std::vector<int>& members = setup.channels[c].emitters;
+    const float threshold_wm2 = setup.channel_plans[c].occupancy_threshold_wm2;
+    if (threshold_wm2 == 0 || std::find(members.begin(), members.end(), e) == members.end()) continue;
+    OccupancyShare share;
+    share.channel = static_cast<int>(c);
+    share.threshold_wm2 = threshold_wm2;
+    share.eirp_over_4pi_w = static_cast<float>(eirpOf_w(emitter) / (4 * kPi));
+    setPositions(*setup.scenario, emitter, emitters[e].state, t_s, reaches, share);
+    shares.push_back(std::move(share));
+  }
+  return shares;
 }
 
 /// Combines the active emitters begin..end - 1: cached ones in one pass over the grid, as
@@ -126,7 +153,8 @@ void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& cha
   const auto isChosen = [&](const auto& share) { return channel_chosen[share.channel]; };
   const auto enters = [&](const CombinePass::Member& member) {
     return std::any_of(member.emitter.shares.begin(), member.emitter.shares.end(), isChosen) ||
-           std::any_of(member.radars.begin(), member.radars.end(), isChosen);
+           std::any_of(member.radars.begin(), member.radars.end(), isChosen) ||
+           std::any_of(member.occupancies.begin(), member.occupancies.end(), isChosen);
   };
   const auto run = [&] {
     engine->combine(pass);

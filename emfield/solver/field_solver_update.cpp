@@ -80,7 +80,7 @@ void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& cha
   findMoved(snapshot, changes);
   findIntervals(snapshot);
   findJamming(snapshot, changes);
-  findCombined(changes);
+  findCombined(snapshot, changes);
   findProducts(changes);
   FieldChanged& report = changes.report;
   report.any = changes.all || report.channels || !report.moved.empty() || !report.turned.empty() ||
@@ -134,7 +134,7 @@ void FieldSolver::Impl::findIntervals(const scenario::Snapshot& snapshot) {
     bool needs_pattern = false;
     for (std::size_t c = 0; c < setup.channels.size(); ++c) {
       const std::vector<int>& members = setup.channels[c].emitters;
-      needs_pattern = needs_pattern || (setup.channel_plans[c].radars.empty() &&
+      needs_pattern = needs_pattern || (setup.channel_plans[c].reducesPower() &&
                                         std::count(members.begin(), members.end(), static_cast<int>(e)) > 0);
     }
     cache.interval = intervalBeam(*setup.scenario, setup.scenario->emitters[e], cache.state, snapshot.time_s,
@@ -143,7 +143,7 @@ void FieldSolver::Impl::findIntervals(const scenario::Snapshot& snapshot) {
 }
 
 /// Emitters whose part in some channel changed, and those channels.
-void FieldSolver::Impl::findCombined(Changes& changes) {
+void FieldSolver::Impl::findCombined(const scenario::Snapshot& snapshot, Changes& changes) {
   FieldChanged& report = changes.report;
   const bool is_all = changes.all || report.channels;
   changes.emitters.assign(emitters.size(), is_all);
@@ -156,7 +156,7 @@ void FieldSolver::Impl::findCombined(Changes& changes) {
   for (int e : report.moved) moved[e] = true;
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     std::optional<CombineInputs> before = std::exchange(emitters[e].combined, std::nullopt);
-    if (emitters[e].state.active) emitters[e].combined = combineInputs(static_cast<int>(e));
+    if (emitters[e].state.active) emitters[e].combined = combineInputs(static_cast<int>(e), snapshot.time_s);
     const auto orNull = [](const std::optional<CombineInputs>& inputs) {
       return inputs ? &*inputs : nullptr;
     };

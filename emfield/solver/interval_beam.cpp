@@ -22,21 +22,6 @@ using scenario::SweptPattern;
 
 constexpr double kTurn_deg = 360;
 
-bool stays(const ScanSweep& sweep) {
-  return sweep.dwells.empty() && std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [&](const SweptArc& arc) {
-           return arc.width_deg == 0 && arc.first_deg == sweep.arcs.front().first_deg &&
-                  arc.elevation_deg == sweep.arcs.front().elevation_deg;
-         });
-}
-
-/// The frame in which the azimuths of a sweep count.
-BeamPose sweepFrame(const Emitter& emitter, const EmitterState& state) {
-  const bool turns_onto_dwells = emitter.scan.kind == ScanKind::dwell_list && !scenario::isSteered(emitter);
-  return turns_onto_dwells
-             ? scenario::aimed(state.mount, emitter.scan.azimuth_deg, emitter.scan.elevation_deg)
-             : state.mount;
-}
-
 /// The azimuths that a beam passes, each once: those of sweeps there and back join. The largest values depend
 /// on them alone, so that intervals of a sweep there and back or more have the same pattern whenever they
 /// begin.
@@ -121,6 +106,20 @@ float dwellLooks(const scenario::ScanSpec& scan, double duration_s) {
 }
 
 }  // namespace
+
+bool stays(const ScanSweep& sweep) {
+  return sweep.dwells.empty() && std::all_of(sweep.arcs.begin(), sweep.arcs.end(), [&](const SweptArc& arc) {
+           return arc.width_deg == 0 && arc.first_deg == sweep.arcs.front().first_deg &&
+                  arc.elevation_deg == sweep.arcs.front().elevation_deg;
+         });
+}
+
+BeamPose sweepFrame(const Emitter& emitter, const EmitterState& state) {
+  const bool turns_onto_dwells = emitter.scan.kind == ScanKind::dwell_list && !scenario::isSteered(emitter);
+  return turns_onto_dwells
+             ? scenario::aimed(state.mount, emitter.scan.azimuth_deg, emitter.scan.elevation_deg)
+             : state.mount;
+}
 
 IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emitter,
                           const EmitterState& state, double t_s, bool needs_pattern,

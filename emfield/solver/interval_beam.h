@@ -32,6 +32,12 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const scenario::Em
                           const scenario::EmitterState& state, double t_s, bool needs_pattern,
                           const IntervalBeam* before);
 
+/// True if a beam has the same direction all the time.
+bool stays(const scenario::ScanSweep& sweep);
+
+/// The frame about whose up the arcs of a sweep turn, or in which its dwells are steered.
+scenario::BeamPose sweepFrame(const scenario::Emitter& emitter, const scenario::EmitterState& state);
+
 /// Replaces a radar's look at targets by its looks in the interval.
 void lookInInterval(const IntervalBeam& beam, RadarTask& task, scenario::EmitterState& state);
 

@@ -50,6 +50,19 @@ std::string deviceName() {
   return none ? "cpu" : version.substr(gpu, version.find(',', gpu) - gpu);
 }
 
+TEST(Bench, CoverageTimesTheFirstHeightAndEachFurtherOne) {
+  const json found =
+      bench({"coverage", shippedScenario("quick.yaml"), "--cell", "500", "--further", "2", "--repeats", "1"});
+  EXPECT_EQ(found.at("device"), deviceName());
+  EXPECT_EQ(found.at("further_heights"), 2);
+  EXPECT_GT(found.at("pixels"), 100);
+  EXPECT_GT(found.at("first_height_ms"), 0);
+  EXPECT_TRUE(found.at("further_height_ms").is_number());
+  for (const char* step : {"pixels", "places", "columns", "excess", "combine", "product"}) {
+    EXPECT_TRUE(found.at("steps_ms").at(step).is_number()) << step;
+  }
+}
+
 TEST(Bench, FieldHasTheKeysThatOthersRelyOn) {
   const ProgramResult result =
       run({"bench", "field", shippedScenario("quick.yaml"), "--repeats", "1", "--json"});

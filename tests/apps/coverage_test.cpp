@@ -75,7 +75,7 @@ TEST(Coverage, RefusesWhatItCannotDo) {
     EXPECT_EQ(result.status, status) << result.err;
     return result.err;
   };
-  EXPECT_THAT(errorOf({"--products", "gaps"}, 2), HasSubstr("unknown product 'gaps'"));
+  EXPECT_THAT(errorOf({"--products", "holes"}, 2), HasSubstr("unknown product 'holes'"));
   EXPECT_THAT(errorOf({"--heights", "100"}, 2), HasSubstr("'100' is none of agl:"));
   EXPECT_THAT(errorOf({"--area", "36,-84"}, 2), HasSubstr("2 numbers"));
   EXPECT_THAT(errorOf({"--area", "bbox:1,2,x,4"}, 2), HasSubstr("'x' is no number"));

@@ -276,6 +276,32 @@ TEST_P(TwoRays, AreWeighedByThePatternAlongEachInEveryVoxel) {
   }
 }
 
+TEST_P(TwoRays, AreAtTheirOwnRangeInEveryVoxelOfALeaningColumn) {
+  // Columns 45 km from the origin lean by 0.4 degrees: 60 m over their 9 km.
+  auto scenario = overTheSea(0, 0, {90e3, 70e3, 9000}, {19, 16, 40});
+  scenario->region.origin.kind = FrameKind::enu;
+  scenario::Emitter emitter = plainEmitter("ship", 0);
+  emitter.antenna = scenario::makeGaussian(30, 6, 8, -40);
+  emitter.frequency_hz = 3e9;
+  emitter.propagation.model = PropagationModel::two_ray;
+  emitter.propagation.two_ray.sum = propagation::TwoRaySum::coherent;
+  placeOver(*scenario, emitter, kShip, 40);
+  scenario->output.quantities = {"power_density_dbwm2"};
+  const auto volume = field(scenario);
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
+  for (int k = 0; k < 40; ++k) {
+    for (int j = 0; j < 16; ++j) {
+      for (int i = 0; i < 19; ++i) {
+        const Reference expected = reference(snapshot, volume->grid, i, j, k);
+        const double power_wm2 = dbToRatio(static_cast<double>(valueAt(*volume, i, j, k)));
+        ASSERT_NEAR(std::sqrt(power_wm2 / expected.scale_wm2),
+                    std::sqrt(expected.power_wm2 / expected.scale_wm2), 4e-3)
+            << i << ", " << j << ", " << k;
+      }
+    }
+  }
+}
+
 TEST_P(TwoRays, OfABeamThatTurnsAreCombinedAnewAndNotComputed) {
   auto scenario = overTheSea(0, 0, {60e3, 50e3, 3000}, {30, 25, 20});
   scenario::Emitter radar = beamUpwards();

@@ -23,6 +23,7 @@ enum class Quantity {
   sinr_db,
   intercept_margin_db,
   detection_age_s,
+  occupancy,
 };
 
 /// The signals that a quantity depends on.

@@ -50,7 +50,7 @@ struct OutputSpec {
   CombineMode combine = CombineMode::sum;
   RadarLook radar_look = RadarLook::scan;
   double floor = -120;                 ///< lowest value kept, in each quantity's unit
-  double count_threshold_dbwm2 = -90;  ///< emitter_count: emitters above this power density
+  double count_threshold_dbwm2 = -90;  ///< emitter_count, occupancy: emitters above this power density
   IntervalSpec interval = {};
   int receiver = 0;                  ///< of the quantities of a receiver: index into Scenario::receivers
   int wanted_emitter = -1;           ///< whose signal sinr_db is of: index into Scenario::emitters; -1: none

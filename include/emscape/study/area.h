@@ -27,6 +27,8 @@ MapArea circularArea(const MapArea::Circle& circle);
 /// @throws Error (usage) that names the text
 MapArea parseArea(const std::string& text);
 
+/// The box of terrain that maps of an area need: with all platforms, and a margin.
+scenario::GeoBox terrainBoxOf(const scenario::Scenario& scenario, const MapArea& area);
 /// The terrain that a scenario names, over an area and all platforms; null if it names none.
 /// @throws Error (bad_input) naming the file
 scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapArea& area);

@@ -39,17 +39,47 @@ std::optional<double> defaultThreshold(scenario::Quantity quantity);
 /// Takes a finished map; called by the thread that computes.
 using MapSink = std::function<void(CoverageMap)>;
 
+/// The same for a map of one of several scenarios, by its index.
+using ScenarioMapSink = std::function<void(std::size_t scenario, CoverageMap)>;
+
+/// Computes maps of one scenario after another on the same pixels and keeps the field between them: of a
+/// scenario that differs from the one before, only what the difference invalidates is computed
+/// (FieldSolver::update). The maps are those of computeCoverage(). One thread calls it.
+class CoverageSolver {
+ public:
+  /// @param grid     must outlive the solver
+  /// @param options  backend, memory and move_tolerance_m; the rest is set here
+  CoverageSolver(const MapGrid& grid, const CoverageRequest& request, const emfield::FieldOptions& options);
+  ~CoverageSolver();
+
+  /// Computes several scenarios together, all of them at the first time, then at the next: where platforms
+  /// move, scenarios of the same tracks share the geometry of each time. Memory for products over time grows
+  /// with their number.
+  /// @param terrain  of the whole map and all platforms; null: a smooth earth. Another object than before is
+  /// another terrain
+  /// @return warnings of each scenario
+  /// @throws Error (bad_input, usage, device) as FieldSolver does, and for a product that the quantity or the
+  /// times do not have
+  std::vector<std::vector<std::string>> compute(
+      const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
+      const scenario::TerrainPtr& terrain, const ScenarioMapSink& take, const ProgressSink& progress = {});
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
 /// Computes maps by the field's own functions at every pixel: a pixel's value is that of `emscape profile`
 /// there. Looks are at the target (RadarLook::target): coverage does not depend on where a scan happens to
 /// point. Maps come by time, height (those above ground first) and product; those over all times at last.
 /// @param terrain  of the whole map and all platforms; null: a smooth earth
-/// @param options  backend and memory; the rest is set here
+/// @param options  backend, memory and move_tolerance_m; the rest is set here
 /// @return warnings
 /// @throws Error (bad_input, usage, device) as FieldSolver does, and for a product that the quantity or the
 /// times do not have
 std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::Scenario>& scenario,
                                          const scenario::TerrainPtr& terrain, const MapGrid& grid,
-                                         const CoverageRequest& request, emfield::FieldOptions options,
+                                         const CoverageRequest& request, const emfield::FieldOptions& options,
                                          const MapSink& take, const ProgressSink& progress = {});
 
 }  // namespace emscape::study

@@ -1,0 +1,307 @@
+/// emscape study: many variants of a scenario, measured.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/interrupt.h"
+#include "apps/emscape/study_jobs.h"
+#include "apps/emscape/study_plan.h"
+#include "apps/emscape/study_slurm.h"
+#include "apps/emscape/target.h"
+#include "apps/emscape/version.h"
+#include "base/stopwatch.h"
+#include "base/whole_file.h"
+#include "emscape/base/log.h"
+#include "emscape/base/parallel.h"
+#include "emscape/study/study_folder.h"
+#include "emscape/study/study_report.h"
+
+namespace emscape::app {
+namespace {
+
+struct StudyCommand {
+  std::string study;
+  std::vector<scenario::Edit> edits;
+  std::string folder;
+  bool plan = false;
+  int jobs = 1;
+  std::string part;
+  bool resume = false;
+  bool merge = false;
+  bool partial = false;
+  bool worker = false;
+  SlurmOptions slurm;
+};
+
+const char* instructionSet() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f")) return "avx512";
+  if (__builtin_cpu_supports("avx2")) return "avx2";
+  return "x86-64";
+#else
+  return "generic";
+#endif
+}
+
+/// Computes parts in this process; the fields stay from part to part.
+class PartComputer {
+ public:
+  PartComputer(const LoadedStudy& loaded, const study::StudyFolder& folder, const GlobalOptions& global)
+      : loaded_(loaded), folder_(folder) {
+    openOnTarget(global, "float", [&](const ComputeTarget& target) {
+      runner_ = std::make_unique<study::StudyRunner>(loaded.spec, loaded.plan, loaded.terrain,
+                                                     target.fieldOptions());
+      machine_ = fmt::format("{}, {}", target.device(), instructionSet());
+      return 0;
+    });
+  }
+
+  /// Computes a part that is not there yet.
+  void compute(int part, const ProgressSink& progress) {
+    if (folder_.hasPart(part)) return;
+    std::vector<study::VariantResult> results;
+    runner_->run(
+        folder_.variantsOf(part), [&](study::VariantResult result) { results.push_back(std::move(result)); },
+        [&](const std::string& step, double fraction) {
+          stopIfInterrupted();
+          if (progress) progress(step, fraction);
+        });
+    folder_.writePart(part, results, runner_->warnings(), machine_);
+  }
+
+ private:
+  const LoadedStudy& loaded_;
+  const study::StudyFolder& folder_;
+  std::unique_ptr<study::StudyRunner> runner_;
+  std::string machine_;
+};
+
+struct PartNumber {
+  int part = 0, parts = 0;
+};
+
+/// @throws Error (usage)
+PartNumber parsePart(const std::string& text) {
+  PartNumber number;
+  const char* const end = text.data() + text.size();
+  const auto part = std::from_chars(text.data(), end, number.part);
+  const bool has_slash = part.ec == std::errc() && part.ptr != end && *part.ptr == '/';
+  const auto parts = has_slash ? std::from_chars(part.ptr + 1, end, number.parts) : part;
+  if (!has_slash || parts.ec != std::errc() || parts.ptr != end || number.part < 1 ||
+      number.part > number.parts || number.parts > study::kMaxParts) {
+    throw Error(ErrorCode::usage, fmt::format("--part '{}' is none; write I/N with I from 1 to N, N up to {}",
+                                              text, study::kMaxParts));
+  }
+  return number;
+}
+
+int mergeParts(const LoadedStudy& loaded, study::StudyFolder& folder, bool partial,
+               const GlobalOptions& global) {
+  const std::vector<int> missing = folder.missingParts();
+  if (!missing.empty() && !partial) {
+    constexpr std::size_t kNamed = 12;
+    std::string names;
+    for (std::size_t i = 0; i < std::min(missing.size(), kNamed); ++i) {
+      names += fmt::format("{}{}", i > 0 ? ", " : "", missing[i]);
+    }
+    if (missing.size() > kNamed) names += ", ...";
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("{}: {} of {} parts are missing: {}; --resume computes them, --partial merges the "
+                    "others",
+                    folder.path().string(), missing.size(), folder.parts(), names));
+  }
+  const study::StudyResults results = folder.read();
+  std::vector<std::string> warnings(results.warnings.begin(), results.warnings.end());
+  if (results.machines.size() > 1) {
+    std::string machines;
+    for (const std::string& machine : results.machines) machines += (machines.empty() ? "" : "; ") + machine;
+    warnings.push_back("parts were computed on different processors, which may differ in the last digit: " +
+                       machines);
+  }
+  folder.writeResults(results);
+  const auto report =
+      study::writeStudyReport(folder.path() / "report.html", loaded.spec, loaded.plan, results);
+  logWarnings(warnings);
+  if (global.json) {
+    Json json{{"study", loaded.spec.name},        {"hash", loaded.spec.hash},
+              {"folder", folder.path().string()}, {"variants", loaded.spec.variants.count()},
+              {"parts", folder.parts()},          {"missing_parts", missing}};
+    json["warnings"] = joinedWarnings(warnings);
+    json["best"] = Json::array();
+    for (const study::MeasureSummary& summary : report.measures) {
+      json["best"].push_back({{"measure", summary.name},
+                              {"unit", summary.unit},
+                              {"max", number(summary.max)},
+                              {"max_variant", summary.max_variant},
+                              {"min", number(summary.min)},
+                              {"min_variant", summary.min_variant}});
+    }
+    if (!report.sites.empty()) json["sites"] = {{"chosen", report.sites}, {"value", report.sites_value}};
+    printJson(json);
+    return 0;
+  }
+  for (const study::MeasureSummary& summary : report.measures) {
+    const std::string unit = summary.unit.empty() ? "" : " " + summary.unit;
+    print("{:<24} {:.6g} to {:.6g}{}; the largest: {}\n", summary.name, summary.min, summary.max, unit,
+          study::describeVariant(loaded.spec, summary.max_variant));
+  }
+  if (!report.sites.empty()) {
+    std::string names;
+    for (const std::string& site : report.sites) names += (names.empty() ? "" : ", ") + site;
+    print("sites: {}: {:.6g} {}\n", names, report.sites_value,
+          unitOf(loaded.spec.measures[loaded.spec.sites->measure]));
+  }
+  print("{}: results.csv, results.nc, report.html\n", folder.path().string());
+  return 0;
+}
+
+/// Computes the parts whose numbers come in on standard input.
+int work(const LoadedStudy& loaded, study::StudyFolder& folder, const GlobalOptions& global) {
+  PartComputer computer(loaded, folder, global);
+  for (int part; std::cin >> part;) {
+    computer.compute(part, {});
+    print("{}\n", part);
+    finishResult();
+  }
+  return 0;
+}
+
+std::vector<std::string> workerArguments(const StudyCommand& command, const GlobalOptions& global,
+                                         int threads) {
+  std::vector<std::string> arguments{
+      "study",     command.study,  "-o",      command.folder, "--worker",
+      "--backend", global.backend, "--quiet", "--threads",    fmt::format("{}", threads)};
+  for (const scenario::Edit& edit : command.edits) {
+    arguments.emplace_back("--set");
+    arguments.push_back(toString(edit));
+  }
+  return arguments;
+}
+
+int runStudy(const StudyCommand& command, const GlobalOptions& global) {
+  Stopwatch watch;
+  const int threads = global.threads > 0 ? global.threads : allowedProcessors();
+  setThreadLimit(threads);
+  if (command.worker) setLogSink([](LogLevel, const std::string&) {});  // the other process tells
+  if (!command.plan && command.folder.empty()) {
+    throw Error(ErrorCode::usage, "--output is required, except with --plan");
+  }
+  const LoadedStudy loaded(command.study, command.edits);
+  if (command.plan) {
+    const int parts =
+        command.slurm.chunks > 0 ? command.slurm.chunks : study::usualParts(loaded.spec.variants.count());
+    return showPlan(loaded, parts, command.jobs, watch.lap_ms() / 1000, global);
+  }
+  study::StudyFolder folder(command.folder, loaded.spec, loaded.plan, kVersion);
+  const std::optional<int> planned = folder.partsOfManifest();
+  const std::size_t variants = loaded.spec.variants.count();
+  if (!command.part.empty()) {
+    const PartNumber number = parsePart(command.part);
+    checkParts(number.parts, variants);
+    folder.begin(number.parts);
+    PartComputer(loaded, folder, global).compute(number.part, progressSink(global));
+    if (global.json) printJson({{"part", number.part}, {"parts", number.parts}});
+    return 0;
+  }
+  const int parts = planned                    ? *planned
+                    : command.slurm.chunks > 0 ? command.slurm.chunks
+                                               : study::usualParts(variants);
+  checkParts(parts, variants);
+  if (!command.slurm.script.empty()) {
+    folder.begin(parts);
+    return writeSlurmJobs(command.slurm, workerArguments(command, global, 0), parts, global);
+  }
+  if (command.merge && !planned) {
+    throw Error(ErrorCode::bad_input, command.folder + ": has no manifest.json: no part was computed");
+  }
+  folder.begin(parts);
+  if (command.worker) return work(loaded, folder, global);
+  const FolderLock lock(folder.path(), ".study.lock");
+  if (command.merge) return mergeParts(loaded, folder, command.partial, global);
+
+  const std::vector<int> missing = folder.missingParts();
+  if (!command.resume && static_cast<int>(missing.size()) < parts) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{} holds {} of {} parts of this study; --resume computes the others",
+                            command.folder, static_cast<std::size_t>(parts) - missing.size(), parts));
+  }
+  logInfo(fmt::format("{} variants of {} in {} parts, {} of them to compute", variants,
+                      loaded.spec.base->name, parts, missing.size()));
+  const ProgressSink show = progressSink(global);
+  if (command.jobs > 1 && missing.size() > 1) {
+    const int each = std::max(1, threads / command.jobs);
+    computeInProcesses(missing, command.jobs, workerArguments(command, global, each), show);
+  } else if (!missing.empty()) {
+    PartComputer computer(loaded, folder, global);
+    for (std::size_t i = 0; i < missing.size(); ++i) {
+      computer.compute(missing[i], [&](const std::string& step, double fraction) {
+        if (fraction < 1)
+          show(step, (static_cast<double>(i) + fraction) / static_cast<double>(missing.size()));
+      });
+    }
+    show("variants", 1);
+  }
+  return mergeParts(loaded, folder, false, global);
+}
+
+}  // namespace
+
+void addStudy(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "study", "Variants, sweeps, samples and sites of a scenario, each measured on its maps of coverage");
+  command->fallthrough();
+  command->footer(R"(
+The study's file says which variants of a scenario there are and what is measured of each; docs/what-if.md describes it. Variants
+are computed in the order in which most of the field can be kept: a change of a power needs no terrain profile.
+
+DIR/results.csv and DIR/results.nc hold the measures of every variant, DIR/report.html tables and plots. The study is cut into
+parts (DIR/parts), each written when it is complete; --resume computes those that are missing. Parts may be computed by any
+program that runs `emscape study STUDY -o DIR --part I/N`, on machines that share DIR, in any order; --merge then joins them.
+The results are the same bytes.
+
+Examples:
+  emscape study scenarios/study/jammer_power.yaml --plan
+  emscape study scenarios/study/jammer_power.yaml -o out --jobs 2
+  emscape study scenarios/study/jammer_power.yaml -o out --part 3/7
+  emscape study scenarios/study/jammer_power.yaml -o out --merge
+  emscape study scenarios/study/jammer_power.yaml -o out --slurm job.sh --chunks 40 --time 00:20:00)");
+  auto options = std::make_shared<StudyCommand>();
+  command->add_option("STUDY", options->study, "Study (YAML or JSON)")->required();
+  addSetOption(*command, options->edits);
+  command->add_option("-o,--output", options->folder, "Folder of the results");
+  CLI::Option* plan = command->add_flag("--plan", options->plan,
+                                        "Say how many variants there are, what each changes, and the time "
+                                        "that they need; compute one of each kind, write nothing");
+  command->add_option("--jobs", options->jobs, "Processes that compute at the same time")
+      ->check(CLI::Range(1, 1024));
+  CLI::Option* part =
+      command->add_option("--part", options->part, "I/N: compute one of N parts, unless it is there");
+  CLI::Option* resume = command->add_flag("--resume", options->resume, "Compute the parts that are missing");
+  CLI::Option* merge = command->add_flag("--merge", options->merge, "Join the parts; all must be there");
+  command->add_flag("--partial", options->partial, "With --merge: join those that are there")->needs(merge);
+  CLI::Option* slurm = command->add_option("--slurm", options->slurm.script,
+                                           "Write a job script of a Slurm array, and one that merges");
+  command->add_option("--chunks", options->slurm.chunks, "Number of parts; default: 16 variants in each")
+      ->check(CLI::Range(1, study::kMaxParts))
+      ->default_str("");
+  command->add_option("--time", options->slurm.time, "With --slurm: limit of a part's time, HH:MM:SS")
+      ->needs(slurm);
+  command->add_option("--gpus", options->slurm.gpus, "With --slurm: GPUs of a part")
+      ->check(CLI::Range(0, 64))
+      ->needs(slurm);
+  command->add_flag("--submit", options->slurm.submit, "With --slurm: submit both jobs")->needs(slurm);
+  command->add_flag("--worker", options->worker)->group("");
+  for (CLI::Option* option : {part, resume, merge, slurm}) option->excludes(plan);
+  for (CLI::Option* option : {resume, merge, slurm}) option->excludes(part);
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return runStudy(*options, global); }; });
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,32 @@
+/// The positions of a beam in an interval, which stand for it in the channels of occupancy.
+#pragma once
+
+#include <map>
+#include <utility>
+
+#include "emfield/occupancy.h"
+#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/snapshot.h"
+
+namespace emscape::emfield {
+
+/// How far patterns reach, by antenna and elevation (deg) of the beam: kept from update to update.
+class PatternReaches {
+ public:
+  /// @accuracy levels are 1 dB too low, azimuths a step of the table too large, so that no position above a
+  /// level is beyond it
+  const PatternReach& of(const scenario::AntennaPtr& antenna, double elevation_deg);
+
+ private:
+  std::map<std::pair<scenario::AntennaPtr, double>, PatternReach> known_;
+};
+
+/// Sets the frame and the positions of a share. Positions of a sweep are a 20th of a beamwidth apart, or
+/// 1/1024 of the sweep if that is less, but at most 16384 to a turn; their shares add up to the part of the
+/// interval in which the emitter is active.
+/// @param state  active in the interval of the scenario's output that begins at t_s
+void setPositions(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                  const scenario::EmitterState& state, double t_s, PatternReaches& reaches,
+                  OccupancyShare& share);
+
+}  // namespace emscape::emfield

@@ -1,0 +1,82 @@
+/// The folder of a study: its manifest, the results of its parts, and the results of all.
+///
+///     manifest.json          the study's hash, its number of parts, the variants with what they set
+///     parts/part_00003.csv   variant, measures; a part appears when it is complete
+///     parts/part_00003.json  the hash, the machine, warnings; written last
+///     results.csv results.nc report.html
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "emscape/study/study_plan.h"
+#include "emscape/study/study_runner.h"
+
+namespace emscape::study {
+
+/// The results of all parts that are there.
+struct StudyResults {
+  std::vector<double> values;                     ///< [variant][measure]; NaN: none
+  std::vector<bool> is_computed;                  ///< of each variant
+  std::set<std::string> warnings;                 ///< each once
+  std::set<std::string> machines;                 ///< backend and instruction set of the parts
+  std::vector<std::vector<std::uint8_t>> pixels;  ///< of a search for sites: VariantResult::pixels
+
+  double value(std::size_t variant, std::size_t measure, std::size_t measures) const {
+    return values[variant * measures + measure];
+  }
+};
+
+class StudyFolder {
+ public:
+  /// @param version  of the program
+  StudyFolder(std::filesystem::path folder, const StudySpec& study, const StudyPlan& plan,
+              std::string version);
+
+  /// The number of parts in the folder's manifest; none without a manifest.
+  /// @throws Error (bad_input) if the manifest is that of another study, or cannot be read
+  std::optional<int> partsOfManifest() const;
+  /// Writes the manifest, unless it is there.
+  /// @throws Error (bad_input) if the folder has another study or another number of parts; (other)
+  void begin(int parts);
+
+  int parts() const { return parts_; }
+  /// @throws Error (bad_input) if there is a part of another study
+  bool hasPart(int part) const;
+  std::vector<int> missingParts() const;
+
+  /// The variants of a part, in the plan's order.
+  std::vector<std::size_t> variantsOf(int part) const;
+  /// @param results  of variantsOf(part), in that order
+  /// @param machine  backend and instruction set
+  /// @throws Error (other)
+  void writePart(int part, const std::vector<VariantResult>& results, const std::set<std::string>& warnings,
+                 const std::string& machine) const;
+
+  /// @throws Error (bad_input) for a part of another study, or one that cannot be read
+  StudyResults read() const;
+
+  /// Writes results.csv and results.nc.
+  /// @throws Error (other)
+  void writeResults(const StudyResults& results) const;
+
+  const std::filesystem::path& path() const { return folder_; }
+
+ private:
+  std::filesystem::path partFile(int part, const char* ending) const;
+  void readPart(int part, StudyResults& results) const;
+
+  std::filesystem::path folder_;
+  const StudySpec& study_;
+  const StudyPlan& plan_;
+  std::string version_;
+  int parts_ = 0;
+};
+
+/// Names of the variants' parameters that set them apart: "name; path=value, path=value".
+std::string describeVariant(const StudySpec& study, std::size_t variant);
+
+}  // namespace emscape::study

@@ -1,0 +1,50 @@
+/// The order in which the variants of a study are computed, so that most of the field is used again.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "emscape/study/study_file.h"
+
+namespace emscape::study {
+
+/// What a change of a parameter makes the field compute again, the most expensive first.
+enum class ChangeClass {
+  geometry,  ///< profiles and excess losses of an emitter: sites, tracks, frequencies, models, terrain
+  beam,      ///< the combination of the emitters: antennas, scans
+  power,     ///< the same, without new antennas: powers, losses, receivers, radar cross sections
+  product    ///< at most what is derived from the combination
+};
+constexpr std::size_t kChangeClasses = 4;
+/// "geometry", "beam", "power", "product".
+const char* toString(ChangeClass change);
+
+struct StudyPlan {
+  std::vector<ChangeClass> classes;  ///< of each path of the variants
+  std::vector<std::uint32_t> order;  ///< the variants, as they are computed
+  /// Variants by the class of what differs from the one before in the order; the first counts as geometry.
+  std::array<std::size_t, kChangeClasses> changes{};
+};
+
+/// Plans a study. The class of a parameter is what FieldSolver::update() computes again when the parameter
+/// alone changes from the scenario's value, at the first, middle and last time.
+/// @param terrain  as of loadTerrain(); null: none
+StudyPlan planStudy(const StudySpec& study, const scenario::TerrainPtr& terrain);
+
+/// The class of what differs between two variants.
+ChangeClass changeBetween(const StudySpec& study, const StudyPlan& plan, std::size_t from, std::size_t to);
+
+/// Positions [begin, end) in the order that a part computes.
+struct PartRange {
+  std::size_t begin = 0, end = 0;
+};
+/// @param part  1..parts
+PartRange rangeOfPart(std::size_t variants, int part, int parts);
+
+constexpr int kMaxParts = 99999;
+/// The usual number of parts: about 16 variants in each, at most 500 parts.
+int usualParts(std::size_t variants);
+
+}  // namespace emscape::study

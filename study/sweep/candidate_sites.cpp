@@ -1,0 +1,115 @@
+#include "study/sweep/candidate_sites.h"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "emscape/base/error.h"
+#include "emscape/base/geo_frame.h"
+#include "emscape/base/units.h"
+#include "scenario/terrain/gdal_messages.h"
+
+namespace emscape::study {
+namespace {
+
+constexpr std::size_t kMaxCandidates = 10000;
+
+/// Longitude and latitude of WGS84 in that order.
+OGRSpatialReference longitudeLatitude() {
+  OGRSpatialReference reference;
+  reference.importFromEPSG(4326);
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+/// To a centimetre, so that names of places stay short.
+double rounded(double degrees) {
+  return std::round(degrees * 1e7) / 1e7;
+}
+
+void addLayer(OGRLayer& layer, const std::string& file, std::vector<CandidateSite>& sites) {
+  const OGRSpatialReference wgs84 = longitudeLatitude();
+  std::unique_ptr<OGRCoordinateTransformation> transformation;
+  if (layer.GetSpatialRef() != nullptr) {
+    OGRSpatialReference own = *layer.GetSpatialRef();
+    own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    transformation.reset(OGRCreateCoordinateTransformation(&own, &wgs84));
+  }
+  const int name_field = layer.GetLayerDefn()->GetFieldIndex("name");
+  for (const OGRFeatureUniquePtr& feature : layer) {
+    const OGRGeometry* const geometry = feature->GetGeometryRef();
+    if (geometry == nullptr || wkbFlatten(geometry->getGeometryType()) != wkbPoint) continue;
+    double x = geometry->toPoint()->getX(), y = geometry->toPoint()->getY();
+    const bool is_placed = transformation == nullptr || transformation->Transform(1, &x, &y) != 0;
+    if (!is_placed || !(std::abs(y) <= 90 && std::abs(x) <= 180)) {
+      throw Error(ErrorCode::bad_input, {file, 0, 0},
+                  fmt::format("point {} has no longitude and latitude", sites.size() + 1));
+    }
+    const bool has_name = name_field >= 0 && feature->IsFieldSetAndNotNull(name_field);
+    sites.push_back(
+        {has_name ? feature->GetFieldAsString(name_field) : fmt::format("site {}", sites.size() + 1), y, x});
+  }
+}
+
+}  // namespace
+
+std::vector<CandidateSite> readCandidates(const std::string& file) {
+  const scenario::GdalMessages messages;
+  GDALAllRegister();
+  const GDALDatasetUniquePtr dataset(
+      GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+  if (dataset == nullptr) throw Error(ErrorCode::bad_input, {file, 0, 0}, messages.explain("cannot be read"));
+  std::vector<CandidateSite> sites;
+  for (OGRLayer* layer : dataset->GetLayers()) addLayer(*layer, file, sites);
+  if (sites.empty() || sites.size() > kMaxCandidates) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0},
+                fmt::format("{} points, outside the allowed 1 to {}", sites.size(), kMaxCandidates));
+  }
+  std::set<std::string> names;
+  for (const CandidateSite& site : sites) {
+    if (!names.insert(site.name).second) {
+      throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("two points are named '{}'", site.name));
+    }
+  }
+  return sites;
+}
+
+std::vector<CandidateSite> candidatesOver(const MapArea& area, double distance_m) {
+  const double middle_lat_deg = (area.box.south_deg + area.box.north_deg) / 2;
+  const double middle_lon_deg = (area.box.west_deg + area.box.east_deg) / 2;
+  const auto step_deg = [&](double azimuth_rad, double GeodeticPosition::*coordinate, double middle_deg) {
+    return std::abs(
+        geodesicDirect(middle_lat_deg, wrapLongitude_deg(middle_lon_deg), azimuth_rad, distance_m).*
+            coordinate -
+        middle_deg);
+  };
+  const double lat_step_deg = step_deg(0, &GeodeticPosition::latitude_deg, middle_lat_deg);
+  const double lon_step_deg =
+      step_deg(degToRad(90.0), &GeodeticPosition::longitude_deg, wrapLongitude_deg(middle_lon_deg));
+  const int rows = static_cast<int>((area.box.north_deg - middle_lat_deg) / lat_step_deg);
+  const int columns = static_cast<int>((area.box.east_deg - middle_lon_deg) / lon_step_deg);
+  std::vector<CandidateSite> sites;
+  for (int row = rows; row >= -rows; --row) {
+    for (int column = -columns; column <= columns; ++column) {
+      const double latitude_deg = rounded(middle_lat_deg + row * lat_step_deg);
+      const double longitude_deg = rounded(wrapLongitude_deg(middle_lon_deg + column * lon_step_deg));
+      if (area.circle &&
+          geodesicInverse(area.circle->latitude_deg, area.circle->longitude_deg, latitude_deg, longitude_deg)
+                  .distance_m > area.circle->radius_m) {
+        continue;
+      }
+      sites.push_back({fmt::format("site {}", sites.size() + 1), latitude_deg, longitude_deg});
+      if (sites.size() > kMaxCandidates) {
+        throw Error(ErrorCode::bad_input, fmt::format("candidates every {} m are more than the allowed {}",
+                                                      distance_m, kMaxCandidates));
+      }
+    }
+  }
+  return sites;
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,23 @@
+/// Choice of sites that together cover the most.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace emscape::study {
+
+/// Chooses sites of which the union covers the most: one after another, each the one that adds the most
+/// (greedy), then exchanges of one chosen site for another while that adds (1-exchange). For greedy alone,
+/// the result is at least 1 - 1/e of the best (Nemhauser, Wolsey, Fisher 1978).
+/// @param pixels   of each site: 1 where it covers
+/// @param weights  of the pixels
+/// @param count    1 to the number of sites
+/// @return indices, rising
+std::vector<std::size_t> chooseSites(const std::vector<std::vector<std::uint8_t>>& pixels,
+                                     const std::vector<float>& weights, std::size_t count);
+
+/// The weight of the pixels that any of the sites covers.
+double coveredWeight(const std::vector<std::vector<std::uint8_t>>& pixels, const std::vector<float>& weights,
+                     const std::vector<std::size_t>& sites);
+
+}  // namespace emscape::study

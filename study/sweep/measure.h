@@ -1,0 +1,31 @@
+/// Measures: one number of a map.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "emscape/study/map_grid.h"
+#include "emscape/study/study_file.h"
+
+namespace emscape::study {
+
+/// The pixels whose centres lie in the polygons of a file, in any CRS: 1, others 0.
+/// @throws Error (bad_input) that names the file: not readable, no polygon, none of the map's pixels
+std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& grid);
+
+/// Measures maps of one product and height, one per time or one for all.
+class MeasureOverTime {
+ public:
+  /// @param pixels  1: counts; empty: all count
+  void add(const StudyMeasure& measure, const CoverageMap& map, const MapGrid& grid,
+           const std::vector<std::uint8_t>& pixels);
+  /// The mean over the maps; of the figures min and max, the smallest and the largest. NaN without a value.
+  double value(const StudyMeasure& measure) const;
+
+ private:
+  double sum_ = 0, min_ = HUGE_VAL, max_ = -HUGE_VAL;
+  int count_ = 0;
+};
+
+}  // namespace emscape::study

@@ -1,0 +1,160 @@
+#include "study/sweep/measure_plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "emscape/render/annotate/legend.h"
+#include "render/annotate/canvas.h"
+
+namespace emscape::study {
+namespace {
+
+using render::Align;
+using render::Canvas;
+using render::Ink;
+using render::Point2;
+
+constexpr Ink kPaper{{1.0F, 1.0F, 1.0F}};
+constexpr Ink kText{{0.13F, 0.15F, 0.18F}};
+constexpr Ink kGrid{{0.45F, 0.50F, 0.58F}, 0.28};
+constexpr Ink kPoint{{0.00F, 0.45F, 0.70F}, 0.45};
+constexpr Ink kLine{{0.84F, 0.37F, 0.00F}};
+constexpr render::ImageSize kSize{900, 420};
+constexpr render::Rect kFrame{90, 40, 780, 310};
+constexpr std::size_t kMaxPoints = 2000, kMaxValues = 60;
+
+/// Points of one value, or of one interval of values.
+struct Bin {
+  double sum = 0, min = HUGE_VAL, max = -HUGE_VAL, sum_x = 0;
+  int count = 0;
+};
+
+class Plot {
+ public:
+  explicit Plot(const MeasurePlot& plot) : plot_(plot), canvas_(Canvas::forSvg(kSize)) {
+    for (std::size_t i = 0; i < plot.x.size(); ++i) {
+      if (!std::isfinite(plot.x[i]) || !std::isfinite(plot.y[i])) continue;
+      const double x = scaled(plot.x[i]);
+      points_.push_back({x, plot.y[i]});
+      left_ = std::min(left_, x);
+      right_ = std::max(right_, x);
+      bottom_ = std::min(bottom_, plot.y[i]);
+      top_ = std::max(top_, plot.y[i]);
+    }
+    if (points_.empty()) left_ = bottom_ = 0, right_ = top_ = 1;
+    widen(left_, right_, 0.03);
+    widen(bottom_, top_, 0.06);
+  }
+
+  std::string draw() {
+    canvas_.rectangle({0, 0, static_cast<double>(kSize.width), static_cast<double>(kSize.height)}, kPaper);
+    drawAxes();
+    const std::vector<Bin> bins = binned();
+    if (points_.size() <= kMaxPoints) {
+      for (const Point2& point : points_) canvas_.disc(at(point.x, point.y), 3.5, kPoint);
+    } else {
+      for (const Bin& bin : bins) {
+        const double x = bin.sum_x / bin.count;
+        canvas_.line(at(x, bin.min), at(x, bin.max), kPoint, 5);
+      }
+    }
+    if (plot_.labels.empty()) {
+      for (std::size_t b = 1; b < bins.size(); ++b)
+        canvas_.line(middle(bins[b - 1]), middle(bins[b]), kLine, 2);
+    }
+    for (const Bin& bin : bins) canvas_.disc(middle(bin), 3, kLine);
+    return canvas_.svg();
+  }
+
+ private:
+  double scaled(double x) const { return plot_.is_logarithmic ? std::log10(x) : x; }
+
+  static void widen(double& low, double& high, double part) {
+    const double more = high > low ? part * (high - low) : std::max(1e-6, std::abs(low) * 0.05);
+    low -= more;
+    high += more;
+  }
+
+  Point2 at(double x, double y) const {
+    return {kFrame.x + kFrame.width * (x - left_) / (right_ - left_),
+            kFrame.y + kFrame.height * (top_ - y) / (top_ - bottom_)};
+  }
+  Point2 middle(const Bin& bin) const { return at(bin.sum_x / bin.count, bin.sum / bin.count); }
+
+  /// Up to kMaxValues values, else as many equal intervals; none where almost every point has its own value.
+  std::vector<Bin> binned() const {
+    std::map<double, Bin> by_value;
+    for (const Point2& point : points_) {
+      double key = point.x;
+      if (by_value.size() > kMaxValues) break;
+      by_value[key].count = 0;
+    }
+    const bool has_intervals = by_value.size() > kMaxValues;
+    by_value.clear();
+    for (const Point2& point : points_) {
+      const double key =
+          has_intervals ? std::floor((point.x - left_) / (right_ - left_) * kMaxValues) : point.x;
+      Bin& bin = by_value[key];
+      bin.sum += point.y;
+      bin.sum_x += point.x;
+      bin.min = std::min(bin.min, point.y);
+      bin.max = std::max(bin.max, point.y);
+      ++bin.count;
+    }
+    std::vector<Bin> bins;
+    if (has_intervals && points_.size() < 8 * kMaxValues) return bins;
+    for (const auto& [key, bin] : by_value) bins.push_back(bin);
+    return bins;
+  }
+
+  void drawAxes() {
+    canvas_.text(plot_.measure, {kFrame.x, kFrame.y - 18}, 15, kText, Align::left, render::Weight::bold);
+    canvas_.text(plot_.parameter, {kFrame.x + kFrame.width / 2, kFrame.y + kFrame.height + 46}, 14, kText,
+                 Align::center);
+    const std::vector<double> values = render::roundTicks(bottom_, top_, 6);
+    for (const double value : values) {
+      canvas_.line(at(left_, value), at(right_, value), kGrid, 1);
+      canvas_.text(render::tickText(value, values.size() > 1 ? values[1] - values[0] : 1),
+                   at(left_, value) + Point2{-8, 0}, 13, kText, Align::right);
+    }
+    const auto vertical = [&](double x, const std::string& text) {
+      canvas_.line(at(x, bottom_), at(x, top_), kGrid, 1);
+      canvas_.text(text, at(x, bottom_) + Point2{0, 16}, 13, kText, Align::center);
+    };
+    if (!plot_.labels.empty()) {
+      const std::size_t step = (plot_.labels.size() + 7) / 8;
+      for (std::size_t i = 0; i < plot_.labels.size(); i += step) {
+        constexpr std::size_t kShown = 16;
+        const std::string& label = plot_.labels[i];
+        vertical(static_cast<double>(i), label.size() > kShown ? label.substr(0, kShown - 2) + ".." : label);
+      }
+    } else if (plot_.is_logarithmic) {
+      for (double decade = std::floor(left_); decade <= right_; ++decade) {
+        for (const int digit : {1, 2, 5}) {
+          const double x = decade + std::log10(digit);
+          if (x < left_ || x > right_) continue;
+          const double value = std::pow(10, x);
+          vertical(x, render::tickText(value, value));
+        }
+      }
+    } else {
+      const std::vector<double> ticks = render::roundTicks(left_, right_, 8);
+      for (const double x : ticks)
+        vertical(x, render::tickText(x, ticks.size() > 1 ? ticks[1] - ticks[0] : 1));
+    }
+  }
+
+  const MeasurePlot& plot_;
+  Canvas canvas_;
+  std::vector<Point2> points_;
+  double left_ = HUGE_VAL, right_ = -HUGE_VAL, bottom_ = HUGE_VAL, top_ = -HUGE_VAL;
+};
+
+}  // namespace
+
+std::string drawMeasure(const MeasurePlot& plot) {
+  return Plot(plot).draw();
+}
+
+}  // namespace emscape::study

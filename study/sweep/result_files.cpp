@@ -1,0 +1,206 @@
+#include "study/sweep/result_files.h"
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+
+#include "base/whole_file.h"
+#include "document/schema_check.h"
+#include "emscape/base/error.h"
+#include "scenario/terrain/gdal_messages.h"
+
+namespace emscape::study {
+namespace {
+
+/// Writes arrays of a netCDF file.
+class NetcdfWriter {
+ public:
+  using Dimensions = std::vector<std::shared_ptr<GDALDimension>>;
+
+  explicit NetcdfWriter(const std::string& file) {
+    GDALAllRegister();
+    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("netCDF");
+    if (driver == nullptr) throw Error(ErrorCode::other, file + ": GDAL has no driver 'netCDF'");
+    const char* const options[] = {"FORMAT=NC4", nullptr};
+    dataset_.reset(driver->CreateMultiDimensional(file.c_str(), nullptr, const_cast<char**>(options)));
+    if (dataset_ != nullptr) root_ = dataset_->GetRootGroup();
+    fail_ = root_ == nullptr;
+  }
+
+  /// Finishes the file. @return false if anything failed
+  bool close() {
+    root_.reset();
+    dataset_.reset();
+    return !fail_;
+  }
+
+  void note(const std::string& name, const std::string& text) {
+    if (fail_) return;
+    const auto attribute = root_->CreateAttribute(name, {}, GDALExtendedDataType::CreateString());
+    fail_ = attribute == nullptr || !attribute->Write(text.c_str());
+  }
+
+  std::shared_ptr<GDALDimension> dimension(const std::string& name, std::size_t size) {
+    if (fail_) return nullptr;
+    auto made = root_->CreateDimension(known(name), "", "", size);
+    fail_ = made == nullptr;
+    return made;
+  }
+
+  void numbers(const std::string& name, const Dimensions& dimensions, const std::vector<double>& values,
+               const std::string& long_name, const std::string& unit) {
+    array(name, dimensions, GDALExtendedDataType::Create(GDT_Float64), values.data(), long_name, unit);
+  }
+  void texts(const std::string& name, const Dimensions& dimensions, const std::vector<std::string>& values,
+             const std::string& long_name) {
+    std::vector<const char*> pointers;
+    for (const std::string& value : values) pointers.push_back(value.c_str());
+    array(name, dimensions, GDALExtendedDataType::CreateString(), pointers.data(), long_name, "");
+  }
+
+  /// A name that netCDF allows.
+  static std::string known(const std::string& name) {
+    std::string allowed = name;
+    for (char& c : allowed) {
+      const bool is_plain =
+          std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-';
+      if (!is_plain) c = '_';
+    }
+    return std::isalpha(static_cast<unsigned char>(allowed[0])) != 0 ? allowed : "v_" + allowed;
+  }
+
+ private:
+  void array(const std::string& name, const Dimensions& dimensions, const GDALExtendedDataType& type,
+             const void* values, const std::string& long_name, const std::string& unit) {
+    if (fail_) return;
+    std::string own = known(name);
+    while (!names_.insert(own).second) own += "_";
+    const auto made = root_->CreateMDArray(own, dimensions, type);
+    fail_ = made == nullptr;
+    if (fail_) return;
+    std::vector<GUInt64> starts;
+    std::vector<std::size_t> counts;
+    for (const auto& of_array : dimensions) {
+      starts.push_back(0);
+      counts.push_back(static_cast<std::size_t>(of_array->GetSize()));
+    }
+    fail_ = !made->Write(starts.data(), counts.data(), nullptr, nullptr, type, values);
+    for (const auto& [key, text] : {std::pair{"long_name", long_name}, std::pair{"units", unit}}) {
+      if (fail_ || text.empty()) continue;
+      const auto attribute = made->CreateAttribute(key, {}, GDALExtendedDataType::CreateString());
+      fail_ = attribute == nullptr || !attribute->Write(text.c_str());
+    }
+  }
+
+  std::unique_ptr<GDALDataset> dataset_;
+  std::shared_ptr<GDALGroup> root_;
+  std::set<std::string> names_;
+  bool fail_ = false;
+};
+
+/// The unit of a measure as UDUNITS writes it.
+std::string udunit(const std::string& unit) {
+  return unit == "km2" ? "km2" : unit.empty() ? "1" : unit;
+}
+
+/// A parameter's values: numbers where all that are given are.
+void writeParameter(NetcdfWriter& writer, const std::string& path, const NetcdfWriter::Dimensions& dimensions,
+                    const std::vector<std::string>& values) {
+  std::vector<double> numbers;
+  for (const std::string& value : values) {
+    const std::optional<double> number = document::numberOf(value);
+    if (!number && !value.empty()) return writer.texts(path, dimensions, values, path);
+    numbers.push_back(number.value_or(NAN));
+  }
+  writer.numbers(path, dimensions, numbers, path, "");
+}
+
+}  // namespace
+
+std::string csvCell(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string cell = "\"";
+  for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return cell + "\"";
+}
+
+std::string csvNumber(double value) {
+  return std::isnan(value) ? "" : fmt::format("{}", value);
+}
+
+void writeResultsCsv(const std::filesystem::path& file, const StudySpec& study, const StudyResults& results) {
+  const VariantSet& variants = study.variants;
+  writeWhole(file, [&](std::ostream& out) {
+    out << "variant,name";
+    for (const std::string& path : variants.paths()) out << ',' << csvCell(path);
+    for (const StudyMeasure& measure : study.measures) {
+      const std::string unit = unitOf(measure);
+      out << ',' << csvCell(measure.name + (unit.empty() ? "" : " (" + unit + ")"));
+    }
+    out << '\n';
+    for (std::size_t v = 0; v < variants.count(); ++v) {
+      if (!results.is_computed[v]) continue;
+      out << v << ',' << csvCell(variants.name(v));
+      for (std::size_t path = 0; path < variants.paths().size(); ++path) {
+        out << ',' << csvCell(variants.value(v, path));
+      }
+      for (std::size_t m = 0; m < study.measures.size(); ++m) {
+        out << ',' << csvNumber(results.value(v, m, study.measures.size()));
+      }
+      out << '\n';
+    }
+  });
+}
+
+void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& study,
+                        const StudyResults& results) {
+  const scenario::GdalMessages messages;
+  const VariantSet& variants = study.variants;
+  const std::filesystem::path temporary = temporaryFor(file);
+  NetcdfWriter writer(temporary.string());
+  writer.note("Conventions", "CF-1.8");
+  writer.note("title", study.name);
+  writer.note("source", "emscape study " + study.hash);
+  const bool is_grid =
+      std::all_of(variants.factors().begin(), variants.factors().end(),
+                  [](const VariantFactor& factor) { return factor.kind == VariantFactor::Kind::sweep; });
+  NetcdfWriter::Dimensions dimensions;
+  if (is_grid) {
+    for (const VariantFactor& factor : variants.factors()) {
+      dimensions.push_back(writer.dimension(factor.paths.front(), factor.count));
+      writeParameter(writer, factor.paths.front(), {dimensions.back()}, factor.values);
+    }
+  } else {
+    dimensions.push_back(writer.dimension("variant", variants.count()));
+    std::vector<std::string> names;
+    for (std::size_t v = 0; v < variants.count(); ++v) names.push_back(variants.name(v));
+    if (std::any_of(names.begin(), names.end(), [](const std::string& name) { return !name.empty(); })) {
+      writer.texts("name", dimensions, names, "name of the variant");
+    }
+    for (std::size_t path = 0; path < variants.paths().size(); ++path) {
+      std::vector<std::string> values;
+      for (std::size_t v = 0; v < variants.count(); ++v) values.push_back(variants.value(v, path));
+      writeParameter(writer, variants.paths()[path], dimensions, values);
+    }
+  }
+  for (std::size_t m = 0; m < study.measures.size(); ++m) {
+    std::vector<double> values;
+    for (std::size_t v = 0; v < variants.count(); ++v) {
+      values.push_back(results.value(v, m, study.measures.size()));
+    }
+    const StudyMeasure& measure = study.measures[m];
+    writer.numbers(measure.name, dimensions, values, measure.name, udunit(unitOf(measure)));
+  }
+  if (!writer.close() || messages.hasFailure()) {
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
+  }
+  publish(temporary, file);
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,216 @@
+#include "emscape/study/study_runner.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <regex>
+
+#include "emscape/base/error.h"
+#include "emscape/scenario/scenario_file.h"
+#include "study/sweep/measure.h"
+
+namespace emscape::study {
+namespace {
+
+using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
+
+/// Bound on what variants that are computed together keep.
+constexpr std::size_t kMaxKeptBytes = std::size_t{512} << 20;
+constexpr std::size_t kKeptBytesPerValue = 48;
+
+/// Measures of one quantity and threshold: of one field.
+struct MeasureGroup {
+  std::vector<std::size_t> measures;
+  CoverageRequest request;
+  std::unique_ptr<CoverageSolver> solver;
+};
+
+bool sameHeight(const MapHeight& a, const MapHeight& b) {
+  return a.reference == b.reference && a.metres == b.metres;
+}
+
+bool sameBox(const scenario::GeoBox& a, const scenario::GeoBox& b) {
+  return a.south_deg == b.south_deg && a.north_deg == b.north_deg && a.west_deg == b.west_deg &&
+         a.east_deg == b.east_deg;
+}
+
+std::string withoutCount(const std::string& warning) {
+  static const std::regex kCount(R"( \(\d+ times\)$)");
+  return std::regex_replace(warning, kCount, "");
+}
+
+}  // namespace
+
+struct StudyRunner::Impl {
+  const StudySpec& study;
+  const StudyPlan& plan;
+  scenario::TerrainPtr base_terrain;
+  MapGrid grid;
+  std::vector<MeasureGroup> groups;
+  std::vector<std::vector<std::uint8_t>> pixels;  ///< of each measure; empty: all
+  std::set<std::string> warnings;
+  ScenarioPtr terrain_of;  ///< for which `terrain` was loaded
+  scenario::TerrainPtr terrain;
+  std::size_t together = 1;  ///< variants that are computed at the same time
+
+  void addGroups(const emfield::FieldOptions& options) {
+    for (std::size_t m = 0; m < study.measures.size(); ++m) {
+      const StudyMeasure& measure = study.measures[m];
+      auto group = std::find_if(groups.begin(), groups.end(), [&](const MeasureGroup& known) {
+        return known.request.quantity == measure.quantity && known.request.threshold == measure.threshold;
+      });
+      if (group == groups.end()) {
+        group = groups.insert(groups.end(), MeasureGroup{});
+        group->request.quantity = measure.quantity;
+        group->request.threshold = measure.threshold;
+        group->request.times_s = study.times_s;
+      }
+      group->measures.push_back(m);
+      CoverageRequest& request = group->request;
+      if (std::count(request.products.begin(), request.products.end(), measure.product) == 0) {
+        request.products.push_back(measure.product);
+      }
+      if (std::none_of(request.heights.begin(), request.heights.end(),
+                       [&](const MapHeight& height) { return sameHeight(height, measure.height); })) {
+        request.heights.push_back(measure.height);
+      }
+      pixels.push_back(measure.over.empty() ? std::vector<std::uint8_t>{} : pixelsWithin(measure.over, grid));
+    }
+    std::size_t kept_bytes = 1;
+    for (MeasureGroup& group : groups) {
+      group.solver = std::make_unique<CoverageSolver>(grid, group.request, options);
+      kept_bytes += grid.pixels() * group.request.heights.size() * kKeptBytesPerValue;
+    }
+    if (study.times_s.size() > 1) together = std::max<std::size_t>(1, kMaxKeptBytes / kept_bytes);
+  }
+
+  /// The terrain of a scenario, which depends on nothing but the scenario.
+  const scenario::TerrainPtr& terrainFor(const ScenarioPtr& scenario) {
+    const bool is_same = scenario->terrain == terrain_of->terrain &&
+                         (!scenario->terrain || sameBox(terrainBoxOf(*scenario, study.area),
+                                                        terrainBoxOf(*terrain_of, study.area)));
+    if (!is_same) {
+      terrain = loadTerrain(*scenario, study.area);
+      terrain_of = scenario;
+    }
+    return terrain;
+  }
+
+  std::string nameOf(std::size_t variant) const {
+    const std::string name = study.variants.name(variant);
+    return fmt::format("variant {}{}", variant, name.empty() ? "" : " '" + name + "'");
+  }
+
+  ScenarioPtr scenarioOf(std::size_t variant) const {
+    const scenario::ParseResult edited = scenario::editScenario(*study.base, study.variants.edits(variant));
+    if (edited.scenario) return edited.scenario;
+    for (const scenario::Problem& problem : edited.problems) {
+      if (problem.severity == scenario::Severity::error) {
+        throw Error(ErrorCode::bad_input, {study.file, 0, 0},
+                    fmt::format("{}: {}: {}", nameOf(variant), toString(problem.location), problem.message));
+      }
+    }
+    throw Error(ErrorCode::bad_input, {study.file, 0, 0}, nameOf(variant) + " is no scenario");
+  }
+
+  /// Variants of one geometry and terrain.
+  void computeTogether(const std::vector<std::size_t>& variants, const std::vector<ScenarioPtr>& scenarios,
+                       const std::function<void(VariantResult)>& take) {
+    std::vector<VariantResult> results(variants.size());
+    std::vector<std::vector<MeasureOverTime>> measured(variants.size(),
+                                                       std::vector<MeasureOverTime>(study.measures.size()));
+    for (std::size_t v = 0; v < variants.size(); ++v) results[v].variant = variants[v];
+    for (MeasureGroup& group : groups) {
+      const auto add = [&](std::size_t v, const CoverageMap& map) {
+        for (const std::size_t m : group.measures) {
+          const StudyMeasure& measure = study.measures[m];
+          if (map.product != measure.product || (map.height && !sameHeight(*map.height, measure.height))) {
+            continue;
+          }
+          measured[v][m].add(measure, map, grid, pixels[m]);
+          if (study.sites && study.sites->measure == m) {
+            results[v].pixels = pixelsOfClass(map, measure, pixels[m]);
+          }
+        }
+      };
+      try {
+        for (const std::vector<std::string>& of_variant : group.solver->compute(scenarios, terrain, add)) {
+          for (const std::string& warning : of_variant) warnings.insert(withoutCount(warning));
+        }
+      } catch (const Error& error) {
+        const std::string to = variants.size() > 1 ? " to " + nameOf(variants.back()) : "";
+        throw Error(error.code(), {study.file, 0, 0},
+                    fmt::format("{}{}: {}", nameOf(variants.front()), to, error.what()));
+      }
+    }
+    for (std::size_t v = 0; v < variants.size(); ++v) {
+      for (std::size_t m = 0; m < study.measures.size(); ++m) {
+        results[v].values.push_back(measured[v][m].value(study.measures[m]));
+      }
+      take(std::move(results[v]));
+    }
+  }
+
+  std::vector<std::uint8_t> pixelsOfClass(const CoverageMap& map, const StudyMeasure& measure,
+                                          const std::vector<std::uint8_t>& counted) const {
+    std::vector<std::uint8_t> of_class(map.values.size());
+    const auto area_class = static_cast<float>(info(measure.product).area_class);
+    for (std::size_t p = 0; p < of_class.size(); ++p) {
+      of_class[p] = map.values[p] == area_class && (counted.empty() || counted[p] != 0) ? 1 : 0;
+    }
+    return of_class;
+  }
+};
+
+StudyRunner::StudyRunner(const StudySpec& study, const StudyPlan& plan, scenario::TerrainPtr terrain,
+                         emfield::FieldOptions options)
+    : impl_(new Impl{study,
+                     plan,
+                     terrain,
+                     makeMapGrid(study.area, study.cell_m, study.crs),
+                     {},
+                     {},
+                     {},
+                     study.base,
+                     terrain}) {
+  options.move_tolerance_m = 0;  // results must not depend on what was computed before
+  impl_->addGroups(options);
+}
+
+StudyRunner::~StudyRunner() = default;
+
+const MapGrid& StudyRunner::grid() const {
+  return impl_->grid;
+}
+
+const std::set<std::string>& StudyRunner::warnings() const {
+  return impl_->warnings;
+}
+
+void StudyRunner::run(const std::vector<std::size_t>& variants,
+                      const std::function<void(VariantResult)>& take, const ProgressSink& progress) {
+  std::vector<std::size_t> pending;
+  std::vector<ScenarioPtr> scenarios;
+  const auto compute = [&] {
+    if (pending.empty()) return;
+    impl_->computeTogether(pending, scenarios, take);
+    pending.clear();
+    scenarios.clear();
+  };
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    if (progress) progress("variants", static_cast<double>(i) / static_cast<double>(variants.size()));
+    ScenarioPtr scenario = impl_->scenarioOf(variants[i]);
+    const bool is_alike =
+        !pending.empty() && pending.size() < impl_->together &&
+        changeBetween(impl_->study, impl_->plan, pending.back(), variants[i]) != ChangeClass::geometry;
+    if (!is_alike) compute();
+    if (pending.empty()) impl_->terrainFor(scenario);
+    pending.push_back(variants[i]);
+    scenarios.push_back(std::move(scenario));
+  }
+  compute();
+  if (progress) progress("variants", 1);
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,206 @@
+// emscape study: processes, parts, interruption, and what is refused. The figures are study's tests.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+
+const char* const kResults[] = {"results.csv", "results.nc", "report.html"};
+
+/// A study of 40 variants with small maps.
+std::string study(const TemporaryFolder& folder, double cell_m = 1000, const std::string& more = "") {
+  return folder.write("study.yaml", "schema_version: 1\nscenario: " + shippedScenario("jamming.yaml") +
+                                        "\ntimes: 40\ncell_m: " + std::to_string(cell_m) + R"(
+sweep:
+  emitters.stand-off jammer.power_w: {log: {from: 1, to: 1000, count: 10}}
+  platforms.ridge site.position.height_agl_m: {values: [5, 15, 25, 35]}
+measures:
+  - {name: covered, height: "agl:300"}
+  - {name: lost, product: jam_loss, height: "agl:300", unit: percent}
+)" + more);
+}
+
+/// Runs to the end, and expects success.
+void compute(const Arguments& arguments) {
+  const ProgramResult result = run(arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+}
+
+void expectSameResults(const TemporaryFolder& folder, const std::string& a, const std::string& b) {
+  for (const std::string file : kResults) {
+    EXPECT_TRUE(readFile(folder / (a + "/" + file)) == readFile(folder / (b + "/" + file)))
+        << b << "/" << file;
+    EXPECT_FALSE(readFile(folder / (a + "/" + file)).empty()) << file;
+  }
+}
+
+TEST(Study, ProcessesAndPartsGiveTheBytesOfOneProcess) {
+  const TemporaryFolder folder;
+  const std::string file = study(folder);
+  compute({"study", file, "-o", folder / "one"});
+  compute({"study", file, "-o", folder / "two", "--jobs", "2"});
+  for (const char* part : {"3/5", "1/5", "5/5", "2/5"}) {
+    compute({"study", file, "-o", folder / "parts", "--part", part, "--quiet"});
+  }
+  const ProgramResult early = run({"study", file, "-o", folder / "parts", "--merge"});
+  EXPECT_EQ(early.status, 3);
+  EXPECT_THAT(early.err, AllOf(HasSubstr("1 of 5 parts are missing: 4"), HasSubstr("--resume")));
+  compute({"study", file, "-o", folder / "parts", "--merge", "--partial"});
+  EXPECT_NE(readFile(folder / "parts/results.csv"), readFile(folder / "one/results.csv"));
+  compute({"study", file, "-o", folder / "parts", "--part", "4/5"});
+  compute({"study", file, "-o", folder / "parts", "--part", "4/5"});
+  compute({"study", file, "-o", folder / "parts", "--merge"});
+  expectSameResults(folder, "one", "two");
+  expectSameResults(folder, "one", "parts");
+}
+
+TEST(Study, AResumedStudyComputesWhatIsMissing) {
+  const TemporaryFolder folder;
+  const std::string file = study(folder);
+  compute({"study", file, "-o", folder / "whole"});
+  compute({"study", file, "-o", folder / "out"});
+  const ProgramResult again = run({"study", file, "-o", folder / "out"});
+  EXPECT_EQ(again.status, 2);
+  EXPECT_THAT(again.err, HasSubstr("holds 8 of 8 parts of this study; --resume"));
+  const auto kept = std::filesystem::last_write_time(folder / "out/parts/part_00001.csv");
+  std::filesystem::remove(folder / "out/parts/part_00004.json");
+  std::filesystem::remove(folder / "out/parts/part_00007.csv");
+  std::filesystem::remove(folder / "out/parts/part_00007.json");
+  compute({"study", file, "-o", folder / "out", "--resume", "--jobs", "2"});
+  EXPECT_EQ(std::filesystem::last_write_time(folder / "out/parts/part_00001.csv"), kept);
+  expectSameResults(folder, "whole", "out");
+
+  const ProgramResult other =
+      run({"study", file, "-o", folder / "out", "--resume", "--set", "emitters.search radar.power_w=3"});
+  EXPECT_EQ(other.status, 3);
+  EXPECT_THAT(other.err, HasSubstr("belongs to another study"));
+}
+
+/// Processes whose parent is one of ours.
+std::vector<pid_t> childrenOf(pid_t parent) {
+  std::vector<pid_t> children;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream stat(entry.path() / "stat");
+    std::string text;
+    std::getline(stat, text);
+    const std::size_t end = text.rfind(')');
+    if (end == std::string::npos) continue;
+    if (std::atoi(text.c_str() + end + 4) == parent) children.push_back(std::atoi(name.c_str()));
+  }
+  return children;
+}
+
+TEST(Study, AKilledProcessIsReplacedAndNothingIsLost) {
+  const TemporaryFolder folder;
+  const std::string file = study(folder, 150);
+  compute({"study", file, "-o", folder / "whole"});
+  RunningProgram running({"study", file, "-o", folder / "out", "--jobs", "2"});
+  int killed = 0;
+  for (int wait = 0; wait < 600 && killed < 2; ++wait) {
+    usleep(10000);
+    for (const pid_t program : childrenOf(getpid())) {
+      const std::vector<pid_t> workers = childrenOf(program);
+      if (workers.size() != 2) continue;
+      usleep(50000);
+      kill(workers[static_cast<std::size_t>(killed) % 2], SIGKILL);
+      ++killed;
+      break;
+    }
+  }
+  const ProgramResult result = running.wait();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_GE(killed, 1);
+  EXPECT_THAT(result.err, HasSubstr("was ended by signal 9; the part is computed again"));
+  expectSameResults(folder, "whole", "out");
+}
+
+TEST(Study, AFullDiskEndsTheStudyAndItCanBeResumed) {
+  const TemporaryFolder folder;
+  const std::string file = study(folder);
+  compute({"study", file, "-o", folder / "whole"});
+  compute({"study", file, "-o", folder / "out", "--part", "1/2"});  // writes the manifest
+  for (const char* jobs : {"1", "2"}) {
+    const ProgramResult result =
+        run({"study", file, "-o", folder / "out", "--resume", "--jobs", jobs}, "trap '' XFSZ; ulimit -f 1;");
+    EXPECT_EQ(result.status, 1) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("part_00002.csv"));
+  }
+  for (const std::string& left : folder.files()) EXPECT_THAT(left, testing::Not(HasSubstr(".part-")));
+  compute({"study", file, "-o", folder / "out", "--resume"});
+  expectSameResults(folder, "whole", "out");
+}
+
+TEST(Study, ThePlanSaysWhatItWouldDo) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run({"study", study(folder), "--plan", "--json", "--quiet"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json plan = json::parse(result.out);
+  EXPECT_EQ(plan["variants"], 40);
+  EXPECT_EQ(plan["parts"], 8);
+  EXPECT_EQ(plan["parameters"][0]["class"], "power");
+  EXPECT_EQ(plan["parameters"][1]["class"], "geometry");
+  EXPECT_EQ(plan["changes"]["geometry"]["variants"], 4);
+  EXPECT_EQ(plan["changes"]["power"]["variants"], 36);
+  EXPECT_GT(plan["single_runs_s"], plan["expected_s"]);
+  EXPECT_EQ(folder.files(), std::vector<std::string>{"study.yaml"});
+}
+
+TEST(Study, SlurmScriptsRunTheParts) {
+  const TemporaryFolder folder;
+  compute({"study", study(folder), "-o", folder / "out dir", "--slurm", folder / "job.sh", "--chunks", "5",
+           "--time", "00:20:00", "--gpus", "1", "--set", "emitters.search radar.power_w=3000"});
+  const std::string script = readFile(folder / "job.sh");
+  EXPECT_THAT(script, AllOf(HasSubstr("#SBATCH --array=1-5%20\n"), HasSubstr("--time=00:20:00"),
+                            HasSubstr("--gpus-per-task=1"), HasSubstr("'emitters.search radar.power_w=3000'"),
+                            HasSubstr("--part \"$SLURM_ARRAY_TASK_ID/5\"")));
+  // As Slurm would, without it.
+  const std::string program = std::filesystem::path(besideThisProgram("emscape")).parent_path();
+  for (int task = 1; task <= 5; ++task) {
+    const std::string command = "EMSCAPE_DIR='" + program +
+                                "' SLURM_CPUS_PER_TASK=1 SLURM_ARRAY_TASK_ID=" + std::to_string(task) +
+                                " sh '" + folder / "job.sh" + "' 2> /dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  }
+  const std::string merge =
+      "EMSCAPE_DIR='" + program + "' sh '" + folder / "job.sh.merge.sh" + "' > /dev/null 2>&1";
+  EXPECT_EQ(std::system(merge.c_str()), 0);
+  EXPECT_FALSE(readFile(folder / "out dir/results.csv").empty());
+}
+
+TEST(Study, RefusesWhatItCannotDo) {
+  const TemporaryFolder folder;
+  const std::string file = study(folder);
+  const auto errorOf = [&](const Arguments& more, int status) {
+    Arguments arguments{"study", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, status) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(errorOf({}, 2), HasSubstr("--output is required"));
+  const std::string out = folder / "out";
+  EXPECT_THAT(errorOf({"-o", out, "--part", "0/4"}, 2), HasSubstr("'0/4'"));
+  EXPECT_THAT(errorOf({"-o", out, "--part", "5/4"}, 2), HasSubstr("I from 1 to N"));
+  EXPECT_THAT(errorOf({"-o", out, "--part", "1/41"}, 2), HasSubstr("41 parts of 40 variants"));
+  EXPECT_THAT(errorOf({"-o", out, "--merge"}, 3), HasSubstr("no part was computed"));
+  EXPECT_THAT(errorOf({"-o", out, "--partial"}, 2), HasSubstr("--merge"));
+  EXPECT_THAT(errorOf({"-o", out, "--set", "emitters.nobody.power_w=1"}, 3), HasSubstr("nobody"));
+  EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+}  // namespace
+}  // namespace emscape::test

@@ -1,0 +1,214 @@
+// Occupancy against counts over fine time steps.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "emfield/solver/beam_positions.h"
+#include "emscape/base/units.h"
+#include "tests/emfield/radar_duel.h"
+#include "tests/support/files.h"
+#include "tests/support/on_backends.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using scenario::AntennaPtr;
+using scenario::Emitter;
+using scenario::IntervalKind;
+using scenario::ScanKind;
+using scenario::ScanSpec;
+using scenario::Scenario;
+
+constexpr double kBegin_s = 1.7, kThreshold_dbwm2 = -62;
+
+ScanSpec rotating(double rate_rpm, double elevation_deg = 0) {
+  ScanSpec scan;
+  scan.kind = ScanKind::rotate;
+  scan.rate_rpm = rate_rpm;
+  scan.azimuth_deg = 20;
+  scan.elevation_deg = elevation_deg;
+  return scan;
+}
+
+ScanSpec sweeping(ScanKind kind, int bars = 1) {
+  ScanSpec scan;
+  scan.kind = kind;
+  scan.azimuth_deg = 40;
+  scan.elevation_deg = 2;
+  scan.width_deg = 70;
+  scan.rate_deg_s = 60;
+  scan.bars = bars;
+  scan.elevation_step_deg = 4;
+  return scan;
+}
+
+ScanSpec dwelling() {
+  ScanSpec scan;
+  scan.kind = ScanKind::dwell_list;
+  scan.azimuth_deg = 30;
+  scan.elevation_deg = 5;
+  scan.dwells = {{-20, 0, 0.3}, {5, 10, 0.2}, {25, -3, 0.5}};
+  return scan;
+}
+
+/// An emitter in the middle of a box whose voxels are at all azimuths and elevations.
+std::shared_ptr<Scenario> around(const AntennaPtr& antenna, const ScanSpec& scan) {
+  auto scenario = emptyScenario(FrameKind::enu, 44.3, -71.4, {15000, 15000, 6000}, {15, 15, 6});
+  Emitter emitter = plainEmitter("emitter", 0);
+  emitter.antenna = antenna;
+  emitter.scan = scan;
+  addEmitter(*scenario, middleOf(*scenario), emitter);
+  scenario->platforms.front().track.front().heading_deg = 0;
+  scenario->output.count_threshold_dbwm2 = kThreshold_dbwm2;
+  return scenario;
+}
+
+class Occupancy : public test::OnBackends {
+ protected:
+  FieldSolver solverOf(const std::shared_ptr<Scenario>& scenario) {
+    FieldOptions options;
+    options.backend = GetParam();
+    return FieldSolver(scenario, nullptr, options);
+  }
+  std::vector<float> valuesOf(FieldSolver& solver, const std::shared_ptr<Scenario>& scenario, double t_s) {
+    solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
+    return solver.volumes().front().host()->values;
+  }
+  std::shared_ptr<Scenario> occupancyOf(const std::shared_ptr<Scenario>& scenario, double seconds) {
+    auto copy = std::make_shared<Scenario>(*scenario);
+    copy->output.quantities = {"occupancy"};
+    copy->output.interval = {IntervalKind::mean, seconds, {}};
+    return copy;
+  }
+  std::vector<float> over(const std::shared_ptr<Scenario>& scenario, double seconds) {
+    const auto occupancy = occupancyOf(scenario, seconds);
+    FieldSolver solver = solverOf(occupancy);
+    return valuesOf(solver, occupancy, kBegin_s);
+  }
+  /// The share of equal steps at which the power density is above the threshold.
+  std::vector<double> counted(const std::shared_ptr<Scenario>& scenario, double seconds, int steps) {
+    FieldSolver solver = solverOf(scenario);
+    std::vector<double> share;
+    for (int n = 0; n < steps; ++n) {
+      const std::vector<float> values = valuesOf(solver, scenario, kBegin_s + seconds * (n + 0.5) / steps);
+      share.resize(values.size());
+      for (std::size_t v = 0; v < values.size(); ++v) {
+        if (static_cast<double>(values[v]) > kThreshold_dbwm2) share[v] += 1.0 / steps;
+      }
+    }
+    return share;
+  }
+  void expectAsCounted(const std::shared_ptr<Scenario>& scenario, double seconds, int steps) {
+    const std::vector<double> expected = counted(scenario, seconds, steps);
+    const std::vector<float> found = over(scenario, seconds);
+    ASSERT_EQ(found.size(), expected.size());
+    int between = 0;
+    for (std::size_t v = 0; v < found.size(); ++v) {
+      if (v % (15 * 15) == 7 * 15 + 7) continue;  // straight above, where a pattern may have no one value
+      EXPECT_NEAR(static_cast<double>(found[v]), expected[v], 0.005) << "voxel " << v;
+      between += expected[v] > 0.01 && expected[v] < 0.99 ? 1 : 0;
+    }
+    EXPECT_GT(between, 50) << "the scenario must have shares between 0 and 1";
+  }
+};
+
+TEST_P(Occupancy, OfTurnsIsThatOfFineSteps) {
+  for (const AntennaPtr& antenna :
+       {scenario::makeGaussian(30, 4, 12, -35), scenario::makeCosecant2(30, 4, 5, 40, -35),
+        scenario::makeSinc(30, 4, 12, -40), scenario::makePhasedArray(25, 24, 16, 0.5, 1, -45)}) {
+    SCOPED_TRACE(antenna->description);
+    expectAsCounted(around(antenna, rotating(10, 4)), 6, 1800);
+  }
+}
+
+TEST_P(Occupancy, OfPartsOfATurnIsThatOfFineSteps) {
+  const auto scenario = around(scenario::makeGaussian(30, 8, 12, -35), rotating(-10, 3));
+  expectAsCounted(scenario, 1.9, 1200);
+  expectAsCounted(scenario, 8.3, 2400);
+}
+
+TEST_P(Occupancy, OfSectorsRastersAndDwellsIsThatOfFineSteps) {
+  const AntennaPtr antenna = scenario::makeGaussian(30, 8, 9, -35);
+  for (const double seconds : {0.8, 3.7}) {
+    SCOPED_TRACE(seconds);
+    expectAsCounted(around(antenna, sweeping(ScanKind::sector)), seconds, 1500);
+    expectAsCounted(around(antenna, sweeping(ScanKind::raster, 3)), seconds, 1500);
+    expectAsCounted(around(scenario::makePhasedArray(30, 16, 12, 0.5, 1, -40), dwelling()), seconds, 1480);
+    expectAsCounted(around(scenario::makeGaussian(30, 9, 9, -40), dwelling()), seconds, 1480);
+  }
+}
+
+TEST_P(Occupancy, CountsBothRaysAndTheTimesOfActivity) {
+  auto scenario = around(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
+  scenario->emitters.front().propagation.model = propagation::PropagationModel::two_ray;
+  scenario->emitters.front().active_s = {{0, 2.5}, {4, 4.5}};
+  expectAsCounted(scenario, 6, 2400);
+}
+
+TEST_P(Occupancy, OfAStillBeamIsItsTimeOfActivity) {
+  auto scenario = around(scenario::makeIsotropic(30), ScanSpec{});
+  scenario->emitters.front().active_s = {{0, 2.5}, {4, 4.5}};
+  const std::vector<float> found = over(scenario, 6);
+  EXPECT_NEAR(*std::max_element(found.begin(), found.end()), (0.8 + 0.5) / 6, 1e-5);
+}
+
+TEST_P(Occupancy, OfSeveralEmittersIsThatOfAny) {
+  auto first = around(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
+  auto second = around(scenario::makeGaussian(30, 30, 12, -35), rotating(7, 3));
+  auto both = std::make_shared<Scenario>(*first);
+  both->emitters.push_back(second->emitters.front());
+  both->emitters.back().name = "other";
+  const std::vector<float> a = over(first, 60), b = over(second, 60), any = over(both, 60);
+  for (std::size_t v = 0; v < any.size(); ++v) EXPECT_NEAR(any[v], a[v] + b[v] - a[v] * b[v], 1e-5f);
+}
+
+TEST_P(Occupancy, OfWholeTurnsDoesNotChangeWithTheTime) {
+  const auto scenario = occupancyOf(around(scenario::makeGaussian(30, 4, 6, -35), rotating(10, 3)), 12);
+  FieldSolver solver = solverOf(scenario);
+  valuesOf(solver, scenario, 0);
+  EXPECT_TRUE(solver.update(scenario::snapshotAt(scenario, nullptr, 1.3)).volumes.empty());
+}
+
+EMSCAPE_ON_BACKENDS(Occupancy);
+
+// Of positions beyond its reach, none is above the level.
+TEST(PatternReach, HoldsAllDirectionsAboveALevel) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> part(0, 1);
+  PatternReaches reaches;
+  for (const AntennaPtr& antenna :
+       {scenario::makeGaussian(30, 4, 12, -35), scenario::makeCosecant2(30, 4, 5, 40, -35),
+        scenario::makeSinc(30, 1.2, 3, -40), scenario::makePhasedArray(25, 24, 16, 0.5, 1, -45),
+        scenario::readMsi(test::shippedScenario("data/sector_450mhz.msi"))}) {
+    for (const double elevation_deg : {0.0, 4.0, 60.0}) {
+      SCOPED_TRACE(antenna->description);
+      const PatternReach& reach = reaches.of(antenna, elevation_deg);
+      EXPECT_EQ(&reach, &reaches.of(antenna, elevation_deg));
+      Aim aim;
+      aim.cos_elevation = static_cast<float>(std::cos(degToRad(elevation_deg)));
+      aim.sin_elevation = static_cast<float>(std::sin(degToRad(elevation_deg)));
+      int beyond = 0;
+      for (int n = 0; n < 200000; ++n) {
+        const double azimuth_rad = kPi * (2 * part(random) - 1), elevation_rad = kPi * (part(random) - 0.5);
+        const Vec3d ray{std::cos(azimuth_rad) * std::cos(elevation_rad),
+                        std::sin(azimuth_rad) * std::cos(elevation_rad), std::sin(elevation_rad)};
+        const float amplitude =
+            scenario::patternAmplitude(antenna->view(), turnedBy(aim, vecCast<float>(ray)), 0, 0);
+        const double level_db = -70 * part(random);
+        const double reach_rad = static_cast<double>(reach.towards(static_cast<float>(dbToRatio(level_db))));
+        if (std::abs(azimuth_rad) <= reach_rad) continue;
+        ++beyond;
+        ASSERT_LE(static_cast<double>(amplitude * amplitude), dbToRatio(level_db))
+            << radToDeg(azimuth_rad) << ", " << radToDeg(elevation_rad) << " deg, " << level_db << " dB";
+      }
+      EXPECT_GT(beyond, 100);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace emscape::emfield

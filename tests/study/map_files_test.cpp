@@ -1,0 +1,338 @@
+// Files of maps, read back by GDAL: shapes on their levels, bands that tile, what each format holds.
+#include <gdal_priv.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <ogrsf_frmts.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/study/map_folder.h"
+#include "study/map_shapes.h"
+#include "tests/support/errors.h"
+#include "tests/support/file_size_limit.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::study {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+struct Close {
+  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+};
+using Opened = std::unique_ptr<GDALDataset, Close>;
+
+Opened open(const std::string& file, unsigned flags) {
+  GDALAllRegister();
+  return Opened(GDALDataset::Open(file.c_str(), flags));
+}
+
+/// A grid of 40 x 30 pixels of 500 m, and a study of the shipped scenario over it.
+struct Fixture {
+  std::shared_ptr<const scenario::Scenario> scenario =
+      scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
+  MapArea area = parseArea("36.3,-84.2,9000");
+  std::shared_ptr<const MapGrid> grid = std::make_shared<const MapGrid>(makeMapGrid(area, 500, "utm"));
+  MapHeight height{emfield::HeightReference::mean_sea_level, 1500};
+
+  MapStudy study() const {
+    return {"coverage", "Coverage of <jacksboro>",
+            {scenario}, loadTerrain(*scenario, area),
+            grid,       scenario::Quantity::detection_probability,
+            0.5,        {70, 80},
+            {height}};
+  }
+  /// Values that rise and fall over the grid; none beyond the area and in one pixel in it.
+  Map map(MapKind kind, double time_s, double low, double high) const {
+    Map map;
+    map.name = kind == MapKind::classes ? "covered" : kind == MapKind::category ? "best" : "value";
+    map.kind = kind;
+    map.title = map.name;
+    map.unit = kind == MapKind::level ? "dB" : "";
+    map.description = map.name + " at 1500 m above mean sea level";
+    map.height = height;
+    map.time_s = time_s;
+    map.values.assign(grid->pixels(), NAN);
+    for (std::size_t p = 0; p < grid->pixels(); ++p) {
+      if (std::isnan(grid->places[p].latitude_deg) || p == grid->pixels() / 2) continue;
+      const double x = static_cast<double>(p % grid->width), y = static_cast<double>(p / grid->width);
+      const double wave = 0.5 + 0.25 * (std::sin(x / 5 + time_s) + std::cos(y / 4));
+      map.values[p] = static_cast<float>(low + wave * (high - low));
+      if (isWhole(kind)) map.values[p] = std::round(map.values[p]);
+    }
+    return map;
+  }
+  /// The value at a place, linear between the centres of four pixels; NaN if one is missing.
+  double valueAt(const Map& map, double x, double y, double (*scaled)(double)) const {
+    const double column = (x - grid->left_m) / grid->cell_m - 0.5,
+                 row = (grid->top_m - y) / grid->cell_m - 0.5;
+    const int i = std::clamp(static_cast<int>(std::floor(column)), 0, grid->width - 2);
+    const int j = std::clamp(static_cast<int>(std::floor(row)), 0, grid->height - 2);
+    const auto at = [&](int di, int dj) {
+      return scaled(static_cast<double>(map.values[static_cast<std::size_t>(j + dj) * grid->width + i + di]));
+    };
+    const double u = column - i, v = row - j;
+    return (1 - v) * ((1 - u) * at(0, 0) + u * at(1, 0)) + v * ((1 - u) * at(0, 1) + u * at(1, 1));
+  }
+};
+
+double asItIs(double value) {
+  return value;
+}
+double logOdds(double value) {
+  return std::log(value / (1 - value));
+}
+
+TEST(MapShapes, ContoursLieOnTheirLevels) {
+  const Fixture fixture;
+  for (const auto& [kind, low, high, scaled] :
+       {std::tuple{MapKind::level, -37.0, 26.0, &asItIs}, {MapKind::probability, 0.002, 0.999, &logOdds}}) {
+    const Map map = fixture.map(kind, 70, low, high);
+    const MapShapes shapes = shapesOf(*fixture.grid, map, "test");
+    int compared = 0;
+    std::set<double> levels;
+    for (const MapLine& line : shapes.lines) {
+      levels.insert(line.level);
+      for (const OGRPoint& point : *line.geometry->toLineString()) {
+        const double value = fixture.valueAt(map, point.getX(), point.getY(), scaled);
+        if (std::isnan(value)) continue;  // beside a pixel without a value
+        // A thousandth of a cell, by the steepest slope there is.
+        const double slope = (scaled(high) - scaled(low)) / 5;
+        EXPECT_NEAR(value, scaled(line.level), 1e-3 * slope);
+        ++compared;
+      }
+    }
+    EXPECT_GT(compared, 200);
+    EXPECT_THAT(levels, testing::ElementsAreArray(levelsOf(map)));
+  }
+}
+
+TEST(MapShapes, BandsTileThePixelsThatHaveAValue) {
+  const Fixture fixture;
+  const double pixel_m2 = 500.0 * 500.0;
+  for (const MapKind kind : {MapKind::level, MapKind::probability, MapKind::category}) {
+    const bool is_part = kind == MapKind::probability;
+    const Map map = fixture.map(kind, 70, is_part ? 0.002 : -0.4, is_part ? 0.999 : 43);
+    double expected_m2 = 0, area_m2 = 0;
+    for (const float value : map.values) expected_m2 += std::isnan(value) ? 0 : pixel_m2;
+    const MapShapes shapes = shapesOf(*fixture.grid, map, "test");
+    std::unique_ptr<OGRGeometry> all = std::make_unique<OGRMultiPolygon>();
+    for (const MapBand& band : shapes.bands) {
+      EXPECT_TRUE(band.geometry->IsValid());
+      EXPECT_LE(band.min, band.max);
+      area_m2 += band.geometry->toMultiPolygon()->get_Area();
+      all.reset(all->Union(band.geometry.get()));
+    }
+    EXPECT_NEAR(area_m2 / expected_m2, 1, 1e-6) << "neither overlap";
+    EXPECT_NEAR(OGR_G_Area(OGRGeometry::ToHandle(all.get())) / expected_m2, 1, 1e-6) << "nor gap";
+  }
+}
+
+TEST(MapShapes, ClassesHaveTheOutlinesOfTheirPixels) {
+  const Fixture fixture;
+  Map map = fixture.map(MapKind::classes, 70, 0, 1);
+  map.labels = {"no", "yes"};
+  map.area_class = 1;
+  const MapShapes shapes = shapesOf(*fixture.grid, map, "test");
+  ASSERT_EQ(shapes.bands.size(), 1u);
+  EXPECT_EQ(shapes.bands[0].label, "yes");
+  double pixels = 0;
+  for (const float value : map.values) pixels += value == 1 ? 1 : 0;
+  EXPECT_NEAR(shapes.bands[0].geometry->toMultiPolygon()->get_Area() / (pixels * 500 * 500), 1, 1e-12);
+  EXPECT_TRUE(shapes.lines.empty());
+}
+
+TEST(MapShapes, LevelsAreRoundNumbers) {
+  const Fixture fixture;
+  EXPECT_THAT(levelsOf(fixture.map(MapKind::probability, 70, 0, 1)), ElementsAre(0.1, 0.5, 0.9));
+  EXPECT_THAT(levelsOf(fixture.map(MapKind::level, 70, -37, 15)),
+              testing::Each(testing::Truly([](double level) { return std::remainder(level, 10) == 0; })));
+  Map heights = fixture.map(MapKind::level, 70, 0, 700);
+  heights.unit = "m";
+  EXPECT_THAT(levelsOf(heights), ElementsAre(200, 400, 600));
+  heights.values.assign(heights.values.size(), 3.0f);
+  EXPECT_TRUE(levelsOf(heights).empty());
+  EXPECT_EQ(shapesOf(*fixture.grid, heights, "test").bands.size(), 1u);
+}
+
+/// A folder with maps of each kind at two times, in all formats.
+class MapFiles : public testing::Test {
+ protected:
+  void write(const std::string& name) const {
+    MapFolder maps(folder.path() / name, fixture.study(), {"cog", "png", "gpkg", "nc", "kmz", "czml"});
+    for (const double time_s : {70.0, 80.0}) {
+      for (const Map& map : mapsOf(time_s)) maps.add(map);
+    }
+    maps.finish({});
+  }
+  std::vector<Map> mapsOf(double time_s) const {
+    std::vector<Map> maps{fixture.map(MapKind::probability, time_s, 0.002, 0.999),
+                          fixture.map(MapKind::classes, time_s, 0, 1),
+                          fixture.map(MapKind::category, time_s, -1, 2)};
+    maps[1].labels = {"no", "yes"};
+    maps[1].area_class = 1;
+    maps[2].labels = {"search radar", "it's", "third"};
+    return maps;
+  }
+
+  const Fixture fixture;
+  const test::TemporaryFolder folder;
+};
+
+TEST_F(MapFiles, TwoRunsWriteTheSameBytes) {
+  write("a");
+  write("b");
+  for (const char* file : {"coverage.gpkg", "coverage.nc", "coverage.kmz", "coverage.czml"}) {
+    const std::string name = std::string("maps/") + file;
+    const std::string bytes = test::readFile(folder.path() / "a" / name);
+    EXPECT_FALSE(bytes.empty()) << file;
+    EXPECT_EQ(bytes, test::readFile(folder.path() / "b" / name)) << file;
+  }
+}
+
+TEST_F(MapFiles, TheGeoPackageHoldsBandsContoursEmittersAndTracks) {
+  write("a");
+  const Opened package = open(folder / "a/maps/coverage.gpkg", GDAL_OF_VECTOR);
+  ASSERT_NE(package, nullptr);
+  OGRLayer* const bands = package->GetLayerByName("bands");
+  ASSERT_NE(bands, nullptr);
+  EXPECT_EQ(bands->GetSpatialRef()->GetAuthorityCode(nullptr), std::string("32616"));
+  std::set<std::string> labels;
+  int first_time = 0;
+  for (const OGRFeatureUniquePtr& feature : *bands) {
+    labels.insert(feature->GetFieldAsString("label"));
+    EXPECT_EQ(feature->GetFieldAsDouble("height"), 1500);
+    EXPECT_STREQ(feature->GetFieldAsString("height_above"), "mean sea level");
+    const std::string time = feature->GetFieldAsString("time");
+    EXPECT_THAT(time, HasSubstr("2026/06/01 06:01:"));
+    if (time.find("06:01:10") != std::string::npos) ++first_time;
+  }
+  EXPECT_THAT(labels, testing::IsSupersetOf({"yes", "search radar", "it's"}));
+  EXPECT_EQ(2 * first_time, static_cast<int>(bands->GetFeatureCount()));
+  EXPECT_GT(package->GetLayerByName("contours")->GetFeatureCount(), 0);
+  OGRLayer* const emitters = package->GetLayerByName("emitters");
+  EXPECT_EQ(emitters->GetFeatureCount(), 5) << "the jammer moves: two places";
+  OGRLayer* const tracks = package->GetLayerByName("tracks");
+  ASSERT_EQ(tracks->GetFeatureCount(), 1);
+  const OGRFeatureUniquePtr track(tracks->GetNextFeature());
+  EXPECT_GT(track->GetGeometryRef()->toLineString()->getM(1), 0);
+  OGRLayer* const styles = package->GetLayerByName("layer_styles");
+  EXPECT_EQ(styles->GetFeatureCount(), 4);
+}
+
+TEST_F(MapFiles, TheNetCdfHoldsTheValuesOverTimeAndHeight) {
+  write("a");
+  const Opened file = open(folder / "a/maps/coverage.nc", GDAL_OF_MULTIDIM_RASTER);
+  ASSERT_NE(file, nullptr);
+  const auto root = file->GetRootGroup();
+  EXPECT_STREQ(root->GetAttribute("Conventions")->ReadAsString(), "CF-1.8");
+  const auto value = root->OpenMDArray("value_msl");
+  ASSERT_NE(value, nullptr);
+  EXPECT_EQ(value->GetUnit(), "1");
+  const auto& dimensions = value->GetDimensions();
+  ASSERT_EQ(dimensions.size(), 4u);
+  EXPECT_EQ(dimensions[0]->GetName(), "time");
+  EXPECT_EQ(dimensions[1]->GetName(), "height_msl");
+  std::vector<float> read(fixture.grid->pixels());
+  const GUInt64 start[] = {1, 0, 0, 0};
+  const std::size_t count[] = {1, 1, static_cast<std::size_t>(fixture.grid->height),
+                               static_cast<std::size_t>(fixture.grid->width)};
+  ASSERT_TRUE(
+      value->Read(start, count, nullptr, nullptr, GDALExtendedDataType::Create(GDT_Float32), read.data()));
+  const Map map = mapsOf(80)[0];
+  for (std::size_t p = 0; p < read.size(); ++p) {
+    ASSERT_TRUE(read[p] == map.values[p] || (std::isnan(read[p]) && std::isnan(map.values[p])));
+  }
+  EXPECT_STREQ(root->OpenMDArray("covered_msl")->GetAttribute("flag_meanings")->ReadAsString(), "no yes");
+  EXPECT_STREQ(root->OpenMDArray("best_msl")->GetAttribute("flag_meanings")->ReadAsString(),
+               "none search_radar it_s third");
+  EXPECT_EQ(root->OpenMDArray("time")->GetUnit(), "seconds since 2026-06-01T06:00:00.000Z");
+}
+
+TEST_F(MapFiles, TheKmzLaysAMapWhereItIs) {
+  write("a");
+  const std::string archive = "/vsizip/" + folder / "a/maps/coverage.kmz";
+  GByte* bytes = nullptr;
+  vsi_l_offset size = 0;
+  ASSERT_TRUE(VSIIngestFile(nullptr, (archive + "/doc.kml").c_str(), &bytes, &size, -1));
+  const std::string kml(reinterpret_cast<const char*>(bytes), size);
+  VSIFree(bytes);
+  EXPECT_THAT(kml, HasSubstr("Coverage of &lt;jacksboro&gt;"));
+  EXPECT_THAT(kml, HasSubstr("<begin>2026-06-01T06:01:10.000Z</begin><end>2026-06-01T06:01:20.000Z</end>"));
+  const auto edge = [&](const std::string& name) {
+    return std::stod(kml.substr(kml.find("<" + name + ">") + name.size() + 2));
+  };
+  const Opened overlay = open(archive + "/files/covered_msl1500m_t70s.png", GDAL_OF_RASTER);
+  ASSERT_NE(overlay, nullptr);
+  ASSERT_EQ(overlay->GetRasterCount(), 4);
+  const int width = overlay->GetRasterXSize(), height = overlay->GetRasterYSize();
+  std::vector<std::uint8_t> alpha(static_cast<std::size_t>(width) * height);
+  ASSERT_EQ(overlay->GetRasterBand(4)->RasterIO(GF_Read, 0, 0, width, height, alpha.data(), width, height,
+                                                GDT_Byte, 0, 0, nullptr),
+            CE_None);
+  const Map covered = mapsOf(70)[1];
+  int wrong = 0, compared = 0;
+  for (std::size_t p = 0; p < covered.values.size(); ++p) {
+    if (std::isnan(covered.values[p])) continue;
+    const auto [latitude_deg, longitude_deg] = fixture.grid->places[p];
+    const int x = static_cast<int>((longitude_deg - edge("west")) / (edge("east") - edge("west")) * width);
+    const int y = static_cast<int>((edge("north") - latitude_deg) / (edge("north") - edge("south")) * height);
+    ASSERT_TRUE(x >= 0 && x < width && y >= 0 && y < height);
+    if ((alpha[static_cast<std::size_t>(y) * width + x] > 0) != (covered.values[p] == 1)) ++wrong;
+    ++compared;
+  }
+  EXPECT_GT(compared, 500);
+  EXPECT_LT(wrong, compared / 20) << "only at the edges of what is covered";
+}
+
+TEST_F(MapFiles, TheCzmlHasPolygonsForTheirTimes) {
+  write("a");
+  const auto packets = nlohmann::json::parse(test::readFile(folder / "a/maps/coverage.czml"));
+  ASSERT_EQ(packets[0]["id"], "document");
+  int polygons = 0;
+  std::set<std::string> ids, times;
+  for (const auto& packet : packets) {
+    EXPECT_TRUE(ids.insert(packet["id"]).second) << packet["id"];
+    if (!packet.contains("polygon")) continue;
+    ++polygons;
+    times.insert(packet["availability"]);
+    EXPECT_EQ(packet["polygon"]["positions"]["cartographicDegrees"].size() % 3, 0u);
+  }
+  EXPECT_GT(polygons, 2);
+  EXPECT_THAT(times, ElementsAre("2026-06-01T06:01:10.000Z/2026-06-01T06:01:20.000Z",
+                                 "2026-06-01T06:01:20.000Z/2026-06-01T06:01:30.000Z"));
+}
+
+TEST_F(MapFiles, AFileThatCannotBeWrittenIsNamedAndRemoved) {
+  for (const char* format : {"cog", "gpkg", "nc", "kmz", "czml"}) {
+    const test::TemporaryFolder full;
+    const std::string message = test::errorOf([&] {
+      MapFolder maps(full.path() / "out", fixture.study(), {format});
+      const test::FileSizeLimit limit(600);
+      for (const Map& map : mapsOf(70)) maps.add(map);
+      maps.finish({});
+    });
+    EXPECT_THAT(message, HasSubstr("out/maps/")) << format;
+    for (const std::string& file : full.files()) {
+      EXPECT_THAT(file, testing::EndsWith("never")) << format << " leaves this behind";
+    }
+  }
+}
+
+TEST_F(MapFiles, UnknownFormatsAndHeightsAreRefused) {
+  EXPECT_THAT(test::errorOf([&] { MapFolder(folder.path() / "x", fixture.study(), {"shp"}); }),
+              HasSubstr("unknown format 'shp'; one of cog, png, gpkg"));
+  MapFolder maps(folder.path() / "y", fixture.study(), {"nc"});
+  Map map = mapsOf(70)[0];
+  map.height->metres = 77;
+  EXPECT_THAT(test::errorOf([&] { maps.add(map); }), HasSubstr("77 is neither a time nor a height"));
+}
+
+}  // namespace
+}  // namespace emscape::study

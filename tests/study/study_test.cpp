@@ -1,0 +1,276 @@
+// Studies: the file, the order of the variants, and what each of them is measured at.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/study/study_folder.h"
+#include "emscape/study/study_report.h"
+#include "emscape/study/study_runner.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::study {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const char* const kMeasures = R"(
+measures:
+  - {name: covered, height: "agl:300"}
+  - {name: mean, product: value, height: "msl:900", statistic: mean}
+)";
+
+/// A study of jacksboro.yaml with large pixels.
+class Study {
+ public:
+  explicit Study(const std::string& text, const std::string& measures = kMeasures,
+                 const std::string& scenario = "jacksboro.yaml")
+      : file_(folder_.write("study.yaml", "schema_version: 1\nscenario: " + test::shippedScenario(scenario) +
+                                              "\ncell_m: 1000\n" + text + measures)),
+        spec_(loadStudy(file_, {}, "test")),
+        terrain_(loadTerrain(*spec_.base, spec_.area)),
+        plan_(planStudy(spec_, terrain_)) {}
+
+  /// The measures of variants, computed in the order given.
+  std::vector<std::vector<double>> run(const std::vector<std::size_t>& variants) const {
+    std::vector<std::vector<double>> values(spec_.variants.count());
+    StudyRunner(spec_, plan_, terrain_, {}).run(variants, [&](const VariantResult& result) {
+      values[result.variant] = result.values;
+    });
+    return values;
+  }
+  std::vector<std::size_t> order() const { return {plan_.order.begin(), plan_.order.end()}; }
+
+  const StudySpec& spec() const { return spec_; }
+  const StudyPlan& plan() const { return plan_; }
+  const scenario::TerrainPtr& terrain() const { return terrain_; }
+
+ private:
+  test::TemporaryFolder folder_;
+  std::string file_;
+  StudySpec spec_;
+  scenario::TerrainPtr terrain_;
+  StudyPlan plan_;
+};
+
+std::string errorOf(const std::string& text) {
+  return test::errorOf([&] { Study study(text); });
+}
+
+TEST(Study, VariantsAreTheProductOfListSweepAndSamples) {
+  const Study study(R"(
+variants: [{name: as it is}, {name: no jammer, set: {emitters.jammer.power_w: 1.0e-6}}]
+sweep:
+  atmosphere.k_factor: {linear: {from: 1, to: 1.4, count: 3}}
+  emitters.search radar.power_w: {log: {from: 10, to: 1000, count: 3}}
+samples:
+  count: 4
+  parameters: {emitters.search radar.receiver.target_rcs_m2: {lognormal: {median: 2, deviation_db: 3}}}
+)");
+  const VariantSet& variants = study.spec().variants;
+  ASSERT_EQ(variants.count(), 2u * 3 * 3 * 4);
+  EXPECT_EQ(variants.name(0), "as it is");
+  EXPECT_EQ(variants.name(71), "no jammer");
+  EXPECT_THAT(variants.paths(),
+              ElementsAre("emitters.jammer.power_w", "atmosphere.k_factor", "emitters.search radar.power_w",
+                          "emitters.search radar.receiver.target_rcs_m2"));
+  EXPECT_EQ(variants.value(0, 0), "");
+  EXPECT_EQ(variants.value(36, 0), "1.0e-6");
+  EXPECT_EQ(variants.value(13, 1), "1.2");
+  EXPECT_EQ(variants.value(4, 2), "100");
+  EXPECT_EQ(variants.edits(0).size(), 3u);
+}
+
+TEST(Study, TheSolverSaysWhatAParameterInvalidates) {
+  const Study study(R"(
+sweep:
+  emitters.search radar.power_w: {values: [100, 200]}
+  emitters.search radar.antenna.side_lobe_db: {values: [-40, -30]}
+  platforms.ridge site.position.height_agl_m: {values: [10, 30]}
+  atmosphere.k_factor: {values: [1, 1.2]}
+  output.count_threshold_dbwm2: {values: [-80, -70]}
+)");
+  using C = ChangeClass;
+  EXPECT_THAT(study.plan().classes, ElementsAre(C::power, C::beam, C::geometry, C::geometry, C::product));
+  // 4 geometries, with 2 antennas each, 2 powers of each, 2 thresholds of each.
+  EXPECT_THAT(study.plan().changes, ElementsAre(4u, 4u, 8u, 16u));
+}
+
+TEST(Study, ResultsDoNotDependOnWhatWasComputedBefore) {
+  const Study study(R"(
+times: "60:90:15"
+sweep:
+  emitters.jammer.power_w: {values: [1, 1500]}
+  platforms.ridge site.position.height_agl_m: {values: [10, 30]}
+  emitters.search radar.antenna.beamwidth_el_deg: {values: [3, 6]}
+)",
+                    R"(
+measures:
+  - {name: covered, height: "agl:300"}
+  - {name: gap, product: longest_gap, height: "agl:300"}
+  - {name: lost, product: jam_loss, height: "msl:900", unit: percent}
+  - {name: low, product: value, height: "agl:300", statistic: min, threshold: 0.9}
+)");
+  const std::vector<std::vector<double>> in_order = study.run(study.order());
+  std::vector<std::size_t> backwards(study.spec().variants.count());
+  for (std::size_t v = 0; v < backwards.size(); ++v) backwards[v] = backwards.size() - 1 - v;
+  EXPECT_EQ(study.run(backwards), in_order);
+  for (const std::size_t v : {0u, 3u, 6u}) EXPECT_EQ(study.run({v})[v], in_order[v]) << v;
+  EXPECT_NE(in_order[0], in_order[4]) << "the jammer takes coverage away";
+
+  // The same as maps of the edited scenario by themselves.
+  const auto edited = scenario::editScenario(*study.spec().base, study.spec().variants.edits(5)).scenario;
+  const MapGrid grid = makeMapGrid(study.spec().area, 1000, "utm");
+  emfield::FieldOptions options;
+  options.move_tolerance_m = 0;
+  double covered_km2 = 0;
+  computeCoverage(edited, study.terrain(), grid,
+                  {{{emfield::HeightReference::ground, 300}},
+                   {Product::covered},
+                   scenario::Quantity::detection_probability,
+                   0.5,
+                   study.spec().times_s},
+                  options, [&](const CoverageMap& map) { covered_km2 += map.class_area_m2 / 1e6 / 3; });
+  EXPECT_NEAR(in_order[5][0], covered_km2, 1e-9 * covered_km2);
+}
+
+TEST(Study, MeasuresOverPolygonsCountTheirPixelsAlone) {
+  const test::TemporaryFolder folder;
+  const std::string west = folder.write(
+      "west.geojson",
+      R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": {"type":
+      "Polygon", "coordinates": [[[-85, 36], [-84.246, 36], [-84.246, 37], [-85, 37], [-85, 36]]]}}]})");
+  const Study study("variants: [{name: as it is}]", R"(
+measures:
+  - {name: all, height: "agl:300"}
+  - {name: west, height: "agl:300", over: )" + west + R"(}
+  - {name: share, height: "agl:300", unit: percent, over: )" +
+                                                        west + "}\n");
+  const std::vector<double> values = study.run({0})[0];
+  EXPECT_GT(values[1], 0);
+  EXPECT_LT(values[1], 0.8 * values[0]);
+  EXPECT_NEAR(values[1] / values[2] * 100, 421, 25) << "half of 842 km2";
+}
+
+TEST(Study, PartsOfAnyNumberJoinToTheSameResults) {
+  const Study study(R"(
+sweep:
+  emitters.jammer.power_w: {log: {from: 1, to: 1000, count: 5}}
+  emitters.search radar.propagation: {values: [horizon, free_space]}
+)");
+  std::vector<std::string> csv, html;
+  std::vector<std::string> netcdf;
+  for (const int parts : {1, 3, 10}) {
+    const test::TemporaryFolder folder;
+    StudyFolder files(folder.path(), study.spec(), study.plan(), "test");
+    files.begin(parts);
+    EXPECT_EQ(files.missingParts().size(), static_cast<std::size_t>(parts));
+    for (int part = parts; part >= 1; --part) {
+      std::vector<VariantResult> results;
+      StudyRunner(study.spec(), study.plan(), study.terrain(), {})
+          .run(files.variantsOf(part), [&](VariantResult result) { results.push_back(std::move(result)); });
+      files.writePart(part, results, {}, "cpu");
+      EXPECT_TRUE(files.hasPart(part));
+    }
+    const StudyResults results = files.read();
+    files.writeResults(results);
+    writeStudyReport(folder.path() / "report.html", study.spec(), study.plan(), results);
+    csv.push_back(test::readFile(folder.path() / "results.csv"));
+    netcdf.push_back(test::readFile(folder.path() / "results.nc"));
+    html.push_back(test::readFile(folder.path() / "report.html"));
+  }
+  EXPECT_THAT(csv[0], HasSubstr("variant,name,emitters.jammer.power_w,emitters.search radar.propagation,"
+                                "covered (km2),mean\n0,,1,horizon,"));
+  EXPECT_EQ(std::count(csv[0].begin(), csv[0].end(), '\n'), 11);
+  EXPECT_FALSE(netcdf[0].empty());
+  for (int i : {1, 2}) {
+    EXPECT_EQ(csv[i], csv[0]);
+    EXPECT_TRUE(netcdf[i] == netcdf[0]);
+    EXPECT_TRUE(html[i] == html[0]);
+  }
+}
+
+TEST(Study, APartOfAnotherStudyIsRefused) {
+  const Study first("sweep: {emitters.jammer.power_w: {values: [1, 2]}}"),
+      second("sweep: {emitters.jammer.power_w: {values: [1, 3]}}");
+  const test::TemporaryFolder folder;
+  StudyFolder files(folder.path(), first.spec(), first.plan(), "test");
+  files.begin(2);
+  EXPECT_NE(first.spec().hash, second.spec().hash);
+  EXPECT_THAT(
+      test::errorOf([&] { StudyFolder(folder.path(), second.spec(), second.plan(), "test").begin(2); }),
+      AllOf(HasSubstr("manifest.json"), HasSubstr("another study")));
+  EXPECT_THAT(test::errorOf([&] { StudyFolder(folder.path(), first.spec(), first.plan(), "test").begin(1); }),
+              HasSubstr("has 2 parts, not 1"));
+}
+
+TEST(Study, SitesAreChosenFromCandidates) {
+  const test::TemporaryFolder folder;
+  const Study study("sites: {platform: ridge site, grid_m: 9000, choose: 2}",
+                    "\nmeasures: [{name: covered, height: \"agl:100\", unit: percent}]\n");
+  ASSERT_EQ(study.spec().variants.count(), 9u);
+  StudyFolder files(folder.path(), study.spec(), study.plan(), "test");
+  files.begin(2);
+  for (const int part : {1, 2}) {
+    std::vector<VariantResult> results;
+    StudyRunner(study.spec(), study.plan(), study.terrain(), {})
+        .run(files.variantsOf(part), [&](VariantResult result) { results.push_back(std::move(result)); });
+    files.writePart(part, results, {}, "cpu");
+  }
+  const StudySummary summary =
+      writeStudyReport(folder.path() / "report.html", study.spec(), study.plan(), files.read());
+  ASSERT_EQ(summary.sites.size(), 2u);
+  EXPECT_GE(summary.sites_value, summary.measures[0].max);
+  EXPECT_LE(summary.sites_value, 100);
+}
+
+TEST(Study, TheShippedStudiesHaveNoFault) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(test::sourceFile("scenarios/study"))) {
+    const StudySpec spec = loadStudy(entry.path(), {}, "test");
+    EXPECT_GT(spec.variants.count(), 10u) << entry.path();
+    ++count;
+  }
+  EXPECT_EQ(count, 2);
+}
+
+TEST(Study, RefusesFaultsWithTheirPlace) {
+  EXPECT_THAT(errorOf(""), HasSubstr("none of 'variants', 'sweep', 'samples' and 'sites'"));
+  EXPECT_THAT(errorOf("sweeps: {}"), HasSubstr("study.yaml:4:1: unknown key 'sweeps' of the study; did you"));
+  EXPECT_THAT(
+      errorOf("sweep:\n  emitters.jammer.power_w: {values: [1, -2]}"),
+      AllOf(HasSubstr("study.yaml:5:3: emitters.jammer.power_w=-2"), HasSubstr("outside the allowed")));
+  EXPECT_THAT(errorOf("sweep: {emitters.jamer.power_w: {values: [1]}}"), HasSubstr("jamer"));
+  EXPECT_THAT(errorOf("sweep: {emitters.jammer.power_w: {linear: {from: 1, to: 2}}}"),
+              HasSubstr("missing key 'count'"));
+  EXPECT_THAT(errorOf("sweep: {emitters.jammer.power_w: {log: {from: 0, to: 2, count: 3}}}"),
+              HasSubstr("'from' is 0, outside the allowed above 0"));
+  EXPECT_THAT(errorOf("variants: [{name: a, set: {emitters.jammer.power_w: x}}]"),
+              HasSubstr("study.yaml:4:28: emitters.jammer.power_w=x"));
+  EXPECT_THAT(errorOf("variants: [{name: a}, {name: a}]"), HasSubstr("'a' twice"));
+  EXPECT_THAT(errorOf("variants: [{name: a, set: {emitters.jammer.power_w: 1}}]\n"
+                      "sweep: {emitters.jammer.power_w: {values: [1]}}"),
+              HasSubstr("'emitters.jammer.power_w' is set twice"));
+  EXPECT_THAT(
+      errorOf("samples: {count: 3, parameters: {emitters.jammer.power_w: {normal: {mean: 1, deviation: "
+              "1000}}}}"),
+      HasSubstr("outside the allowed"));
+  const auto ofMeasure = [](const std::string& measure) {
+    return test::errorOf([&] { Study study("variants: [{name: a}]", "\nmeasures:\n  - " + measure + "\n"); });
+  };
+  EXPECT_THAT(ofMeasure("{name: a, product: gap}"), HasSubstr("'product' must be one of value, covered"));
+  EXPECT_THAT(ofMeasure("{name: a, product: fraction}"), HasSubstr("is over time"));
+  EXPECT_THAT(ofMeasure("{name: a, product: min_height, unit: km2}"), HasSubstr("has no area"));
+  EXPECT_THAT(ofMeasure("{name: a, height: 30}"), HasSubstr("study.yaml:6:"));
+  EXPECT_THAT(ofMeasure("{name: a, quantity: power_density_dbwm2}"), HasSubstr("needs a threshold"));
+  EXPECT_THAT(ofMeasure("{name: a, over: nowhere.gpkg}"), HasSubstr("nowhere.gpkg: no such file"));
+}
+
+}  // namespace
+}  // namespace emscape::study
