@@ -32,7 +32,8 @@ std::string optionText(Hint hint);
 
 /// --set PATH=VALUE, which may be given several times. @throws Error (usage) when it is parsed, for a text
 /// without '='
-void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits);
+void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits, const std::string& name = "--set",
+                  const std::string& what = "changes a value of the scenario");
 
 /// --compare original|FILE. @param what  the command makes, for the help
 void addCompareOption(CLI::App& command, std::string& compare, const std::string& what);
@@ -52,6 +53,9 @@ void addView(CLI::App& app, const GlobalOptions& global, Action& action);
 void addProfile(CLI::App& app, const GlobalOptions& global, Action& action);
 void addLink(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCoverage(CLI::App& app, const GlobalOptions& global, Action& action);
+void addVertical(CLI::App& app, const GlobalOptions& global, Action& action);
+void addExposure(CLI::App& app, const GlobalOptions& global, Action& action);
+void addCompare(CLI::App& app, const GlobalOptions& global, Action& action);
 void addStudy(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCheck(CLI::App& app, const GlobalOptions& global, Action& action);
 void addBench(CLI::App& app, const GlobalOptions& global, Action& action);

@@ -80,6 +80,13 @@ void printJson(const Json& result) {
   finishResult();
 }
 
+std::string csvText(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
 void finishResult() {
   errno = 0;
   std::cout.flush();  // CLI11 prints help texts through it

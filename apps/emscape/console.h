@@ -34,6 +34,8 @@ Json number(double value);
 Json number(const std::optional<double>& value);
 /// The result as JSON, alone on standard output. @throws Error (other)
 void printJson(const Json& result);
+/// A cell of a CSV file: in quotes if it has a comma or a quote.
+std::string csvText(const std::string& text);
 /// Flushes standard output. @throws Error (other) if any part of the result could not be written
 void finishResult();
 

@@ -11,10 +11,11 @@
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/link_plot.h"
 #include "apps/emscape/link_report.h"
-#include "apps/emscape/profile_plot.h"
+#include "apps/emscape/study_options.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
 #include "propagation/registry/model_info.h"
+#include "render/annotate/plot.h"
 
 namespace emscape::app {
 namespace {
@@ -37,17 +38,7 @@ std::vector<int> chosen(const std::vector<Item>& items, const std::vector<std::s
                         const char* option, const char* kind, const std::string& file) {
   std::vector<int> indices;
   for (std::size_t i = 0; names.empty() && i < items.size(); ++i) indices.push_back(static_cast<int>(i));
-  for (const std::string& name : names) {
-    const auto found =
-        std::find_if(items.begin(), items.end(), [&](const Item& item) { return item.name == name; });
-    if (found == items.end()) {
-      std::string known;
-      for (const Item& item : items) known += (known.empty() ? "'" : ", '") + item.name + "'";
-      throw Error(ErrorCode::usage, fmt::format("{}: no {} '{}' in {}; it has {}", option, kind, name, file,
-                                                known.empty() ? "none" : known));
-    }
-    indices.push_back(static_cast<int>(found - items.begin()));
-  }
+  for (const std::string& name : names) indices.push_back(namedIndex(items, name, option, kind, file));
   return indices;
 }
 
@@ -132,7 +123,7 @@ terrain and a scenario without receivers and targets.)");
   command->add_option("--csv", options->csv, "Write all rows into a CSV file");
   command->add_option("--plot", options->plot, "Draw SINR and probabilities over time into a .png or .svg")
       ->check([](const std::string& file) {
-        return isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+        return render::isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
       });
   command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
   command->callback(

@@ -180,14 +180,6 @@ void printDetection(const NamedLinks& links, const Detection& detection) {
   print("\n");
 }
 
-/// A cell of a CSV file: in quotes if it has a comma or a quote.
-std::string csvText(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
-}
-
 std::string csvNumber(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
 }

@@ -124,6 +124,9 @@ int emscapeMain(int argc, char** argv) {
   addProfile(app, global, action);
   addLink(app, global, action);
   addCoverage(app, global, action);
+  addVertical(app, global, action);
+  addExposure(app, global, action);
+  addCompare(app, global, action);
   addStudy(app, global, action);
   addCheck(app, global, action);
   addBench(app, global, action);

@@ -10,6 +10,7 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/profile_plot.h"
 #include "apps/emscape/profile_report.h"
+#include "apps/emscape/study_options.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/field_solver.h"
@@ -17,6 +18,7 @@
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
 #include "propagation/registry/model_info.h"
+#include "render/annotate/plot.h"
 
 namespace emscape::app {
 namespace {
@@ -61,16 +63,6 @@ scenario::SitePosition parsePoint(const std::string& text, bool above_ground) {
   return point;
 }
 
-int emitterNamed(const Scenario& scenario, const std::string& name) {
-  std::string known;
-  for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
-    if (scenario.emitters[e].name == name) return static_cast<int>(e);
-    known += (known.empty() ? "'" : ", '") + scenario.emitters[e].name + "'";
-  }
-  throw Error(ErrorCode::usage,
-              fmt::format("--emitter: no emitter '{}' in {}; it has {}", name, scenario.file, known));
-}
-
 /// The scenario with a platform at the point, the last one: its ground is read and its height checked as for
 /// any platform.
 std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenario::SitePosition& point) {
@@ -86,7 +78,7 @@ std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenar
 ProfileReport makeReport(const ProfileOptions& options) {
   const scenario::SitePosition to = parsePoint(options.to, options.above_ground);
   const auto scenario = withPoint(*scenario::loadScenario(options.scenario, options.edits), to);
-  const int emitter = emitterNamed(*scenario, options.emitter);
+  const int emitter = namedIndex(scenario->emitters, options.emitter, "--emitter", "emitter", scenario->file);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain.get(), options.time_s);
   const emfield::PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};
@@ -155,7 +147,7 @@ or a path over missing terrain.)");
       ->check(CLI::IsMember(names));
   command->add_option("--plot", options->plot, "Draw the path into a file, .png or .svg")
       ->check([](const std::string& file) {
-        return isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+        return render::isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
       });
   command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
   command->callback(

@@ -5,14 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 
 #include "base/quantity_text.h"
-#include "base/whole_file.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_report.h"
 #include "emscape/render/annotate/legend.h"
-#include "render/annotate/canvas.h"
+#include "render/annotate/plot.h"
 
 namespace emscape::app {
 namespace {
@@ -27,23 +25,13 @@ using render::Point2;
 using render::Rect;
 using render::Weight;
 
-constexpr Ink kPaper{{1.0F, 1.0F, 1.0F}};
 constexpr Ink kSky{{0.925F, 0.955F, 0.985F}};
-constexpr Ink kGround{{0.62F, 0.56F, 0.45F}};
-constexpr Ink kSurface{{0.36F, 0.31F, 0.22F}};
-constexpr Ink kText{{0.13F, 0.15F, 0.18F}};
-constexpr Ink kFaintText{{0.40F, 0.43F, 0.47F}};
-constexpr Ink kGrid{{0.45F, 0.50F, 0.58F}, 0.28};
 constexpr Ink kSea{{0.16F, 0.42F, 0.72F}};
 constexpr Ink kZone{{0.98F, 0.72F, 0.20F}, 0.38};
 constexpr Ink kZoneRim{{0.82F, 0.54F, 0.06F}, 0.9};
 constexpr Ink kClearRay{{0.06F, 0.46F, 0.25F}};
 constexpr Ink kBlockedRay{{0.76F, 0.12F, 0.13F}};
 constexpr Ink kMast{{0.10F, 0.16F, 0.30F}};
-
-bool isSvg(const std::string& file) {
-  return std::filesystem::path(file).extension() == ".svg";
-}
 
 class ProfilePlot {
  public:
@@ -58,7 +46,8 @@ class ProfilePlot {
   }
 
   void draw() {
-    canvas_.rectangle({0, 0, double(canvas_.size().width), double(canvas_.size().height)}, kPaper);
+    canvas_.rectangle({0, 0, double(canvas_.size().width), double(canvas_.size().height)},
+                      render::kPlotPaper);
     canvas_.rectangle(frame_, kSky);
     drawZone();
     drawGround();
@@ -67,7 +56,7 @@ class ProfilePlot {
     drawMast(profile_.begin, 0, Align::left, budget_.emitter);
     drawMast(profile_.end, profile_.count() - 1, Align::right, "point");
     for (const PathObstacle& obstacle : budget_.obstacles) drawObstacle(obstacle);
-    canvas_.outline(corners(), kFaintText, unit_, true);
+    canvas_.outline(corners(), render::kPlotFaintText, unit_, true);
     drawLegend();
     drawTitle();
   }
@@ -111,8 +100,8 @@ class ProfilePlot {
     std::vector<Point2> body = surface;
     body.push_back(corners()[2]);
     body.push_back(corners()[3]);
-    canvas_.polygon(body, kGround);
-    canvas_.outline(surface, kSurface, 1.6 * unit_, false);
+    canvas_.polygon(body, render::kPlotGround);
+    canvas_.outline(surface, render::kPlotSurface, 1.6 * unit_, false);
   }
 
   /// Lines of equal height, which curve with the earth, and of equal range.
@@ -120,24 +109,24 @@ class ProfilePlot {
     const std::vector<double> heights = render::roundTicks(bottom_m_, top_m_, 8);
     const double step_m = heights.size() > 1 ? heights[1] - heights[0] : 1;
     for (const double height_m : heights) {
-      drawLevel(height_m, height_m == 0 && profile_.has_terrain ? kSea : kGrid, unit_);
+      drawLevel(height_m, height_m == 0 && profile_.has_terrain ? kSea : render::kPlotGrid, unit_);
       const Point2 place = at(0.0, height_m);
-      canvas_.text(render::tickText(height_m, step_m), {frame_.x - 8 * unit_, place.y}, 14 * unit_, kText,
-                   Align::right);
+      canvas_.text(render::tickText(height_m, step_m), {frame_.x - 8 * unit_, place.y}, 14 * unit_,
+                   render::kPlotText, Align::right);
     }
     const std::vector<double> ranges = render::roundTicks(0, profile_.range_m / 1000, 10);
     const double step_km = ranges.size() > 1 ? ranges[1] - ranges[0] : 1;
     const double bottom = frame_.y + frame_.height;
     for (const double range_km : ranges) {
       const double x = frame_.x + frame_.width * range_km * 1000 / profile_.range_m;
-      canvas_.line({x, frame_.y}, {x, bottom}, kGrid, unit_);
-      canvas_.text(render::tickText(range_km, step_km), {x, bottom + 16 * unit_}, 14 * unit_, kText,
-                   Align::center);
+      canvas_.line({x, frame_.y}, {x, bottom}, render::kPlotGrid, unit_);
+      canvas_.text(render::tickText(range_km, step_km), {x, bottom + 16 * unit_}, 14 * unit_,
+                   render::kPlotText, Align::center);
     }
     canvas_.text("Distance over the ground (km)", {frame_.x + frame_.width / 2, bottom + 42 * unit_},
-                 15 * unit_, kText, Align::center);
+                 15 * unit_, render::kPlotText, Align::center);
     canvas_.text("Height above mean sea level (m)", {22 * unit_, frame_.y + frame_.height / 2}, 15 * unit_,
-                 kText, Align::center, Weight::normal, -kPi / 2);
+                 render::kPlotText, Align::center, Weight::normal, -kPi / 2);
   }
 
   /// A line of equal height, clipped to the frame.
@@ -217,8 +206,9 @@ class ProfilePlot {
     const double anchor = align == Align::left    ? box.x
                           : align == Align::right ? box.x + width
                                                   : box.x + width / 2;
-    canvas_.textWithRim(words[0], {anchor, box.y + row / 2}, 15 * unit_, ink, kPaper, align, Weight::bold);
-    canvas_.textWithRim(words[1], {anchor, box.y + 1.5 * row}, 14 * unit_, ink, kPaper, align);
+    canvas_.textWithRim(words[0], {anchor, box.y + row / 2}, 15 * unit_, ink, render::kPlotPaper, align,
+                        Weight::bold);
+    canvas_.textWithRim(words[1], {anchor, box.y + 1.5 * row}, 14 * unit_, ink, render::kPlotPaper, align);
   }
 
   /// The uppermost pixel of ground and zone between two columns of the picture.
@@ -238,12 +228,12 @@ class ProfilePlot {
     double x = frame_.x;
     const auto entry = [&](const std::string& words, auto sample) {
       sample(Rect{x, y - row / 4, 26 * unit_, row / 2});
-      canvas_.text(words, {x + 34 * unit_, y}, 14 * unit_, kText);
+      canvas_.text(words, {x + 34 * unit_, y}, 14 * unit_, render::kPlotText);
       x += 34 * unit_ + canvas_.textBox(words, 14 * unit_).width + 28 * unit_;
     };
     const auto middle = [](const Rect& box) { return box.y + box.height / 2; };
     entry(profile_.has_terrain ? "ground" : "smooth earth",
-          [&](const Rect& box) { canvas_.rectangle(box, kGround); });
+          [&](const Rect& box) { canvas_.rectangle(box, render::kPlotGround); });
     entry(isBlocked() ? "ray, blocked" : "ray", [&](const Rect& box) {
       canvas_.line({box.x, middle(box)}, {box.x + box.width, middle(box)},
                    isBlocked() ? kBlockedRay : kClearRay, 2.4 * unit_, isBlocked());
@@ -257,7 +247,7 @@ class ProfilePlot {
     const double vertical = frame_.height / (top_m_ - bottom_m_), level = frame_.width / profile_.range_m;
     canvas_.text(fmt::format("earth of {:.3g} times its radius; heights {:.3g}-fold", budget_.k_factor,
                              vertical / level),
-                 {frame_.x + frame_.width, y}, 14 * unit_, kFaintText, Align::right);
+                 {frame_.x + frame_.width, y}, 14 * unit_, render::kPlotFaintText, Align::right);
   }
 
   void drawTitle() {
@@ -266,10 +256,10 @@ class ProfilePlot {
         fmt::format("{} to {:.5f}, {:.5f} deg   ({}, {}, t = {:g} s)", budget_.emitter,
                     end.position.latitude_deg, end.position.longitude_deg,
                     quantityText(budget_.frequency_hz, "Hz", 4), toString(budget_.model), budget_.time_s),
-        {frame_.x, 26 * unit_}, 20 * unit_, kText, Align::left, Weight::bold);
+        {frame_.x, 26 * unit_}, 20 * unit_, render::kPlotText, Align::left, Weight::bold);
     double y = 54 * unit_;
     for (const std::string& line : wrapped(budget_.verdict, frame_.width, 16 * unit_)) {
-      canvas_.text(line, {frame_.x, y}, 16 * unit_, kText);
+      canvas_.text(line, {frame_.x, y}, 16 * unit_, render::kPlotText);
       y += 21 * unit_;
     }
   }
@@ -301,23 +291,8 @@ class ProfilePlot {
 
 }  // namespace
 
-bool isPlotFile(const std::string& file) {
-  return isSvg(file) || std::filesystem::path(file).extension() == ".png";
-}
-
-void drawPlot(render::ImageSize size, const std::string& file, const std::function<void(Canvas&)>& draw) {
-  Canvas canvas = isSvg(file) ? Canvas::forSvg(size) : Canvas(size);
-  draw(canvas);
-  if (isSvg(file)) {
-    const std::string text = canvas.svg();
-    writeWhole(file, [&](std::ostream& out) { out << text; });
-  } else {
-    render::writePng(file, canvas.pixels());
-  }
-}
-
 void plotProfile(const PathBudget& budget, render::ImageSize size, const std::string& file) {
-  drawPlot(size, file, [&](Canvas& canvas) { ProfilePlot(budget, canvas).draw(); });
+  render::drawPlot(size, file, [&](Canvas& canvas) { ProfilePlot(budget, canvas).draw(); });
 }
 
 }  // namespace emscape::app

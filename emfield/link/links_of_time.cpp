@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "emfield/link/path_verdict.h"
+#include "emfield/link/target_view.h"
 #include "emfield/radar/receiver.h"
 #include "emfield/station.h"
 #include "emfield/two_rays.h"
@@ -99,19 +100,6 @@ void keepWarnings(std::vector<std::string>& all, const std::string& from, const 
     const std::string line = fmt::format("'{}' to '{}': {}", from, to, warning);
     if (std::find(all.begin(), all.end(), line) == all.end() && all.size() < 50) all.push_back(line);
   }
-}
-
-/// Speed (m/s) at which a target's platform moves away from a radar, from the next tenth of a second, at the
-/// end of the scenario from the last one.
-double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platform,
-                       const scenario::Terrain* terrain) {
-  constexpr double kStep_s = 0.1;
-  const double step_s = snapshot.time_s + kStep_s > snapshot.scenario->clock.duration_s ? -kStep_s : kStep_s;
-  const scenario::Snapshot other = scenario::instantAt(snapshot.scenario, terrain, snapshot.time_s + step_s);
-  const auto range_m = [&](const scenario::Snapshot& at) {
-    return length(toEcef(at.platforms[platform].position) - toEcef(at.emitters[radar].position));
-  };
-  return (range_m(other) - range_m(snapshot)) / step_s;
 }
 
 /// Adds the ends and the time to an error of a path.
@@ -233,7 +221,7 @@ TargetWatcher::TargetWatcher(const Scenario& scenario, int radar, int target, co
 
 long long TargetWatcher::looksUntil(double time_s) const {
   const double first_s = detection.rows.empty() ? time_s : detection.rows.front().time_s;
-  return static_cast<long long>(std::floor((time_s - first_s) / *period_s_ + 1e-9)) + 1;
+  return emfield::looksUntil(first_s, time_s, *period_s_);
 }
 
 void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain) {
@@ -245,11 +233,7 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
   row.time_s = snapshot.time_s;
   row.active = radar_state.active;
 
-  const Station station = makeStation(carrier.position, carrier.height_msl_m, own_->atmosphere);
-  const Vec3d aspect =
-      inAxesOf(scenario::platformAxes(carrier.attitude), lineBetween(station, radar_state.position));
-  row.rcs_m2 = target.rcsTowards_m2(radToDeg(std::atan2(aspect.y, aspect.x)),
-                                    radToDeg(std::atan2(aspect.z, std::hypot(aspect.x, aspect.y))));
+  row.rcs_m2 = rcsTowards_m2(snapshot, target, detection.radar);
   radar.receiver.target_rcs_m2 = row.rcs_m2;
 
   if (radar.clutter) {

@@ -1,0 +1,194 @@
+/// emscape compare: what one scenario wins and loses against another.
+#include "emscape/study/compare.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/compare_report.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/interrupt.h"
+#include "apps/emscape/study_options.h"
+#include "apps/emscape/target.h"
+#include "emscape/base/log.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/study/area.h"
+#include "emscape/study/map_folder.h"
+#include "emscape/volume/difference.h"
+#include "emscape/volume/file.h"
+
+namespace emscape::app {
+namespace {
+
+struct CompareCommand {
+  std::string a, b;
+  std::vector<scenario::Edit> edits, edits_b;
+  std::string folder;
+  std::string heights = "agl:150";
+  std::vector<std::string> products{"covered", "value"};
+  std::string quantity = "detection_probability";
+  double threshold = NAN;
+  std::string times = "0";
+  double cell_m = NAN;
+  std::string area;
+  std::string crs = "utm";
+  std::vector<std::string> formats{"cog", "png"};
+  std::string volume;
+  int areas = 3;
+};
+
+/// Writes B less A in the voxels of A's region.
+void writeVolume(const CompareCommand& command, const study::ComparedScenario& a,
+                 const study::ComparedScenario& b, double time_s, emfield::FieldOptions options) {
+  options.quantities = {command.quantity};
+  options.allow_missing_terrain = true;
+  const auto solved = [&](const study::ComparedScenario& of) {
+    auto own = std::make_shared<scenario::Scenario>(*of.scenario);
+    own->output.radar_look = scenario::RadarLook::target;
+    if (own->output.combine != scenario::CombineMode::max) own->output.combine = scenario::CombineMode::sum;
+    own->region = a.scenario->region;
+    emfield::FieldSolver solver(own, of.terrain, options);
+    solver.update(scenario::snapshotAt(own, of.terrain.get(), time_s));
+    return solver.volumes().front().host();
+  };
+  const auto of_a = solved(a), of_b = solved(b);
+  const volume::DenseVolume difference = volume::difference(*of_b, *of_a);
+  volume::writeVolumes(command.volume, {&difference});
+  logInfo("wrote " + command.volume);
+}
+
+study::CompareRequest requestOf(const CompareCommand& command, const scenario::Scenario& scenario) {
+  study::CompareRequest request;
+  request.areas = command.areas;
+  study::CoverageRequest& coverage = request.coverage;
+  coverage.heights = study::parseHeights(command.heights);
+  for (const std::string& name : command.products) coverage.products.push_back(study::productNamed(name));
+  coverage.quantity = scenario::quantityFromName(command.quantity);
+  const bool needs_threshold =
+      std::any_of(coverage.products.begin(), coverage.products.end(),
+                  [](study::Product product) { return product != study::Product::value; });
+  coverage.threshold = needs_threshold || !std::isnan(command.threshold)
+                           ? thresholdOf(command.threshold, coverage.quantity)
+                           : study::defaultThreshold(coverage.quantity).value_or(0);
+  coverage.times_s = scenario::parseTimes(command.times, scenario.clock);
+  return request;
+}
+
+int compare(const CompareCommand& command, const GlobalOptions& global) {
+  if (command.b.empty() && command.edits_b.empty()) {
+    throw Error(ErrorCode::usage, "compare: give a second scenario, or --set-b PATH=VALUE for the first one");
+  }
+  if (!command.volume.empty()) volume::formatOf(command.volume);
+  std::vector<scenario::Edit> edits_b = command.edits;
+  edits_b.insert(edits_b.end(), command.edits_b.begin(), command.edits_b.end());
+  study::ComparedScenario a{scenario::loadScenario(command.a, command.edits), nullptr};
+  study::ComparedScenario b{scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b),
+                            nullptr};
+  const study::CompareRequest request = requestOf(command, *a.scenario);
+  const study::CoverageRequest& of = request.coverage;
+
+  const study::MapArea area =
+      command.area.empty() ? study::areaOf(a.scenario->region) : study::parseArea(command.area);
+  const scenario::Region& region = a.scenario->region;
+  const double usual_cell_m = std::max(1.0, std::round(region.size_m.x / region.dims.x));
+  const auto grid = std::make_shared<const study::MapGrid>(
+      study::makeMapGrid(area, std::isnan(command.cell_m) ? usual_cell_m : command.cell_m, command.crs));
+  a.terrain = study::loadTerrain(*a.scenario, area);
+  b.terrain = study::loadTerrain(*b.scenario, area);
+
+  study::MapFolder folder(command.folder,
+                          {"compare",
+                           fmt::format("Comparison of {} (A) and {} (B)", a.scenario->name,
+                                       command.b.empty() ? "its change" : b.scenario->name),
+                           {a.scenario, b.scenario},
+                           a.terrain,
+                           grid,
+                           of.quantity,
+                           of.threshold,
+                           of.times_s,
+                           of.heights},
+                          command.formats);
+  if (!global.json) {
+    print("B ({}) against A ({}): {} x {} pixels of {} m in {}, {} >= {:g}\n", b.scenario->name,
+          a.scenario->name, grid->width, grid->height, grid->cell_m, grid->crs, command.quantity,
+          of.threshold);
+  }
+  const ProgressSink show = progressSink(global);
+  const study::Comparison comparison = openOnTarget(global, "float", [&](const ComputeTarget& target) {
+    study::Comparison result = study::computeComparison(
+        a, b, *grid, request, target.fieldOptions(),
+        [&](const study::Map& map) {
+          stopIfInterrupted();
+          folder.add(map);
+        },
+        [&](const std::string& step, double fraction) {
+          stopIfInterrupted();
+          show(step, fraction);
+        });
+    if (!command.volume.empty()) writeVolume(command, a, b, of.times_s.front(), target.fieldOptions());
+    return result;
+  });
+  logWarnings(comparison.warnings);
+  folder.finish(joinedWarnings(comparison.warnings), comparisonJson(comparison, a, b).dump(),
+                [&](study::HtmlReport& report) { addSections(report, comparison, command.quantity); });
+  if (global.json) {
+    printResult(folder.reportJson());
+    finishResult();
+  } else {
+    printComparison(comparison, command.quantity);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void addCompare(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("compare", "What a scenario gains and loses against another: maps, areas, and why");
+  command->fallthrough();
+  command->footer(R"(
+Maps are of B less A: for products that mark an area (covered, jam_loss) what is gained, lost and kept, for all others the
+difference. The table has the areas; the largest connected ones that changed are explained by the path from the emitter that
+decides, in A and in B, as `emscape profile` does. Products are those of `emscape coverage`, but best.
+
+Examples:
+  emscape compare scenarios/jacksboro.yaml -o out --set-b emitters.jammer.power_w=100 --times 80
+  emscape compare scenarios/jacksboro.yaml -o out --set-b "platforms.ridge site.position.height_agl_m=40" --heights agl:30,150
+  emscape compare before.yaml after.yaml -o out --products covered,min_height --volume out/difference.vdb
+
+DIR has maps, report.html, report.json and study.json, as `emscape coverage` writes them.)");
+  auto options = std::make_shared<CompareCommand>();
+  command->add_option("A", options->a, "Scenario (YAML or JSON)")->required();
+  command->add_option("B", options->b, "Scenario that A is compared with; default: A with --set-b");
+  addSetOption(*command, options->edits);
+  addSetOption(*command, options->edits_b, "--set-b", "changes a value of B alone");
+  command->add_option("-o,--output", options->folder, "Folder to write")->required();
+  command->add_option("--heights", options->heights,
+                      "Heights in metres above ground (agl:) and above mean sea level (msl:)");
+  addListOption(*command, "--products", options->products, "Products, with commas between them");
+  command->add_option("--quantity", options->quantity,
+                      "A quantity of the field; see docs/scenario-format.md");
+  addThresholdOption(*command, options->threshold);
+  command->add_option("--times", options->times, "BEGIN:END:STEP, BEGIN:END or T, in seconds");
+  command->add_option("--cell", options->cell_m, "Side of a pixel (m); default: A's voxels")->default_str("");
+  command->add_option("--area", options->area,
+                      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: A's region");
+  command->add_option("--crs", options->crs, "Projection: utm, local or EPSG:NUMBER");
+  std::vector<std::string> formats;
+  for (const study::MapFormat& format : study::mapFormats()) formats.emplace_back(format.name);
+  addListOption(*command, "--format", options->formats, "Formats of maps, with commas between them")
+      ->check(CLI::IsMember(formats));
+  command->add_option("--volume", options->volume,
+                      "Volume of B less A in A's region at the first time: a .vdb, .vti or .nvdb file");
+  command->add_option("--explain", options->areas, "Changed areas that are explained, of each sign")
+      ->check(CLI::Range(0, 100));
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return compare(*options, global); }; });
+}
+
+}  // namespace emscape::app

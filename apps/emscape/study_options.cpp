@@ -1,0 +1,47 @@
+#include "apps/emscape/study_options.h"
+
+#include <filesystem>
+
+#include "emscape/study/coverage.h"
+#include "render/annotate/plot.h"
+
+namespace emscape::app {
+
+void addStudyOutputs(CLI::App& command, std::vector<std::string>& files) {
+  command
+      .add_option("-o,--output", files,
+                  "File to write, .png, .svg, .csv or .json; may be given several times")
+      ->allow_extra_args(false)
+      ->required()
+      ->check([](const std::string& file) {
+        const std::string extension = std::filesystem::path(file).extension().string();
+        const bool is_known = render::isPlotFile(file) || extension == ".csv" || extension == ".json";
+        return is_known ? "" : "--output " + file + ": files are written as .png, .svg, .csv or .json";
+      });
+}
+
+void addThresholdOption(CLI::App& command, double& threshold) {
+  command
+      .add_option(
+          "--threshold", threshold,
+          "Level of the quantity, in its unit; default: 0.5 of detection_probability, 0 dB of a margin")
+      ->default_str("");
+}
+
+double thresholdOf(double threshold, scenario::Quantity quantity) {
+  const scenario::QuantityInfo& info = scenario::info(quantity);
+  if (std::isnan(threshold)) {
+    if (const std::optional<double> usual = study::defaultThreshold(quantity)) return *usual;
+    throw Error(ErrorCode::usage, fmt::format("--threshold: quantity '{}' has no usual one; give it in {}",
+                                              info.name, info.unit));
+  }
+  if (!std::isfinite(threshold) ||
+      (quantity == scenario::Quantity::detection_probability && !(threshold > 0 && threshold < 1))) {
+    throw Error(ErrorCode::usage,
+                fmt::format("--threshold: {} of {}; a finite number, of a probability between 0 and 1",
+                            threshold, info.name));
+  }
+  return threshold;
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,153 @@
+/// emscape vertical: a quantity of an emitter over range and height.
+#include "emscape/study/vertical.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/interrupt.h"
+#include "apps/emscape/study_options.h"
+#include "apps/emscape/target.h"
+#include "apps/emscape/vertical_report.h"
+#include "base/whole_file.h"
+#include "emscape/base/log.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/study/area.h"
+#include "render/annotate/plot.h"
+
+namespace emscape::app {
+namespace {
+
+struct VerticalCommand {
+  std::string scenario;
+  std::vector<scenario::Edit> edits;
+  std::string emitter;
+  std::vector<double> azimuths_deg;
+  std::vector<std::string> outputs;
+  std::string axis = "msl";
+  bool blake = false;
+  double range_m = NAN, max_height_m = NAN;
+  std::string quantity;
+  double threshold = NAN;
+  double time_s = 0;
+  std::vector<int> grid{600, 300};
+  std::string size = "1400x800";
+};
+
+study::VerticalRequest requestOf(const VerticalCommand& command, const scenario::Scenario& scenario) {
+  study::VerticalRequest request;
+  request.emitter = namedIndex(scenario.emitters, command.emitter, "--emitter", "emitter", scenario.file);
+  const bool is_radar = scenario.emitters[request.emitter].kind == scenario::EmitterKind::radar;
+  request.quantity = !command.quantity.empty() ? scenario::quantityFromName(command.quantity)
+                     : is_radar                ? scenario::Quantity::detection_probability
+                                               : scenario::Quantity::power_density_dbwm2;
+  request.threshold = thresholdOf(command.threshold, request.quantity);
+  request.azimuths_deg = command.azimuths_deg;
+  request.time_s = command.time_s;
+  request.smooth_earth = command.blake;
+  request.ranges = command.grid.front();
+  request.heights = command.grid.back();
+  const bool above_ground = command.axis == "agl";
+  if (above_ground) request.axis = emfield::HeightReference::ground;
+  request.range_m = std::isnan(command.range_m) ? study::defaultRange_m(scenario, request) : command.range_m;
+  const scenario::Region& region = scenario.region;
+  const double bottom_m = above_ground || command.blake ? 0 : region.origin.height_msl_m;
+  request.max_height_m = std::isnan(command.max_height_m) ? bottom_m + region.size_m.z : command.max_height_m;
+  return request;
+}
+
+int vertical(const VerticalCommand& command, const GlobalOptions& global) {
+  const auto scenario = scenario::loadScenario(command.scenario, command.edits);
+  const study::VerticalRequest request = requestOf(command, *scenario);
+  const scenario::Emitter& emitter = scenario->emitters[request.emitter];
+  const scenario::TrackPoint site = scenario::pointAt(scenario->platforms[emitter.platform], command.time_s);
+  const study::MapArea area = study::circularArea(
+      {site.position.latitude_deg, site.position.longitude_deg, 1.001 * request.range_m + 200});
+  const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
+  stopIfInterrupted();
+  const study::VerticalDiagram diagram = openOnTarget(global, "float", [&](const ComputeTarget& target) {
+    return study::computeVertical(scenario, terrain, request, target.fieldOptions());
+  });
+  logWarnings(diagram.warnings);
+  stopIfInterrupted();
+  for (const std::string& file : command.outputs) {
+    if (render::isPlotFile(file)) {
+      study::plotVertical(diagram, render::parseImageSize(command.size), file);
+    } else if (std::filesystem::path(file).extension() == ".csv") {
+      writeVerticalCsv(diagram, file);
+    } else {
+      writeWhole(file, [&](std::ostream& out) { out << verticalJson(diagram, true).dump() << "\n"; });
+    }
+    logInfo("wrote " + file);
+  }
+  if (global.json) {
+    printJson(verticalJson(diagram, false));
+  } else {
+    printVertical(diagram);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void addVertical(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "vertical", "Vertical coverage of an emitter: a quantity over range and height at azimuths");
+  command->fallthrough();
+  command->footer(R"(
+Each value is that of `emscape profile` at its point, with the terrain below and the jammers that are active. Radars look at
+the target (radar_look: target). The line is where the threshold is reached. With --blake the terrain gives way to a smooth
+earth at the height of the ground below the emitter: a range-height-angle chart, over the slant range, with rays of constant
+elevation and the line that free space would have.
+
+Examples:
+  emscape vertical scenarios/jacksboro.yaml --emitter "search radar" --azimuth 30,120 -o vertical.png
+  emscape vertical scenarios/jacksboro.yaml --emitter "search radar" --azimuth 30 --height-axis agl --max-height 1000 -o low.svg
+  emscape vertical scenarios/jacksboro.yaml --emitter jammer --time 80 --azimuth 200 --threshold -50 -o jammer.png -o jammer.csv
+  emscape vertical scenarios/jacksboro.yaml --emitter "search radar" --azimuth 0 --blake --range 100000 --max-height 10000 -o blake.png
+
+Exit status: 0, whether the threshold is reached or not; 2 for an unknown emitter, one that is off, or a quantity that it does
+not have by itself.)");
+  auto options = std::make_shared<VerticalCommand>();
+  command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
+  addSetOption(*command, options->edits);
+  command->add_option("--emitter", options->emitter, "Name of the emitter")->required();
+  command
+      ->add_option("--azimuth", options->azimuths_deg,
+                   "Degrees clockwise from true north, with commas between them: a panel each")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::Range(-360.0, 360.0))
+      ->required();
+  addStudyOutputs(*command, options->outputs);
+  command->add_option("--height-axis", options->axis, "Heights above mean sea level (msl) or ground (agl)")
+      ->check(CLI::IsMember({"msl", "agl"}));
+  command->add_flag("--blake", options->blake, "Chart over a smooth earth, with elevation angles");
+  command
+      ->add_option("--range", options->range_m,
+                   "To the right edge (m); default: the instrumented range, or to the region's edge")
+      ->default_str("");
+  command
+      ->add_option("--max-height", options->max_height_m,
+                   "Of the upper edge (m, on the height axis); default: the region's")
+      ->default_str("");
+  command->add_option(
+      "--quantity", options->quantity,
+      "A quantity of one emitter; default: detection_probability of radars, power_density_dbwm2 of others");
+  addThresholdOption(*command, options->threshold);
+  command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
+  command->add_option("--grid", options->grid, "Points of the grid: RANGES,HEIGHTS")
+      ->delimiter(',')
+      ->expected(2);
+  command->add_option("--size", options->size, "Size of pictures in pixels, WxH");
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return vertical(*options, global); }; });
+}
+
+}  // namespace emscape::app

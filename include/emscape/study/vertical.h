@@ -1,0 +1,91 @@
+/// Vertical coverage: a quantity of one emitter over range and height at azimuths, over terrain or, as in
+/// Blake's charts, over a smooth earth.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/surface.h"
+#include "emscape/render/image.h"
+#include "emscape/scenario/quantities.h"
+#include "emscape/scenario/scenario.h"
+
+namespace emscape::study {
+
+struct VerticalRequest {
+  int emitter = 0;                   ///< index into Scenario::emitters
+  std::vector<double> azimuths_deg;  ///< clockwise from true north
+  double time_s = 0;
+  scenario::Quantity quantity = scenario::Quantity::detection_probability;
+  double threshold = 0.5;  ///< in the quantity's unit
+  /// mean_sea_level: heights from the lowest ground up. ground: from the ground below each place.
+  emfield::HeightReference axis = emfield::HeightReference::mean_sea_level;
+  double range_m = 0;       ///< over the ground, to the right edge, 100..2e6
+  double max_height_m = 0;  ///< of the upper edge, on the axis, 10..1e5
+  /// Blake's chart: over a smooth earth in place of the terrain, at the height of the ground below the
+  /// emitter (or ground.surface_msl_m), from which all heights are then counted; axis must be mean_sea_level.
+  bool smooth_earth = false;
+  int ranges = 600, heights = 300;  ///< of the grid, 2..10000
+};
+
+/// One azimuth.
+struct VerticalCut {
+  struct Point {
+    double range_m = 0;   ///< over the ground
+    double height_m = 0;  ///< on the axis
+  };
+  using Line = std::vector<Point>;
+
+  double azimuth_deg = 0;
+  std::vector<float> values;        ///< ranges x heights, range fastest; NaN: below ground or unknown
+  std::vector<float> ground_msl_m;  ///< one per range; NaN: unknown; empty: a smooth earth at 0
+  std::vector<Line> contours;       ///< where the quantity is the threshold
+  std::vector<Line> free_space;     ///< smooth_earth: the same without earth
+};
+
+struct VerticalDiagram {
+  VerticalRequest request;
+  std::string scenario, emitter, model, unit;
+  double latitude_deg = 0, longitude_deg = 0;
+  double station_msl_m = 0;  ///< of the emitter; over a smooth earth, above it
+  double station_agl_m = 0;
+  double surface_msl_m = 0;  ///< smooth_earth: height of its surface
+  double floor = 0;  ///< value, in the quantity's unit, of points without a field
+  double k_factor = 0, effective_earth_radius_m = 0;
+  std::vector<double> ranges_m;   ///< rising, evenly spaced, the last is the request's
+  std::vector<double> heights_m;  ///< on the axis, rising, evenly spaced
+  std::vector<VerticalCut> cuts;  ///< one per azimuth
+  std::vector<std::string> warnings;
+
+  /// Length (m) of the ray from the station to a point, and its elevation (deg) there, both on the effective
+  /// earth, on which rays are straight.
+  double slantRange_m(double range_m, double height_msl_m) const;
+  double elevation_deg(double range_m, double height_msl_m) const;
+  /// Range over the ground (m) of a point by its slant range; NaN: there is none.
+  double groundRange_m(double slant_range_m, double height_msl_m) const;
+  /// Height (m) of a ray after a slant range.
+  double rayHeight_msl_m(double slant_range_m, double elevation_deg) const;
+};
+
+/// Range (m) of a diagram unless another is given: the instrumented range of the emitter's waveform, else
+/// that at which the last of the azimuths leaves the region, else (outside it) that of the region's farthest
+/// corner.
+double defaultRange_m(const scenario::Scenario& scenario, const VerticalRequest& request);
+
+/// Computes a diagram by the field's own functions: a value is that of `emscape profile` at its point, with
+/// the jammers that are active and the radar's beam on the target (RadarLook::target).
+/// @param terrain  over the whole of it (circularArea); null: a smooth earth
+/// @param options  backend and memory; the rest is set here
+/// @throws Error (usage) for an emitter that is off, a quantity that it does not have by itself, and values
+/// beyond their ranges; as FieldSolver does
+VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>& scenario,
+                                const scenario::TerrainPtr& terrain, const VerticalRequest& request,
+                                emfield::FieldOptions options);
+
+/// Draws a diagram into a .png or .svg, one panel per azimuth.
+/// @throws Error (other) naming the file
+void plotVertical(const VerticalDiagram& diagram, render::ImageSize size, const std::string& file);
+
+}  // namespace emscape::study

@@ -1,0 +1,113 @@
+#include "render/annotate/plot.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "base/whole_file.h"
+#include "emscape/base/units.h"
+#include "emscape/render/annotate/legend.h"
+
+namespace emscape::render {
+namespace {
+
+constexpr std::array<Ink, 7> kInks{{{{0.00F, 0.45F, 0.70F}},
+                                    {{0.84F, 0.37F, 0.00F}},
+                                    {{0.00F, 0.62F, 0.45F}},
+                                    {{0.80F, 0.47F, 0.65F}},
+                                    {{0.90F, 0.62F, 0.00F}},
+                                    {{0.34F, 0.71F, 0.91F}},
+                                    {{0.25F, 0.25F, 0.25F}}}};
+constexpr double kNamePx = 14, kNameOffset = 32;
+
+bool isSvg(const std::string& file) {
+  return std::filesystem::path(file).extension() == ".svg";
+}
+
+double stepOf(const std::vector<double>& ticks) {
+  return ticks.size() > 1 ? ticks[1] - ticks[0] : 1;
+}
+
+}  // namespace
+
+const Ink& plotInk(std::size_t index) {
+  return kInks[index % kInks.size()];
+}
+
+Point2 PlotPanel::at(double x, double y) const {
+  return {frame_.x + frame_.width * (x - x_.lowest) / (x_.highest - x_.lowest),
+          frame_.y +
+              frame_.height * (y_.highest - std::clamp(y, y_.lowest, y_.highest)) / (y_.highest - y_.lowest)};
+}
+
+void PlotPanel::drawTitle(const std::string& title) {
+  canvas_.text(title, {frame_.x, frame_.y - 16 * unit_}, 16 * unit_, kPlotText, Align::left, Weight::bold);
+}
+
+void PlotPanel::drawGrid() {
+  const std::vector<double> values = roundTicks(y_.lowest, y_.highest, y_.ticks);
+  for (const double value : values) {
+    const Point2 left = at(x_.lowest, value);
+    canvas_.line(left, at(x_.highest, value), kPlotGrid, unit_);
+    canvas_.text(tickText(value, stepOf(values)), {left.x - 8 * unit_, left.y}, 14 * unit_, kPlotText,
+                 Align::right);
+  }
+  const std::vector<double> places = roundTicks(x_.lowest, x_.highest, x_.ticks);
+  for (const double place : places) {
+    const Point2 bottom = at(place, y_.lowest);
+    canvas_.line({bottom.x, frame_.y}, bottom, kPlotGrid, unit_);
+    canvas_.text(tickText(place, stepOf(places)), {bottom.x, bottom.y + 16 * unit_}, 14 * unit_, kPlotText,
+                 Align::center);
+  }
+  if (!x_.title.empty()) {
+    canvas_.text(x_.title, {frame_.x + frame_.width, frame_.y + frame_.height + 36 * unit_}, 14 * unit_,
+                 kPlotText, Align::right);
+  }
+  if (!y_.title.empty()) {
+    canvas_.text(y_.title, {frame_.x - 66 * unit_, frame_.y + frame_.height / 2}, 14 * unit_, kPlotText,
+                 Align::center, Weight::normal, -kPi / 2);
+  }
+}
+
+void PlotPanel::drawLine(const PlotLine& line) {
+  for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
+    const PlotLine::Point &a = line.points[i], &b = line.points[i + 1];
+    if (!std::isfinite(a.y) || !std::isfinite(b.y)) continue;
+    canvas_.line(at(a.x, a.y), at(b.x, b.y), line.ink, (a.is_strong ? 3 : 1.2) * unit_, line.is_dashed);
+  }
+}
+
+void PlotPanel::drawNames(const std::vector<PlotLine>& lines, double top) {
+  double y = frame_.y + top * unit_;
+  for (const PlotLine& line : lines) {
+    if (line.name.empty()) continue;
+    const double x = frame_.x + frame_.width + 14 * unit_;
+    canvas_.line({x, y}, {x + 24 * unit_, y}, line.ink, 2.5 * unit_, line.is_dashed);
+    canvas_.text(line.name, {x + kNameOffset * unit_, y}, kNamePx * unit_, kPlotText);
+    y += 22 * unit_;
+  }
+}
+
+double PlotPanel::namesWidth(const Canvas& canvas, const std::vector<PlotLine>& lines, double unit) {
+  double width = 0;
+  for (const PlotLine& line : lines) width = std::max(width, canvas.textBox(line.name, kNamePx * unit).width);
+  return width;
+}
+
+bool isPlotFile(const std::string& file) {
+  return isSvg(file) || std::filesystem::path(file).extension() == ".png";
+}
+
+void drawPlot(ImageSize size, const std::string& file, const std::function<void(Canvas&)>& draw) {
+  Canvas canvas = isSvg(file) ? Canvas::forSvg(size) : Canvas(size);
+  draw(canvas);
+  if (isSvg(file)) {
+    const std::string text = canvas.svg();
+    writeWhole(file, [&](std::ostream& out) { out << text; });
+  } else {
+    writePng(file, canvas.pixels());
+  }
+}
+
+}  // namespace emscape::render

@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/render/annotate/legend.h"
+#include "emscape/study/exposure.h"
+#include "render/annotate/plot.h"
+
+namespace emscape::study {
+namespace {
+
+using render::Align;
+using render::Canvas;
+using render::PlotAxis;
+using render::PlotLine;
+using render::PlotPanel;
+using render::Rect;
+
+constexpr render::Ink kTogether{{0.10F, 0.11F, 0.13F}};
+constexpr render::Ink kThreshold{{0.76F, 0.12F, 0.13F}};
+
+/// The values of each emitter, of all, and the threshold.
+std::vector<PlotLine> linesOf(const Exposure& exposure) {
+  std::vector<PlotLine> lines;
+  const double threshold = exposure.request.threshold;
+  const auto addLine = [&](const std::string& name, const render::Ink& ink,
+                           const auto& valueOf) -> PlotLine& {
+    PlotLine line{name, {}, ink};
+    for (const ExposureRow& row : exposure.rows) {
+      const double value = valueOf(row);
+      line.points.push_back({row.time_s, value, value >= threshold});
+    }
+    lines.push_back(std::move(line));
+    return lines.back();
+  };
+  if (exposure.names.size() != 1) {
+    addLine("together", kTogether, [](const ExposureRow& row) { return row.value; });
+  }
+  for (std::size_t n = 0; n < exposure.names.size(); ++n) {
+    addLine(exposure.names[n], render::plotInk(n), [n](const ExposureRow& row) { return row.each[n]; });
+  }
+  if (std::isfinite(exposure.together.cumulative_probability)) {
+    addLine("in any look so far", kTogether, [](const ExposureRow& row) {
+      return row.cumulative_probability;
+    }).is_dashed = true;
+  }
+  addLine(fmt::format("{:g} {}", threshold, render::unitText(exposure.unit)), kThreshold,
+          [&](const ExposureRow&) { return threshold; })
+      .is_dashed = true;
+  return lines;
+}
+
+/// Limits of the values: 0..1 of probabilities, else tens, at most 100 below the highest.
+PlotAxis axisOf(const std::vector<PlotLine>& lines, const std::string& unit) {
+  if (unit.empty() && std::all_of(lines.begin(), lines.end(), [](const PlotLine& line) {
+        return std::all_of(line.points.begin(), line.points.end(),
+                           [](const PlotLine::Point& point) { return !(point.y > 1); });
+      })) {
+    return {0, 1, 8, ""};
+  }
+  double lowest = HUGE_VAL, highest = -HUGE_VAL;
+  for (const PlotLine& line : lines) {
+    for (const PlotLine::Point& point : line.points) {
+      if (!std::isfinite(point.y)) continue;
+      lowest = std::min(lowest, point.y);
+      highest = std::max(highest, point.y);
+    }
+  }
+  highest = std::max(10 * std::ceil(highest / 10), 10 * std::floor(lowest / 10) + 10);
+  return {std::max(10 * std::floor(lowest / 10), highest - 100), highest, 8, ""};
+}
+
+}  // namespace
+
+void plotExposure(const Exposure& exposure, render::ImageSize size, const std::string& file) {
+  render::drawPlot(size, file, [&](Canvas& canvas) {
+    const double width = canvas.size().width, height = canvas.size().height;
+    const double unit = std::min(height / 800, width / 1400);
+    canvas.rectangle({0, 0, width, height}, render::kPlotPaper);
+    const std::vector<PlotLine> lines = linesOf(exposure);
+    const double right = PlotPanel::namesWidth(canvas, lines, unit);
+    const double begin_s = exposure.rows.front().time_s,
+                 end_s = std::max(exposure.rows.back().time_s, begin_s + 1e-3);
+    const PlotAxis times{begin_s, end_s, 10, "time (s)"};
+    const std::string quantity =
+        render::quantityTitle(scenario::info(exposure.request.quantity).name, exposure.unit);
+    const std::string in_unit = exposure.unit.empty() ? "" : " (" + render::unitText(exposure.unit) + ")";
+    canvas.text(fmt::format("{}: {} on the way of {}", exposure.scenario, quantity, exposure.platform),
+                {92 * unit, 26 * unit}, 20 * unit, render::kPlotText, Align::left, render::Weight::bold);
+    Rect frame{92 * unit, 84 * unit, width - right - 152 * unit, 0.62 * height - 100 * unit};
+    PlotPanel values(canvas, frame, unit, times, axisOf(lines, exposure.unit));
+    values.drawTitle(quantity + in_unit + "; wide where it reaches the threshold");
+    values.drawGrid();
+    for (const PlotLine& line : lines) values.drawLine(line);
+    values.drawNames(lines);
+
+    PlotLine way{"platform", {}, kTogether}, ground{"ground", {}, render::kPlotSurface};
+    double lowest_m = HUGE_VAL, highest_m = -HUGE_VAL;
+    for (const ExposureRow& row : exposure.rows) {
+      way.points.push_back({row.time_s, row.height_msl_m, row.value >= exposure.request.threshold});
+      ground.points.push_back({row.time_s, row.height_msl_m - row.height_agl_m, false});
+      highest_m = std::max(highest_m, row.height_msl_m);
+      lowest_m = std::min({lowest_m, row.height_msl_m, ground.points.back().y});
+    }
+    const double span_m = std::max(highest_m - lowest_m, 10.0);
+    frame.y += frame.height + 88 * unit;
+    frame.height = height - frame.y - 52 * unit;
+    PlotPanel heights(canvas, frame, unit, times,
+                      {lowest_m - 0.05 * span_m, highest_m + 0.1 * span_m, 5, ""});
+    heights.drawTitle("Height above mean sea level (m)");
+    std::vector<render::Point2> body;
+    for (const PlotLine::Point& point : ground.points) {
+      if (std::isfinite(point.y)) body.push_back(heights.at(point.x, point.y));
+    }
+    if (body.size() > 1) {
+      body.push_back({body.back().x, frame.y + frame.height});
+      body.push_back({body.front().x, frame.y + frame.height});
+      canvas.polygon(body, render::kPlotGround);
+    }
+    heights.drawGrid();
+    heights.drawLine(ground);
+    heights.drawLine(way);
+    heights.drawNames({way, ground});
+  });
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,133 @@
+#include "emscape/study/exposure.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "emscape/emfield/link.h"
+#include "emscape/emfield/path_budget.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+
+namespace emscape::study {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A shipped scenario and its terrain.
+struct Given {
+  explicit Given(const std::string& name)
+      : scenario(scenario::loadScenario(test::shippedScenario(name))),
+        terrain(scenario::loadTerrain(*scenario)) {}
+  std::shared_ptr<const scenario::Scenario> scenario;
+  scenario::TerrainPtr terrain;
+};
+
+TEST(Exposure, AValueIsThatOfProfileAtThePlatform) {
+  const Given given("links.yaml");
+  constexpr int kDrone = 4;
+  ExposureRequest request;
+  request.platform = kDrone;
+  request.quantity = scenario::Quantity::power_density_dbwm2;
+  request.threshold = -60;
+  request.look = scenario::RadarLook::scan;
+  for (int t = 0; t <= 60; ++t) request.times_s.push_back(t);  // more than are solved at once
+  const Exposure exposure = computeExposure(given.scenario, given.terrain, request, {});
+  ASSERT_EQ(exposure.rows.size(), 61u);
+  ASSERT_EQ(exposure.names, (std::vector<std::string>{"search radar", "mast", "jammer"}));
+  for (const ExposureRow& row : exposure.rows) {
+    const scenario::Snapshot snapshot = scenario::instantAt(given.scenario, given.terrain.get(), row.time_s);
+    const scenario::PlatformState& state = snapshot.platforms[kDrone];
+    EXPECT_EQ(row.latitude_deg, state.position.latitude_deg);
+    double sum = 0;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const int e = exposure.emitters[n];
+      const emfield::PathBudget budget = emfield::powerBudget(
+          snapshot, e, {state.position, state.height_msl_m},
+          given.scenario->emitters[static_cast<std::size_t>(e)].propagation.model, given.terrain.get());
+      const double expected = budget.find("power_density_dbwm2")->value;
+      EXPECT_NEAR(row.each[n], std::max(expected, given.scenario->output.floor), 0.02)
+          << row.time_s << " s, " << exposure.names[n];
+      sum += std::pow(10, expected / 10);
+    }
+    EXPECT_NEAR(row.value, std::max(10 * std::log10(sum), given.scenario->output.floor), 0.02);
+    ASSERT_GE(row.best, 0);
+    for (const double value : row.each) EXPECT_LE(value, row.each[static_cast<std::size_t>(row.best)]);
+  }
+}
+
+TEST(Exposure, DetectionIsThatOfTheLinkToTheTarget) {
+  const Given given("links.yaml");
+  emfield::LinkOptions options;
+  for (int t = 0; t <= 60; t += 3) options.times_s.push_back(t);
+  options.emitters = {0};
+  options.targets = {0, 1};
+  const emfield::LinkReport links = emfield::computeLinks(given.scenario, given.terrain.get(), options);
+  for (const emfield::Detection& detection : links.detections) {
+    ExposureRequest request;
+    request.target = detection.target;
+    request.platform = given.scenario->targets[static_cast<std::size_t>(detection.target)].platform;
+    request.times_s = options.times_s;
+    const Exposure exposure = computeExposure(given.scenario, given.terrain, request, {});
+    ASSERT_EQ(exposure.names, std::vector<std::string>{"search radar"});
+    ASSERT_EQ(exposure.rows.size(), detection.rows.size());
+    for (std::size_t t = 0; t < exposure.rows.size(); ++t) {
+      EXPECT_NEAR(exposure.rows[t].each[0], detection.rows[t].detection_probability, 2e-3) << t;
+      EXPECT_NEAR(exposure.rows[t].value, exposure.rows[t].each[0], 1e-6);
+      EXPECT_NEAR(exposure.rows[t].cumulative_probability, detection.rows[t].cumulative_probability, 5e-3);
+    }
+    EXPECT_EQ(exposure.together.first_s, detection.firstDetection_s());
+    EXPECT_THAT(exposure.cross_section, HasSubstr("that of target"));
+  }
+}
+
+TEST(Exposure, ThePlatformsOwnEmittersAreLeftOut) {
+  const Given given("jacksboro.yaml");
+  constexpr int kHelicopter = 3;
+  ExposureRequest request;
+  request.platform = kHelicopter;
+  request.times_s = {60, 90};
+  const Exposure detected = computeExposure(given.scenario, given.terrain, request, {});
+  EXPECT_EQ(detected.names, (std::vector<std::string>{"search radar", "tracking radar"}));
+  auto quiet = std::make_shared<scenario::Scenario>(*given.scenario);
+  quiet->set("emitters.jammer.active_s", "[[0, 1]]");
+  const Exposure unjammed = computeExposure(quiet, given.terrain, request, {});
+  EXPECT_LT(detected.rows[1].each[0], 0.5) << "its jammer protects it";
+  EXPECT_GT(unjammed.rows[1].each[0], 0.9);
+  request.quantity = scenario::Quantity::power_density_dbwm2;
+  request.threshold = -60;
+  EXPECT_EQ(computeExposure(given.scenario, given.terrain, request, {}).names.size(), 3u);
+}
+
+TEST(Exposure, RefusesWhatItCannotDo) {
+  const Given given("links.yaml");
+  const auto refusalOf = [&](const ExposureRequest& request) {
+    return test::errorOf([&] { computeExposure(given.scenario, given.terrain, request, {}); });
+  };
+  ExposureRequest request;
+  request.platform = 3;
+  EXPECT_THAT(refusalOf(request), HasSubstr("needs a time"));
+  request.times_s = {0};
+  request.target = 1;
+  EXPECT_THAT(refusalOf(request), HasSubstr("target 'drone' is on platform 'drone', not on 'helicopter'"));
+  request.target.reset();
+  request.quantity = scenario::Quantity::dominant_emitter;
+  EXPECT_THAT(refusalOf(request), HasSubstr("is an index"));
+}
+
+TEST(Exposure, StepsLongerThanTheScanAreTold) {
+  const Given given("links.yaml");
+  ExposureRequest request;
+  request.platform = 4;
+  request.times_s = {0, 4, 8};
+  request.look = scenario::RadarLook::scan;
+  const Exposure exposure = computeExposure(given.scenario, given.terrain, request, {});
+  EXPECT_THAT(exposure.warnings, testing::Contains(HasSubstr("passes the platform every 5 s")));
+  EXPECT_TRUE(std::isnan(exposure.together.cumulative_probability));
+}
+
+}  // namespace
+}  // namespace emscape::study
