@@ -219,7 +219,7 @@ TEST(Simulate, AHangUpStopsItLikeCtrlC) {
 
 TEST(Simulate, ASecondProcessIsRefusedWhileOneWritesTheFolder) {
   const TemporaryFolder folder;
-  const std::string scenario = longScenario(folder, 80);
+  const std::string scenario = longScenario(folder, 5000);
   const Arguments arguments{"simulate", scenario, "-o",      folder / "s",
                             "--format", "raw",    "--range", "-120:20"};
   RunningProgram first(arguments);
