@@ -1,0 +1,61 @@
+#include "propagation/parabolic_equation/march_cells.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "emscape/base/error.h"
+
+namespace emscape::propagation {
+
+template <class Real, int kLanes>
+std::array<std::vector<float>, kLanes> marchCells(RadialMarch<Real, kLanes>& march,
+                                                  const RadialCells& cells) {
+  if (!(cells.range_step_m >= march.grid().range_step_m)) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("parabolic_equation: cells of {} m in range; expected at least the "
+                            "range step of {} m",
+                            cells.range_step_m, march.grid().range_step_m));
+  }
+  std::array<std::vector<float>, kLanes> excess_db;
+  excess_db.fill(std::vector<float>(std::size_t(cells.ranges) * cells.heights));
+  std::vector<double> sums(std::size_t(cells.heights) * kLanes);
+  std::vector<int> counts(sums.size());
+  for (int i = 0; i < cells.ranges; ++i) {
+    std::fill(sums.begin(), sums.end(), 0.0);
+    std::fill(counts.begin(), counts.end(), 0);
+    // steps in (begin, end]
+    const double last_m = (i + 1) * cells.range_step_m * (1 + 1e-12) - march.grid().range_step_m;
+    while (march.range_m() <= last_m) {
+      march.advance();
+      for (int l = 0; l < kLanes; ++l) {
+        const double below_m = cells.bottom_msl_m - march.ground_m(l), top_m = march.grid().usableTop_m();
+        for (int j = 0; j < cells.heights; ++j) {
+          const double z1 = std::max(0.0, below_m + j * cells.height_step_m);
+          const double z2 = std::min(top_m, below_m + (j + 1) * cells.height_step_m);
+          if (z2 <= z1) continue;
+          sums[std::size_t(j) * kLanes + l] += march.meanSquaredFactor(l, z1, z2);
+          ++counts[std::size_t(j) * kLanes + l];
+        }
+      }
+    }
+    for (int l = 0; l < kLanes; ++l) {
+      for (int j = 0; j < cells.heights; ++j) {
+        const std::size_t of = std::size_t(j) * kLanes + l;
+        excess_db[l][std::size_t(i) * cells.heights + j] =
+            counts[of] > 0 ? float(-10 * std::log10(sums[of] / counts[of]))
+                           : std::numeric_limits<float>::quiet_NaN();
+      }
+    }
+  }
+  return excess_db;
+}
+
+template std::array<std::vector<float>, 1> marchCells<double, 1>(RadialMarch<double, 1>&, const RadialCells&);
+template std::array<std::vector<float>, 4> marchCells<double, 4>(RadialMarch<double, 4>&, const RadialCells&);
+template std::array<std::vector<float>, 1> marchCells<float, 1>(RadialMarch<float, 1>&, const RadialCells&);
+template std::array<std::vector<float>, 8> marchCells<float, 8>(RadialMarch<float, 8>&, const RadialCells&);
+
+}  // namespace emscape::propagation

@@ -1,0 +1,78 @@
+/// Steps and domain of a march, and their automatic choice.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emscape/base/units.h"
+#include "propagation/limits.h"
+
+namespace emscape::propagation {
+
+constexpr ModelLimit kPeFrequency{
+    "frequency", "MHz", 1e6, 30, 40000, Beyond::refused, "heights and steps get too small"};
+constexpr ModelLimit kPeAngle{
+    "largest angle", "degrees", kPi / 180, 0.1, 15, Beyond::refused, "other models serve at larger angles"};
+constexpr int kPeMaxIntervals = 32768;
+
+/// Form of the one-way equation.
+enum class PeForm {
+  wide,    ///< Feit and Fleck: exact in air without gradient
+  narrow,  ///< of small angles; for comparisons with its closed forms
+};
+
+/// What every azimuth of a group has in common.
+struct MarchGrid {
+  double frequency_hz = 0;
+  double top_m = 0;   ///< of the domain above the ground, absorber included
+  int intervals = 0;  ///< N, a power of two: the field is at heights j top_m / N above the ground
+  double range_step_m = 0;
+  double absorber_m = 0;  ///< thickness of the absorber below the top; 0: none
+  /// Its rate at the top: the field decays as exp(-rate t^3 x), t = 0..1 in the layer.
+  double absorber_per_m = 0;
+  PeForm form = PeForm::wide;
+  bool halving = false;  ///< halves N where the upper half of the spectrum has left the domain
+
+  double wavenumber() const { return 2 * kPi / wavelength_m(frequency_hz); }
+  double heightStep_m() const { return top_m / intervals; }
+  /// Sine of the largest angle of the sine transform.
+  double maxSine() const { return wavelength_m(frequency_hz) / (2 * heightStep_m()); }
+  /// Heights above the ground up to which the field is that without a top.
+  double usableTop_m() const { return top_m - absorber_m; }
+};
+
+/// Absorber whose two-way loss at the largest angle is 90 dB: the thickness is absorber_m, or else an eighth
+/// of the domain.
+void setAbsorber(MarchGrid& grid, double absorber_m = 0);
+
+/// @throws Error (bad_input) that names the value and its range: a frequency outside its limits, N not a
+/// power of two in 8 .. 32768, a step or the domain not above 0, an absorber that is negative or fills the
+/// domain
+void checkGrid(const MarchGrid& grid);
+
+/// What the automatic steps depend on.
+struct MarchNeeds {
+  double frequency_hz = 0;
+  double max_height_m = 0;  ///< above the ground, up to which the field is wanted, the source included
+  double max_angle_rad = degToRad(3.0);  ///< from the horizontal, up to which the field is wanted
+  double post_spacing_m = 0;             ///< of the terrain; 0: smooth surface
+  bool traps = false;                    ///< the air has a layer that traps
+};
+
+/// A choice and why: "200 m: ...".
+struct MarchChoice {
+  std::string name;  ///< "range step"
+  std::string text;  ///< value with unit, and the reason
+};
+
+struct AutomaticGrid {
+  MarchGrid grid;
+  std::vector<MarchChoice> choices;
+};
+
+/// Steps for a splitting error of 0.2 dB in nine of ten points, and a domain that holds the wanted heights
+/// below 0.8 of what the absorber leaves.
+/// @throws Error (bad_input) outside the limits; the message gives the largest angle that N = 32768 affords
+AutomaticGrid automaticGrid(const MarchNeeds& needs);
+
+}  // namespace emscape::propagation

@@ -1,0 +1,91 @@
+/// Modified refractivity of the air along a path: what the parabolic equation bends rays with.
+///
+/// The earth is flattened: M = (n - 1 + z/a) 10^6 = N + 0.157 z. Only differences of M bend rays. A profile
+/// is a list of levels; M is linear between them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace emscape::propagation {
+
+/// dM/dz of standard air (M-units per metre): dN/dz of -39.2 per km over an earth of 6371 km.
+constexpr double kStandardGradient_m = 0.118;
+/// dM/dz of air without gradient of N: 10^6 / 6371 km.
+constexpr double kFlatteningGradient_m = 1e6 / 6371000.0;
+/// M at the surface where a profile does not give it.
+constexpr double kSurface_m_units = 330;
+/// Roughness length of the evaporation duct's profile (m).
+constexpr double kEvaporationRoughness_m = 1.5e-4;
+
+struct RefractivityLevel {
+  double height_msl_m = 0;
+  double m_units = 0;
+};
+
+/// M against height. Below the first level: the first layer's gradient; above the last: top_gradient_m.
+struct RefractivityProfile {
+  std::vector<RefractivityLevel> levels;        ///< 1 or more, heights strictly ascending
+  double top_gradient_m = kStandardGradient_m;  ///< M-units per metre
+
+  double at(double height_msl_m) const;
+  /// M falls with height somewhere: a layer that traps.
+  bool traps() const;
+};
+
+RefractivityProfile standardRefractivity(double surface_m_units = kSurface_m_units);
+/// One gradient (M-units per metre) at all heights; 10^6 / (k a) for an earth of radius k a.
+RefractivityProfile linearRefractivity(double gradient_m, double surface_m_units = kSurface_m_units);
+/// M = M0 + 0.125 (z - d ln((z + z0) / z0)) up to 1 km, as 256 levels within 0.001 M-units of the formula;
+/// standard above.
+/// @param duct_height_m  d, 0..60; 0: without the logarithm
+/// @throws Error (bad_input) outside that range
+/// @see Paulus 1985, Radio Sci. 20(4), neutral air
+RefractivityProfile evaporationDuct(double duct_height_m, double surface_m_units = kSurface_m_units);
+/// M falls from the surface by a deficit up to the top, then standard.
+/// @param top_m            > 0
+/// @param deficit_m_units  > 0
+/// @throws Error (bad_input)
+RefractivityProfile surfaceDuct(double top_m, double deficit_m_units,
+                                double surface_m_units = kSurface_m_units);
+/// Standard up to base_m, falling by the deficit up to top_m, standard above. A surface-based duct if M at
+/// the top is below that of the surface, else an elevated one.
+/// @param base_m           >= 0
+/// @param top_m            > base_m
+/// @param deficit_m_units  > 0
+/// @throws Error (bad_input)
+RefractivityProfile trilinearRefractivity(double base_m, double top_m, double deficit_m_units,
+                                          double surface_m_units = kSurface_m_units);
+/// Levels as measured.
+/// @throws Error (bad_input) that names the level, if there are not 2..256, a height is not above the one
+/// before, above 60 km or not finite, M is outside 0..2500 or its gradient outside +-5 M-units per metre
+RefractivityProfile profileOfLevels(std::vector<RefractivityLevel> levels);
+/// What is wrong with the level `index`, or an empty string: the check of profileOfLevels(), for readers of
+/// files.
+std::string faultOfLevel(const std::vector<RefractivityLevel>& levels, std::size_t index);
+
+/// M along the range. Between two given profiles with equal numbers of levels each level is interpolated, in
+/// height and in M, so that a duct's base and top move; between others, M at each height, which shows two
+/// faint ducts halfway.
+class RefractivityAlongPath {
+ public:
+  RefractivityAlongPath() : RefractivityAlongPath(standardRefractivity()) {}
+  /// The same at all ranges.
+  RefractivityAlongPath(RefractivityProfile profile);
+  /// @param ranges_m  strictly ascending, as many as profiles; before the first and behind the last that
+  /// profile rules
+  /// @throws Error (bad_input) if empty, of unequal sizes or not ascending
+  RefractivityAlongPath(std::vector<double> ranges_m, std::vector<RefractivityProfile> profiles);
+
+  RefractivityProfile at(double range_m) const;
+  bool constant() const { return profiles_.size() == 1; }
+  bool traps() const;
+  /// Some neighbours have different numbers of levels: interpolated at each height; to be warned of.
+  bool pointwise() const;
+
+ private:
+  std::vector<double> ranges_m_;
+  std::vector<RefractivityProfile> profiles_;
+};
+
+}  // namespace emscape::propagation
