@@ -53,14 +53,14 @@ void printAsJson(const std::vector<Outcome>& checked, const std::vector<std::str
 }
 
 void printRow(const std::string& name, int cases, const FigureCheck& figure) {
-  print("{:<40} {:>6}  {:<24} {:>10.3g} {:>10.3g} {:<9} {}\n", name, cases > 0 ? std::to_string(cases) : "",
+  print("{:<40} {:>6}  {:<32} {:>10.3g} {:>10.3g} {:<9} {}\n", name, cases > 0 ? std::to_string(cases) : "",
         figure.figure, figure.max_abs_error, figure.tolerance, figure.unit,
         figure.pass() ? "pass" : fmt::format("MISS (line {})", figure.worst_line));
 }
 
 void printAsTable(const std::vector<Outcome>& checked, const std::vector<std::string>& not_checked,
                   const ReferenceFolder& folder) {
-  print("{:<40} {:>6}  {:<24} {:>10} {:>10} {:<9} {}\n", "dataset", "cases", "figure", "max error",
+  print("{:<40} {:>6}  {:<32} {:>10} {:>10} {:<9} {}\n", "dataset", "cases", "figure", "max error",
         "tolerance", "unit", "result");
   for (const Outcome& outcome : checked) {
     const auto& figures = outcome.check.figures;
@@ -82,7 +82,7 @@ int check(const std::string& dir, const GlobalOptions& global) {
       not_checked.push_back(dataset->name);
       continue;
     }
-    checked.push_back({dataset, dataset->check(std::filesystem::path(dir) / dataset->name)});
+    checked.push_back({dataset, dataset->check(folder.root / dataset->name)});
   }
   // a folder in which nothing could be checked has not passed
   const bool pass =
@@ -109,12 +109,13 @@ model, absent and unknown datasets are listed and skipped.
 
 Examples:
   emscape check reference
+  emscape check reference/pe         one family alone
   emscape check reference --json     {"datasets": [{"name", "cases", "max_abs_error", "tolerance", "unit", "pass"}], "pass"}
 
 Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not or none was run, 3 for a file that
 is malformed.)");
   auto dir = std::make_shared<std::string>();
-  command->add_option("DIR", *dir, "Folder of datasets, one per folder")->required();
+  command->add_option("DIR", *dir, "Folder of datasets, one per folder; or of one family")->required();
   command->callback([dir, &global, &action] { action = [dir, &global] { return check(*dir, global); }; });
 }
 

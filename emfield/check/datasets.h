@@ -44,6 +44,21 @@ DatasetCheck checkP528(const std::filesystem::path& folder);
 // check_geoid.cpp
 DatasetCheck checkGeoid(const std::filesystem::path& folder);
 
+// check_pe_closed_forms.cpp
+DatasetCheck checkPeTwoRay(const std::filesystem::path& file);
+DatasetCheck checkPeCells(const std::filesystem::path& file);
+DatasetCheck checkPeBeam(const std::filesystem::path& file);
+DatasetCheck checkPeEdge(const std::filesystem::path& file);
+DatasetCheck checkPeSlope(const std::filesystem::path& file);
+DatasetCheck checkRoughness(const std::filesystem::path& file);
+
+// check_pe_modes.cpp
+DatasetCheck checkPeSmoothEarth(const std::filesystem::path& file);
+DatasetCheck checkPeDecay(const std::filesystem::path& file);
+DatasetCheck checkPeDucts(const std::filesystem::path& file);
+DatasetCheck checkPeDuctModes(const std::filesystem::path& file);
+DatasetCheck checkPeLfmf(const std::filesystem::path& file);
+
 // check_two_ray.cpp
 DatasetCheck checkTwoRay(const std::filesystem::path& file);
 

@@ -52,48 +52,83 @@ const std::vector<ReferenceDataset>& referenceDatasets() {
       {"geoid", checkGeoid},
       {"p1812", checkP1812},
       {"p452", checkP452},
-      {"pe", nullptr},
+      {"pe/two_ray_pec_h.csv", checkPeTwoRay},
+      {"pe/gaussian_beam_linear_m.csv", checkPeBeam},
+      {"pe/smooth_earth_modes.csv", checkPeSmoothEarth},
+      {"pe/smooth_earth_decay.csv", checkPeDecay},
+      {"pe/ntia_lfmf_10_30mhz.csv", checkPeLfmf},
+      {"pe/knife_edge.csv", checkPeEdge},
+      {"pe/sloped_plane_pec_h.csv", checkPeSlope},
+      {"pe/duct_fields.csv", checkPeDucts},
+      {"pe/duct_modes.csv", checkPeDuctModes},
+      {"pe/lobe_cell_mean.csv", checkPeCells},
+      {"pe/roughness.csv", checkRoughness},
+      {"pe/ntia_lfmf_check.csv", nullptr},
+      {"pe/narrow_angle_error.csv", nullptr},
   };
   return datasets;
 }
 
-ReferenceFolder lookInto(const fs::path& folder) {
-  if (!fs::is_directory(folder)) {
-    throw Error(ErrorCode::bad_input, fmt::format("{}: no such folder", folder.string()));
-  }
+namespace {
+
+/// The family of a dataset that shares its folder with others: "radar"; empty for one that does not.
+std::string familyOf(const ReferenceDataset& dataset) {
+  return fs::path(dataset.name).parent_path().string();
+}
+
+/// @param only  a family; empty: all datasets
+ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
   ReferenceFolder found;
+  found.root = root;
   std::set<std::string> known;
-  std::set<std::string> shared;  // folders with several datasets
+  std::set<std::string> families;  // that are there
   for (const ReferenceDataset& dataset : referenceDatasets()) {
+    const std::string family = familyOf(dataset);
+    if (!only.empty() && family != only) continue;
     known.insert(dataset.name);
-    const fs::path parent = fs::path(dataset.name).parent_path();
-    if (!parent.empty()) known.insert(parent.string());
-    if (!parent.empty() && fs::is_directory(folder / parent)) shared.insert(parent.string());
-    if (fs::exists(folder / dataset.name)) {
+    if (!family.empty()) known.insert(family);
+    if (!family.empty() && fs::is_directory(root / family)) families.insert(family);
+    if (fs::exists(root / dataset.name)) {
       found.present.push_back(&dataset);
     } else {
       found.absent.push_back(dataset.name);
     }
   }
-  if (found.present.empty()) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("{}: holds no dataset that is known; expected folders such as {}",
-                            folder.string(), referenceDatasets().front().name));
+  if (only.empty()) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(root)) {
+      const std::string name = entry.path().filename().string();
+      // files at the top, such as a README, are not datasets
+      if (entry.is_directory() && known.count(name) == 0) found.unknown.push_back(name);
+    }
   }
-
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    // files at the top, such as a README, are not datasets
-    if (entry.is_directory() && known.count(name) == 0) found.unknown.push_back(name);
-  }
-  for (const std::string& parent : shared) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder / parent)) {
-      const std::string name = parent + "/" + entry.path().filename().string();
-      if (known.count(name) == 0) found.unknown.push_back(name);
+  for (const std::string& family : families) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(root / family)) {
+      const std::string name = family + "/" + entry.path().filename().string();
+      if (known.count(name) == 0 && entry.path().filename() != "README.md") found.unknown.push_back(name);
     }
   }
   std::sort(found.unknown.begin(), found.unknown.end());
   return found;
+}
+
+}  // namespace
+
+ReferenceFolder lookInto(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw Error(ErrorCode::bad_input, fmt::format("{}: no such folder", folder.string()));
+  }
+  ReferenceFolder found = lookBelow(folder, "");
+  if (!found.present.empty()) return found;
+  const fs::path whole = fs::canonical(folder);
+  const std::string family = whole.filename().string();
+  for (const ReferenceDataset& dataset : referenceDatasets()) {
+    if (familyOf(dataset) != family || family.empty()) continue;
+    found = lookBelow(whole.parent_path(), family);
+    if (!found.present.empty()) return found;
+  }
+  throw Error(ErrorCode::bad_input,
+              fmt::format("{}: holds no dataset that is known; expected folders such as {}", folder.string(),
+                          referenceDatasets().front().name));
 }
 
 }  // namespace emscape::emfield

@@ -24,7 +24,7 @@ void put(const TemporaryFolder& folder, const std::string& name, const std::stri
 TEST(Check, PassesAFolderWhoseFiguresAreMet) {
   const TemporaryFolder folder;
   put(folder, "geoid/check_points.csv", kGoodGeoid);
-  put(folder, "pe/knife_edge.csv", "");
+  put(folder, "pe/narrow_angle_error.csv", "");
   put(folder, "notes/todo.txt", "");
   const ProgramResult result = run({"check", folder.path().string(), "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -38,7 +38,7 @@ TEST(Check, PassesAFolderWhoseFiguresAreMet) {
   EXPECT_EQ(geoid["tolerance"], 0.02);
   EXPECT_EQ(geoid["unit"], "m");
   EXPECT_EQ(geoid["pass"], true);
-  EXPECT_EQ(report["not_checked"], json({"pe"}));
+  EXPECT_EQ(report["not_checked"], json({"pe/narrow_angle_error.csv"}));
   EXPECT_EQ(report["unknown"], json({"notes"}));
   EXPECT_THAT(report["absent"], testing::Contains("itm_p2p"));
 }
@@ -57,7 +57,7 @@ TEST(Check, FailsWithStatus5AndTheLineOfTheWorstCase) {
 
 TEST(Check, DoesNotPassWhereNothingCouldBeChecked) {
   const TemporaryFolder folder;
-  put(folder, "pe/knife_edge.csv", "");
+  put(folder, "pe/narrow_angle_error.csv", "");
   const ProgramResult result = run({"check", folder.path().string()});
   EXPECT_EQ(result.status, 5);
   EXPECT_THAT(result.out, HasSubstr("not checked: no model answers to it"));
@@ -70,6 +70,21 @@ TEST(Check, TellsFileAndLineOfAMalformedTable) {
   EXPECT_EQ(result.status, 3);
   EXPECT_THAT(result.err, HasSubstr("check_points.csv:3: lon_deg_east: 'x' is not a finite number"));
   EXPECT_EQ(result.out, "");
+}
+
+TEST(Check, TakesTheFolderOfOneFamily) {
+  const TemporaryFolder folder;
+  put(folder, "pe/roughness.csv",
+      "frequency_hz,sigma_h_m,grazing_deg,ament,miller_brown\n3e9,0.031875,0.5,0.999388,0.999389\n");
+  put(folder, "pe/README.md", "");
+  put(folder, "pe/more.csv", "");
+  const ProgramResult result = run({"check", (folder.path() / "pe").string() + "/", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out);
+  ASSERT_EQ(report["datasets"].size(), 1u);
+  EXPECT_EQ(report["datasets"][0]["name"], "pe/roughness.csv");
+  EXPECT_EQ(report["unknown"], json({"pe/more.csv"}));
+  EXPECT_THAT(report["absent"], testing::Not(testing::Contains("geoid")));
 }
 
 TEST(Check, RefusesAFolderWithoutDatasets) {

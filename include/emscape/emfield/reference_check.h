@@ -36,7 +36,7 @@ struct DatasetCheck {
 /// A known dataset.
 struct ReferenceDataset {
   std::string name;  ///< of its folder or file below DIR: "itm_p2p", "radar/knife_edge_J_nu_derived.csv"
-  /// @param path  DIR/name
+  /// @param path  of the folder or file
   /// @throws Error (bad_input) with file:line for a file that is malformed
   /// Null if there is no model for it.
   DatasetCheck (*check)(const std::filesystem::path& path) = nullptr;
@@ -47,11 +47,14 @@ const std::vector<ReferenceDataset>& referenceDatasets();
 
 /// The datasets of a folder.
 struct ReferenceFolder {
+  std::filesystem::path root;                    ///< below which the names lie
   std::vector<const ReferenceDataset*> present;  ///< known, with a model or without one
   std::vector<std::string> absent;               ///< known, not in the folder
   std::vector<std::string> unknown;              ///< in the folder, not known
 };
 
+/// @param folder  of all datasets, or of one family, such as "reference/radar": then the names begin with the
+/// family
 /// @throws Error (bad_input) if it is not a folder, or if it contains no known dataset
 ReferenceFolder lookInto(const std::filesystem::path& folder);
 
