@@ -25,8 +25,13 @@ bool isSvg(const std::string& file) {
   return std::filesystem::path(file).extension() == ".svg";
 }
 
-double stepOf(const std::vector<double>& ticks) {
-  return ticks.size() > 1 ? ticks[1] - ticks[0] : 1;
+std::vector<PlotTick> ticksOf(const PlotAxis& axis) {
+  if (!axis.marks.empty()) return axis.marks;
+  const std::vector<double> values = roundTicks(axis.lowest, axis.highest, axis.ticks);
+  const double step = values.size() > 1 ? values[1] - values[0] : 1;
+  std::vector<PlotTick> ticks;
+  for (const double value : values) ticks.push_back({value, tickText(value, step)});
+  return ticks;
 }
 
 }  // namespace
@@ -46,19 +51,15 @@ void PlotPanel::drawTitle(const std::string& title) {
 }
 
 void PlotPanel::drawGrid() {
-  const std::vector<double> values = roundTicks(y_.lowest, y_.highest, y_.ticks);
-  for (const double value : values) {
-    const Point2 left = at(x_.lowest, value);
-    canvas_.line(left, at(x_.highest, value), kPlotGrid, unit_);
-    canvas_.text(tickText(value, stepOf(values)), {left.x - 8 * unit_, left.y}, 14 * unit_, kPlotText,
-                 Align::right);
+  for (const PlotTick& tick : ticksOf(y_)) {
+    const Point2 left = at(x_.lowest, tick.at);
+    canvas_.line(left, at(x_.highest, tick.at), kPlotGrid, unit_);
+    canvas_.text(tick.text, {left.x - 8 * unit_, left.y}, 14 * unit_, kPlotText, Align::right);
   }
-  const std::vector<double> places = roundTicks(x_.lowest, x_.highest, x_.ticks);
-  for (const double place : places) {
-    const Point2 bottom = at(place, y_.lowest);
+  for (const PlotTick& tick : ticksOf(x_)) {
+    const Point2 bottom = at(tick.at, y_.lowest);
     canvas_.line({bottom.x, frame_.y}, bottom, kPlotGrid, unit_);
-    canvas_.text(tickText(place, stepOf(places)), {bottom.x, bottom.y + 16 * unit_}, 14 * unit_, kPlotText,
-                 Align::center);
+    canvas_.text(tick.text, {bottom.x, bottom.y + 16 * unit_}, 14 * unit_, kPlotText, Align::center);
   }
   if (!x_.title.empty()) {
     canvas_.text(x_.title, {frame_.x + frame_.width, frame_.y + frame_.height + 36 * unit_}, 14 * unit_,

@@ -19,10 +19,16 @@ constexpr Ink kPlotSurface{{0.36F, 0.31F, 0.22F}};
 /// Okabe and Ito's colours, which readers with colour blindness tell apart; indices beyond them repeat.
 const Ink& plotInk(std::size_t index);
 
+struct PlotTick {
+  double at = 0;
+  std::string text;
+};
+
 struct PlotAxis {
-  double lowest = 0, highest = 1;  ///< lowest < highest
-  int ticks = 8;                   ///< about as many
-  std::string title;               ///< with the unit; empty: none
+  double lowest = 0, highest = 1;    ///< lowest < highest
+  int ticks = 8;                     ///< about as many, at round values
+  std::string title;                 ///< with the unit; empty: none
+  std::vector<PlotTick> marks = {};  ///< in place of round values, for scales that are not linear
 };
 
 struct PlotLine {

@@ -5,21 +5,18 @@
 #include <map>
 
 #include "emscape/render/annotate/legend.h"
-#include "render/annotate/canvas.h"
+#include "render/annotate/plot.h"
 
 namespace emscape::study {
 namespace {
 
-using render::Align;
 using render::Canvas;
 using render::Ink;
+using render::PlotAxis;
+using render::PlotPanel;
 using render::Point2;
 
-constexpr Ink kPaper{{1.0F, 1.0F, 1.0F}};
-constexpr Ink kText{{0.13F, 0.15F, 0.18F}};
-constexpr Ink kGrid{{0.45F, 0.50F, 0.58F}, 0.28};
 constexpr Ink kPoint{{0.00F, 0.45F, 0.70F}, 0.45};
-constexpr Ink kLine{{0.84F, 0.37F, 0.00F}};
 constexpr render::ImageSize kSize{900, 420};
 constexpr render::Rect kFrame{90, 40, 780, 310};
 constexpr std::size_t kMaxPoints = 2000, kMaxValues = 60;
@@ -48,22 +45,27 @@ class Plot {
   }
 
   std::string draw() {
-    canvas_.rectangle({0, 0, static_cast<double>(kSize.width), static_cast<double>(kSize.height)}, kPaper);
-    drawAxes();
+    canvas_.rectangle({0, 0, static_cast<double>(kSize.width), static_cast<double>(kSize.height)},
+                      render::kPlotPaper);
+    PlotPanel panel(canvas_, kFrame, 1, {left_, right_, 8, plot_.parameter, marks()}, {bottom_, top_, 6, ""});
+    panel.drawTitle(plot_.measure);
+    panel.drawGrid();
     const std::vector<Bin> bins = binned();
     if (points_.size() <= kMaxPoints) {
-      for (const Point2& point : points_) canvas_.disc(at(point.x, point.y), 3.5, kPoint);
+      for (const Point2& point : points_) canvas_.disc(panel.at(point.x, point.y), 3.5, kPoint);
     } else {
       for (const Bin& bin : bins) {
         const double x = bin.sum_x / bin.count;
-        canvas_.line(at(x, bin.min), at(x, bin.max), kPoint, 5);
+        canvas_.line(panel.at(x, bin.min), panel.at(x, bin.max), kPoint, 5);
       }
     }
+    const auto middle = [&](const Bin& bin) { return panel.at(bin.sum_x / bin.count, bin.sum / bin.count); };
+    const Ink& line = render::plotInk(1);
     if (plot_.labels.empty()) {
       for (std::size_t b = 1; b < bins.size(); ++b)
-        canvas_.line(middle(bins[b - 1]), middle(bins[b]), kLine, 2);
+        canvas_.line(middle(bins[b - 1]), middle(bins[b]), line, 2);
     }
-    for (const Bin& bin : bins) canvas_.disc(middle(bin), 3, kLine);
+    for (const Bin& bin : bins) canvas_.disc(middle(bin), 3, line);
     return canvas_.svg();
   }
 
@@ -75,12 +77,6 @@ class Plot {
     low -= more;
     high += more;
   }
-
-  Point2 at(double x, double y) const {
-    return {kFrame.x + kFrame.width * (x - left_) / (right_ - left_),
-            kFrame.y + kFrame.height * (top_ - y) / (top_ - bottom_)};
-  }
-  Point2 middle(const Bin& bin) const { return at(bin.sum_x / bin.count, bin.sum / bin.count); }
 
   /// Up to kMaxValues values, else as many equal intervals; none where almost every point has its own value.
   std::vector<Bin> binned() const {
@@ -108,26 +104,16 @@ class Plot {
     return bins;
   }
 
-  void drawAxes() {
-    canvas_.text(plot_.measure, {kFrame.x, kFrame.y - 18}, 15, kText, Align::left, render::Weight::bold);
-    canvas_.text(plot_.parameter, {kFrame.x + kFrame.width / 2, kFrame.y + kFrame.height + 46}, 14, kText,
-                 Align::center);
-    const std::vector<double> values = render::roundTicks(bottom_, top_, 6);
-    for (const double value : values) {
-      canvas_.line(at(left_, value), at(right_, value), kGrid, 1);
-      canvas_.text(render::tickText(value, values.size() > 1 ? values[1] - values[0] : 1),
-                   at(left_, value) + Point2{-8, 0}, 13, kText, Align::right);
-    }
-    const auto vertical = [&](double x, const std::string& text) {
-      canvas_.line(at(x, bottom_), at(x, top_), kGrid, 1);
-      canvas_.text(text, at(x, bottom_) + Point2{0, 16}, 13, kText, Align::center);
-    };
+  /// Of labels and of logarithms; of numbers none.
+  std::vector<render::PlotTick> marks() const {
+    std::vector<render::PlotTick> marks;
     if (!plot_.labels.empty()) {
       const std::size_t step = (plot_.labels.size() + 7) / 8;
       for (std::size_t i = 0; i < plot_.labels.size(); i += step) {
         constexpr std::size_t kShown = 16;
         const std::string& label = plot_.labels[i];
-        vertical(static_cast<double>(i), label.size() > kShown ? label.substr(0, kShown - 2) + ".." : label);
+        marks.push_back(
+            {static_cast<double>(i), label.size() > kShown ? label.substr(0, kShown - 2) + ".." : label});
       }
     } else if (plot_.is_logarithmic) {
       for (double decade = std::floor(left_); decade <= right_; ++decade) {
@@ -135,14 +121,11 @@ class Plot {
           const double x = decade + std::log10(digit);
           if (x < left_ || x > right_) continue;
           const double value = std::pow(10, x);
-          vertical(x, render::tickText(value, value));
+          marks.push_back({x, render::tickText(value, value)});
         }
       }
-    } else {
-      const std::vector<double> ticks = render::roundTicks(left_, right_, 8);
-      for (const double x : ticks)
-        vertical(x, render::tickText(x, ticks.size() > 1 ? ticks[1] - ticks[0] : 1));
     }
+    return marks;
   }
 
   const MeasurePlot& plot_;

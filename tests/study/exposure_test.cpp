@@ -49,11 +49,11 @@ TEST(Exposure, AValueIsThatOfProfileAtThePlatform) {
           snapshot, e, {state.position, state.height_msl_m},
           given.scenario->emitters[static_cast<std::size_t>(e)].propagation.model, given.terrain.get());
       const double expected = budget.find("power_density_dbwm2")->value;
-      EXPECT_NEAR(row.each[n], std::max(expected, given.scenario->output.floor), 0.02)
+      EXPECT_NEAR(row.each[n], std::max(expected, given.scenario->output.floor), 0.01)
           << row.time_s << " s, " << exposure.names[n];
       sum += std::pow(10, expected / 10);
     }
-    EXPECT_NEAR(row.value, std::max(10 * std::log10(sum), given.scenario->output.floor), 0.02);
+    EXPECT_NEAR(row.value, std::max(10 * std::log10(sum), given.scenario->output.floor), 0.01);
     ASSERT_GE(row.best, 0);
     for (const double value : row.each) EXPECT_LE(value, row.each[static_cast<std::size_t>(row.best)]);
   }
