@@ -55,6 +55,8 @@ std::string unmetOfAge(const Scenario& scenario, const OutputSpec& output) {
 
 std::string unmetNeed(Quantity quantity, const Scenario& scenario, const OutputSpec& output) {
   if (quantity == Quantity::detection_age_s) return unmetOfAge(scenario, output);
+  if (quantity == Quantity::occupancy && !hasInterval(info(quantity), output.interval.kind))
+    return "occupancy needs an 'interval' of kind mean in the output";
   if (info(quantity).kind != QuantityKind::of_receiver) return "";
   if (!isIndexOf(scenario.receivers, output.receiver)) {
     return fmt::format("quantity '{}' needs an entry under 'receivers' without a platform",

@@ -16,7 +16,7 @@ void addStudyOutputs(CLI::App& command, std::vector<std::string>& files) {
       ->check([](const std::string& file) {
         const std::string extension = std::filesystem::path(file).extension().string();
         const bool is_known = render::isPlotFile(file) || extension == ".csv" || extension == ".json";
-        return is_known ? "" : "--output " + file + ": files are written as .png, .svg, .csv or .json";
+        return is_known ? "" : "'" + file + "': files are written as .png, .svg, .csv or .json";
       });
 }
 

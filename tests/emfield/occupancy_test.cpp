@@ -1,4 +1,5 @@
 // Occupancy against counts over fine time steps.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include "emfield/solver/beam_positions.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/radar_duel.h"
+#include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/on_backends.h"
 
@@ -174,6 +176,14 @@ TEST_P(Occupancy, OfWholeTurnsDoesNotChangeWithTheTime) {
 }
 
 EMSCAPE_ON_BACKENDS(Occupancy);
+
+TEST(OccupancyNeeds, AnInterval) {
+  const auto scenario = around(scenario::makeIsotropic(30), ScanSpec{});
+  FieldOptions options;
+  options.quantities = {"occupancy"};
+  EXPECT_THAT(test::errorOf([&] { FieldSolver(scenario, nullptr, options); }),
+              ::testing::HasSubstr("of kind mean"));
+}
 
 // Of positions beyond its reach, none is above the level.
 TEST(PatternReach, HoldsAllDirectionsAboveALevel) {
