@@ -79,6 +79,8 @@ TEST(MinHeight, OfTheHorizonIsThatOfTheLineOfSight) {
   emitter.active_s.clear();
   scenario->emitters = {emitter};
   scenario->platforms.resize(1);
+  scenario->placed_receivers.clear();
+  scenario->targets.clear();
   scenario::TrackPoint point;
   point.position.latitude_deg = grid.places[static_cast<std::size_t>(observer)].latitude_deg;
   point.position.longitude_deg = grid.places[static_cast<std::size_t>(observer)].longitude_deg;
