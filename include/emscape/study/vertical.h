@@ -52,7 +52,7 @@ struct VerticalDiagram {
   double station_msl_m = 0;  ///< of the emitter; over a smooth earth, above it
   double station_agl_m = 0;
   double surface_msl_m = 0;  ///< smooth_earth: height of its surface
-  double floor = 0;  ///< value, in the quantity's unit, of points without a field
+  double floor = 0;          ///< value, in the quantity's unit, of points without a field
   double k_factor = 0, effective_earth_radius_m = 0;
   std::vector<double> ranges_m;   ///< rising, evenly spaced, the last is the request's
   std::vector<double> heights_m;  ///< on the axis, rising, evenly spaced
