@@ -12,7 +12,7 @@
 #include "apps/emscape/compare_report.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
-#include "apps/emscape/study_options.h"
+#include "apps/emscape/map_options.h"
 #include "apps/emscape/target.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
@@ -29,15 +29,7 @@ struct CompareCommand {
   std::string a, b;
   std::vector<scenario::Edit> edits, edits_b;
   std::string folder;
-  std::string heights = "agl:150";
-  std::vector<std::string> products{"covered", "value"};
-  std::string quantity = "detection_probability";
-  double threshold = NAN;
-  std::string times = "0";
-  double cell_m = NAN;
-  std::string area;
-  std::string crs = "utm";
-  std::vector<std::string> formats{"cog", "png"};
+  MapOptions maps;
   std::string volume;
   int areas = 3;
 };
@@ -45,7 +37,7 @@ struct CompareCommand {
 /// Writes B less A in the voxels of A's region.
 void writeVolume(const CompareCommand& command, const study::ComparedScenario& a,
                  const study::ComparedScenario& b, double time_s, emfield::FieldOptions options) {
-  options.quantities = {command.quantity};
+  options.quantities = {command.maps.quantity};
   options.allow_missing_terrain = true;
   const auto solved = [&](const study::ComparedScenario& of) {
     auto own = std::make_shared<scenario::Scenario>(*of.scenario);
@@ -62,23 +54,6 @@ void writeVolume(const CompareCommand& command, const study::ComparedScenario& a
   logInfo("wrote " + command.volume);
 }
 
-study::CompareRequest requestOf(const CompareCommand& command, const scenario::Scenario& scenario) {
-  study::CompareRequest request;
-  request.areas = command.areas;
-  study::CoverageRequest& coverage = request.coverage;
-  coverage.heights = study::parseHeights(command.heights);
-  for (const std::string& name : command.products) coverage.products.push_back(study::productNamed(name));
-  coverage.quantity = scenario::quantityFromName(command.quantity);
-  const bool needs_threshold =
-      std::any_of(coverage.products.begin(), coverage.products.end(),
-                  [](study::Product product) { return product != study::Product::value; });
-  coverage.threshold = needs_threshold || !std::isnan(command.threshold)
-                           ? thresholdOf(command.threshold, coverage.quantity)
-                           : study::defaultThreshold(coverage.quantity).value_or(0);
-  coverage.times_s = scenario::parseTimes(command.times, scenario.clock);
-  return request;
-}
-
 int compare(const CompareCommand& command, const GlobalOptions& global) {
   if (command.b.empty() && command.edits_b.empty()) {
     throw Error(ErrorCode::usage, "compare: give a second scenario, or --set-b PATH=VALUE for the first one");
@@ -89,15 +64,13 @@ int compare(const CompareCommand& command, const GlobalOptions& global) {
   study::ComparedScenario a{scenario::loadScenario(command.a, command.edits), nullptr};
   study::ComparedScenario b{scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b),
                             nullptr};
-  const study::CompareRequest request = requestOf(command, *a.scenario);
+  study::CompareRequest request;
+  request.coverage = requestOf(command.maps, a.scenario->clock);
+  request.areas = command.areas;
   const study::CoverageRequest& of = request.coverage;
 
-  const study::MapArea area =
-      command.area.empty() ? study::areaOf(a.scenario->region) : study::parseArea(command.area);
-  const scenario::Region& region = a.scenario->region;
-  const double usual_cell_m = std::max(1.0, std::round(region.size_m.x / region.dims.x));
-  const auto grid = std::make_shared<const study::MapGrid>(
-      study::makeMapGrid(area, std::isnan(command.cell_m) ? usual_cell_m : command.cell_m, command.crs));
+  const study::MapArea area = areaOf(command.maps, *a.scenario);
+  const auto grid = gridOf(command.maps, *a.scenario, area);
   a.terrain = study::loadTerrain(*a.scenario, area);
   b.terrain = study::loadTerrain(*b.scenario, area);
 
@@ -112,10 +85,10 @@ int compare(const CompareCommand& command, const GlobalOptions& global) {
                            of.threshold,
                            of.times_s,
                            of.heights},
-                          command.formats);
+                          command.maps.formats);
   if (!global.json) {
     print("B ({}) against A ({}): {} x {} pixels of {} m in {}, {} >= {:g}\n", b.scenario->name,
-          a.scenario->name, grid->width, grid->height, grid->cell_m, grid->crs, command.quantity,
+          a.scenario->name, grid->width, grid->height, grid->cell_m, grid->crs, command.maps.quantity,
           of.threshold);
   }
   const ProgressSink show = progressSink(global);
@@ -135,12 +108,12 @@ int compare(const CompareCommand& command, const GlobalOptions& global) {
   });
   logWarnings(comparison.warnings);
   folder.finish(joinedWarnings(comparison.warnings), comparisonJson(comparison, a, b).dump(),
-                [&](study::HtmlReport& report) { addSections(report, comparison, command.quantity); });
+                [&](study::HtmlReport& report) { addSections(report, comparison, command.maps.quantity); });
   if (global.json) {
     printResult(folder.reportJson());
     finishResult();
   } else {
-    printComparison(comparison, command.quantity);
+    printComparison(comparison, command.maps.quantity);
   }
   return 0;
 }
@@ -168,21 +141,7 @@ DIR has maps, report.html, report.json and study.json, as `emscape coverage` wri
   addSetOption(*command, options->edits);
   addSetOption(*command, options->edits_b, "--set-b", "changes a value of B alone");
   command->add_option("-o,--output", options->folder, "Folder to write")->required();
-  command->add_option("--heights", options->heights,
-                      "Heights in metres above ground (agl:) and above mean sea level (msl:)");
-  addListOption(*command, "--products", options->products, "Products, with commas between them");
-  command->add_option("--quantity", options->quantity,
-                      "A quantity of the field; see docs/scenario-format.md");
-  addThresholdOption(*command, options->threshold);
-  command->add_option("--times", options->times, "BEGIN:END:STEP, BEGIN:END or T, in seconds");
-  command->add_option("--cell", options->cell_m, "Side of a pixel (m); default: A's voxels")->default_str("");
-  command->add_option("--area", options->area,
-                      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: A's region");
-  command->add_option("--crs", options->crs, "Projection: utm, local or EPSG:NUMBER");
-  std::vector<std::string> formats;
-  for (const study::MapFormat& format : study::mapFormats()) formats.emplace_back(format.name);
-  addListOption(*command, "--format", options->formats, "Formats of maps, with commas between them")
-      ->check(CLI::IsMember(formats));
+  addMapOptions(*command, options->maps);
   command->add_option("--volume", options->volume,
                       "Volume of B less A in A's region at the first time: a .vdb, .vti or .nvdb file");
   command->add_option("--explain", options->areas, "Changed areas that are explained, of each sign")

@@ -10,6 +10,7 @@
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
+#include "apps/emscape/map_options.h"
 #include "apps/emscape/target.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
@@ -22,15 +23,7 @@ struct CoverageCommand {
   std::string scenario;
   std::vector<scenario::Edit> edits;
   std::string folder;
-  std::string heights = "agl:150";
-  std::vector<std::string> products{"covered", "value"};
-  std::string quantity = "detection_probability";
-  double threshold = NAN;
-  std::string times = "0";
-  double cell_m = NAN;
-  std::string area;
-  std::string crs = "utm";
-  std::vector<std::string> formats{"cog", "png"};
+  MapOptions maps;
 };
 
 void printRow(const study::MapRecord& record) {
@@ -47,27 +40,9 @@ void printRow(const study::MapRecord& record) {
 
 int coverage(const CoverageCommand& command, const GlobalOptions& global) {
   const auto scenario = scenario::loadScenario(command.scenario, command.edits);
-  study::CoverageRequest request;
-  request.heights = study::parseHeights(command.heights);
-  for (const std::string& name : command.products) request.products.push_back(study::productNamed(name));
-  request.quantity = scenario::quantityFromName(command.quantity);
-  const std::optional<double> usual = study::defaultThreshold(request.quantity);
-  const bool needs_threshold =
-      std::any_of(request.products.begin(), request.products.end(),
-                  [](study::Product product) { return product != study::Product::value; });
-  if (std::isnan(command.threshold) && !usual && needs_threshold) {
-    throw Error(ErrorCode::usage, fmt::format("--threshold: quantity '{}' has no usual one; give it in {}",
-                                              command.quantity, scenario::info(request.quantity).unit));
-  }
-  request.threshold = std::isnan(command.threshold) ? usual.value_or(0) : command.threshold;
-  request.times_s = scenario::parseTimes(command.times, scenario->clock);
-
-  const study::MapArea area =
-      command.area.empty() ? study::areaOf(scenario->region) : study::parseArea(command.area);
-  const scenario::Region& region = scenario->region;
-  const double usual_cell_m = std::max(1.0, std::round(region.size_m.x / region.dims.x));
-  const auto grid = std::make_shared<const study::MapGrid>(
-      study::makeMapGrid(area, std::isnan(command.cell_m) ? usual_cell_m : command.cell_m, command.crs));
+  const study::CoverageRequest request = requestOf(command.maps, scenario->clock);
+  const study::MapArea area = areaOf(command.maps, *scenario);
+  const auto grid = gridOf(command.maps, *scenario, area);
   const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
 
   study::MapFolder folder(command.folder,
@@ -80,10 +55,10 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
                            request.threshold,
                            request.times_s,
                            request.heights},
-                          command.formats);
+                          command.maps.formats);
   if (!global.json) {
     print("Coverage of {}: {} x {} pixels of {} m in {}, {} >= {}\n", scenario->name, grid->width,
-          grid->height, grid->cell_m, grid->crs, command.quantity, request.threshold);
+          grid->height, grid->cell_m, grid->crs, command.maps.quantity, request.threshold);
   }
   const auto take = [&](const study::CoverageMap& map) {
     stopIfInterrupted();
@@ -120,10 +95,8 @@ void addCoverage(CLI::App& app, const GlobalOptions& global, Action& action) {
   for (const study::ProductInfo& entry : study::productTable()) {
     products += fmt::format("  {:<16} {}\n", entry.name, entry.description);
   }
-  std::vector<std::string> formats;
   std::string format_lines;
   for (const study::MapFormat& format : study::mapFormats()) {
-    formats.emplace_back(format.name);
     format_lines += fmt::format("  {:<5} {}\n", format.name, format.description);
   }
   command->footer(fmt::format(R"(
@@ -149,28 +122,7 @@ Examples:
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
   command->add_option("-o,--output", options->folder, "Folder to write")->required();
-  command->add_option(
-      "--heights", options->heights,
-      "Heights in metres above ground (agl:) and above mean sea level (msl:): agl:30,150;msl:500:3000:500");
-  addListOption(*command, "--products", options->products, "Products, with commas between them; see below");
-  command->add_option("--quantity", options->quantity,
-                      "A quantity of the field; see docs/scenario-format.md");
-  command
-      ->add_option(
-          "--threshold", options->threshold,
-          "Level at which a place is covered; default: 0.5 of detection_probability, 0 dB of a margin")
-      ->default_str("");
-  command->add_option("--times", options->times, "BEGIN:END:STEP, BEGIN:END or T, in seconds");
-  command->add_option("--cell", options->cell_m, "Side of a pixel (m); default: the scenario's voxels")
-      ->default_str("");
-  command->add_option(
-      "--area", options->area,
-      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: the scenario's region");
-  command->add_option(
-      "--crs", options->crs,
-      "Projection: utm (zone of the area's middle), local (azimuthal equidistant) or EPSG:NUMBER");
-  addListOption(*command, "--format", options->formats, "Formats, with commas between them; see below")
-      ->check(CLI::IsMember(formats));
+  addMapOptions(*command, options->maps);
   command->callback(
       [options, &global, &action] { action = [options, &global] { return coverage(*options, global); }; });
 }
