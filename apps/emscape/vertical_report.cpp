@@ -104,7 +104,7 @@ void printVertical(const VerticalDiagram& diagram) {
     print("Smooth earth of {:.4g} times its radius; the antenna is {:.1f} m above it\n", diagram.k_factor,
           diagram.station_msl_m);
   }
-  print("  {:>11} {:>12} {:>14} {:>9}   {}\n", "azimuth deg", "to range km", "there from m", "covered",
+  print("  {:>11} {:>12} {:>14} {:>9}   {}\n", "azimuth deg", "farthest km", "from height m", "covered",
         "contours");
   for (const VerticalCut& cut : diagram.cuts) {
     const VerticalReach reach = reachOf(diagram, cut);
