@@ -117,6 +117,7 @@ GeodeticPosition geodesicDirect(double latitude_deg, double longitude_deg, doubl
 }
 
 double wrapLongitude_deg(double longitude_deg) {
+  if (std::abs(longitude_deg) < 180) return longitude_deg;
   return std::remainder(longitude_deg, 360.0);
 }
 

@@ -121,9 +121,9 @@ void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
                                             GDT_Float32, 0, 0, nullptr) != CE_None) {
       throw Error(ErrorCode::bad_input, SourceLocation{file}, CPLGetLastErrorMsg());
     }
-    for (int c = 0; c < column_count_; ++c) {
-      const float value =
-          line[static_cast<std::size_t>(wrapped(first_column_ + c + turn - file_first, columns))];
+    int at = wrapped(first_column_ + turn - file_first, columns);
+    for (int c = 0; c < column_count_; ++c, at = at + 1 < columns ? at + 1 : 0) {
+      const float value = line[static_cast<std::size_t>(at)];
       posts_.push_back(static_cast<float>(scale.offset_m + scale.scale_m * static_cast<double>(value)));
     }
   }

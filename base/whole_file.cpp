@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <memory>
@@ -46,16 +47,28 @@ fs::path folderOf(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
-/// The process that wrote a temporary, 0 if the name is not one of a temporary.
-long writerOf(const fs::path& path) {
+struct Writer {
+  long process = 0;     ///< 0: the name is not one of a temporary
+  std::string machine;  ///< machineName(); empty: not known
+};
+
+/// The process that wrote a temporary.
+Writer writerOf(const fs::path& path) {
   const std::string name = path.filename().string();
   const std::size_t marker = name.rfind(kMarker);
-  if (marker == std::string::npos || marker == 0) return 0;
-  const std::string process = name.substr(marker + std::strlen(kMarker));
-  const bool digits = !process.empty() && process.size() < 10 &&
-                      std::all_of(process.begin(), process.end(),
-                                  [](unsigned char character) { return std::isdigit(character) != 0; });
-  return digits ? std::stol(process) : 0;
+  if (marker == std::string::npos || marker == 0) return {};
+  const std::string text = name.substr(marker + std::strlen(kMarker));
+  const std::size_t dash = text.find('-');
+  const std::string process = text.substr(0, dash);
+  const std::string machine = dash == std::string::npos ? "" : text.substr(dash + 1);
+  const auto is = [](const std::string& word, int (*test)(int)) {
+    return std::all_of(word.begin(), word.end(),
+                       [&](unsigned char character) { return test(character) != 0; });
+  };
+  const bool is_process = !process.empty() && process.size() < 10 && is(process, std::isdigit);
+  const bool is_machine =
+      dash == std::string::npos || (machine.size() == machineName().size() && is(machine, std::isxdigit));
+  return is_process && is_machine ? Writer{std::stol(process), machine} : Writer{};
 }
 
 /// True if a process is a zombie: ended, not yet waited for. False if the system does not report it.
@@ -67,11 +80,12 @@ bool isZombie(long process) {
   return name_end != std::string::npos && text.compare(name_end + 2, 1, "Z") == 0;
 }
 
-/// True if a file is a temporary whose writer no longer runs.
+/// True if a file is a temporary whose writer no longer runs. Of writers on other machines that share the
+/// folder nothing is known.
 bool isStale(const fs::path& path) {
-  const long process = writerOf(path);
-  if (process == 0) return false;
-  return (::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) || isZombie(process);
+  const Writer writer = writerOf(path);
+  if (writer.process == 0 || (!writer.machine.empty() && writer.machine != machineName())) return false;
+  return !isRunning(writer.process);
 }
 
 /// An open file, closed at the end of its scope.
@@ -173,14 +187,32 @@ Bytes readAll(const fs::path& path, std::uintmax_t max_bytes) {
 
 }  // namespace
 
+const std::string& machineName() {
+  static const std::string kName = [] {
+    char host[256] = "";
+    ::gethostname(host, sizeof host - 1);
+    std::error_code ignored;
+    const std::string text = host + ('|' + fs::read_symlink("/proc/self/ns/pid", ignored).string());
+    const uLong crc = ::crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size());
+    char digits[9];
+    std::snprintf(digits, sizeof digits, "%08lx", crc);
+    return std::string(digits);
+  }();
+  return kName;
+}
+
+bool isRunning(long process) {
+  return !(::kill(static_cast<pid_t>(process), 0) != 0 && errno == ESRCH) && !isZombie(process);
+}
+
 fs::path temporaryFor(const fs::path& path) {
   fs::path temporary = path;
-  temporary += kMarker + std::to_string(::getpid());
+  temporary += kMarker + std::to_string(::getpid()) + '-' + machineName();
   return temporary;
 }
 
 bool isTemporary(const fs::path& path) {
-  return writerOf(path) != 0;
+  return writerOf(path).process != 0;
 }
 
 void publish(const fs::path& temporary, const fs::path& path) {

@@ -28,8 +28,14 @@ struct OutputFile {
 void writeWhole(const std::vector<OutputFile>& files);
 void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
+/// Eight hexadecimal digits that set apart the machines that may share a folder: of the host's name and
+/// the namespace of the process numbers.
+const std::string& machineName();
+/// True if a process of this machine runs.
+bool isRunning(long process);
+
 /// The temporary name of a file, for programs that write it themselves:
-/// NAME.part-PID.
+/// NAME.part-PID-MACHINE.
 std::filesystem::path temporaryFor(const std::filesystem::path& path);
 
 /// Flushes a complete temporary to the disk and renames it to its final name.
@@ -39,7 +45,7 @@ void publish(const std::filesystem::path& temporary, const std::filesystem::path
 /// True for names that temporaryFor() gives.
 bool isTemporary(const std::filesystem::path& path);
 
-/// Removes from a folder the temporaries of processes that no longer run.
+/// Removes from a folder the temporaries of processes of this machine that no longer run.
 /// @return how many; 0 where the folder does not exist
 int removeStaleTemporaries(const std::filesystem::path& folder);
 

@@ -1,6 +1,7 @@
 # Options and what holds for every target of the project.
 option(EMSCAPE_TESTS "Build the tests" ON)
 option(EMSCAPE_WERROR "Treat warnings as errors" ON)
+option(EMSCAPE_PYTHON_MODULE "Build the extension module of the Python package" OFF)
 set(EMSCAPE_SANITIZE "" CACHE STRING "Sanitizer of every target: address, thread or empty")
 set_property(CACHE EMSCAPE_SANITIZE PROPERTY STRINGS "" address thread)
 set(EMSCAPE_CUDA AUTO CACHE STRING "Device code: AUTO (where CUDA is found), ON (required) or OFF")

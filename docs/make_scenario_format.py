@@ -18,6 +18,8 @@ def kind_of(spec):
     if "$ref" in spec:
         name = spec["$ref"].split("/")[-1]
         return f"[{name}](#{name.lower()})"
+    if "anyOf" in spec:
+        return " or ".join(kind_of(choice) for choice in spec["anyOf"])
     if "enum" in spec:
         return ", ".join(f"`{choice}`" for choice in spec["enum"])
     if spec["type"] == "array":

@@ -95,7 +95,8 @@ class Resolver {
     node_ = node;
     if (!node) result_.exists = false;
     result_.spec = &spec;
-    object_ = spec.type == ValueType::object ? spec.object : nullptr;
+    const bool is_in_place = node && node->kind == NodeKind::map;  // of a number
+    object_ = spec.type == ValueType::object || is_in_place ? spec.object : nullptr;
   }
 
   void key() {

@@ -87,6 +87,18 @@ ValueSpec ValueSpec::distinct() const {
   return spec;
 }
 
+ValueSpec ValueSpec::orWord(std::string word) const {
+  ValueSpec spec = *this;
+  spec.choices.push_back(std::move(word));
+  return spec;
+}
+
+ValueSpec ValueSpec::orObject(const ObjectSpec& fields) const {
+  ValueSpec spec = *this;
+  spec.object = &fields;
+  return spec;
+}
+
 const KeySpec* ObjectSpec::find(const std::string& key, const std::string* variant) const {
   for (const KeySpec& row : keys) {
     const bool applies = row.only_for.empty() || variant == nullptr ||
@@ -104,7 +116,8 @@ std::string stemOf(const KeySpec& key) {
   const auto letters = [](const std::string& text) {
     std::string kept;
     for (const char c : text) {
-      if (c != '_' && c != '/') kept += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      if (c != '_' && c != '/' && c != '-' && c != ' ')
+        kept += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     }
     return kept;
   };

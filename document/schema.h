@@ -21,8 +21,8 @@ struct ValueSpec {
   double minimum = -std::numeric_limits<double>::infinity();  ///< number, integer
   double maximum = std::numeric_limits<double>::infinity();
   bool minimum_excluded = false;
-  std::vector<std::string> choices;       ///< choice
-  const ObjectSpec* object = nullptr;     ///< object
+  std::vector<std::string> choices;       ///< choice; number: words that may stand in its place
+  const ObjectSpec* object = nullptr;     ///< object; number: keys that may stand in its place
   std::shared_ptr<const ValueSpec> item;  ///< list
   int min_items = 0;                      ///< list; text, file: characters
   int max_items = 0;
@@ -32,6 +32,10 @@ struct ValueSpec {
   ValueSpec above(double bound) const;  ///< with this minimum, itself excluded
   ValueSpec to(double highest) const;   ///< with this maximum
   ValueSpec distinct() const;           ///< with items_differ
+  /// Of a number: or this word in its place.
+  ValueSpec orWord(std::string word) const;
+  /// Of a number: or these keys in its place. Keeps a pointer to `fields`, which must outlive the table.
+  ValueSpec orObject(const ObjectSpec& fields) const;
 };
 
 /// Default of a key: none, a number, a text (choice, text) or a list of texts.

@@ -62,7 +62,8 @@ std::string describe(const DocumentNode& node) {
 std::string expectation(const ValueSpec& spec) {
   switch (spec.type) {
     case ValueType::number:
-      return "a number" + withUnit(spec.unit);
+      return "a number" + withUnit(spec.unit) + (spec.choices.empty() ? "" : " or " + joined(spec.choices)) +
+             (spec.object != nullptr ? " or the keys of a " + spec.object->name : "");
     case ValueType::integer:
       return "a whole number";
     case ValueType::boolean:
@@ -192,12 +193,16 @@ class Checker {
     const auto wrongType = [&] {
       fault(node.position, fmt::format("{} must be {}, not {}", name, expectation(spec), describe(node)));
     };
-    if (spec.type == ValueType::object) {
+    const bool is_in_place = spec.object != nullptr && node.kind == NodeKind::map;  // of a number
+    if (spec.type == ValueType::object || is_in_place) {
       object(name, node, *spec.object);
     } else if (spec.type == ValueType::list) {
       node.kind == NodeKind::sequence ? list(name, node, spec) : wrongType();
     } else if (node.kind != NodeKind::scalar) {
       wrongType();
+    } else if (spec.type == ValueType::number && !node.quoted &&
+               std::count(spec.choices.begin(), spec.choices.end(), node.text) > 0) {
+      return;
     } else if (spec.type == ValueType::number || spec.type == ValueType::integer) {
       const std::optional<double> number = node.quoted ? std::nullopt : numberOf(node.text);
       if (!number) return wrongType();

@@ -57,13 +57,18 @@ class SchemaWriter {
     return list;
   }
 
-  static Json numeric(const ValueSpec& spec) {
+  Json numeric(const ValueSpec& spec) {
     Json json = {{"type", spec.type == ValueType::integer ? "integer" : "number"}};
     if (std::isfinite(spec.minimum))
       json[spec.minimum_excluded ? "exclusiveMinimum" : "minimum"] = number(spec.minimum);
     if (std::isfinite(spec.maximum)) json["maximum"] = number(spec.maximum);
     if (!spec.unit.empty()) json["x-unit"] = spec.unit;
-    return json;
+    Json others = Json::array();
+    if (!spec.choices.empty()) others.push_back({{"enum", spec.choices}});
+    if (spec.object != nullptr) others.push_back(reference(*spec.object));
+    if (others.empty()) return json;
+    others.insert(others.begin(), json);
+    return {{"anyOf", others}};
   }
 
   Json key(const KeySpec& row) {

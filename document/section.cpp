@@ -48,10 +48,13 @@ const KeySpec& Section::row(const std::string& key) const {
 }
 
 const DocumentNode* Section::find(const std::string& key) const {
-  const NodeKind kind = kindOf(row(key).value.type);
+  const ValueSpec& value = row(key).value;
+  const NodeKind kind = kindOf(value.type);
   if (node_ == nullptr) return nullptr;
   for (const MapEntry& entry : node_->entries) {
-    if (entry.key == key) return entry.value->kind == kind ? entry.value.get() : nullptr;
+    if (entry.key != key) continue;
+    const bool is_in_place = value.object != nullptr && entry.value->kind == NodeKind::map;
+    return entry.value->kind == kind || is_in_place ? entry.value.get() : nullptr;
   }
   return nullptr;
 }
@@ -99,7 +102,9 @@ int Section::choiceIndex(const std::string& key) const {
 }
 
 Section Section::section(const std::string& key) const {
-  return Section(*file_, find(key), *row(key).value.object);
+  const DocumentNode* node = find(key);
+  return Section(*file_, node != nullptr && node->kind == NodeKind::map ? node : nullptr,
+                 *row(key).value.object);
 }
 
 std::vector<Section> Section::sections(const std::string& key) const {

@@ -37,6 +37,7 @@ class Section {
     return static_cast<Enum>(choiceIndex(key));
   }
 
+  /// The keys of an object, or those in place of a number: node() is null where the number is given.
   Section section(const std::string& key) const;
   std::vector<Section> sections(const std::string& key) const;  ///< list of objects
   std::vector<double> numbers(

@@ -7,6 +7,7 @@
 
 #include "emfield/foot_inverse.h"
 #include "emfield/ground_posts.h"
+#include "emfield/radials.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "propagation/registry/model_info.h"
@@ -71,7 +72,10 @@ PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const St
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   PathInputs inputs;
   inputs.emitter = emitterInputs(scenario, emitter);
-  inputs.site = {radToDeg(station.geodesy.latitude_rad), station.height_msl_m, station.earth_radius_m,
+  inputs.site = {radToDeg(station.geodesy.latitude_rad),
+                 radToDeg(station.geodesy.longitude_rad),
+                 station.height_msl_m,
+                 station.earth_radius_m,
                  station.effective_earth_radius_m,
                  model.on_effective_earth ? station.effective_height_msl_m : station.height_msl_m};
   if (model.on_smooth_surface) {
@@ -95,16 +99,27 @@ PathExtent pathExtent(const Station& station, const GridColumns& columns) {
   return extent;
 }
 
+void inModel(const Emitter& emitter, const std::function<void()>& body) {
+  try {
+    body();
+  } catch (const Error& error) {
+    throw Error(error.code(), emitter.propagation.location,
+                fmt::format("emitter '{}': '{}': {}", emitter.name, toString(emitter.propagation.model),
+                            error.message()));
+  }
+}
+
 bool hasExcess(const Scenario& scenario, const Emitter& emitter) {
   return propagation::hasExcess(emitterInputs(scenario, emitter));
 }
 
-EmitterExcess makeExcess(const PathInputs& inputs) {
+EmitterExcess makeExcess(const PathInputs& inputs, const propagation::RadialInputs* radials) {
   const ModelInfo& model = propagation::modelInfo(inputs.emitter.settings.model);
   const auto model_tables = std::make_shared<std::vector<float>>();
   const auto air_tables = std::make_shared<std::vector<float>>();
   EmitterExcess excess;
   if (model.excess != nullptr) excess.model = model.excess(inputs, *model_tables);
+  if (model.radial != nullptr) excess.model = model.radial(inputs, *radials, *model_tables);
   if (propagation::hasAirLoss(inputs.emitter)) {
     excess.air = propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), *air_tables);
   }
@@ -115,9 +130,19 @@ EmitterExcess makeExcess(const PathInputs& inputs) {
 
 EmitterExcess makeExcess(const Scenario& scenario, const Emitter& emitter, const Station& station,
                          const scenario::Terrain* terrain, const GridColumns& columns) {
+  const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   const bool needs_extent = propagation::needsExtent(emitterInputs(scenario, emitter));
-  return makeExcess(pathInputs(scenario, emitter, station, terrain,
-                               needs_extent ? pathExtent(station, columns) : PathExtent{}));
+  if (model.radial == nullptr) {
+    return makeExcess(pathInputs(scenario, emitter, station, terrain,
+                                 needs_extent ? pathExtent(station, columns) : PathExtent{}));
+  }
+  EmitterExcess excess;
+  inModel(emitter, [&] {
+    const PathExtent extent = pathExtent(station, columns);
+    const propagation::RadialInputs radials = radialInputs(station, columns, terrain, extent);
+    excess = makeExcess(pathInputs(scenario, emitter, station, terrain, extent), &radials);
+  });
+  return excess;
 }
 
 }  // namespace emscape::emfield

@@ -2,6 +2,7 @@
 /// tables.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "emscape/scenario/scenario.h"
 #include "propagation/air/air_loss.h"
 #include "propagation/inputs.h"
+#include "propagation/radial.h"
 #include "propagation/registry/excess_model.h"
 
 namespace emscape::emfield {
@@ -40,6 +42,9 @@ propagation::PathInputs pathInputs(const scenario::Scenario& scenario, const sce
                                    const Station& station, const scenario::Terrain* terrain,
                                    const propagation::PathExtent& extent);
 
+/// Calls a function; its Errors get the emitter's name, that of its model and the line of its settings.
+void inModel(const scenario::Emitter& emitter, const std::function<void()>& body);
+
 /// Extent of the paths from a station to a grid.
 propagation::PathExtent pathExtent(const Station& station, const GridColumns& columns);
 
@@ -48,7 +53,9 @@ propagation::PathExtent pathExtent(const Station& station, const GridColumns& co
 bool hasExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
 
 /// The excess of an emitter that has one.
-EmitterExcess makeExcess(const propagation::PathInputs& inputs);
+/// @param radials  for models with ModelInfo::radial
+EmitterExcess makeExcess(const propagation::PathInputs& inputs,
+                         const propagation::RadialInputs* radials = nullptr);
 /// The same over the columns of a grid.
 /// @throws as pathInputs()
 EmitterExcess makeExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,

@@ -13,12 +13,26 @@
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
+namespace {
+
+bool isSameColumn(const ColumnsView& columns, int a, int b) {
+  if (columns.of_surface == nullptr) return false;
+  const PlaceColumn &first = columns.of_surface[a], &second = columns.of_surface[b];
+  return first.foot_ecef_m == second.foot_ecef_m && first.base_ellipsoid_m == second.base_ellipsoid_m;
+}
+
+}  // namespace
+
 void EmitterGeometry::compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                               const scenario::Emitter& emitter, const GridColumns& columns,
-                              const scenario::Terrain* terrain, Times& times, const TerrainBounds* bounds) {
+                              const scenario::Terrain* terrain, Times& times, const TerrainBounds* bounds,
+                              bool has_clutter_map) {
   Stopwatch watch;
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
-  locateColumns(station, columns);
+  const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+  const bool needs_paths = !columns.tilted && (model.casts_shadow || hasExcess(scenario, emitter));
+  UnsetVector<FastInverse> paths(needs_paths ? columns.count() : 0);
+  locateColumns(station, columns, needs_paths ? paths.data() : nullptr);
   shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
   excess_.clear();
   excess_db_.clear();
@@ -27,8 +41,8 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   warnings_ = 0;
   times.columns_ms += watch.lap_ms();
 
-  const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
-  const ExcessGrid grid = excessGrid(columns, terrain);
+  ExcessGrid grid = excessGrid(columns, terrain);
+  if (needs_paths) grid.paths = paths.data();
   const propagation::PathExtent extent = pathExtent(station, columns);
   const std::vector<double> ranges_m = postRanges(extent.farthest_m, postSpacing_m(terrain));
   const GroundPosts ground = groundPosts(terrain, ranges_m);
@@ -46,14 +60,14 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
-  mapClutter(scenario, emitter, station, extent, terrain);
+  clutter_.clear();
+  if (has_clutter_map) mapClutter(scenario, emitter, station, extent, terrain);
   times.excess_ms += watch.lap_ms();
 }
 
 void EmitterGeometry::mapClutter(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                  const Station& station, const propagation::PathExtent& extent,
                                  const scenario::Terrain* terrain) {
-  clutter_.clear();
   std::optional<ClutterMapTask> task = clutterMapTask(scenario, emitter, station, &extent);
   if (!task) return;
   const std::vector<double> ranges_m = clutterPostRanges(task->grid, postSpacing_m(terrain));
@@ -77,15 +91,23 @@ std::size_t EmitterGeometry::bytesOf(const scenario::Scenario& scenario, const s
          clutterMapBytes(emitter);
 }
 
-void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns) {
-  column_count_ = columns.columns.size();
+void EmitterGeometry::locateColumns(const Station& station, const GridColumns& columns, FastInverse* paths) {
+  column_count_ = columns.count();
   arrays_.resize(kColumnNumbers * column_count_);
   const double middle_m = columns.middle_m();
+  const ColumnsView view = columns.view();
   parallelFor(static_cast<int>(column_count_), 4096, [&](int begin, int end) {
     for (int c = begin; c < end; ++c) {
-      const GridColumn& column = columns.columns[c];
-      columnGeometry(station, column, footInverse(station, column, middle_m), middle_m, arrays_.data() + c,
-                     column_count_);
+      if (c > begin && isSameColumn(view, c - 1, c)) {  // places that are left out
+        for (int n = 0; n < kColumnNumbers; ++n)
+          arrays_[n * column_count_ + c] = arrays_[n * column_count_ + c - 1];
+        if (paths != nullptr) paths[c] = paths[c - 1];
+        continue;
+      }
+      const GridColumn column = view[c];
+      const FastInverse path = footInverse(station, column, middle_m);
+      columnGeometry(station, column, path, middle_m, arrays_.data() + c, column_count_);
+      if (paths != nullptr) paths[c] = path;
     }
   });
 }

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "base/unset_vector.h"
 #include "emfield/clutter_map.h"
 #include "emfield/column_geometry.h"
 #include "emfield/terrain_bounds.h"
@@ -24,12 +25,13 @@ class EmitterGeometry {
   /// @param emitter  of the scenario
   /// @param terrain  null: smooth earth
   /// @param bounds   of the terrain, for surfaces; null: none
+  /// @param has_clutter_map  FieldPlan::has_clutter_map
   void compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                const scenario::Emitter& emitter, const GridColumns& columns, const scenario::Terrain* terrain,
-               Times& times, const TerrainBounds* bounds = nullptr);
+               Times& times, const TerrainBounds* bounds = nullptr, bool has_clutter_map = false);
 
   ColumnGeometryView view() const;
-  /// Of a radar with clutter of the surface; else without cells.
+  /// Of a radar with clutter of the surface, if it was asked for; else without cells.
   ClutterMapView clutterMap() const {
     return clutterMapView(clutter_grid_, clutter_.empty() ? nullptr : clutter_.data());
   }
@@ -57,13 +59,14 @@ class EmitterGeometry {
   void mapClutter(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                   const Station& station, const propagation::PathExtent& extent,
                   const scenario::Terrain* terrain);
-  void locateColumns(const Station& station, const GridColumns& columns);
+  /// @param paths  receives the paths to the columns if these are not tilted; null: they are not asked for
+  void locateColumns(const Station& station, const GridColumns& columns, FastInverse* paths);
 
   std::size_t column_count_ = 0;
-  std::vector<float> arrays_;  ///< kColumnNumbers x column_count_
+  UnsetVector<float> arrays_;  ///< kColumnNumbers x column_count_
   std::vector<float> shadow_edge_m_;
   std::vector<ExcessCode> excess_;           ///< columns x layers, or empty
-  std::vector<float> excess_db_;             ///< the same over a surface, instead of codes
+  UnsetVector<float> excess_db_;             ///< the same over a surface, instead of codes
   std::vector<ReflectedRayCode> reflected_;  ///< the same
   ClutterGrid clutter_grid_;
   std::vector<ClutterCell> clutter_;  ///< empty: no clutter of the surface

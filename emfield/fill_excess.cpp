@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <optional>
 #include <type_traits>
 #include <vector>
 
@@ -19,33 +18,34 @@ using propagation::kMissingTerrain;
 /// Neighbouring columns, so that results are written in runs.
 constexpr int kBlock = 16;
 
-/// The search that leaves out most posts, where there is one; each thread has a memory of its own.
-/// @param bounds  null: there is none
+/// Fills the columns whose paths need not be read whole, where there is a search for that.
+/// @return for each column whether it is left; empty: all are
 template <class Model>
-std::optional<SurfaceDiffraction> surfaceSearch(const ExcessTask<Model>& task, const TerrainBounds* bounds) {
+std::vector<char> fillBySearch(const ExcessTask<Model>& task, const TerrainBounds* bounds,
+                               const ExcessOutput& out) {
   if constexpr (std::is_same_v<Model, propagation::DiffractionExcess>) {
-    if (bounds != nullptr && bounds->isUsable()) return std::make_optional<SurfaceDiffraction>(task, *bounds);
+    if (bounds != nullptr && bounds->isUsable()) return fillSurfaceDiffraction(task, *bounds, out);
   }
-  return std::nullopt;
+  return {};
 }
 
 template <class Model>
 unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const ExcessOutput& out) {
   const ExcessGrid& grid = task.grid;
-  const std::optional<SurfaceDiffraction> search = surfaceSearch(task, bounds);
+  const std::vector<char> is_left = fillBySearch(task, bounds, out);
+  const auto isLeft = [&](std::size_t column) { return is_left.empty() || is_left[column] != 0; };
   const int columns = static_cast<int>(grid.column_count);
   std::atomic<unsigned> all_warnings{0};
   parallelFor((columns + kBlock - 1) / kBlock, 4, [&](int begin, int end) {
     std::vector<double> memory(ExcessScratch::bytes(task.posts(), grid.layers) / sizeof(double) + 1);
     const ExcessScratch scratch = ExcessScratch::in(memory.data(), task.posts(), grid.layers);
     std::vector<float> excess_db(static_cast<std::size_t>(grid.layers) * kBlock);
-    SurfaceDiffraction::Memory search_memory;
-    if (search) search_memory = search->makeMemory();
     unsigned warnings = 0;
     for (int block = begin; block < end; ++block) {
       const int first = block * kBlock, count = std::min(kBlock, columns - first);
       for (int i = 0; i < count; ++i) {
         const auto column = static_cast<std::size_t>(first + i);
+        if (!isLeft(column)) continue;
         const auto setAll = [&](float db) { std::fill_n(scratch.excess_db, grid.layers, db); };
         unsigned of_column = 0;
         if (grid.isLeftOut(column)) {
@@ -53,7 +53,7 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
         } else if (Model::kNeedsTerrain && grid.isWithoutGround(column)) {
           setAll(NAN);
           of_column = kMissingTerrain;
-        } else if (!search || !search->fillColumn(column, scratch, search_memory)) {
+        } else {
           of_column = task.fillColumn(column, scratch, readPostsCpu, out.reflected);
         }
         if (of_column & kMissingTerrain) out.markUnknown(column);
@@ -65,6 +65,7 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
       for (int k = 0; k < grid.layers; ++k) {
         const std::size_t row = static_cast<std::size_t>(k) * grid.column_count + first;
         for (int i = 0; i < count; ++i) {
+          if (!isLeft(static_cast<std::size_t>(first + i))) continue;
           out.excess.set(row + i, excess_db[static_cast<std::size_t>(k) * kBlock + i]);
         }
       }
@@ -78,8 +79,8 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
 
 ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terrain) {
   ExcessGrid grid;
-  grid.columns = columns.columns.data();
-  grid.column_count = columns.columns.size();
+  grid.columns = columns.view();
+  grid.column_count = columns.count();
   grid.t_m = columns.t_m.data();
   grid.layers = static_cast<int>(columns.t_m.size());
   grid.tilted = columns.tilted;

@@ -22,7 +22,7 @@ using propagation::ExcessColumn;
 
 /// The columns of a grid, as plain data.
 struct ExcessGrid {
-  const GridColumn* columns = nullptr;
+  ColumnsView columns;
   std::size_t column_count = 0;
   const float* t_m = nullptr;
   int layers = 0;
@@ -30,6 +30,8 @@ struct ExcessGrid {
   bool every_height = false;  ///< see ExcessColumn
   /// Ground below each column; null: read at the end of each profile (tilted columns), or none.
   const float* ground_msl_m = nullptr;
+  /// From the station to each column, if it is known and the columns are not tilted; null: it is computed.
+  const FastInverse* paths = nullptr;
   /// Lowest layer of each column that counts; null: all do.
   const std::uint16_t* first_valid_k = nullptr;
   /// Number of segments of a tilted column, each above one point of the ground; 1 for vertical columns.
@@ -56,6 +58,7 @@ struct ExcessGrid {
   }
   /// From a station to below the middle of a segment.
   EMSCAPE_HD FastInverse coordinatesOf(const Station& station, std::size_t column, int segment) const {
+    if (paths != nullptr) return paths[column];
     const auto first_m = static_cast<double>(t_m[firstLayer(segment)]);
     const auto last_m = static_cast<double>(t_m[firstLayer(segment + 1) - 1]);
     return footInverse(station, columns[column], (first_m + last_m) / 2);
@@ -87,6 +90,7 @@ struct ExcessTask {
     const int first = grid.firstLayer(segment);
     const FastInverse point = grid.coordinatesOf(station, c, segment);
     part.range_m = point.distance_m;
+    part.azimuth_rad = std::atan2(point.sin_azimuth, point.cos_azimuth);
     part.height_msl_m = scratch.height_msl_m + first;
     part.count = grid.firstLayer(segment + 1) - first;
     part.every_height = grid.every_height;

@@ -50,26 +50,50 @@ GridColumn tiltedColumn(const GeoFrame& frame, const Vec3d& base_m, double upper
   return column;
 }
 
-/// The vertical column whose t = 0 is at a height above a place.
-GridColumn columnAbove(const Surface::Place& place, double base_msl_m) {
-  const double latitude_rad = degToRad(place.latitude_deg), longitude_rad = degToRad(place.longitude_deg);
-  const double base_ellipsoid_m = base_msl_m + geoidUndulation_m(place.latitude_deg, place.longitude_deg);
-  GridColumn column;
-  column.axis = {std::cos(latitude_rad) * std::cos(longitude_rad),
-                 std::cos(latitude_rad) * std::sin(longitude_rad), std::sin(latitude_rad)};
-  column.foot_ecef_m = toEcef({place.latitude_deg, place.longitude_deg, 0});
-  column.base_ecef_m = column.foot_ecef_m + column.axis * base_ellipsoid_m;
-  column.foot_drift = {0, 0, 0};
-  column.height_msl_m[0] = base_msl_m;
-  column.height_msl_m[1] = 1;
-  column.height_msl_m[2] = 0;
-  return column;
-}
+/// Undulations of the geoid at many places close to each other: bilinear in cells so small that the geoid is
+/// flat there, which are parts of those of the geoid's grid.
+/// @accuracy 0.1 mm where the geoid's slope changes by 1e-6 per km
+class NearGeoid {
+ public:
+  double undulation_m(double latitude_deg, double longitude_deg) {
+    constexpr double kCellsPerDegree = 64;
+    const double row = latitude_deg * kCellsPerDegree, column = longitude_deg * kCellsPerDegree;
+    const double j = std::floor(row), i = std::floor(column);
+    if (i != i_ || j != j_) {
+      i_ = i;
+      j_ = j;
+      for (int n = 0; n < 4; ++n) {
+        corners_m_[n] =
+            geoidUndulation_m(std::min((j + n / 2) / kCellsPerDegree, 90.0), (i + n % 2) / kCellsPerDegree);
+      }
+    }
+    const double x = column - i, y = row - j;
+    const double south = corners_m_[0] + x * (corners_m_[1] - corners_m_[0]);
+    const double north = corners_m_[2] + x * (corners_m_[3] - corners_m_[2]);
+    return south + y * (north - south);
+  }
+
+ private:
+  double i_ = HUGE_VAL, j_ = HUGE_VAL;
+  double corners_m_[4] = {};
+};
+
+/// Makes the vertical columns whose t = 0 is at a height above a place.
+class ColumnMaker {
+ public:
+  PlaceColumn columnAbove(const Surface::Place& place, double base_msl_m) {
+    return {toEcef({place.latitude_deg, place.longitude_deg, 0}),
+            base_msl_m + geoid_.undulation_m(place.latitude_deg, place.longitude_deg), base_msl_m};
+  }
+
+ private:
+  NearGeoid geoid_;
+};
 
 /// Extends a range of heights by those of a column.
 /// @param range  with lowest_msl_m and highest_msl_m
-template <class Range>
-void addHeights(const GridColumn& column, const std::vector<float>& layers_m, Range& range) {
+template <class Column, class Range>
+void addHeights(const Column& column, const std::vector<float>& layers_m, Range& range) {
   for (const float t_m : {layers_m.front(), layers_m.back()}) {
     const double height_m = heightMsl_m(column, static_cast<double>(t_m));
     range.lowest_msl_m = std::min(range.lowest_msl_m, height_m);
@@ -82,39 +106,38 @@ void setOutlineOfGrid(GridColumns& columns) {
   const Dims& dims = columns.dims;
   for (const int i : {0, dims.x / 2, dims.x - 1}) {
     for (const int j : {0, dims.y / 2, dims.y - 1}) {
-      columns.outline.push_back(columns.columns[static_cast<std::size_t>(j) * dims.x + i]);
+      columns.outline.push_back(columns.of_grid[static_cast<std::size_t>(j) * dims.x + i]);
       addHeights(columns.outline.back(), columns.t_m, columns);
     }
   }
 }
 
-/// A circle around all places.
-void setOutlineOfPlaces(const Surface& surface, GridColumns& columns) {
-  const auto isKnown = [&](std::size_t c) {
-    return !std::isnan(surface.places[c].latitude_deg) &&
-           (columns.ground_msl_m.empty() || !std::isnan(columns.ground_msl_m[c]));
-  };
-  // By parts of the places: their sums are added in order, whatever thread computes them.
-  constexpr std::size_t kPart = 4096;
-  struct Part {
-    Vec3d sum{0, 0, 0};
-    double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL, beyond_m = 0;
-  };
-  std::vector<Part> parts((surface.places.size() + kPart - 1) / kPart);
-  const auto inParts = [&](const auto& visit) {
-    parallelFor(static_cast<int>(parts.size()), 1, [&](int begin, int end) {
-      for (std::size_t c = begin * kPart; c < std::min(end * kPart, surface.places.size()); ++c) {
-        if (isKnown(c)) visit(c, parts[c / kPart]);
-      }
-    });
-  };
-  inParts([&](std::size_t c, Part& part) {
-    part.sum = part.sum + columns.columns[c].foot_ecef_m;
-    addHeights(columns.columns[c], columns.t_m, part);
+/// What is known of some of a surface's places.
+struct PlacesPart {
+  Vec3d feet{0, 0, 0};  ///< sum
+  double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;
+  double farthest2_m2 = 0;  ///< of a foot from the middle, in a straight line
+  double beyond_m = 0;      ///< the same along the ground
+};
+
+/// Places that a thread visits together. Their sums are added in order, whatever thread computes them.
+constexpr int kPlacesPart = 4096;
+
+/// Calls visit(first, end, part) for all parts.
+template <class Visit>
+void visitParts(std::vector<PlacesPart>& parts, int places, const Visit& visit) {
+  parallelFor(static_cast<int>(parts.size()), 1, [&](int begin, int end) {
+    for (int n = begin; n < end; ++n)
+      visit(n * kPlacesPart, std::min((n + 1) * kPlacesPart, places), parts[n]);
   });
+}
+
+/// Sets a circle around all places with ground, and gives places that are left out the column of its middle,
+/// so that their numbers are finite.
+void setOutlineOfPlaces(const Surface& surface, std::vector<PlacesPart>& parts, GridColumns& columns) {
   Vec3d sum{0, 0, 0};
-  for (const Part& part : parts) {
-    sum = sum + part.sum;
+  for (const PlacesPart& part : parts) {
+    sum = sum + part.feet;
     columns.lowest_msl_m = std::min(columns.lowest_msl_m, part.lowest_msl_m);
     columns.highest_msl_m = std::max(columns.highest_msl_m, part.highest_msl_m);
   }
@@ -125,12 +148,35 @@ void setOutlineOfPlaces(const Surface& surface, GridColumns& columns) {
                     : "the terrain is missing below all places to compute the field over");
   }
   const GeodeticPosition middle = fromEcef(sum * (kWgs84SemiMajor_m / length(sum)));
-  columns.outline.push_back(columnAbove({middle.latitude_deg, middle.longitude_deg}, 0));
-  const Station station = makeStation({middle.latitude_deg, middle.longitude_deg, 0}, 0, 1);
-  inParts([&](std::size_t c, Part& part) {
-    part.beyond_m = std::max(part.beyond_m, footInverse(station, columns.columns[c], 0).distance_m);
+  const PlaceColumn at_middle = ColumnMaker().columnAbove({middle.latitude_deg, middle.longitude_deg}, 0);
+  columns.outline.push_back(gridColumn(at_middle));
+  const auto places = static_cast<int>(columns.of_surface.size());
+  const auto distance2_m2 = [&](int c) {
+    const bool is_hole = !columns.ground_msl_m.empty() && std::isnan(columns.ground_msl_m[c]);
+    if (is_hole || std::isnan(surface.places[c].latitude_deg)) return 0.0;
+    const Vec3d chord = columns.of_surface[c].foot_ecef_m - columns.outline[0].foot_ecef_m;
+    return dot(chord, chord);
+  };
+  visitParts(parts, places, [&](int first, int end, PlacesPart& part) {
+    for (int c = first; c < end; ++c) {
+      part.farthest2_m2 = std::max(part.farthest2_m2, distance2_m2(c));
+      if (std::isnan(surface.places[c].latitude_deg)) columns.of_surface[c] = at_middle;
+    }
   });
-  for (const Part& part : parts) {
+  double farthest2_m2 = 0;
+  for (const PlacesPart& part : parts) farthest2_m2 = std::max(farthest2_m2, part.farthest2_m2);
+  // The earth's radii differ by less than 1.5 %, and much less so the arcs over one chord.
+  constexpr double kNearlyFarthest2 = 0.97;
+  const Station station = makeStation({middle.latitude_deg, middle.longitude_deg, 0}, 0, 1);
+  visitParts(parts, places, [&](int first, int end, PlacesPart& part) {
+    if (part.farthest2_m2 < kNearlyFarthest2 * farthest2_m2) return;
+    for (int c = first; c < end; ++c) {
+      if (distance2_m2(c) < kNearlyFarthest2 * farthest2_m2) continue;
+      part.beyond_m =
+          std::max(part.beyond_m, fastInverse(station.geodesy, columns.of_surface[c].foot_ecef_m).distance_m);
+    }
+  });
+  for (const PlacesPart& part : parts) {
     columns.beyond_outline_m = std::max(columns.beyond_outline_m, part.beyond_m);
   }
 }
@@ -151,7 +197,7 @@ double tiltOf(const GridColumns& columns) {
   if (!columns.tilted) return 0;
   const double half_height_m = 0.5 * (columns.t_m.back() - columns.t_m.front());
   double drift = 0;
-  for (const GridColumn& column : columns.columns) drift = std::max(drift, length(column.foot_drift));
+  for (const GridColumn& column : columns.of_grid) drift = std::max(drift, length(column.foot_drift));
   return drift * half_height_m;
 }
 
@@ -161,7 +207,7 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
   result.dims = grid.dims;
   result.tilted = grid.frame.kind == FrameKind::enu;
   const int column_count = grid.dims.x * grid.dims.y;
-  result.columns.resize(column_count);
+  result.of_grid.resize(column_count);
   for (int k = 0; k < grid.dims.z; ++k) result.t_m.push_back(static_cast<float>(grid.center_m(0, 0, k).z));
   if (terrain != nullptr) {
     result.ground_msl_m.resize(column_count);
@@ -174,7 +220,7 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
         const std::size_t c = static_cast<std::size_t>(j) * grid.dims.x + i;
         const Vec3d center = grid.center_m(i, j, 0);
         const Vec3d base_m{center.x, center.y, 0};
-        GridColumn& column = result.columns[c];
+        GridColumn& column = result.of_grid[c];
         column =
             result.tilted ? tiltedColumn(frame, base_m, grid.upper_m().z) : verticalColumn(frame, base_m);
         if (terrain == nullptr) continue;
@@ -201,13 +247,16 @@ GridColumns makeGridColumns(const Surface& surface, const scenario::Terrain* ter
   GridColumns result;
   result.every_height = true;
   result.dims = {surface.width, surface.height, static_cast<int>(surface.heights_m.size())};
-  result.columns.resize(surface.places.size());
+  const auto places = static_cast<int>(surface.places.size());
+  result.of_surface.resize(surface.places.size());
   for (const double height_m : surface.heights_m) result.t_m.push_back(static_cast<float>(height_m));
   if (terrain != nullptr) result.ground_msl_m.resize(surface.places.size());
   result.first_valid_k.assign(surface.places.size(), 0);
   const bool above_ground = surface.reference == HeightReference::ground;
-  parallelFor(static_cast<int>(surface.places.size()), 1024, [&](int begin, int end) {
-    for (int c = begin; c < end; ++c) {
+  std::vector<PlacesPart> parts((surface.places.size() + kPlacesPart - 1) / kPlacesPart);
+  visitParts(parts, places, [&](int first, int end, PlacesPart& part) {
+    ColumnMaker maker;
+    for (int c = first; c < end; ++c) {
       const Surface::Place& place = surface.places[c];
       if (std::isnan(place.latitude_deg)) {
         result.first_valid_k[c] = static_cast<std::uint16_t>(result.dims.z);
@@ -217,23 +266,24 @@ GridColumns makeGridColumns(const Surface& surface, const scenario::Terrain* ter
           terrain != nullptr ? terrain->heightMsl_m(place.latitude_deg, place.longitude_deg) : 0;
       const double base_msl_m = (above_ground && !std::isnan(ground_msl_m) ? ground_msl_m : 0) +
                                 (surface.offsets_m.empty() ? 0 : static_cast<double>(surface.offsets_m[c]));
-      result.columns[c] = columnAbove(place, base_msl_m);
-      if (terrain == nullptr) continue;
-      result.ground_msl_m[c] = static_cast<float>(ground_msl_m);
-      int k = 0;
-      if (std::isnan(ground_msl_m)) {
-        k = result.dims.z;
-      } else if (!above_ground) {
-        while (k < result.dims.z && !(base_msl_m + surface.heights_m[k] >= ground_msl_m)) ++k;
+      const PlaceColumn& column = result.of_surface[c] = maker.columnAbove(place, base_msl_m);
+      if (terrain != nullptr) {
+        result.ground_msl_m[c] = static_cast<float>(ground_msl_m);
+        int k = 0;
+        if (std::isnan(ground_msl_m)) {
+          k = result.dims.z;
+        } else if (!above_ground) {
+          while (k < result.dims.z && !(base_msl_m + surface.heights_m[k] >= ground_msl_m)) ++k;
+        }
+        result.first_valid_k[c] = static_cast<std::uint16_t>(k);
       }
-      result.first_valid_k[c] = static_cast<std::uint16_t>(k);
+      if (std::isnan(ground_msl_m)) continue;
+      part.feet = part.feet + column.foot_ecef_m;
+      addHeights(column, result.t_m, part);
     }
   });
-  setOutlineOfPlaces(surface, result);
-  for (std::size_t c = 0; c < surface.places.size(); ++c) {  // so that their numbers are finite
-    if (std::isnan(surface.places[c].latitude_deg)) result.columns[c] = result.outline[0];
-  }
-  for (std::size_t c = 0; c < result.ground_msl_m.size(); ++c) {
+  setOutlineOfPlaces(surface, parts, result);
+  for (int c = 0; c < places && terrain != nullptr; ++c) {
     const bool is_place = !std::isnan(surface.places[c].latitude_deg);
     if (is_place && std::isnan(result.ground_msl_m[c])) countHole(c, result);
   }

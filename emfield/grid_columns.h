@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/fast_geodesy.h"
+#include "base/unset_vector.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
@@ -29,6 +31,31 @@ EMSCAPE_HD inline double heightMsl_m(const GridColumn& column, double t_m) {
   return column.height_msl_m[0] + t_m * (column.height_msl_m[1] + t_m * column.height_msl_m[2]);
 }
 
+/// A vertical column above a place of a surface, in a third of the memory.
+struct PlaceColumn {
+  Vec3d foot_ecef_m;                    ///< point of the ellipsoid below
+  double base_ellipsoid_m, base_msl_m;  ///< heights of t = 0
+};
+
+EMSCAPE_HD inline double heightMsl_m(const PlaceColumn& column, double t_m) {
+  return column.base_msl_m + t_m;
+}
+EMSCAPE_HD inline GridColumn gridColumn(const PlaceColumn& column) {
+  const Vec3d& foot = column.foot_ecef_m;
+  const Vec3d up = normalized(Vec3d{foot.x, foot.y, foot.z / (1 - kWgs84EccentricitySquared)});
+  return {foot + up * column.base_ellipsoid_m, up, foot, {0, 0, 0}, {column.base_msl_m, 1, 0}};
+}
+
+/// Columns as plain data: one of the two.
+struct ColumnsView {
+  const GridColumn* of_grid = nullptr;
+  const PlaceColumn* of_surface = nullptr;
+
+  EMSCAPE_HD GridColumn operator[](std::size_t c) const {
+    return of_grid != nullptr ? of_grid[c] : gridColumn(of_surface[c]);
+  }
+};
+
 /// All columns of a grid, x fastest. Immutable once made.
 struct GridColumns {
   Dims dims;
@@ -38,8 +65,9 @@ struct GridColumns {
   std::vector<GridColumn> outline;
   double beyond_outline_m = 0;
   double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;  ///< of the columns' points
-  std::vector<GridColumn> columns;
-  std::vector<float> t_m;           ///< z of each layer
+  std::vector<GridColumn> of_grid;                            ///< or, of a surface:
+  UnsetVector<PlaceColumn> of_surface;  ///< places that are left out have the column of the outline
+  std::vector<float> t_m;               ///< z of each layer
   std::vector<float> ground_msl_m;  ///< ground below each column (m); NaN over holes; empty without terrain
   std::vector<std::uint16_t>
       first_valid_k;  ///< lowest layer whose centre is not below ground; dims.z over holes and where left out
@@ -47,6 +75,13 @@ struct GridColumns {
   /// A column over a hole, for messages; -1 if there is none.
   long long first_hole = -1;
 
+  ColumnsView view() const {
+    return {of_grid.empty() ? nullptr : of_grid.data(), of_surface.empty() ? nullptr : of_surface.data()};
+  }
+  std::size_t count() const { return of_grid.size() + of_surface.size(); }
+  std::size_t bytes() const {
+    return of_grid.size() * sizeof(GridColumn) + of_surface.size() * sizeof(PlaceColumn);
+  }
   /// z of the middle between the lowest and the highest layer.
   double middle_m() const { return 0.5 * (t_m.front() + t_m.back()); }
 };

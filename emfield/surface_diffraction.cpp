@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "base/simd.h"
-#include "emfield/read_posts.h"
+#include "emfield/path_sectors.h"
+#include "emfield/sector_terrain.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 
@@ -13,42 +14,43 @@ namespace {
 
 using propagation::DiffractionModel;
 
-constexpr int kBlock = SurfaceDiffraction::kBlock;
-constexpr int kMaxChords = 8;  // longer paths are left to the full read
-/// Arrays of Memory::per_block.
-enum BlockNumber { kColumn, kRow, kLowered, kTxBound, kBound, kBlockNumbers };
+constexpr int kBlock = SectorPosts::kBlock, kGroup = SectorPosts::kGroup;
 
-/// What all paths share.
-struct Paths {
-  DiffractionModel<float> model;
-  const double* range_m;    ///< of the posts
-  const float* obstacle_m;  ///< the same
-  const double* begin_m;    ///< per block: range of its first post
-  const float* first_m;     ///< per block: range of its first and last obstacle
-  const float* last_m;
-  const float* first_bulge_m;  ///< per block: the earth's bulge r^2 / (2 a) at its first obstacle
-  const float* window_msl_m;   ///< TerrainBounds
-  int row_windows;
-};
+int groupsOf(int blocks) {
+  return (blocks + kGroup - 1) / kGroup;
+}
 
-/// The path to a column. Heights are relative to the ground below the emitter.
-struct Path {
-  double distance_m = 0;
-  int before = 0;  ///< last post before the receivers
-  int blocks = 0;
-  int chords = 0;
-  TerrainChord chord[kMaxChords];
-  double chord_end_m[kMaxChords];
-  float corner_column[kMaxChords], corner_row[kMaxChords];  ///< the chord's corner in the raster
+/// Bounds of the blocks of a sector's paths. Heights are relative to the ground below the emitter; "lowered"
+/// ones are less the earth's bulge r^2 / (2 a). Arrays are padded to whole groups.
+struct SectorBounds {
   float base_msl_m = 0;
   float tx_m = 0;
+  int blocks = 0;
+  std::vector<float> lowered_m;  ///< largest lowered height of an obstacle
+  std::vector<float> tx_slope;   ///< largest slope from the transmitter to a lowered obstacle
+  /// The largest over this block and all before it, and a lower bound of that.
+  std::vector<float> highest_tx_slope, least_tx_slope;
+  /// The same of groups.
+  std::vector<float> group_lowered_m, group_tx_slope;
 };
 
-/// Memory of a path's blocks and posts.
+/// What all paths share.
+struct Posts {
+  DiffractionModel<float> model;
+  const double* exact_range_m;
+  const float *range_m, *part;
+  int count;
+  const float *first_m, *last_m;              ///< per block: range of its first and last obstacle
+  const float *group_first_m, *group_last_m;  ///< per group
+};
+
+/// Work of one thread.
 struct PathMemory {
-  float *column, *row, *lowered_m, *tx_bound, *bound;
-  float* height_m;
-  int *window, *is_read;
+  std::vector<float> height_m;            ///< of the posts of the blocks that were read
+  std::vector<int> read_for;              ///< per block: number of the path for which it was read
+  std::vector<float> height_msl_m, rx_m;  ///< of the receivers: as they are, and as the model takes them
+  std::vector<int> rx_block, nu_block;    ///< per height: the blocks that decided on the path before
+  int tx_block = 0;
 };
 
 /// A search for a maximum of the posts of a path.
@@ -57,329 +59,329 @@ struct Maximum {
   int block;  ///< that holds it
 };
 
-/// Sets lowered_m of all blocks. @return false if a block is not in one window, or its bound is unknown
-inline bool boundBlocks(const Paths& paths, const Path& path, const PathMemory& memory) {
-  constexpr float kMargin = 0.02f;  // posts: for rounding, and for the curvature of a block
-  float* const columns = memory.column;
-  float* const rows = memory.row;
-  const double* const begin_m = paths.begin_m;
-  int block = 0;
-  for (int n = 0; n < path.chords; ++n) {
-    const TerrainChord chord = path.chord[n];
-    const double* const end_m = std::lower_bound(begin_m + block, begin_m + path.blocks, path.chord_end_m[n]);
-    const int end = static_cast<int>(end_m - begin_m);
-    const float column = path.corner_column[n], row = path.corner_row[n];
-#pragma omp simd
-    for (int b = block; b < end; ++b) {
-      const float part = chord.partAt(begin_m[b]);
-      columns[b] = column + chord.column.at(part);
-      rows[b] = row + chord.row.at(part);
+/// The path to a column.
+struct Path {
+  float distance_m;
+  int before;  ///< last post before the receivers
+  int blocks;
+  int number;
+  float aside;  ///< in the sector, -1..1
+};
+
+/// Finds the maxima over the posts of a path.
+class Search {
+ public:
+  Search(const Posts& posts, const SectorTerrain& terrain, const SectorBounds& bounds, PathMemory& memory,
+         const Path& path)
+      : posts_(posts), terrain_(terrain), bounds_(bounds), memory_(memory), path_(path) {}
+
+  /// @param boundOf(lowered_m, tx_slope, first_m, last_m)  bound of valueOf over obstacles at those ranges
+  /// @param valueOf(range_m, height_m)                     of an obstacle
+  /// @param most  where the search starts; receives the maximum
+  template <class BoundOf, class ValueOf>
+  void operator()(const BoundOf& boundOf, const ValueOf& valueOf, Maximum& most) const {
+    const int guess = std::min(most.block, path_.blocks - 1);
+    const float before_m = posts_.range_m[path_.before];
+    const auto clipped = [before_m](float last_m) { return last_m < before_m ? last_m : before_m; };
+    if (boundOf(bounds_.lowered_m[guess], bounds_.tx_slope[guess], posts_.first_m[guess],
+                clipped(posts_.last_m[guess])) > most.value) {
+      visit(guess, valueOf, most);
     }
-    block = end;
-  }
-  const int last = path.chords - 1, blocks = path.blocks;
-  const float part = path.chord[last].partAt(path.distance_m);
-  columns[blocks] = path.corner_column[last] + path.chord[last].column.at(part);
-  rows[blocks] = path.corner_row[last] + path.chord[last].row.at(part);
-
-  int* const windows = memory.window;
-  const int row_windows = paths.row_windows;
-  float extent = 0;
-#pragma omp simd reduction(max : extent)
-  for (int b = 0; b < blocks; ++b) {
-    const float column0 = columns[b], column1 = columns[b + 1], row0 = rows[b], row1 = rows[b + 1];
-    const float column = column0 < column1 ? column0 : column1, row = row0 < row1 ? row0 : row1;
-    const float across = std::fabs(column1 - column0), along = std::fabs(row1 - row0);
-    const float longer = across > along ? across : along;
-    extent = longer > extent ? longer : extent;
-    constexpr float kPerStride = 1.0f / TerrainBounds::kStride;
-    const int i = static_cast<int>((column - kMargin) * kPerStride);
-    const int j = static_cast<int>((row - kMargin) * kPerStride);
-    windows[b] = j * row_windows + i;
-  }
-  const float* const window_msl_m = paths.window_msl_m;
-  const float* const first_bulge_m = paths.first_bulge_m;
-  float* const lowered_m = memory.lowered_m;
-  const float base_m = path.base_msl_m;
-  float highest = -HUGE_VALF;
-#pragma omp simd reduction(max : highest)
-  for (int b = 0; b < blocks; ++b) {
-    const float bound_m = window_msl_m[windows[b]];
-    highest = bound_m > highest ? bound_m : highest;
-    lowered_m[b] = bound_m - base_m - first_bulge_m[b];
-  }
-  std::fill_n(memory.is_read, blocks, 0);
-  return extent + 2 * kMargin <= TerrainBounds::kMaxExtent && highest < HUGE_VALF;
-}
-
-/// Posts of a block, relative to the base.
-inline const float* heightsOf(const Paths& paths, const Path& path, const PathMemory& memory, int block) {
-  const int first = block * kBlock, end = std::min(first + kBlock, path.before + 1);
-  float* const height_m = memory.height_m + first;
-  if (memory.is_read[block] != 0) return height_m;
-  memory.is_read[block] = 1;
-  const double* const range_m = paths.range_m + first;
-  int n = 0;
-  while (range_m[0] >= path.chord_end_m[n]) ++n;
-  const float base_m = path.base_msl_m;
-  if (range_m[end - first - 1] < path.chord_end_m[n]) {
-    const TerrainChord chord = path.chord[n];
+    for (int g = (path_.blocks - 1) / kGroup; g >= 0; --g) {
+      if (!(boundOf(bounds_.group_lowered_m[g], bounds_.group_tx_slope[g], posts_.group_first_m[g],
+                    clipped(posts_.group_last_m[g])) > most.value)) {
+        continue;
+      }
+      const int begin = g * kGroup;
+      const float* const lowered_m = bounds_.lowered_m.data() + begin;
+      const float* const tx_slope = bounds_.tx_slope.data() + begin;
+      const float* const first_m = posts_.first_m + begin;
+      const float* const last_m = posts_.last_m + begin;
+      float bound[kGroup];
 #pragma omp simd
-    for (int i = 0; i < end - first; ++i) height_m[i] = chord.heightInRaster(range_m[i]) - base_m;
-  } else {
-    for (int i = 0; i < end - first; ++i) {
-      while (range_m[i] >= path.chord_end_m[n]) ++n;
-      height_m[i] = path.chord[n].heightInRaster(range_m[i]) - base_m;
+      for (int i = 0; i < kGroup; ++i) {
+        bound[i] = boundOf(lowered_m[i], tx_slope[i], first_m[i], clipped(last_m[i]));
+      }
+      for (int i = std::min(kGroup, path_.blocks - begin) - 1; i >= 0; --i) {
+        if (bound[i] > most.value && begin + i != guess) visit(begin + i, valueOf, most);
+      }
     }
   }
-  return height_m;
-}
 
-/// Calls valueOf(range_m, height_m) for the obstacles of a block, and takes the largest value.
-template <class ValueOf>
-inline void visit(const Paths& paths, const Path& path, const PathMemory& memory, int block,
-                  const ValueOf& valueOf, Maximum& most) {
-  const int first = block * kBlock, end = std::min(first + kBlock, path.before + 1);
-  const float* const height_m = heightsOf(paths, path, memory, block);
-  const float* const range_m = paths.obstacle_m + first;
-  float largest = -HUGE_VALF;
+ private:
+  template <class ValueOf>
+  void visit(int block, const ValueOf& valueOf, Maximum& most) const {
+    const int first = block * kBlock, end = std::min(first + kBlock, path_.before + 1);
+    const float* const height_m = heightsOf(block);
+    const float* const range_m = posts_.range_m + first;
+    float largest = -HUGE_VALF;
 #pragma omp simd reduction(max : largest)
-  for (int i = first == 0 ? 1 : 0; i < end - first; ++i) {
-    const float value = valueOf(range_m[i], height_m[i]);
-    largest = value > largest ? value : largest;
+    for (int i = first == 0 ? 1 : 0; i < end - first; ++i) {
+      const float value = valueOf(range_m[i], height_m[i]);
+      largest = value > largest ? value : largest;
+    }
+    if (largest > most.value) most = {largest, block};
   }
-  if (largest > most.value) most = {largest, block};
-}
 
-/// Visits the blocks whose bound is above the maximum, from the receivers to the transmitter.
-template <class ValueOf>
-inline void visitAbove(const Paths& paths, const Path& path, const PathMemory& memory, const float* bound,
-                       int guess, const ValueOf& valueOf, Maximum& most) {
-  guess = std::min(guess, path.blocks - 1);
-  if (bound[guess] > most.value) visit(paths, path, memory, guess, valueOf, most);
-  for (int b = path.blocks - 1; b >= 0; --b) {
-    if (bound[b] > most.value && b != guess) visit(paths, path, memory, b, valueOf, most);
+  /// Posts of a block, relative to the base.
+  const float* heightsOf(int block) const {
+    const int first = block * kBlock;
+    float* const height_m = memory_.height_m.data() + first;
+    if (memory_.read_for[block] == path_.number) return height_m;
+    memory_.read_for[block] = path_.number;
+    const SectorChord& chord = terrain_.chordOf(block);
+    const auto at = [s = path_.aside](const Parabola<float>* of) {
+      Parabola<float> here;
+      for (int n = 0; n < 3; ++n) here.c[n] = of[0].c[n] + s * (of[1].c[n] + s * of[2].c[n]);
+      return here;
+    };
+    const Parabola<float> column = at(chord.column), row = at(chord.row);
+    const float* const corner = chord.corner_msl_m;
+    const float* const parts = posts_.part + first;
+    const int row_posts = terrain_.rowPosts();
+    const float base_msl_m = bounds_.base_msl_m;
+    const int count = std::min(kBlock, path_.before + 1 - first);
+#pragma omp simd
+    for (int i = 0; i < count; ++i) {
+      height_m[i] = bilinearHeight(corner, row_posts, column.at(parts[i]), row.at(parts[i])) - base_msl_m;
+    }
+    return height_m;
   }
-}
+
+  const Posts& posts_;
+  const SectorTerrain& terrain_;
+  const SectorBounds& bounds_;
+  PathMemory& memory_;
+  const Path& path_;
+};
 
 /// Losses of receivers clear of the smooth earth, lowest first.
-/// @param ray_bound  of the slopes from the transmitter to each block; null: none
-/// @param rx_m      heights, relative to the base
-/// @param tx_block, rx_block, nu_block  where the searches start; set to where they ended
-/// @return false if bounds are missing
-EMSCAPE_SIMD_CLONES bool findLosses(const Paths& all_paths, const Path& path, const PathMemory& path_memory,
-                                    const float* ray_bound, const float* rx_m, int count, int& tx_block,
-                                    int* rx_block, int* nu_block, float* loss_db) {
-  const Paths paths = all_paths;  // no store changes these
-  const PathMemory memory = path_memory;
-  if (!boundBlocks(paths, path, memory)) return false;
-  const auto d = static_cast<float>(path.distance_m);
-  const float k = paths.model.half_curvature, bulge = k * d, tx_m = path.tx_m;
-  const int blocks = path.blocks;
-  const float before_m = paths.obstacle_m[path.before];
-
-#pragma omp simd
-  for (int b = 0; b < blocks; ++b) {
-    const float lowered = memory.lowered_m[b] - tx_m;
-    memory.tx_bound[b] = lowered / (lowered > 0 ? paths.first_m[b] : paths.last_m[b]);
-  }
-  if (ray_bound != nullptr) {
-#pragma omp simd
-    for (int b = 0; b < blocks; ++b) {
-      memory.tx_bound[b] = ray_bound[b] < memory.tx_bound[b] ? ray_bound[b] : memory.tx_bound[b];
-    }
-  }
-  Maximum steepest{-HUGE_VALF, tx_block};
-  visitAbove(
-      paths, path, memory, memory.tx_bound, tx_block,
-      [=](float range, float height) { return (height - k * range * range - tx_m) * (1 / range); }, steepest);
-  tx_block = steepest.block;
-
+/// @param rx_m  heights, relative to the base
+inline void findLosses(const Posts& posts, const SectorBounds& bounds, const Path& path, const Search& search,
+                       const float* rx_m, int count, PathMemory& memory, float* loss_db) {
+  const float d = path.distance_m, tx_m = bounds.tx_m;
+  const float k = posts.model.half_curvature, bulge = k * d;
+  const int last = path.blocks - 1;
+  // The steepest post as far as it is known: it is only searched for if it may be above the line of sight.
+  float steepest = bounds.highest_tx_slope[last];
+  bool is_found = false;
   for (int n = 0; n < count; ++n) {
-    const float slope = (rx_m[n] - tx_m) / d;
+    const float rx = rx_m[n], slope = (rx - tx_m) / d;
+    if (!is_found && steepest + bulge >= slope) {
+      const float least = last > 0 ? bounds.least_tx_slope[last - 1] : -HUGE_VALF;
+      Maximum most{-HUGE_VALF, memory.tx_block};
+      search([=](float, float tx_slope, float, float) { return tx_slope >= least ? tx_slope : -HUGE_VALF; },
+             [=](float range, float height) { return (height - k * range * range - tx_m) * (1 / range); },
+             most);
+      memory.tx_block = most.block;
+      steepest = most.value;
+      is_found = true;
+    }
     float nu;
-    if (steepest.value + bulge >= slope) {
-      const float rx = rx_m[n];
-#pragma omp simd
-      for (int b = 0; b < blocks; ++b) {
-        const float above = memory.lowered_m[b] + bulge * d - rx;
-        const float last_m = paths.last_m[b] < before_m ? paths.last_m[b] : before_m;
-        memory.bound[b] = above / (d - (above > 0 ? last_m : paths.first_m[b])) - bulge;
-      }
-      Maximum most{-HUGE_VALF, rx_block[n]};
-      visitAbove(
-          paths, path, memory, memory.bound, rx_block[n],
+    if (steepest + bulge >= slope) {
+      Maximum most{-HUGE_VALF, memory.rx_block[n]};
+      search(
+          [=](float lowered, float, float first_m, float last_m) {
+            const float above = lowered + bulge * d - rx;
+            return above / (d - (above > 0 ? last_m : first_m)) - bulge;
+          },
           [=](float range, float height) { return (height - rx) * (1 / (d - range)) + k * range; }, most);
-      rx_block[n] = most.block;
-      nu = propagation::bullingtonEdgeNu(paths.model, d, slope, steepest.value + bulge, most.value);
+      memory.rx_block[n] = most.block;
+      nu = propagation::bullingtonEdgeNu(posts.model, d, slope, steepest + bulge, most.value);
     } else {
-      const float factor2 = 2 * d / paths.model.earth.wavelength_m, rise = bulge - slope;
-#pragma omp simd
-      for (int b = 0; b < blocks; ++b) {
-        const float first_m = paths.first_m[b], half = d / 2;
-        const float last_m = paths.last_m[b] < before_m ? paths.last_m[b] : before_m;
-        const float above = memory.lowered_m[b] - tx_m + rise * (rise > 0 ? last_m : first_m);
-        const float widest = half < first_m ? first_m : half > last_m ? last_m : half;
-        const float below = -above * std::sqrt(factor2 / (widest * (d - widest)));
-        memory.bound[b] = above >= 0 ? HUGE_VALF : -below;
-      }
-      Maximum most{propagation::kKnifeEdgeClear<float>, nu_block[n]};
-      visitAbove(
-          paths, path, memory, memory.bound, nu_block[n],
+      const float factor2 = 2 * d / posts.model.earth.wavelength_m, rise = bulge - slope, half = d / 2;
+      Maximum most{propagation::kKnifeEdgeClear<float>, memory.nu_block[n]};
+      search(
+          [=](float lowered, float, float first_m, float last_m) {
+            const float above = lowered - tx_m + rise * (rise > 0 ? last_m : first_m);
+            const float widest = half < first_m ? first_m : half > last_m ? last_m : half;
+            const float below = above * std::sqrt(factor2 / (widest * (d - widest)));
+            return above >= 0 ? HUGE_VALF : below;
+          },
           [=](float range, float height) {
             const float beyond = d - range;
             return (height - tx_m + k * range * beyond - slope * range) *
                    std::sqrt(factor2 / (range * beyond));
           },
           most);
-      nu_block[n] = most.block;
+      memory.nu_block[n] = most.block;
       nu = most.value;
       if (nu <= propagation::kKnifeEdgeClear<float>) {  // and so are those above
         for (; n < count; ++n) loss_db[n] = 0;
-        return true;
+        return;
       }
     }
     loss_db[n] = propagation::bullingtonLossDb(nu, d);
   }
-  return true;
 }
 
-/// Sets the chords of a path. @return false if they are too many, or not all in the finest raster
-bool findChords(const Station& station, const scenario::TerrainView& terrain, const FastInverse& point,
-                Path& path) {
-  TerrainWalk walk(station, terrain, point);
-  double range_m = 0;
-  for (path.chords = 0; range_m < point.distance_m;) {
-    if (path.chords == kMaxChords) return false;
-    const TerrainChord& chord = walk.chordAt(range_m);
-    if (chord.corner_msl_m == nullptr) return false;
-    const int n = path.chords++;
-    path.chord[n] = chord;
-    const auto corner = chord.corner_msl_m - terrain.rasters[0].heights_msl_m;
-    path.corner_row[n] = static_cast<float>(corner / chord.row_posts);
-    path.corner_column[n] = static_cast<float>(corner % chord.row_posts);
-    path.chord_end_m[n] = walk.endOfChord_m(range_m);
-    constexpr double kBeyond_m = 1e-6;  // so that rounding does not find the same chord again
-    range_m = path.chord_end_m[n] + kBeyond_m;
+/// Bounds the blocks of a sector from the heights in its middle.
+EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terrain, float tx_msl_m,
+                                   SectorBounds& bounds) {
+  const float* const height_msl_m = terrain.height_msl_m();
+  const float* const slack_m = terrain.slack_m();
+  const float* const range_m = posts.range_m;
+  const float base = height_msl_m[0], k = posts.model.half_curvature;
+  const float tx = posts.model.raised_m(tx_msl_m - base, 0);
+  bounds.base_msl_m = base;
+  bounds.tx_m = tx;
+  bounds.blocks = terrain.blocks();
+  for (std::vector<float>* const padded :
+       {&bounds.lowered_m, &bounds.tx_slope, &bounds.group_lowered_m, &bounds.group_tx_slope}) {
+    std::fill(padded->begin(), padded->end(), -HUGE_VALF);
   }
-  return path.chords > 0;
+  float highest_slope = -HUGE_VALF, least_slope = -HUGE_VALF;
+  for (int b = 0; b < bounds.blocks; ++b) {
+    const int begin = std::max(b * kBlock, 1), end = std::min((b + 1) * kBlock, terrain.posts());
+    const float slack = slack_m[b];
+    float lowered = -HUGE_VALF, steepest = -HUGE_VALF, least = -HUGE_VALF;
+#pragma omp simd reduction(max : lowered, steepest, least)
+    for (int i = begin; i < end; ++i) {
+      const float here = height_msl_m[i] - base - k * range_m[i] * range_m[i], inverse = 1 / range_m[i];
+      const float slope = (here - tx) * inverse, between = slack * inverse;
+      lowered = here > lowered ? here : lowered;
+      steepest = slope + between > steepest ? slope + between : steepest;
+      least = slope - between > least ? slope - between : least;
+    }
+    lowered += slack;
+    highest_slope = std::max(highest_slope, steepest);
+    least_slope = std::max(least_slope, least);
+    bounds.lowered_m[b] = lowered;
+    bounds.tx_slope[b] = steepest;
+    bounds.highest_tx_slope[b] = highest_slope;
+    bounds.least_tx_slope[b] = least_slope;
+    float& of_group = bounds.group_lowered_m[b / kGroup];
+    of_group = std::max(of_group, lowered);
+    float& slope_of_group = bounds.group_tx_slope[b / kGroup];
+    slope_of_group = std::max(slope_of_group, steepest);
+  }
+}
+
+/// The paths of one sector.
+struct SectorTask {
+  const ExcessTask<propagation::DiffractionExcess>& task;
+  const SectorPath *begin, *end;
+  double half_width_rad;
+  const ExcessOutput& out;
+  char* is_left;
+};
+
+/// Last post nearer than a range, from a guess.
+inline int lastBefore(const Posts& posts, double distance_m, int guess) {
+  int post = std::min(guess, posts.count - 1);
+  while (post + 1 < posts.count && posts.exact_range_m[post + 1] < distance_m) ++post;
+  while (post > 0 && posts.exact_range_m[post] >= distance_m) --post;
+  return post;
+}
+
+EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_posts,
+                                    const SectorTerrain& terrain, const SectorBounds& bounds,
+                                    PathMemory& memory, float* loss_db) {
+  constexpr int kMinPosts = 16;  // shorter paths are read as fast
+  const Posts posts = all_posts;
+  const ExcessGrid& grid = sector.task.grid;
+  const DiffractionModel<float>& model = posts.model;
+  const float per_rad = static_cast<float>(1 / sector.half_width_rad);
+  Path path{};
+  for (const SectorPath* to = sector.begin; to < sector.end; ++to) {
+    path.distance_m = static_cast<float>(to->distance_m);
+    path.before = lastBefore(posts, to->distance_m, path.before);
+    path.blocks = path.before / kBlock + 1;
+    path.aside = to->aside_rad * per_rad;
+    ++path.number;
+    if (path.before < kMinPosts || path.blocks > bounds.blocks) continue;
+    const float ground_m = to->ground_msl_m - bounds.base_msl_m;
+    for (int n = 0; n < grid.layers; ++n) {
+      memory.height_msl_m[n] = static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n]));
+      const float here_m = sector.task.modelHeight_m(to->distance_m, memory.height_msl_m[n]);
+      memory.rx_m[n] = model.raised_m(here_m - bounds.base_msl_m, ground_m);
+    }
+    // The antennas are at least as high above the smooth earth as above their ground.
+    const float rx_agl_m = memory.rx_m[0] - ground_m;
+    if (!isClearThroughout(model.earth, path.distance_m,
+                           sightLine(model.earth, path.distance_m, bounds.tx_m, rx_agl_m))) {
+      continue;
+    }
+    findLosses(posts, bounds, path, Search(posts, terrain, bounds, memory, path), memory.rx_m.data(),
+               grid.layers, memory, loss_db);
+    const auto column = static_cast<std::size_t>(to->column);
+    if (!sector.task.air.isClear()) {
+      const propagation::AirColumn above(sector.task.air, path.distance_m);
+      for (int n = 0; n < grid.layers; ++n) loss_db[n] += above.lossDb(memory.height_msl_m[n]);
+    }
+    for (int n = 0; n < grid.layers; ++n) sector.out.excess.set(n * grid.column_count + column, loss_db[n]);
+    sector.is_left[column] = 0;
+  }
+}
+
+/// Number of sectors: none wider than a part of the posts' spacing, and not more than paths are worth it.
+int sectorsOf(const ExcessTask<propagation::DiffractionExcess>& task) {
+  constexpr double kWidth_posts = 1.5;
+  constexpr std::size_t kPathsPerSector = 32;
+  const GroundPosts& ground = task.ground;
+  const double farthest_m = ground.ranges_m[ground.range_count - 1];
+  const double step_m = farthest_m - ground.ranges_m[ground.range_count - 2];
+  const double widest_rad = kWidth_posts * step_m / farthest_m;
+  return static_cast<int>(
+      std::min(8 / widest_rad, static_cast<double>(task.grid.column_count / kPathsPerSector)));
 }
 
 }  // namespace
 
-SurfaceDiffraction::SurfaceDiffraction(const ExcessTask<propagation::DiffractionExcess>& task,
-                                       const TerrainBounds& bounds)
-    : task_(task), bounds_(bounds) {
-  const GroundPosts& ground = task.ground;
-  for (int i = 0; i < ground.range_count; ++i) range_m_.push_back(static_cast<float>(ground.ranges_m[i]));
-  for (int first = 0; first < ground.range_count; first += kBlock) {
-    const int first_obstacle = std::max(first, 1), last = std::min(first + kBlock, ground.range_count) - 1;
-    begin_m_.push_back(ground.ranges_m[first]);
-    first_m_.push_back(range_m_[first_obstacle]);
-    last_m_.push_back(range_m_[std::max(last, first_obstacle)]);
-    first_bulge_m_.push_back(task.model.model.half_curvature * first_m_.back() * first_m_.back());
-  }
-  boundRays();
-}
+std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::DiffractionExcess>& task,
+                                         const TerrainBounds& bounds, const ExcessOutput& out) {
+  constexpr int kMinSectors = 360;
+  std::vector<char> is_left(task.grid.column_count, 1);
+  const SectorPosts sector_posts(task.station, task.ground);
+  if (!sector_posts.isUsable() || sectorsOf(task) < kMinSectors) return is_left;
+  const PathSectors sectors(task.station, task.grid, sectorsOf(task));
 
-void SurfaceDiffraction::boundRays() {
-  // Rays are a small part of the paths; fewer than kMinRays bound nothing.
-  constexpr double kSpacing_m = 50;
-  constexpr int kPathsPerRay = 100, kMinRays = 360;
-  const GroundPosts& ground = task_.ground;
-  const double farthest_m = ground.ranges_m[ground.range_count - 1];
-  rays_ = static_cast<int>(std::min(2 * kPi * farthest_m / kSpacing_m,
-                                    static_cast<double>(task_.grid.column_count / kPathsPerRay)));
-  const double between = bounds_.steepest() * kPi / rays_;  // slope from a ray to half way to the next
-  if (rays_ < kMinRays || !(between < 0.1)) {
-    rays_ = 0;
-    return;
+  const int blocks = sector_posts.blocks(), groups = groupsOf(blocks);
+  std::vector<float> group_first_m, group_last_m, first_m, last_m;
+  first_m.assign(sector_posts.first_m(), sector_posts.first_m() + blocks);
+  last_m.assign(sector_posts.last_m(), sector_posts.last_m() + blocks);
+  first_m.resize(groups * kGroup, first_m.back());
+  last_m.resize(groups * kGroup, last_m.back());
+  for (int g = 0; g < groups; ++g) {
+    group_first_m.push_back(first_m[g * kGroup]);
+    group_last_m.push_back(last_m[(g + 1) * kGroup - 1]);
   }
-  constexpr double kRounding = 1e-6;
-  const auto slack = static_cast<float>(between + kRounding);
-  const std::size_t blocks = begin_m_.size();
-  const float k = task_.model.model.half_curvature;
-  ray_bounds_.resize(rays_ * blocks);
-  parallelFor(rays_, 16, [&](int begin, int end) {
-    std::vector<float> heights_m(range_m_.size());
-    for (int ray = begin; ray < end; ++ray) {
-      const double azimuth_rad = 2 * kPi * ray / rays_;
-      readPostsCpu(task_.station, ground, {farthest_m, std::sin(azimuth_rad), std::cos(azimuth_rad)},
-                   ground.range_count, heights_m.data());
-      const float tx_msl_m = task_.model.model.raised_m(task_.model.tx_msl_m, heights_m[0]);
-      for (std::size_t b = 0; b < blocks; ++b) {
-        const std::size_t first = std::max<std::size_t>(b * kBlock, 1);
-        const std::size_t last = std::min((b + 1) * kBlock, heights_m.size());
-        float largest = -HUGE_VALF, unknown = 0;
-        for (std::size_t i = first; i < last; ++i) {
-          const float slope = (heights_m[i] - k * range_m_[i] * range_m_[i] - tx_msl_m) / range_m_[i];
-          largest = slope > largest ? slope : largest;
-          unknown += heights_m[i] - heights_m[i];
-        }
-        ray_bounds_[ray * blocks + b] = unknown == 0 ? largest + slack : HUGE_VALF;
+  const Posts posts{task.model.model,    task.ground.ranges_m,    sector_posts.range_m(),
+                    sector_posts.part(), task.ground.range_count, first_m.data(),
+                    last_m.data(),       group_first_m.data(),    group_last_m.data()};
+  parallelFor(sectors.count(), 16, [&](int begin, int end) {
+    SectorTerrain terrain(task.station, task.ground, bounds, sector_posts);
+    SectorBounds of_sector;
+    for (auto* const array : {&of_sector.lowered_m, &of_sector.tx_slope, &of_sector.highest_tx_slope,
+                              &of_sector.least_tx_slope}) {
+      array->resize(groups * kGroup);
+    }
+    of_sector.group_lowered_m.resize(groups);
+    of_sector.group_tx_slope.resize(groups);
+    PathMemory memory;
+    memory.height_m.resize(blocks * kBlock);
+    memory.height_msl_m.resize(task.grid.layers);
+    memory.rx_m.resize(task.grid.layers);
+    memory.rx_block.resize(task.grid.layers);
+    memory.nu_block.resize(task.grid.layers);
+    std::vector<float> loss_db(task.grid.layers);
+    for (int sector = begin; sector < end; ++sector) {
+      double farthest_m = 0;
+      for (const SectorPath* to = sectors.begin(sector); to < sectors.end(sector); ++to) {
+        farthest_m = std::max(farthest_m, to->distance_m);
       }
+      if (farthest_m == 0) continue;
+      terrain.read(sectors.middle(sector), sectors.halfWidth_rad(sector),
+                   task.ground.lastBefore(farthest_m) + 1);
+      if (terrain.blocks() == 0) continue;
+      setBounds(posts, terrain, task.model.tx_msl_m, of_sector);
+      memory.read_for.assign(blocks, 0);
+      fillSector({task, sectors.begin(sector), sectors.end(sector), sectors.halfWidth_rad(sector), out,
+                  is_left.data()},
+                 posts, terrain, of_sector, memory, loss_db.data());
     }
   });
-}
-
-SurfaceDiffraction::Memory SurfaceDiffraction::makeMemory() const {
-  Memory memory;
-  const std::size_t blocks = begin_m_.size() + 1;
-  memory.per_block.resize(kBlockNumbers * blocks);
-  memory.height_m.resize(blocks * kBlock);
-  memory.of_block.resize(2 * blocks);
-  memory.rx_block.resize(task_.grid.layers);
-  memory.nu_block.resize(task_.grid.layers);
-  return memory;
-}
-
-bool SurfaceDiffraction::fillColumn(std::size_t c, const ExcessScratch& scratch, Memory& memory) const {
-  constexpr int kMinPosts = 4 * kBlock;  // shorter paths are read as fast
-  const ExcessGrid& grid = task_.grid;
-  const DiffractionModel<float>& model = task_.model.model;
-  const FastInverse point = grid.coordinatesOf(task_.station, c, 0);
-  Path path;
-  path.distance_m = point.distance_m;
-  path.before = task_.ground.lastBefore(point.distance_m);
-  path.blocks = path.before / kBlock + 1;
-  if (path.before < kMinPosts || !findChords(task_.station, task_.ground.terrain, point, path)) return false;
-  path.base_msl_m = path.chord[0].heightInRaster(0);
-  path.tx_m = model.raised_m(task_.model.tx_msl_m - path.base_msl_m, 0);
-  const float ground_m = grid.ground_msl_m[c] - path.base_msl_m;
-  for (int k = 0; k < grid.layers; ++k) {
-    const auto height_msl_m =
-        static_cast<float>(heightMsl_m(grid.columns[c], static_cast<double>(grid.t_m[k])));
-    scratch.height_msl_m[k] =
-        model.raised_m(task_.modelHeight_m(point.distance_m, height_msl_m) - path.base_msl_m, ground_m);
-  }
-  // The antennas are at least as high above the smooth earth as above their ground.
-  const auto distance = static_cast<float>(point.distance_m);
-  const float rx_agl_m = scratch.height_msl_m[0] - ground_m;
-  if (!isClearThroughout(model.earth, distance, sightLine(model.earth, distance, path.tx_m, rx_agl_m))) {
-    return false;
-  }
-  const Paths paths{
-      model,          task_.ground.ranges_m, range_m_.data(),         begin_m_.data(),     first_m_.data(),
-      last_m_.data(), first_bulge_m_.data(), bounds_.highest_msl_m(), bounds_.rowWindows()};
-  const std::size_t blocks = begin_m_.size() + 1;
-  const auto numbers = [&](BlockNumber n) { return memory.per_block.data() + n * blocks; };
-  const PathMemory of_path{
-      numbers(kColumn), numbers(kRow),          numbers(kLowered),      numbers(kTxBound),
-      numbers(kBound),  memory.height_m.data(), memory.of_block.data(), memory.of_block.data() + blocks};
-  const float* ray_bound = nullptr;
-  if (rays_ > 0) {
-    const double turns = std::atan2(point.sin_azimuth, point.cos_azimuth) / (2 * kPi);
-    const int ray = static_cast<int>(std::lround((turns < 0 ? turns + 1 : turns) * rays_)) % rays_;
-    ray_bound = ray_bounds_.data() + ray * begin_m_.size();
-  }
-  if (!findLosses(paths, path, of_path, ray_bound, scratch.height_msl_m, grid.layers, memory.tx_block,
-                  memory.rx_block.data(), memory.nu_block.data(), scratch.excess_db)) {
-    return false;
-  }
-  propagation::ExcessColumn column;
-  column.range_m = point.distance_m;
-  task_.addAir(c, 0, column, 0, grid.layers, scratch.excess_db);
-  return true;
+  return is_left;
 }
 
 }  // namespace emscape::emfield

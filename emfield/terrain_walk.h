@@ -29,10 +29,73 @@ EMSCAPE_HD inline Parabola<double> parabolaThrough(double begin, double middle, 
   return {{begin, 4 * to_middle - to_end, 2 * to_end - 4 * to_middle}};
 }
 
+/// The parabolas of latitude and longitude of a chord; longitudes in the same turn as the begin's.
+struct ChordPosition {
+  Parabola<double> latitude_rad, longitude_rad;
+};
+EMSCAPE_HD inline ChordPosition chordThrough(const FastDirect& begin, const FastDirect& middle,
+                                             const FastDirect& end) {
+  const auto beside = [&](double longitude_rad) {
+    const double east_rad = longitude_rad - begin.longitude_rad;
+    return longitude_rad - (east_rad > kPi ? 2 * kPi : east_rad < -kPi ? -2 * kPi : 0);
+  };
+  return {parabolaThrough(begin.latitude_rad, middle.latitude_rad, end.latitude_rad),
+          parabolaThrough(begin.longitude_rad, beside(middle.longitude_rad), beside(end.longitude_rad))};
+}
+
+/// The same in posts of a raster, and their bounds.
+struct ChordInRaster {
+  Parabola<double> column, row;
+  double lowest_column, highest_column, lowest_row, highest_row;
+
+  /// Whether the chord, and a margin (posts) around it, is within the raster.
+  EMSCAPE_HD bool isWithin(const scenario::TerrainRaster& raster, double margin) const {
+    return lowest_column - margin >= raster.first_column && highest_column + margin <= raster.last_column &&
+           lowest_row - margin >= raster.first_row && highest_row + margin <= raster.last_row;
+  }
+};
+EMSCAPE_HD inline ChordInRaster chordInRaster(const scenario::TerrainRaster& raster,
+                                              const ChordPosition& chord) {
+  const Parabola<double>&latitude = chord.latitude_rad, &longitude = chord.longitude_rad;
+  // Of the begin, in the turn of longitudes that the raster counts in; the chord's others follow.
+  const double turn = 2 * kPi * raster.posts_per_rad_lon;
+  double first_column = (longitude.c[0] - raster.west_rad) * raster.posts_per_rad_lon;
+  first_column -= turn * std::floor((first_column - raster.first_column) / turn);
+  ChordInRaster in;
+  in.column = {
+      {first_column, longitude.c[1] * raster.posts_per_rad_lon, longitude.c[2] * raster.posts_per_rad_lon}};
+  in.row = {{(latitude.c[0] - raster.south_rad) * raster.posts_per_rad_lat,
+             latitude.c[1] * raster.posts_per_rad_lat, latitude.c[2] * raster.posts_per_rad_lat}};
+  const auto bound = [](const Parabola<double>& parabola, double& lowest, double& highest) {
+    const double begin = parabola.c[0], end = parabola.at(1), beyond = std::fabs(parabola.c[2]) / 4;
+    lowest = (begin < end ? begin : end) - beyond;
+    highest = (begin < end ? end : begin) + beyond;
+  };
+  bound(in.column, in.lowest_column, in.highest_column);
+  bound(in.row, in.lowest_row, in.highest_row);
+  return in;
+}
+
+/// Bilinear height (m) at column x and row y of a raster, from a corner of it; NaN beside a void.
+EMSCAPE_HD inline float bilinearHeight(const float* corner_msl_m, int row_posts, float x, float y) {
+  const int i = static_cast<int>(x), j = static_cast<int>(y);
+  const int at = j * row_posts + i;
+  const float* const south = corner_msl_m;
+  const float* const north = corner_msl_m + row_posts;
+  const float to_east = x - static_cast<float>(i), to_north = y - static_cast<float>(j);
+  return lerp(lerp(south[at], south[at + 1], to_east), lerp(north[at], north[at + 1], to_east), to_north);
+}
+
+/// Longest chord (m) that leaves the ground track by no more than the accuracy above.
+EMSCAPE_HD inline double maxChord_m(double sine_of_latitude) {
+  constexpr double kOf60Degrees = 0.866025403784439, kOf80Degrees = 0.984807753012208;
+  return sine_of_latitude < kOf60Degrees ? 32000 : sine_of_latitude < kOf80Degrees ? 8000 : 100;
+}
+
 /// A part of a walk.
 struct TerrainChord {
   double begin_m = 0, per_m = 0;  ///< part of the chord at a range: (range - begin_m) * per_m, 0..1
-  Parabola<double> latitude_rad, longitude_rad;
+  ChordPosition position;
   /// Posts of the finest raster here, from the one that `corner` points to, as long as the whole chord is in
   /// that raster; null: it is not.
   const float* corner_msl_m = nullptr;
@@ -43,18 +106,12 @@ struct TerrainChord {
   /// Bilinear height (m) where corner_msl_m is set; NaN beside a void.
   EMSCAPE_HD float heightInRaster(double range_m) const {
     const float part = partAt(range_m);
-    const float x = column.at(part), y = row.at(part);
-    const int i = static_cast<int>(x), j = static_cast<int>(y);
-    const int at = j * row_posts + i;
-    const float* const south = corner_msl_m;
-    const float* const north = corner_msl_m + row_posts;
-    const float to_east = x - static_cast<float>(i), to_north = y - static_cast<float>(j);
-    return lerp(lerp(south[at], south[at + 1], to_east), lerp(north[at], north[at + 1], to_east), to_north);
+    return bilinearHeight(corner_msl_m, row_posts, column.at(part), row.at(part));
   }
   /// Height (m) in all rasters; NaN if the terrain is missing.
   EMSCAPE_HD float heightAmongRasters(const scenario::TerrainView& terrain, double range_m) const {
     const double part = (range_m - begin_m) * per_m;
-    return terrain.heightAt(latitude_rad.at(part), longitude_rad.at(part));
+    return terrain.heightAt(position.latitude_rad.at(part), position.longitude_rad.at(part));
   }
   EMSCAPE_HD float heightAt(const scenario::TerrainView& terrain, double range_m) const {
     if (corner_msl_m != nullptr) {
@@ -94,11 +151,6 @@ class TerrainWalk {
   EMSCAPE_HD float heightAt(double range_m) { return chordAt(range_m).heightAt(terrain_, range_m); }
 
  private:
-  EMSCAPE_HD static double maxChord_m(double sine_of_latitude) {
-    constexpr double kOf60Degrees = 0.866025403784439, kOf80Degrees = 0.984807753012208;
-    return sine_of_latitude < kOf60Degrees ? 32000 : sine_of_latitude < kOf80Degrees ? 8000 : 100;
-  }
-
   EMSCAPE_HD int indexOf(double range_m) const {
     const int index = static_cast<int>(range_m * per_m_);
     return index < last_ ? index : last_;
@@ -113,13 +165,7 @@ class TerrainWalk {
     const FastDirect begin = index > 0 && index == index_ + 1 ? end_ : positionAt(chord_.begin_m);
     const FastDirect middle = positionAt(chord_.begin_m + chord_m_ / 2);
     end_ = positionAt(chord_.begin_m + chord_m_);
-    const auto beside = [&](double longitude_rad) {  // in the same turn as the begin
-      const double east_rad = longitude_rad - begin.longitude_rad;
-      return longitude_rad - (east_rad > kPi ? 2 * kPi : east_rad < -kPi ? -2 * kPi : 0);
-    };
-    chord_.latitude_rad = parabolaThrough(begin.latitude_rad, middle.latitude_rad, end_.latitude_rad);
-    chord_.longitude_rad =
-        parabolaThrough(begin.longitude_rad, beside(middle.longitude_rad), beside(end_.longitude_rad));
+    chord_.position = chordThrough(begin, middle, end_);
     findRaster();
   }
 
@@ -128,38 +174,18 @@ class TerrainWalk {
     chord_.corner_msl_m = nullptr;
     if (terrain_.count == 0) return;
     const scenario::TerrainRaster& raster = terrain_.rasters[0];
-    const Parabola<double>&latitude = chord_.latitude_rad, &longitude = chord_.longitude_rad;
-    // Of the begin, in the turn of longitudes that the raster counts in; the chord's others follow.
-    const double turn = 2 * kPi * raster.posts_per_rad_lon;
-    double first_column = (longitude.c[0] - raster.west_rad) * raster.posts_per_rad_lon;
-    first_column -= turn * std::floor((first_column - raster.first_column) / turn);
-    const Parabola<double> column = {
-        {first_column, longitude.c[1] * raster.posts_per_rad_lon, longitude.c[2] * raster.posts_per_rad_lon}};
-    const Parabola<double> row = {{(latitude.c[0] - raster.south_rad) * raster.posts_per_rad_lat,
-                                   latitude.c[1] * raster.posts_per_rad_lat,
-                                   latitude.c[2] * raster.posts_per_rad_lat}};
-    double lowest_column, highest_column, lowest_row, highest_row;
-    extentOf(column, lowest_column, highest_column);
-    extentOf(row, lowest_row, highest_row);
-    if (!(lowest_column >= raster.first_column && highest_column <= raster.last_column &&
-          lowest_row >= raster.first_row && highest_row <= raster.last_row)) {
-      return;
-    }
+    const ChordInRaster in = chordInRaster(raster, chord_.position);
+    constexpr double kMargin = 1;  // post
+    if (!in.isWithin(raster, kMargin)) return;
     // An index from the corner must fit into an int.
-    if (!((highest_row - lowest_row + 4) * raster.columns < 2e9)) return;
-    const int i = static_cast<int>(lowest_column), j = static_cast<int>(lowest_row);
+    if (!((in.highest_row - in.lowest_row + 6) * raster.columns < 2e9)) return;
+    const int i = static_cast<int>(in.lowest_column - kMargin), j = static_cast<int>(in.lowest_row - kMargin);
     chord_.corner_msl_m = raster.heights_msl_m + static_cast<long long>(j) * raster.columns + i;
     chord_.row_posts = raster.columns;
-    chord_.column = relativeTo(column, i);
-    chord_.row = relativeTo(row, j);
+    chord_.column = relativeTo(in.column, i);
+    chord_.row = relativeTo(in.row, j);
   }
 
-  /// Bounds of a parabola over the chord, with a margin of a post.
-  EMSCAPE_HD static void extentOf(const Parabola<double>& parabola, double& lowest, double& highest) {
-    const double begin = parabola.c[0], end = parabola.at(1), margin = std::fabs(parabola.c[2]) / 4 + 1;
-    lowest = (begin < end ? begin : end) - margin;
-    highest = (begin < end ? end : begin) + margin;
-  }
   EMSCAPE_HD static Parabola<float> relativeTo(const Parabola<double>& parabola, int origin) {
     return {{static_cast<float>(parabola.c[0] - origin), static_cast<float>(parabola.c[1]),
              static_cast<float>(parabola.c[2])}};

@@ -156,35 +156,7 @@ class StoredFrames : public FrameSource {
  private:
   /// The files to be shown. @param quantity  as for volumeFilesOf()
   std::vector<VolumeFile> filesOf(std::string& quantity) const {
-    std::vector<VolumeFile> files = volumeFilesOf(selection_.input, quantity);
-    if (selection_.first_only) {
-      files.resize(1);
-    } else if (!selection_.times.empty()) {
-      files = nearest(files, scenario::parseTimes(selection_.times, clockOf(files)));
-    }
-    return files;
-  }
-
-  /// The time line of files, for times on the command line without a step.
-  static scenario::Clock clockOf(const std::vector<VolumeFile>& files) {
-    scenario::Clock clock;
-    clock.duration_s = files.back().time_s;
-    if (files.size() > 1)
-      clock.step_s = (files.back().time_s - files.front().time_s) / static_cast<double>(files.size() - 1);
-    if (clock.step_s <= 0) clock.step_s = 1;
-    return clock;
-  }
-
-  static std::vector<VolumeFile> nearest(const std::vector<VolumeFile>& files,
-                                         const std::vector<double>& times_s) {
-    std::vector<VolumeFile> chosen;
-    for (const double time_s : times_s) {
-      chosen.push_back(
-          *std::min_element(files.begin(), files.end(), [time_s](const VolumeFile& a, const VolumeFile& b) {
-            return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);
-          }));
-    }
-    return chosen;
+    return chosenFiles(volumeFilesOf(selection_.input, quantity), selection_.times, selection_.first_only);
   }
 
   const StopFlag* const stop_;
@@ -229,6 +201,10 @@ std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const Co
                                               selection, target, progress, stop);
     case InputKind::volume:
       return std::make_unique<StoredFrames>(selection, stop);
+    case InputKind::mesh:
+      throw Error(
+          ErrorCode::usage,
+          selection.input + " holds fields on tetrahedra; pictures of them are drawn by emscape render");
     default:
       throw Error(ErrorCode::usage, selection.input + " is neither a scenario nor a volume");
   }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "emscape/base/error.h"
+#include "emscape/playback/volume_input.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/volume/file.h"
 
@@ -22,6 +23,7 @@ bool sameBox(const scenario::GeoBox& a, const scenario::GeoBox& b) {
 InputKind inputKindOf(const std::string& file) {
   namespace fs = std::filesystem;
   if (!fs::exists(file)) throw Error(ErrorCode::bad_input, {file, 0, 0}, "no such file or folder");
+  if (holdsMeshes(file)) return InputKind::mesh;
   if (fs::is_directory(file)) return InputKind::volume;
   std::string ending = fs::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
@@ -33,10 +35,11 @@ InputKind inputKindOf(const std::string& file) {
   if (ending == ".pvd" || volume::isVolumeFile(file)) return InputKind::volume;
   if (kElevations.count(ending) != 0) return InputKind::elevation;
   if (kAntennas.count(ending) != 0) return InputKind::antenna;
-  throw Error(ErrorCode::bad_input, {file, 0, 0},
-              "ending '" + ending +
-                  "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .pvd .raw .dat; "
-                  "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv");
+  throw Error(
+      ErrorCode::bad_input, {file, 0, 0},
+      "ending '" + ending +
+          "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .vtu .pvd .raw .dat; "
+          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv");
 }
 
 LoadedScenario loadScenarioWithTerrain(const std::string& file, const std::vector<scenario::Edit>& edits) {

@@ -4,6 +4,7 @@
 
 #include "emscape/playback/series_writer.h"
 #include "emscape/volume/file.h"
+#include "emscape/volume/mesh_file.h"
 #include "playback/file_names.h"
 #include "volume/vti.h"
 
@@ -34,17 +35,21 @@ std::vector<std::string> writableFormats() {
 }
 
 SeriesFiles::SeriesFiles(fs::path folder, const std::string& name, const std::vector<std::string>& formats,
-                         std::vector<std::string> channels, std::vector<double> times_s)
+                         std::vector<std::string> channels, std::vector<double> times_s,
+                         std::shared_ptr<const emfield::TerrainMesh> mesh)
     : folder_(std::move(folder)),
       name_(fileNameOf(name)),
       formats_(formats.begin(), formats.end()),
       channels_(std::move(channels)),
       channel_file_names_(distinctFileNames(channels_)),
-      times_s_(std::move(times_s)) {}
+      times_s_(std::move(times_s)),
+      mesh_(std::move(mesh)) {}
 
 std::vector<SeriesFiles::VolumeFile> SeriesFiles::volumeFilesOf(int step) const {
   std::vector<VolumeFile> files;
-  for (const volume::FileFormat& format : volume::fileFormats()) {
+  std::vector<volume::FileFormat> formats = volume::fileFormats();
+  formats.push_back({kMeshFormat, true, true, true});
+  for (const volume::FileFormat& format : formats) {
     if (formats_.count(format.name) == 0) continue;
     const fs::path file = volume::seriesFile(folder_, name_, step + 1, format.name).filename();
     if (format.several || channels_.size() == 1) {
@@ -72,10 +77,23 @@ void SeriesFiles::write(int step, const std::vector<volume::Volume>& channels) c
   std::vector<std::shared_ptr<const volume::DenseVolume>> on_host;
   for (const volume::Volume& channel : channels) on_host.push_back(channel.host());
   for (const VolumeFile& file : volumeFilesOf(step)) {
+    if (volume::isMeshFile(file.name)) {
+      writeOnMesh(file.name, on_host);
+      continue;
+    }
     std::vector<const volume::DenseVolume*> volumes;
     for (const std::size_t c : file.channels) volumes.push_back(on_host[c].get());
     volume::writeVolumes(folder_ / file.name, volumes);
   }
+}
+
+void SeriesFiles::writeOnMesh(const std::string& name,
+                              const std::vector<std::shared_ptr<const volume::DenseVolume>>& channels) const {
+  std::vector<volume::MeshField> fields;
+  for (const auto& channel : channels) fields.push_back(mesh_->field(*channel));
+  std::vector<const volume::MeshField*> each;
+  for (const volume::MeshField& field : fields) each.push_back(&field);
+  volume::writeMesh(folder_ / name, each);
 }
 
 std::set<std::string> SeriesFiles::setRanges(int step, const std::vector<ValueRange>& ranges) const {
@@ -85,29 +103,31 @@ std::set<std::string> SeriesFiles::setRanges(int step, const std::vector<ValueRa
     for (const std::size_t c : file.channels) {
       if (!ranges[c].empty()) stored.push_back({channels_[c], ranges[c].min, ranges[c].max});
     }
-    volume::setStoredRange(folder_ / file.name, stored);
+    const auto setRange = volume::isMeshFile(file.name) ? volume::setMeshRange : volume::setStoredRange;
+    setRange(folder_ / file.name, stored);
     changed.insert(hasSidecar(file.name) ? sidecarOf(file.name) : file.name);
   }
   return changed;
 }
 
 bool SeriesFiles::hasIndex() const {
-  return formats_.count(kVtkFormat) != 0;
+  return formats_.count(kVtkFormat) != 0 || formats_.count(kMeshFormat) != 0;
 }
 
 void SeriesFiles::writeIndex(const std::vector<bool>& finished) const {
+  const std::string format = mesh_ ? kMeshFormat : kVtkFormat;
   std::vector<volume::PvdEntry> entries;
   for (std::size_t step = 0; step < finished.size(); ++step) {
     if (!finished[step]) continue;
     entries.push_back(
-        {times_s_[step], volume::seriesFile(folder_, name_, static_cast<int>(step) + 1, kVtkFormat)});
+        {times_s_[step], volume::seriesFile(folder_, name_, static_cast<int>(step) + 1, format)});
   }
   volume::writePvd(folder_ / (name_ + ".pvd"), entries);
 }
 
 void SeriesFiles::removeOld() const {
   // name_ is letters, digits, '_' and '-' alone: nothing in it means anything to a regular expression.
-  const std::regex ours(name_ + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|raw|nvdb\.json|raw\.json)|)" + name_ +
+  const std::regex ours(name_ + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|vtu|raw|nvdb\.json|raw\.json)|)" + name_ +
                         R"(\.pvd|series\.json|series\.steps)");
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {

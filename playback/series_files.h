@@ -3,10 +3,12 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "emscape/emfield/terrain_mesh.h"
 #include "emscape/playback/field_series.h"
 #include "emscape/volume/volume.h"
 
@@ -17,8 +19,10 @@ class SeriesFiles {
   /// @param name      of the scenario
   /// @param formats   of writableFormats()
   /// @param channels  names, in the order of the volumes
+  /// @param mesh      on which fields are written; null: none
   SeriesFiles(std::filesystem::path folder, const std::string& name, const std::vector<std::string>& formats,
-              std::vector<std::string> channels, std::vector<double> times_s);
+              std::vector<std::string> channels, std::vector<double> times_s,
+              std::shared_ptr<const emfield::TerrainMesh> mesh = nullptr);
 
   /// Names in the folder of all files of a step, sidecars included; always in the same order.
   std::vector<std::string> namesOf(int step) const;
@@ -47,6 +51,8 @@ class SeriesFiles {
     std::vector<std::size_t> channels;
   };
   std::vector<VolumeFile> volumeFilesOf(int step) const;
+  void writeOnMesh(const std::string& name,
+                   const std::vector<std::shared_ptr<const volume::DenseVolume>>& channels) const;
 
   const std::filesystem::path folder_;
   const std::string name_;
@@ -54,6 +60,7 @@ class SeriesFiles {
   const std::vector<std::string> channels_;
   const std::vector<std::string> channel_file_names_;
   const std::vector<double> times_s_;
+  const std::shared_ptr<const emfield::TerrainMesh> mesh_;
 };
 
 }  // namespace emscape::playback

@@ -58,7 +58,7 @@ Json recipeOf(const FieldSeries& series, const SeriesOptions& options) {
   }
   Json channels = Json::array();
   for (const emfield::Channel& channel : series.channels()) channels.push_back(channel.name);
-  return {
+  Json recipe{
       {"scenario", scenario.name},
       {"scenario hash", scenario.hash},
       {"content of elevation files", elevations},
@@ -69,6 +69,8 @@ Json recipeOf(const FieldSeries& series, const SeriesOptions& options) {
       {"allow-missing-terrain", series.options().allow_missing_terrain},
       {"compare", series.reference() != nullptr ? Json(series.reference()->scenario->hash) : Json(nullptr)},
       {"times", series.times_s()}};
+  if (options.mesh) recipe["mesh"] = options.mesh_text;
+  return recipe;
 }
 
 Json toJson(const ValueRange& range) {

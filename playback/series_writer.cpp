@@ -41,7 +41,7 @@ class SeriesWriter {
         progress_(progress),
         lock_(made(options.folder), "series.lock"),
         files_(options.folder, series.input().scenario->name, options.formats, namesOf(series.channels()),
-               series.times_s()),
+               series.times_s(), options.mesh),
         journal_(options.folder),
         steps_(static_cast<std::size_t>(series.count())) {
     if (options.range && series.channels().size() != 1) {

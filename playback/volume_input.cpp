@@ -1,27 +1,105 @@
 #include "emscape/playback/volume_input.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "emscape/base/error.h"
+#include "emscape/scenario/clock.h"
 #include "emscape/volume/file.h"
+#include "emscape/volume/mesh_file.h"
 
 namespace emscape::playback {
+namespace {
 
-std::vector<VolumeFile> volumeFilesOf(const std::filesystem::path& path, std::string& quantity) {
-  const bool is_series = std::filesystem::is_directory(path) || path.extension() == ".pvd";
-  std::vector<VolumeFile> files;
-  for (const auto& file : is_series ? volume::seriesOf(path) : std::vector<std::filesystem::path>{path}) {
-    for (const volume::DenseVolume& volume : volume::listVolume(file).volumes) {
-      if (quantity.empty()) quantity = volume.info.quantity;
-      if (volume.info.quantity == quantity) files.push_back({file, volume.info.time_s});
-    }
-  }
+namespace fs = std::filesystem;
+
+/// The time line of files, for times on the command line without a step.
+scenario::Clock clockOf(const std::vector<VolumeFile>& files) {
+  scenario::Clock clock;
+  clock.duration_s = files.back().time_s;
+  if (files.size() > 1)
+    clock.step_s = (files.back().time_s - files.front().time_s) / static_cast<double>(files.size() - 1);
+  if (clock.step_s <= 0) clock.step_s = 1;
+  return clock;
+}
+
+std::vector<VolumeFile> sorted(std::vector<VolumeFile> files, const fs::path& path,
+                               const std::string& quantity) {
   if (files.empty()) {
     throw Error(ErrorCode::bad_input, {path.string(), 0, 0}, "there is no volume of '" + quantity + "'");
   }
   std::stable_sort(files.begin(), files.end(),
                    [](const VolumeFile& a, const VolumeFile& b) { return a.time_s < b.time_s; });
   return files;
+}
+
+/// The .vtu files of a folder by name, or of a list.
+std::vector<fs::path> meshesOf(const fs::path& path) {
+  if (path.extension() == ".pvd") return volume::seriesOf(path);
+  if (!fs::is_directory(path)) return {path};
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+    if (entry.is_regular_file() && volume::isMeshFile(entry.path())) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace
+
+std::vector<VolumeFile> volumeFilesOf(const fs::path& path, std::string& quantity) {
+  const bool is_series = fs::is_directory(path) || path.extension() == ".pvd";
+  std::vector<VolumeFile> files;
+  for (const auto& file : is_series ? volume::seriesOf(path) : std::vector<fs::path>{path}) {
+    for (const volume::DenseVolume& volume : volume::listVolume(file).volumes) {
+      if (quantity.empty()) quantity = volume.info.quantity;
+      if (volume.info.quantity == quantity) files.push_back({file, volume.info.time_s});
+    }
+  }
+  return sorted(std::move(files), path, quantity);
+}
+
+bool holdsMeshes(const fs::path& path) {
+  if (volume::isMeshFile(path)) return true;
+  if (path.extension() == ".pvd") {
+    try {
+      return volume::isMeshFile(volume::seriesOf(path).front());
+    } catch (const Error&) {
+      return false;  // reading it reports the fault
+    }
+  }
+  if (!fs::is_directory(path)) return false;
+  bool has_meshes = false;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+    if (volume::isVolumeFile(entry.path())) return false;
+    has_meshes = has_meshes || volume::isMeshFile(entry.path());
+  }
+  return has_meshes;
+}
+
+std::vector<VolumeFile> meshFilesOf(const fs::path& path, std::string& quantity) {
+  std::vector<VolumeFile> files;
+  for (const fs::path& file : meshesOf(path)) {
+    for (const volume::VolumeInfo& info : volume::listMesh(file)) {
+      if (quantity.empty()) quantity = info.quantity;
+      if (info.quantity == quantity) files.push_back({file, info.time_s});
+    }
+  }
+  return sorted(std::move(files), path, quantity);
+}
+
+std::vector<VolumeFile> chosenFiles(std::vector<VolumeFile> files, const std::string& times,
+                                    bool first_only) {
+  if (first_only) files.resize(1);
+  if (first_only || times.empty()) return files;
+  std::vector<VolumeFile> chosen;
+  for (const double time_s : scenario::parseTimes(times, clockOf(files))) {
+    chosen.push_back(
+        *std::min_element(files.begin(), files.end(), [time_s](const VolumeFile& a, const VolumeFile& b) {
+          return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);
+        }));
+  }
+  return chosen;
 }
 
 }  // namespace emscape::playback

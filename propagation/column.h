@@ -12,6 +12,7 @@ namespace emscape::propagation {
 /// A column, or the segment of a tilted one above one point of the ground.
 struct ExcessColumn {
   double range_m = 0;      ///< along the ground from the emitter
+  double azimuth_rad = 0;  ///< from the emitter, clockwise from north, -pi .. pi
   float ground_msl_m = 0;  ///< NaN over missing terrain
   TerrainProfile profile;  ///< from the emitter to below the column; no posts for models without terrain
   const float* height_msl_m = nullptr;  ///< of the voxels, rising

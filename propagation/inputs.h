@@ -16,7 +16,7 @@ struct EmitterInputs {
 
 /// The emitter's site.
 struct Site {
-  double latitude_deg = 0;
+  double latitude_deg = 0, longitude_deg = 0;
   double height_msl_m = 0;
   double earth_radius_m = 0;            ///< Gaussian radius of curvature below it
   double effective_earth_radius_m = 0;  ///< k times that

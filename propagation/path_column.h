@@ -10,12 +10,14 @@ namespace emscape::propagation {
 /// Not copied: its column points into its memory.
 class PathColumn {
  public:
-  /// @param profile  from the emitter to below the path's end; must outlive this object
-  PathColumn(const TerrainProfile& profile, double range_m, double end_msl_m)
+  /// @param profile      from the emitter to below the path's end; must outlive this object
+  /// @param azimuth_rad  of the path
+  PathColumn(const TerrainProfile& profile, double range_m, double end_msl_m, double azimuth_rad = 0)
       : memory_(ExcessScratch::bytes(profile.count + 1, 1) / sizeof(double) + 1),
         scratch_(ExcessScratch::in(memory_.data(), profile.count + 1, 1)) {
     scratch_.height_msl_m[0] = static_cast<float>(end_msl_m);
     column_.range_m = range_m;
+    column_.azimuth_rad = azimuth_rad;
     column_.ground_msl_m = profile.height_msl_m[profile.count - 1];
     column_.profile = profile;
     column_.height_msl_m = scratch_.height_msl_m;

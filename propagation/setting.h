@@ -16,6 +16,7 @@ struct Setting {
   std::vector<std::string> choices;  ///< names of an enumeration's values, in its order; empty: a number
   std::string unit;                  ///< of a number
   double min = 0, max = 0;           ///< of a number, both allowed
+  bool has_auto = false;             ///< a number, or `auto` in files, which is 0 here
   /// The number, or the index of the choice.
   double (*get)(const ModelSettings&) = nullptr;
   void (*set)(ModelSettings&, double value) = nullptr;
@@ -47,6 +48,16 @@ Setting numberSetting(std::string key, std::string unit, double min, double max,
   setting.unit = std::move(unit);
   setting.min = min;
   setting.max = max;
+  return setting;
+}
+
+/// A number that the model chooses by default.
+/// @param min  > 0
+template <auto group, auto member>
+Setting automaticSetting(std::string key, std::string unit, double min, double max, std::string description) {
+  Setting setting =
+      numberSetting<group, member>(std::move(key), std::move(unit), min, max, std::move(description));
+  setting.has_auto = true;
   return setting;
 }
 

@@ -16,7 +16,8 @@ const char* toString(Polarization polarization) {
 }
 
 const char* toString(PropagationModel model) {
-  return nameOf(model, {"free_space", "horizon", "diffraction", "two_ray", "itm", "p528", "p1812", "p452"});
+  return nameOf(model, {"free_space", "horizon", "diffraction", "two_ray", "itm", "p528", "p1812", "p452",
+                        "parabolic_equation"});
 }
 
 const char* toString(DiffractionMethod method) {

@@ -21,7 +21,7 @@ using document::ResolvedPath;
 using document::ValueType;
 
 /// A common value for a key that a choice requires and that has no default.
-constexpr std::array<std::pair<const char*, const char*>, 12> kCommonValues{{
+constexpr std::array<std::pair<const char*, const char*>, 21> kCommonValues{{
     {"beamwidth_az_deg", "10"},
     {"beamwidth_el_deg", "10"},
     {"gain_dbi", "25"},
@@ -34,6 +34,15 @@ constexpr std::array<std::pair<const char*, const char*>, 12> kCommonValues{{
     {"bars", "3"},
     {"dwells", "[{azimuth_deg: 0, elevation_deg: 0, duration_s: 1}]"},
     {"receiver", "{noise_figure_db: 4, bandwidth_hz: 1.0e6}"},
+    {"duct_height_m", "14"},
+    {"gradient_m_per_km", "118"},
+    {"base_m", "200"},
+    {"top_m", "300"},
+    {"deficit_m_units", "40"},
+    {"air_temperature_k", "288.15"},
+    {"sea_temperature_k", "288.15"},
+    {"relative_humidity_percent", "80"},
+    {"wind_m_s", "5"},
 }};
 
 const DocumentNodePtr& rootOf(const Scenario& scenario) {
@@ -76,8 +85,9 @@ std::string textOf(const document::DefaultValue& value) {
   return "";
 }
 
-Parameter::Type typeOf(ValueType type) {
-  switch (type) {
+Parameter::Type typeOf(const document::ValueSpec& spec) {
+  if (spec.type == ValueType::number && !spec.choices.empty()) return Parameter::Type::text;
+  switch (spec.type) {
     case ValueType::number:
       return Parameter::Type::number;
     case ValueType::integer:
@@ -140,7 +150,7 @@ class GroupBuilder {
     std::replace(result.name.begin(), result.name.end(), '_', ' ');
     result.unit = document::unitOf(row.value);
     result.description = row.description;
-    result.type = typeOf(row.value.type);
+    result.type = typeOf(row.value);
     result.minimum = row.value.minimum;
     result.maximum = row.value.maximum;
     result.choices = row.value.choices;
@@ -151,6 +161,8 @@ class GroupBuilder {
       result.value = textOf(row.default_value);
     } else {
       result.value = node->kind == NodeKind::scalar ? node->text : document::flowText(*node, /*json=*/false);
+      // Keys in place of a number.
+      if (node->kind == NodeKind::map) result.type = Parameter::Type::text;
     }
     if (spec.name == "emitter" && row.name == "platform") {
       result.type = Parameter::Type::choice;

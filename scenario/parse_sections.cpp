@@ -164,7 +164,12 @@ propagation::ModelSettings parsePropagation(const Section& section, ParseContext
     if (model.settings.empty()) continue;
     const Section own = section.section(model.name);
     for (const propagation::Setting& setting : model.settings) {
-      setting.set(settings, setting.choices.empty() ? own.number(setting.key) : own.choiceIndex(setting.key));
+      if (setting.has_auto && own.text(setting.key) == "auto") {
+        setting.set(settings, 0);
+      } else {
+        setting.set(settings,
+                    setting.choices.empty() ? own.number(setting.key) : own.choiceIndex(setting.key));
+      }
     }
     if (model.model == chosen.model) settings.location = own.location();
     if (propagation::settingsEnter(model, chosen) || !section.has(model.name)) continue;

@@ -11,6 +11,7 @@
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/platform.h"
 #include "emscape/scenario/receiver.h"
+#include "emscape/scenario/scenario.h"
 #include "emscape/scenario/target.h"
 #include "scenario/schema.h"
 #include "scenario/source.h"
@@ -28,6 +29,7 @@ struct ParseContext {
   const NamedFiles* before = nullptr;  ///< content of the files from an earlier reading; null: read them
   NamedFiles files;                    ///< content of the files from this reading
   propagation::Atmosphere atmosphere;  ///< of the scenario
+  std::string epoch_utc;               ///< of the scenario; empty: none
 
   /// Path of a file named in the scenario; relative names are relative to the scenario's folder.
   std::string resolve(const std::string& name) const;
@@ -43,6 +45,14 @@ AntennaPtr parseAntenna(const Section& section, ParseContext& context);  ///< nu
 ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context);
 /// Index of the platform that a section names; -1, and a problem, if there is none.
 int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
+/// Null without the key, or if it is faulty.
+std::shared_ptr<const propagation::Refractivity> parseRefractivity(const Section& atmosphere,
+                                                                   ParseContext& context);
+/// k_factor of an atmosphere whose refractivity is linear, if it is in 0.5..10; else the other value.
+double kFactorOf(const Section& atmosphere, double otherwise);
+/// Warnings that depend on the emitters and on the ground.
+/// @param root  of a scenario without faults
+void warnOfRefractivity(const Scenario& scenario, const Section& root, ParseContext& context);
 /// @param radar  with its frequency and its waveform
 /// @return none if faulty, or without a waveform
 std::optional<Clutter> parseClutter(const Section& section, const Emitter& radar, ParseContext& context);

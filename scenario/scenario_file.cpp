@@ -91,7 +91,7 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
   return terrain;
 }
 
-propagation::Atmosphere parseAtmosphere(const Section& section) {
+propagation::Atmosphere parseAtmosphere(const Section& section, ParseContext& context) {
   propagation::Atmosphere atmosphere;
   atmosphere.k_factor = section.number("k_factor");
   atmosphere.pressure_hpa = section.number("pressure_hpa");
@@ -103,6 +103,8 @@ propagation::Atmosphere parseAtmosphere(const Section& section) {
   atmosphere.refraction = section.choice<propagation::RefractionProfile>("refraction");
   atmosphere.sea_level_refractivity = section.number("sea_level_refractivity");
   atmosphere.climate = section.choice<propagation::RadioClimate>("climate");
+  atmosphere.refractivity = parseRefractivity(section, context);
+  if (!section.has("k_factor")) atmosphere.k_factor = kFactorOf(section, atmosphere.k_factor);
   return atmosphere;
 }
 
@@ -329,9 +331,10 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
   scenario.name = root.text("name");
   scenario.file = context.file;
   scenario.clock = parseClock(root, context);
+  context.epoch_utc = scenario.clock.epoch_utc;
   scenario.region = parseRegion(root.section("region"), context);
   if (root.has("terrain")) scenario.terrain = parseTerrain(root.section("terrain"), context);
-  scenario.atmosphere = context.atmosphere = parseAtmosphere(root.section("atmosphere"));
+  scenario.atmosphere = context.atmosphere = parseAtmosphere(root.section("atmosphere"), context);
   scenario.ground = parseGround(root.section("ground"));
   for (const Section& item : root.sections("platforms"))
     scenario.platforms.push_back(parsePlatform(item, context));
@@ -354,6 +357,7 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
     warnOfIdleJammers(scenario, root, context);
     warnOfGains(scenario, root, context);
     warnOfCoarseSteps(scenario, root, context);
+    warnOfRefractivity(scenario, root, context);
   }
   scenario.hash = context.hash.hex();
   return scenario;

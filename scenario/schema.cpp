@@ -148,6 +148,9 @@ const ObjectSpec& atmosphereSpec() {
                     "for the troposcatter of p1812 and p452"),
           byDefault("climate", choiceUpTo(RadioClimate::maritime_temperate_over_sea),
                     toString(Atmosphere{}.climate), "for itm's statistics"),
+          optional("refractivity", object(refractivitySpec()),
+                   "profiles of the air, for parabolic_equation; not together with k_factor, which the other "
+                   "models then have by default, or from kind: linear"),
       }};
   return spec;
 }
@@ -183,10 +186,14 @@ const ObjectSpec& settingsSpec(const ModelInfo& model) {
       ObjectSpec& spec = all[row.model] = {row.name, "", {}};
       for (const propagation::Setting& setting : row.settings) {
         const double value = setting.get(defaults);
+        const ValueSpec plain = number(setting.unit).from(setting.min).to(setting.max);
+        if (setting.has_auto) {
+          spec.keys.push_back(byDefault(setting.key, plain.orWord("auto"), "auto", setting.description));
+          continue;
+        }
         const bool is_number = setting.choices.empty();
         spec.keys.push_back(byDefault(
-            setting.key,
-            is_number ? number(setting.unit).from(setting.min).to(setting.max) : choice(setting.choices),
+            setting.key, is_number ? plain : choice(setting.choices),
             is_number ? DefaultValue(value) : DefaultValue(setting.choices[static_cast<std::size_t>(value)]),
             setting.description));
       }

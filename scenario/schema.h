@@ -15,6 +15,21 @@ const char* toString(AntennaForm form);
 
 /// The whole file.
 const ObjectSpec& scenarioSpec();
+/// Kinds of refractivity in a scenario, in the order of the table's choices.
+enum class RefractivityKind {
+  standard,
+  linear,
+  evaporation_duct,
+  surface_duct,
+  trilinear,
+  profile,
+  soundings,
+  bulk
+};
+const char* toString(RefractivityKind kind);
+
+/// The section atmosphere.refractivity.
+const ObjectSpec& refractivitySpec();
 /// A row of a track file: the same table for its columns.
 const ObjectSpec& trackRowSpec();
 

@@ -12,6 +12,7 @@
 #include "emscape/scenario/edit.h"
 #include "emscape/scenario/platform.h"
 #include "emscape/scenario/target.h"
+#include "scenario/refractivity_file.h"
 
 namespace emscape::scenario {
 
@@ -25,8 +26,10 @@ struct NamedFiles {
   std::map<std::string, std::shared_ptr<const std::vector<TrackPoint>>> tracks;  ///< valid ones, by name
   std::map<std::string, AntennaPtr> antennas;     ///< by the antenna's keys and values, written on one line
   std::map<std::string, RcsTablePtr> rcs_tables;  ///< valid ones, by resolved name
-  document::DocumentNodePtr terrain_node;         ///< null without terrain
-  std::string terrain_digest;                     ///< names and sizes of the elevation files
+  std::map<std::string, std::shared_ptr<const RefractivityFile>>
+      refractivity;                        ///< by name and sounding's time
+  document::DocumentNodePtr terrain_node;  ///< null without terrain
+  std::string terrain_digest;              ///< names and sizes of the elevation files
 };
 
 /// An applied edit.

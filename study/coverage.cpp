@@ -24,8 +24,39 @@ bool hasChannelPerEmitter(const scenario::Scenario& scenario, const std::string&
                      [](const emfield::Channel& channel) { return channel.emitters.size() == 1; });
 }
 
-/// @throws Error (usage)
-void checkRequest(const scenario::Scenario& scenario, const CoverageRequest& request) {
+/// The scenario with the output of a map.
+std::shared_ptr<const scenario::Scenario> atTargets(const scenario::Scenario& scenario, Quantity quantity) {
+  auto at_targets = std::make_shared<scenario::Scenario>(scenario);
+  at_targets->output.quantities = {scenario::info(quantity).name};
+  at_targets->output.radar_look = scenario::RadarLook::target;
+  if (at_targets->output.combine != scenario::CombineMode::max) {
+    at_targets->output.combine = scenario::CombineMode::sum;
+  }
+  return at_targets;
+}
+
+emfield::FieldOptions withoutQuantities(emfield::FieldOptions options) {
+  options.quantities.clear();
+  return options;
+}
+
+}  // namespace
+
+std::optional<double> defaultThreshold(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::detection_probability:
+      return 0.5;
+    case Quantity::burn_through_margin_db:
+    case Quantity::intercept_margin_db:
+      return 0.0;
+    case Quantity::emitter_count:
+      return 1.0;
+    default:
+      return std::nullopt;
+  }
+}
+
+void checkRequest(const CoverageRequest& request, const scenario::Scenario& scenario) {
   const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
   if (request.heights.empty()) throw Error(ErrorCode::usage, "a map needs a height");
   if (request.times_s.empty()) throw Error(ErrorCode::usage, "a map needs a time");
@@ -53,44 +84,24 @@ void checkRequest(const scenario::Scenario& scenario, const CoverageRequest& req
   }
 }
 
-/// The scenario with the output of a map.
-std::shared_ptr<const scenario::Scenario> atTargets(const scenario::Scenario& scenario, Quantity quantity) {
-  auto at_targets = std::make_shared<scenario::Scenario>(scenario);
-  at_targets->output.quantities = {scenario::info(quantity).name};
-  at_targets->output.radar_look = scenario::RadarLook::target;
-  if (at_targets->output.combine != scenario::CombineMode::max) {
-    at_targets->output.combine = scenario::CombineMode::sum;
-  }
-  return at_targets;
-}
-
-}  // namespace
-
-std::optional<double> defaultThreshold(Quantity quantity) {
-  switch (quantity) {
-    case Quantity::detection_probability:
-      return 0.5;
-    case Quantity::burn_through_margin_db:
-    case Quantity::intercept_margin_db:
-      return 0.0;
-    case Quantity::emitter_count:
-      return 1.0;
-    default:
-      return std::nullopt;
-  }
-}
-
 struct CoverageSolver::Impl {
   const MapGrid& grid;
   const CoverageRequest request;
   emfield::FieldOptions options;
+  LeastHeights least_heights;
   std::vector<std::unique_ptr<SurfaceMaps>> maps;
+
+  /// @param of_maps  without quantities
+  Impl(const MapGrid& map_grid, const CoverageRequest& of_request, const emfield::FieldOptions& of_maps)
+      : grid(map_grid),
+        request(of_request),
+        options(of_maps),
+        least_heights(map_grid, of_request.threshold, of_maps) {}
 };
 
 CoverageSolver::CoverageSolver(const MapGrid& grid, const CoverageRequest& request,
                                const emfield::FieldOptions& options)
-    : impl_(new Impl{grid, request, options, {}}) {
-  impl_->options.quantities.clear();
+    : impl_(new Impl(grid, request, withoutQuantities(options))) {
   for (const HeightReference reference : {HeightReference::ground, HeightReference::mean_sea_level}) {
     const bool is_asked = std::any_of(request.heights.begin(), request.heights.end(),
                                       [&](const MapHeight& height) { return height.reference == reference; });
@@ -108,7 +119,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
   const CoverageRequest& request = impl_->request;
   std::vector<std::shared_ptr<const scenario::Scenario>> at_targets;
   for (const auto& scenario : scenarios) {
-    checkRequest(*scenario, request);
+    checkRequest(request, *scenario);
     at_targets.push_back(atTargets(*scenario, request.quantity));
   }
   const bool has_least =
@@ -127,8 +138,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
       }
       if (!has_least) continue;
       if (progress) progress("maps", done / steps);
-      const std::vector<float> heights_m =
-          leastHeights(at_targets[s], terrain, impl_->grid, request.threshold, time_s, impl_->options);
+      const std::vector<float> heights_m = impl_->least_heights.compute(at_targets[s], terrain, time_s);
       CoverageMap map = emptyMap(*at_targets[s], request, Product::min_height, std::nullopt);
       map.time_s = time_s;
       setValues(map, impl_->grid, heights_m);

@@ -11,6 +11,7 @@
 #include "emscape/scenario/waveform.h"
 #include "emscape/volume/dense_volume.h"
 #include "study/time_figures.h"
+#include "study/warnings.h"
 
 namespace emscape::study {
 namespace {
@@ -95,11 +96,7 @@ class Track {
       solver.update(snapshot);
       rows.push_back(rowOf(snapshot, solver, p));
     }
-    for (std::string& warning : solver.warnings()) {
-      if (std::find(warnings.begin(), warnings.end(), warning) == warnings.end()) {
-        warnings.push_back(std::move(warning));
-      }
-    }
+    addOnce(warnings, solver.warnings());
   }
 
   std::vector<int> emitters;  ///< with a value of their own

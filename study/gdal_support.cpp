@@ -8,6 +8,12 @@
 #include "emscape/base/error.h"
 
 namespace emscape::study {
+namespace {
+
+/// What a format of GDAL's cannot hold is in a file beside it.
+constexpr const char* kAuxiliary = ".aux.xml";
+
+}  // namespace
 
 GDALDriver* driverOf(const char* name) {
   static std::once_flag once;
@@ -31,12 +37,14 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void UnfinishedFile::publish() {
+  const std::string auxiliary = temporary_.string() + kAuxiliary;
+  if (std::filesystem::exists(auxiliary)) emscape::publish(auxiliary, file_.string() + kAuxiliary);
   emscape::publish(temporary_, file_);
 }
 
 void UnfinishedFile::remove() const {
   std::error_code ignored;
-  for (const char* ending : {"", "-journal", "-wal", "-shm"}) {
+  for (const char* ending : {"", "-journal", "-wal", "-shm", kAuxiliary}) {
     std::filesystem::remove(temporary_.string() + ending, ignored);
   }
 }
@@ -49,6 +57,15 @@ Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesyst
   dataset->SetGeoTransform(transform);
   dataset->SetProjection(grid.wkt.c_str());
   return dataset;
+}
+
+std::string wkt2Of(const OGRSpatialReference& reference) {
+  static const char* const kOptions[] = {"FORMAT=WKT2_2019", nullptr};
+  char* text = nullptr;
+  reference.exportToWkt(&text, kOptions);
+  std::string wkt = text == nullptr ? "" : text;
+  CPLFree(text);
+  return wkt;
 }
 
 OGRSpatialReference referenceOf(const MapGrid& grid) {

@@ -36,7 +36,7 @@ class UnfinishedFile {
 
   const std::filesystem::path& file() const { return file_; }
   const char* temporary() const { return temporary_.c_str(); }
-  /// Gives the file its name. @throws Error (other) naming it
+  /// Gives the file its name, and FILE.aux.xml if GDAL made one. @throws Error (other) naming it
   void publish();
 
  private:
@@ -49,6 +49,8 @@ class UnfinishedFile {
 /// @throws Error (other) naming the file for which it is made
 Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file);
 
+/// As WKT2:2019.
+std::string wkt2Of(const OGRSpatialReference& reference);
 /// x to the east, y to the north, whatever the authority's order.
 OGRSpatialReference referenceOf(const MapGrid& grid);
 /// WGS84: longitude, latitude.

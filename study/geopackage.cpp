@@ -72,6 +72,7 @@ class GeoPackage : public MapCollection {
                           {"unit", OFTString},
                           {"description", OFTString}});
     addEmitters(scope, earth);
+    addSites(scope, earth);
     addTracks(scope, earth);
   }
 
@@ -207,6 +208,39 @@ class GeoPackage : public MapCollection {
     }
   }
 
+  void addSites(const Scope& scope, const OGRSpatialReference& earth) {
+    OGRLayer* const layer = addLayer(scope, "sites", &earth, wkbPoint,
+                                     {{"name", OFTString},
+                                      {"is_moving", OFTInteger},
+                                      {"emitters", OFTString},
+                                      {"receivers", OFTString},
+                                      {"targets", OFTString},
+                                      {"height_msl_m", OFTReal},
+                                      {"height_agl_m", OFTReal},
+                                      {"time", OFTDateTime},
+                                      {"time_end", OFTDateTime}});
+    for (const MapSite& site : sitesOf(study_)) {
+      for (const MapPosition& at : site.positions) {
+        const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
+        feature->SetField("name", site.platform.c_str());
+        feature->SetField("is_moving", site.is_moving ? 1 : 0);
+        feature->SetField("emitters", fmt::format("{}", fmt::join(site.emitters, ", ")).c_str());
+        feature->SetField("receivers", fmt::format("{}", fmt::join(site.receivers, ", ")).c_str());
+        feature->SetField("targets", fmt::format("{}", fmt::join(site.targets, ", ")).c_str());
+        feature->SetField("height_msl_m", at.height_msl_m);
+        const double ground_msl_m =
+            study_.terrain == nullptr
+                ? 0
+                : study_.terrain->heightMsl_m(at.position.latitude_deg, at.position.longitude_deg);
+        if (!std::isnan(ground_msl_m)) feature->SetField("height_agl_m", at.height_msl_m - ground_msl_m);
+        if (site.is_moving) setTimes(*feature, at.time_s);
+        OGRPoint point(at.position.longitude_deg, at.position.latitude_deg);
+        feature->SetGeometry(&point);
+        check(scope, layer->CreateFeature(feature.get()) == OGRERR_NONE);
+      }
+    }
+  }
+
   void addTracks(const Scope& scope, const OGRSpatialReference& earth) {
     OGRLayer* const layer = addLayer(scope, "tracks", &earth, wkbLineStringZM,
                                      {{"platform", OFTString}, {"begin", OFTDateTime}, {"end", OFTDateTime}});
@@ -242,6 +276,7 @@ class GeoPackage : public MapCollection {
     const std::pair<const char*, std::string> styles[] = {{"bands", bandStyle(band_rules_)},
                                                           {"contours", contourStyle(contour_rules_)},
                                                           {"emitters", emitterStyle()},
+                                                          {"sites", siteStyle()},
                                                           {"tracks", trackStyle()}};
     for (const auto& [layer, qml] : styles) {
       const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(table->GetLayerDefn()));

@@ -1,7 +1,9 @@
 #include "emscape/study/geotiff.h"
 
 #include <fmt/format.h>
+#include <gdal_rat.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "study/gdal_support.h"
@@ -27,6 +29,22 @@ GDALColorTable coloursOf(MapKind kind, int count) {
   }
   table.SetColorEntry(kNoIndex, &none);
   return table;
+}
+
+/// The labels of a band's values, as programs look for them: names of categories and a table of attributes.
+void setLabels(GDALRasterBand& band, const std::vector<std::string>& labels) {
+  GDALDefaultRasterAttributeTable table;
+  table.CreateColumn("VALUE", GFT_Integer, GFU_MinMax);
+  table.CreateColumn("LABEL", GFT_String, GFU_Name);
+  CPLStringList names;
+  for (int n = 0; n < static_cast<int>(labels.size()); ++n) {
+    const std::string& label = labels[static_cast<std::size_t>(n)];
+    table.SetValue(n, 0, n);
+    table.SetValue(n, 1, label.c_str());
+    names.AddString(label.c_str());
+  }
+  band.SetDefaultRAT(&table);
+  band.SetCategoryNames(names.List());
 }
 
 }  // namespace
@@ -55,8 +73,9 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
       if (!is_none) largest = std::max(largest, static_cast<int>(value));
     }
     band->SetNoDataValue(kNoIndex);
-    GDALColorTable colours = coloursOf(map.kind, largest + 1);
+    GDALColorTable colours = coloursOf(map.kind, std::max(largest + 1, static_cast<int>(map.labels.size())));
     band->SetColorTable(&colours);
+    if (!map.labels.empty()) setLabels(*band, map.labels);
     written = band->RasterIO(GF_Write, 0, 0, grid.width, grid.height, bytes.data(), grid.width, grid.height,
                              GDT_Byte, 0, 0, nullptr);
   } else {

@@ -63,26 +63,36 @@ class Strip {
 
 }  // namespace
 
-std::vector<float> leastHeights(const std::shared_ptr<const scenario::Scenario>& scenario,
-                                const scenario::TerrainPtr& terrain, const MapGrid& grid, double threshold,
-                                double time_s, const emfield::FieldOptions& options) {
+LeastHeights::LeastHeights(const MapGrid& grid, double threshold, const emfield::FieldOptions& options)
+    : grid_(grid), threshold_(threshold), options_(options) {
+  options_.allow_missing_terrain = true;
+}
+
+std::vector<float> LeastHeights::compute(const std::shared_ptr<const scenario::Scenario>& scenario,
+                                         const scenario::TerrainPtr& terrain, double time_s) {
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), time_s);
-  const auto solve = [&](const emfield::Surface& surface) {
-    emfield::FieldOptions on_surface = options;
-    on_surface.surface = std::make_shared<const emfield::Surface>(surface);
-    on_surface.allow_missing_terrain = true;
-    emfield::FieldSolver solver(scenario, terrain, on_surface);
-    solver.update(snapshot);
-    return solver.volumes().front().host();
+  const int rows_at_once = std::max(1, kMostVoxels / (grid_.width * (kFirstSteps + 1)));
+  const bool is_kept = rows_at_once >= grid_.height;
+  const auto solve = [&](const emfield::Surface& surface, std::optional<emfield::FieldSolver>& solver) {
+    if (!solver) {
+      emfield::FieldOptions on_surface = options_;
+      on_surface.surface = std::make_shared<const emfield::Surface>(surface);
+      solver.emplace(scenario, terrain, on_surface);
+    }
+    solver->update(snapshot, terrain);
+    return solver->volumes().front().host();
   };
   std::vector<float> heights_m;
-  const int rows_at_once = std::max(1, kMostVoxels / (grid.width * (kFirstSteps + 1)));
-  for (int row = 0; row < grid.height; row += rows_at_once) {
-    Strip strip(grid, row, std::min(rows_at_once, grid.height - row));
+  for (int row = 0; row < grid_.height; row += rows_at_once) {
+    Strip strip(grid_, row, std::min(rows_at_once, grid_.height - row));
     double step_m = kHighestSearched_m / kFirstSteps;
     int steps = kFirstSteps;
     while (strip.hasPlaces()) {
-      strip.search(step_m, steps, threshold, solve);
+      const bool is_first = steps == kFirstSteps;
+      strip.search(step_m, steps, threshold_, [&](const emfield::Surface& surface) {
+        std::optional<emfield::FieldSolver> own;
+        return solve(surface, is_kept && is_first ? first_steps_ : own);
+      });
       if (step_m <= kLeastHeightAccuracy_m) break;
       steps = kLaterSteps;
       step_m /= kLaterSteps;

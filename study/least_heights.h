@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "emscape/emfield/field_solver.h"
@@ -15,11 +16,26 @@ namespace emscape::study {
 constexpr double kHighestSearched_m = 10240;
 constexpr double kLeastHeightAccuracy_m = 0.625;
 
-/// @param scenario  with the quantity as its only output
-/// @return heights (m) that reach the threshold, at most kLeastHeightAccuracy_m above the least; 0 on the
-/// ground; NaN: none does, or the place has no value
-std::vector<float> leastHeights(const std::shared_ptr<const scenario::Scenario>& scenario,
-                                const scenario::TerrainPtr& terrain, const MapGrid& grid, double threshold,
-                                double time_s, const emfield::FieldOptions& options);
+/// Finds least heights on a map. One thread at a time.
+class LeastHeights {
+ public:
+  /// @param grid     must outlive this object
+  /// @param options  the rest is set here
+  LeastHeights(const MapGrid& grid, double threshold, const emfield::FieldOptions& options);
+
+  /// The field of the first steps is kept for the next scenario or time, of which only what has changed is
+  /// computed, unless the map is larger than what is computed at once.
+  /// @param scenario  with the quantity as its only output
+  /// @return heights (m) that reach the threshold, at most kLeastHeightAccuracy_m above the least; 0 on the
+  /// ground; NaN: none does, or the place has no value
+  std::vector<float> compute(const std::shared_ptr<const scenario::Scenario>& scenario,
+                             const scenario::TerrainPtr& terrain, double time_s);
+
+ private:
+  const MapGrid& grid_;
+  double threshold_;
+  emfield::FieldOptions options_;
+  std::optional<emfield::FieldSolver> first_steps_;
+};
 
 }  // namespace emscape::study

@@ -186,7 +186,11 @@ void MapFolder::finish(const std::vector<std::string>& warnings, const std::stri
   State& state = *state_;
   std::vector<std::string> files, for_all;
   for (const MapRecord& record : state.records) {
-    files.insert(files.end(), record.files.begin(), record.files.end());
+    for (const std::string& file : record.files) {
+      files.push_back(file);
+      const std::string labels = file + ".aux.xml";
+      if (std::filesystem::exists(state.folder / labels)) files.push_back(labels);
+    }
   }
   for (const State::Collection& collection : state.collections) {
     collection.content->finish();

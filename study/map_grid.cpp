@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/fast_geodesy.h"
+#include "base/near_angle.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/parallel.h"
@@ -65,15 +66,6 @@ OGRSpatialReference referenceOf(const std::string& crs, const Middle& middle, st
   return reference;
 }
 
-std::string wkt2Of(const OGRSpatialReference& reference) {
-  static const char* const kOptions[] = {"FORMAT=WKT2_2019", nullptr};
-  char* text = nullptr;
-  reference.exportToWkt(&text, kOptions);
-  std::string wkt = text == nullptr ? "" : text;
-  CPLFree(text);
-  return wkt;
-}
-
 /// Between longitude, latitude and a projection.
 class Projection {
  public:
@@ -120,76 +112,144 @@ void addBorder(const scenario::GeoBox& box, std::vector<double>& longitudes, std
 }
 
 /// Square metres of the ellipsoid per square degree.
-double metres2PerDegree2(double latitude_deg) {
-  constexpr double kA = 6378137.0, kE2 = 6.69437999014e-3;
-  const double sine = std::sin(degToRad(latitude_deg)), root = 1 - kE2 * sine * sine;
-  const double meridian_m = kA * (1 - kE2) / std::pow(root, 1.5), prime_m = kA / std::sqrt(root);
-  return meridian_m * prime_m * std::cos(degToRad(latitude_deg)) * degToRad(1.0) * degToRad(1.0);
+double metres2PerDegree2(const SineCosine& latitude) {
+  constexpr double kPerDegree2 = kPi / 180 * (kPi / 180);
+  constexpr double kA2 = kWgs84SemiMajor_m * kWgs84SemiMajor_m;
+  const double root = 1 - kWgs84EccentricitySquared * latitude.sine * latitude.sine;
+  return kA2 * (1 - kWgs84EccentricitySquared) / (root * root) * latitude.cosine * kPerDegree2;
 }
 
-/// Sets places and areas from those of every kLattice-th pixel.
-void fillPlaces(const Projection& toEarth, MapGrid& grid) {
-  const int nodes_x = (grid.width + kLattice - 1) / kLattice + 1;
-  const int nodes_y = (grid.height + kLattice - 1) / kLattice + 1;
-  std::vector<double> longitudes, latitudes;
-  for (int j = 0; j < nodes_y; ++j) {
-    for (int i = 0; i < nodes_x; ++i) {
-      longitudes.push_back(grid.left_m + (i * kLattice + 0.5) * grid.cell_m);
-      latitudes.push_back(grid.top_m - (j * kLattice + 0.5) * grid.cell_m);
+/// Longitudes and latitudes of every kLattice-th pixel.
+struct Lattice {
+  int nodes_x = 0, nodes_y = 0;
+  std::vector<double> longitudes_deg, latitudes_deg;
+};
+
+Lattice latticeOf(const Projection& toEarth, const MapGrid& grid) {
+  Lattice lattice;
+  lattice.nodes_x = (grid.width + kLattice - 1) / kLattice + 1;
+  lattice.nodes_y = (grid.height + kLattice - 1) / kLattice + 1;
+  for (int j = 0; j < lattice.nodes_y; ++j) {
+    for (int i = 0; i < lattice.nodes_x; ++i) {
+      lattice.longitudes_deg.push_back(grid.left_m + (i * kLattice + 0.5) * grid.cell_m);
+      lattice.latitudes_deg.push_back(grid.top_m - (j * kLattice + 0.5) * grid.cell_m);
     }
   }
-  if (!toEarth(longitudes, latitudes)) {
+  if (!toEarth(lattice.longitudes_deg, lattice.latitudes_deg)) {
     throw Error(ErrorCode::usage, fmt::format("crs '{}' does not reach over the whole area", grid.crs));
   }
-  grid.places.resize(static_cast<std::size_t>(grid.width) * grid.height);
-  grid.areas_m2.resize(grid.places.size());
-  parallelFor(grid.height, 8, [&](int begin, int end) {
-    for (int pixel = begin * grid.width; pixel < end * grid.width; ++pixel) {
-      const int i = pixel % grid.width, j = pixel / grid.width;
-      const std::size_t node = static_cast<std::size_t>(j / kLattice) * nodes_x + i / kLattice;
-      const double u = static_cast<double>(i % kLattice) / kLattice,
-                   v = static_cast<double>(j % kLattice) / kLattice;
-      const auto patch = [&](const std::vector<double>& at, double& du, double& dv) {
-        const double origin = at[node];
-        const auto turned = [&](double value) {  // in the same turn as the origin
-          return &at == &longitudes ? origin + std::remainder(value - origin, 360.0) : value;
-        };
-        const double east = turned(at[node + 1]), south = turned(at[node + nodes_x]),
-                     corner = turned(at[node + nodes_x + 1]);
-        const double twist = corner - east - south + origin;
-        du = (east - origin + v * twist) / kLattice;
-        dv = (south - origin + u * twist) / kLattice;
-        return origin + u * (east - origin) + v * (south - origin) + u * v * twist;
-      };
-      double lon_u = 0, lon_v = 0, lat_u = 0, lat_v = 0;
-      const double longitude = patch(longitudes, lon_u, lon_v), latitude = patch(latitudes, lat_u, lat_v);
-      grid.places[pixel] = {latitude, wrapLongitude_deg(longitude)};
-      grid.areas_m2[pixel] =
-          static_cast<float>(std::abs(lon_u * lat_v - lon_v * lat_u) * metres2PerDegree2(latitude));
-    }
-  });
+  return lattice;
 }
 
-void leaveOut(const MapArea& area, MapGrid& grid) {
-  constexpr double kMargin_deg = 1e-9;
-  const FastGeodesy middle =
-      area.circle ? fastGeodesy(area.circle->latitude_deg, area.circle->longitude_deg) : FastGeodesy{};
-  const auto isInside = [&](const emfield::Surface::Place& place) {
-    if (area.circle) {
-      return fastInverse(middle, toEcef({place.latitude_deg, place.longitude_deg, 0})).distance_m <=
-             area.circle->radius_m;
-    }
-    const double east_deg = place.longitude_deg - area.box.west_deg;
-    return place.latitude_deg >= area.box.south_deg - kMargin_deg &&
-           place.latitude_deg <= area.box.north_deg + kMargin_deg &&
+/// The bilinear patch between four nodes.
+class Patch {
+ public:
+  /// @param turn  nodes are taken in the same turn of so much as the first; 0: as they are
+  Patch(const std::vector<double>& at, std::size_t node, int nodes_x, double turn) : origin_(at[node]) {
+    const auto turned = [&](double value) {
+      return turn == 0 ? value : origin_ + std::remainder(value - origin_, turn);
+    };
+    const double east = turned(at[node + 1]), south = turned(at[node + nodes_x]),
+                 corner = turned(at[node + nodes_x + 1]);
+    east_ = east - origin_;
+    south_ = south - origin_;
+    twist_ = corner - east - south + origin_;
+  }
+  /// @param u, v  0..1 to the east and to the south
+  double at(double u, double v) const { return origin_ + u * east_ + v * south_ + u * v * twist_; }
+  /// Differences from a pixel to the next, to the east and to the south.
+  double perColumn(double v) const { return (east_ + v * twist_) / kLattice; }
+  double perRow(double u) const { return (south_ + u * twist_) / kLattice; }
+
+ private:
+  double origin_, east_, south_, twist_;
+};
+
+/// Where the pixels of a patch are.
+enum class PatchPart { inside, outside, across };
+
+/// Whether places are in a map's area.
+class AreaTest {
+ public:
+  explicit AreaTest(const MapArea& area) : area_(area) {
+    if (area.circle) middle_ = fastGeodesy(area.circle->latitude_deg, area.circle->longitude_deg);
+  }
+  bool isInside(const emfield::Surface::Place& place) const {
+    constexpr double kMargin_deg = 1e-9;
+    if (area_.circle) return distance_m(place) <= area_.circle->radius_m;
+    const double east_deg = place.longitude_deg - area_.box.west_deg;
+    return place.latitude_deg >= area_.box.south_deg - kMargin_deg &&
+           place.latitude_deg <= area_.box.north_deg + kMargin_deg &&
            east_deg - 360 * std::floor((east_deg + kMargin_deg) / 360) <=
-               area.box.east_deg - area.box.west_deg + kMargin_deg;
-  };
-  parallelFor(static_cast<int>(grid.places.size()), 4096, [&](int begin, int end) {
-    for (int pixel = begin; pixel < end; ++pixel) {
-      if (isInside(grid.places[pixel])) continue;
-      grid.places[pixel].latitude_deg = NAN;
-      grid.areas_m2[pixel] = 0;
+               area_.box.east_deg - area_.box.west_deg + kMargin_deg;
+  }
+  /// Of a patch with these corners.
+  PatchPart partOf(const emfield::Surface::Place (&corners)[4]) const {
+    if (!area_.circle) return PatchPart::across;
+    double nearest_m = HUGE_VAL, farthest_m = 0;
+    for (const emfield::Surface::Place& corner : corners) {
+      nearest_m = std::min(nearest_m, distance_m(corner));
+      farthest_m = std::max(farthest_m, distance_m(corner));
+    }
+    // No place is farther from a corner than the longer diagonal; twice that is beyond any doubt.
+    const double diagonal_m =
+        2 * std::max(between_m(corners[0], corners[3]), between_m(corners[1], corners[2]));
+    return nearest_m + diagonal_m <= area_.circle->radius_m  ? PatchPart::inside
+           : nearest_m - diagonal_m > area_.circle->radius_m ? PatchPart::outside
+                                                             : PatchPart::across;
+  }
+
+ private:
+  double distance_m(const emfield::Surface::Place& place) const {
+    return fastInverse(middle_, toEcef({place.latitude_deg, place.longitude_deg, 0})).distance_m;
+  }
+  static double between_m(const emfield::Surface::Place& a, const emfield::Surface::Place& b) {
+    return length(toEcef({a.latitude_deg, a.longitude_deg, 0}) -
+                  toEcef({b.latitude_deg, b.longitude_deg, 0}));
+  }
+
+  const MapArea& area_;
+  FastGeodesy middle_{};
+};
+
+/// Sets places and areas, on patches between the nodes of a lattice.
+void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
+  grid.places.resize(static_cast<std::size_t>(grid.width) * grid.height);
+  grid.areas_m2.resize(grid.places.size());
+  const AreaTest test(area);
+  parallelFor(lattice.nodes_y - 1, 1, [&](int begin, int end) {
+    NearAngle latitude_sine;
+    for (int patch = begin * (lattice.nodes_x - 1); patch < end * (lattice.nodes_x - 1); ++patch) {
+      const int patch_x = patch % (lattice.nodes_x - 1), patch_y = patch / (lattice.nodes_x - 1);
+      const std::size_t node = static_cast<std::size_t>(patch_y) * lattice.nodes_x + patch_x;
+      const Patch longitudes(lattice.longitudes_deg, node, lattice.nodes_x, 360);
+      const Patch latitudes(lattice.latitudes_deg, node, lattice.nodes_x, 0);
+      const PatchPart part = test.partOf({{latitudes.at(0, 0), longitudes.at(0, 0)},
+                                          {latitudes.at(1, 0), longitudes.at(1, 0)},
+                                          {latitudes.at(0, 1), longitudes.at(0, 1)},
+                                          {latitudes.at(1, 1), longitudes.at(1, 1)}});
+      const int columns = std::min(kLattice, grid.width - patch_x * kLattice);
+      const int rows = std::min(kLattice, grid.height - patch_y * kLattice);
+      for (int j = 0; j < rows; ++j) {
+        const double v = static_cast<double>(j) / kLattice;
+        const double lon_u = longitudes.perColumn(v), lat_u = latitudes.perColumn(v);
+        const std::size_t first =
+            static_cast<std::size_t>(patch_y * kLattice + j) * grid.width + patch_x * kLattice;
+        for (int i = 0; i < columns; ++i) {
+          const double u = static_cast<double>(i) / kLattice;
+          const double latitude = latitudes.at(u, v);
+          emfield::Surface::Place& place =
+              grid.places[first + i] = {latitude, wrapLongitude_deg(longitudes.at(u, v))};
+          if (part == PatchPart::outside || (part == PatchPart::across && !test.isInside(place))) {
+            place.latitude_deg = NAN;
+            continue;  // its area is 0
+          }
+          const double lon_v = longitudes.perRow(u), lat_v = latitudes.perRow(u);
+          grid.areas_m2[first + i] =
+              static_cast<float>(std::abs(lon_u * lat_v - lon_v * lat_u) *
+                                 metres2PerDegree2(latitude_sine.at(degToRad(latitude))));
+        }
+      }
     }
   });
 }
@@ -239,8 +299,26 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   grid.height = static_cast<int>(end_row - first_row);
   grid.left_m = first_column * cell_m;
   grid.top_m = end_row * cell_m;
-  fillPlaces(Projection(reference, earth), grid);
-  leaveOut(area, grid);
+  fillPlaces(latticeOf(Projection(reference, earth), grid), area, grid);
+  return grid;
+}
+
+MapGrid mapGridAt(const std::string& wkt, const std::string& crs, double cell_m, double left_m, double top_m,
+                  int width, int height) {
+  MapGrid grid;
+  grid.width = width;
+  grid.height = height;
+  grid.cell_m = cell_m;
+  grid.left_m = left_m;
+  grid.top_m = top_m;
+  grid.crs = crs;
+  grid.wkt = wkt;
+  if (!(static_cast<double>(width) * height <= kMaxPixels)) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("a map of {} x {} pixels has more than {:.0f}", width, height, kMaxPixels));
+  }
+  const MapArea everywhere{{-90, 90, -180, 180}, {}};
+  fillPlaces(latticeOf(Projection(study::referenceOf(grid), wgs84Reference()), grid), everywhere, grid);
   return grid;
 }
 

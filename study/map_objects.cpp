@@ -32,6 +32,30 @@ std::vector<MapEmitter> emittersOf(const MapStudy& study) {
   return emitters;
 }
 
+std::vector<MapSite> sitesOf(const MapStudy& study) {
+  const auto& scenario = study.scenarios.front();
+  std::vector<MapSite> sites;
+  for (const scenario::Platform& platform : scenario->platforms) {
+    sites.push_back({platform.name, isMoving(platform), {}, {}, {}, {}});
+  }
+  const auto carry = [&](const auto& items, std::vector<std::string> MapSite::*names) {
+    for (const auto& item : items)
+      (sites[static_cast<std::size_t>(item.platform)].*names).push_back(item.name);
+  };
+  carry(scenario->emitters, &MapSite::emitters);
+  carry(scenario->placed_receivers, &MapSite::receivers);
+  carry(scenario->targets, &MapSite::targets);
+  for (const double time_s : study.times_s) {
+    const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, study.terrain.get(), time_s);
+    for (std::size_t p = 0; p < sites.size(); ++p) {
+      if (!sites[p].is_moving && !sites[p].positions.empty()) continue;
+      const scenario::PlatformState& state = snapshot.platforms[p];
+      sites[p].positions.push_back({time_s, state.position, state.height_msl_m});
+    }
+  }
+  return sites;
+}
+
 std::vector<MapTrack> tracksOf(const MapStudy& study) {
   const auto& scenario = study.scenarios.front();
   const double duration_s = scenario->clock.duration_s;

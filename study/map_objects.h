@@ -22,6 +22,14 @@ struct MapEmitter {
   std::vector<MapPosition> positions;  ///< one if it stands; else one for each of the study's times
 };
 
+/// A platform and what it carries, by name.
+struct MapSite {
+  std::string platform;
+  bool is_moving = false;
+  std::vector<std::string> emitters, receivers, targets;
+  std::vector<MapPosition> positions;  ///< one if it stands; else one for each of the study's times
+};
+
 struct MapTrack {
   std::string platform;
   std::vector<MapPosition> positions;  ///< two or more, in the order of time
@@ -29,6 +37,8 @@ struct MapTrack {
 
 /// All emitters of the study's first scenario, active or not.
 std::vector<MapEmitter> emittersOf(const MapStudy& study);
+/// All platforms of the study's first scenario.
+std::vector<MapSite> sitesOf(const MapStudy& study);
 /// The tracks of its moving platforms within the scenario's duration: their own points and the study's times.
 /// Points over missing terrain whose height is given above ground are left out.
 std::vector<MapTrack> tracksOf(const MapStudy& study);

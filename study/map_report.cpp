@@ -121,13 +121,18 @@ std::string explainCommand(const MapStudy& study, const std::vector<MapRecord>& 
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> metadataOf(const MapStudy& study, const Map& map) {
-  const scenario::Scenario& scenario = *study.scenarios.front();
+  return metadataOf(*study.scenarios.front(), study.quantity, study.threshold, map);
+}
+
+std::vector<std::pair<std::string, std::string>> metadataOf(const scenario::Scenario& scenario,
+                                                            scenario::Quantity quantity, double threshold,
+                                                            const Map& map) {
   std::vector<std::pair<std::string, std::string>> metadata{
       {"EMSCAPE_SCENARIO", scenario.name},
       {"EMSCAPE_SCENARIO_HASH", scenario.hash},
       {"EMSCAPE_PRODUCT", map.name},
-      {"EMSCAPE_QUANTITY", scenario::info(study.quantity).name},
-      {"EMSCAPE_THRESHOLD", fmt::format("{}", study.threshold)},
+      {"EMSCAPE_QUANTITY", scenario::info(quantity).name},
+      {"EMSCAPE_THRESHOLD", fmt::format("{}", threshold)},
       {"EMSCAPE_HEIGHT_DATUM", "EGM96 (EPSG:5773)"},
       {"EMSCAPE_VERSION", EMSCAPE_VERSION}};
   if (map.height) metadata.emplace_back("EMSCAPE_HEIGHT", describe(*map.height));

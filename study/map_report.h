@@ -12,6 +12,9 @@
 namespace emscape::study {
 
 /// Items that every map's file carries, EMSCAPE_NAME and value.
+std::vector<std::pair<std::string, std::string>> metadataOf(const scenario::Scenario& scenario,
+                                                            scenario::Quantity quantity, double threshold,
+                                                            const Map& map);
 std::vector<std::pair<std::string, std::string>> metadataOf(const MapStudy& study, const Map& map);
 
 /// report.json. @param more  as in MapFolder::finish()

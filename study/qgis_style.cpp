@@ -52,7 +52,7 @@ std::string singleRenderer(const std::string& symbol) {
       symbol);
 }
 
-/// Labels of a field, with a white rim. @param placement  QGIS's number: 1 around a point, 2 along a line
+/// Labels of a field, with a white rim. @param placement  QGIS's number: 0 around a point, 2 along a line
 std::string labels(const char* field, int placement) {
   return fmt::format(
       R"(<labeling type="simple"><settings calloutType="simple"><text-style fieldName="{}" fontSize="8" textColor="30,30,30,255">)"
@@ -100,8 +100,17 @@ std::string emitterStyle() {
                                        option("name", "circle") + option("color", "128,128,128,255") +
                                            option("outline_color", "25,30,38,255") + option("size", "3"),
                                        "fillColor")) +
-                     labels("name", 1),
+                     labels("name", 0),
                  true, true);
+}
+
+std::string siteStyle() {
+  return styleOf(singleRenderer(symbol("0", "marker", "SimpleMarker", 1,
+                                       option("name", "square") + option("color", "255,255,255,255") +
+                                           option("outline_color", "25,30,38,255") + option("size", "2"),
+                                       "")) +
+                     labels("name", 0),
+                 false, true);
 }
 
 std::string trackStyle() {

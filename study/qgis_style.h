@@ -18,6 +18,8 @@ std::string bandStyle(const std::vector<StyleRule>& rules);
 std::string contourStyle(const std::vector<StyleRule>& rules);
 /// Points with their field "name", coloured by "color".
 std::string emitterStyle();
+/// Small squares; their labels, the names, are off: emitters have labels.
+std::string siteStyle();
 std::string trackStyle();
 
 /// 'text' as a literal of an expression.

@@ -7,6 +7,7 @@
 #include "emscape/study/vertical.h"
 #include "render/annotate/overlay_parts.h"
 #include "render/annotate/plot.h"
+#include "study/vertical_colors.h"
 
 namespace emscape::study {
 namespace {
@@ -23,50 +24,7 @@ constexpr Ink kSky{{0.925F, 0.955F, 0.985F}};
 constexpr Ink kContour{{0.84F, 0.10F, 0.12F}};
 constexpr Ink kFreeSpace{{0.10F, 0.12F, 0.16F}};
 constexpr Ink kRay{{0.10F, 0.12F, 0.16F}, 0.45};
-constexpr int kColors = 48;      ///< shades of the scale
-constexpr int kBlock_px = 2;     ///< side of the squares of one colour
-constexpr double kSpan_db = 80;  ///< of the scale, below the strongest values
-
-/// Colours of the diagram; none: left blank.
-class Colors {
- public:
-  explicit Colors(const VerticalDiagram& diagram) : is_part_(diagram.unit.empty()), floor_(diagram.floor) {
-    std::vector<float> known;
-    for (const VerticalCut& cut : diagram.cuts) {
-      std::copy_if(cut.values.begin(), cut.values.end(), std::back_inserter(known),
-                   [&](float value) { return std::isfinite(value) && hasField(value); });
-    }
-    std::sort(known.begin(), known.end());
-    if (!is_part_ && !known.empty()) {
-      // Next to the emitter the values rise without bound: the uppermost hundredth is left out.
-      const auto strong = static_cast<double>(known[known.size() * 99 / 100]);
-      high_ = 10 * std::ceil(strong / 10);
-      low_ = std::max(10 * std::floor(static_cast<double>(known.front()) / 10), high_ - kSpan_db);
-      if (high_ - low_ < 10) low_ = high_ - 10;
-    }
-    for (const render::ColorMap::Point& point : render::colorMap("viridis").points) {
-      function_.colors.push_back({low_ + point.at * (high_ - low_), point.color});
-    }
-    function_.opacities = {{low_, 0}, {high_, 0}};
-  }
-
-  const render::TransferFunction& function() const { return function_; }
-  /// The shade of a value; -1: blank.
-  int shadeOf(float value) const {
-    if (std::isnan(value) || !hasField(value)) return -1;
-    const double part = (static_cast<double>(value) - low_) / (high_ - low_);
-    return std::clamp(static_cast<int>(part * kColors), 0, kColors - 1);
-  }
-  Ink inkOf(int shade) const { return {function_.color(low_ + (shade + 0.5) / kColors * (high_ - low_))}; }
-
- private:
-  bool hasField(float value) const { return static_cast<double>(value) > (is_part_ ? 0.005 : floor_); }
-
-  bool is_part_;  ///< a probability
-  double floor_;
-  double low_ = 0, high_ = 1;
-  render::TransferFunction function_;
-};
+constexpr int kBlock_px = 2;  ///< side of the squares of one colour
 
 class VerticalPlot {
  public:
@@ -314,7 +272,7 @@ class VerticalPlot {
   Canvas& canvas_;
   render::Style style_;
   double unit_;  ///< pixels of the picture in one of a 1400 x 800 one
-  Colors colors_;
+  VerticalColors colors_;
   render::Legend legend_;
 };
 

@@ -56,16 +56,7 @@ FrameOrigin frameFromJson(const Json& json) {
   return frame;
 }
 
-void setMember(DenseVolume& volume, const std::string& key, const Json& value) {
-  Grid& grid = volume.grid;
-  VolumeInfo& info = volume.info;
-  if (key == "dims") grid.dims = dimsFromJson(value);
-  if (key == "spacing_m") grid.spacing_m = vectorFromJson(value);
-  if (key == "first_center_m") grid.first_center_m = vectorFromJson(value);
-  if (key == "frame") {
-    grid.frame = frameFromJson(value);
-    grid.georeferenced = true;
-  }
+void setMember(VolumeInfo& info, const std::string& key, const Json& value) {
   if (key == "quantity") info.quantity = value.get<std::string>();
   if (key == "unit") info.unit = value.get<std::string>();
   if (key == "time_s") info.time_s = numberFromJson(value);
@@ -75,12 +66,58 @@ void setMember(DenseVolume& volume, const std::string& key, const Json& value) {
   if (key == "range_max") info.range_max = static_cast<float>(numberFromJson(value));
   if (key == "categorical") info.categorical = value.get<bool>();
   if (key == "extra") info.extra = value.get<std::map<std::string, std::string>>();
+}
+
+void setMember(DenseVolume& volume, const std::string& key, const Json& value) {
+  Grid& grid = volume.grid;
+  setMember(volume.info, key, value);
+  if (key == "dims") grid.dims = dimsFromJson(value);
+  if (key == "spacing_m") grid.spacing_m = vectorFromJson(value);
+  if (key == "first_center_m") grid.first_center_m = vectorFromJson(value);
+  if (key == "frame") {
+    grid.frame = frameFromJson(value);
+    grid.georeferenced = true;
+  }
   if (key == "first_valid_k") {
     if (!value.is_array()) throw Error(ErrorCode::bad_input, "a list of whole numbers is needed");
     for (const Json& layer : value) {
       volume.first_valid_k.push_back(static_cast<std::uint16_t>(checkedInt(layer, kMaxVoxelsPerAxis)));
     }
   }
+}
+
+/// Calls set(key, value) for each member. @throws Error (bad_input) that names file and key
+template <class Set>
+void eachMember(const Json& json, const std::string& file, const char* what, const Set& set) {
+  if (!json.is_object())
+    throw Error(ErrorCode::bad_input, {file}, std::string("no JSON object that describes ") + what);
+  for (const auto& [key, value] : json.items()) {
+    try {
+      set(key, value);
+    } catch (const Error& error) {
+      throw Error(ErrorCode::bad_input, {file}, "key " + key + ": " + error.message());
+    } catch (const nlohmann::json::exception& error) {
+      throw Error(ErrorCode::bad_input, {file}, "key " + key + ": " + error.what());
+    }
+  }
+}
+
+Json frameToJson(const FrameOrigin& frame) {
+  return {{"kind", toString(frame.kind)},
+          {"latitude_deg", frame.latitude_deg},
+          {"longitude_deg", frame.longitude_deg},
+          {"height_msl_m", frame.height_msl_m}};
+}
+
+/// The members after those of the geometry.
+void addInfo(Json& json, const VolumeInfo& info) {
+  json["time_s"] = numberToJson(info.time_s);
+  json["time_utc"] = info.time_utc;
+  json["floor"] = numberToJson(info.floor);
+  json["range_min"] = numberToJson(info.range_min);
+  json["range_max"] = numberToJson(info.range_max);
+  json["categorical"] = info.categorical;
+  json["extra"] = info.extra;
 }
 
 }  // namespace
@@ -101,42 +138,45 @@ Json toJson(const DenseVolume& volume, bool with_mask) {
   json["voxels"] = grid.dims.count();
   json["spacing_m"] = vectorToJson(grid.spacing_m);
   json["first_center_m"] = vectorToJson(grid.first_center_m);
-  if (grid.georeferenced) {
-    json["frame"] = {{"kind", toString(grid.frame.kind)},
-                     {"latitude_deg", grid.frame.latitude_deg},
-                     {"longitude_deg", grid.frame.longitude_deg},
-                     {"height_msl_m", grid.frame.height_msl_m}};
-  }
-  json["time_s"] = numberToJson(info.time_s);
-  json["time_utc"] = info.time_utc;
-  json["floor"] = numberToJson(info.floor);
-  json["range_min"] = numberToJson(info.range_min);
-  json["range_max"] = numberToJson(info.range_max);
-  json["categorical"] = info.categorical;
-  json["extra"] = info.extra;
+  if (grid.georeferenced) json["frame"] = frameToJson(grid.frame);
+  addInfo(json, info);
   if (with_mask && !volume.first_valid_k.empty()) json["first_valid_k"] = volume.first_valid_k;
   return json;
 }
 
 DenseVolume fromJson(const Json& json, const std::string& file) {
-  if (!json.is_object()) throw Error(ErrorCode::bad_input, {file}, "no JSON object that describes a volume");
   DenseVolume volume;
   volume.grid.spacing_m = {1, 1, 1};
-  for (const auto& [key, value] : json.items()) {
-    try {
-      setMember(volume, key, value);
-    } catch (const Error& error) {
-      throw Error(ErrorCode::bad_input, {file}, "key " + key + ": " + error.message());
-    } catch (const nlohmann::json::exception& error) {
-      throw Error(ErrorCode::bad_input, {file}, "key " + key + ": " + error.what());
-    }
-  }
+  eachMember(json, file, "a volume",
+             [&](const std::string& key, const Json& value) { setMember(volume, key, value); });
   checkDims(volume.grid.dims, {file});
   if (json.contains("voxels") && json["voxels"] != volume.grid.dims.count()) {
     throw Error(ErrorCode::bad_input, {file},
                 "key voxels: " + json["voxels"].dump() + " is not the product of the dims");
   }
   return volume;
+}
+
+Json toJson(const MeshField& field) {
+  Json json;
+  json["quantity"] = field.info.quantity;
+  json["unit"] = field.info.unit;
+  if (field.mesh->georeferenced) json["frame"] = frameToJson(field.mesh->frame);
+  addInfo(json, field.info);
+  return json;
+}
+
+MeshField meshFieldFromJson(const Json& json, const std::string& file) {
+  MeshField field;
+  auto mesh = std::make_shared<TetrahedralMesh>();
+  eachMember(json, file, "a field", [&](const std::string& key, const Json& value) {
+    setMember(field.info, key, value);
+    if (key != "frame") return;
+    mesh->frame = frameFromJson(value);
+    mesh->georeferenced = true;
+  });
+  field.mesh = mesh;
+  return field;
 }
 
 Json parseJson(const std::string& text, const std::string& file) {

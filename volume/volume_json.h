@@ -1,5 +1,5 @@
-/// A volume without its values as JSON: the header of raw files, the sidecar of .nvdb, field data
-/// of .vti. Internal to the module.
+/// Volumes and fields on meshes without their values as JSON: the header of raw files, the sidecar of .nvdb,
+/// field data of .vti and .vtu. Internal to the module.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "emscape/volume/dense_volume.h"
+#include "emscape/volume/mesh.h"
 
 namespace emscape::volume {
 
@@ -17,6 +18,13 @@ nlohmann::ordered_json toJson(const DenseVolume& volume, bool with_mask);
 /// present, must agree with dims, so that a damaged file is detected before memory is allocated.
 /// @throws Error (bad_input) that names file and key
 DenseVolume fromJson(const nlohmann::ordered_json& json, const std::string& file);
+
+/// The info of a field and the frame of its mesh.
+nlohmann::ordered_json toJson(const MeshField& field);
+
+/// A field without values, on a mesh that has a frame alone. @throws Error (bad_input) that names file and
+/// key
+MeshField meshFieldFromJson(const nlohmann::ordered_json& json, const std::string& file);
 
 /// @throws Error (bad_input) with line and column
 nlohmann::ordered_json parseJson(const std::string& text, const std::string& file);

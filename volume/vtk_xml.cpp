@@ -47,7 +47,7 @@ std::vector<std::uint8_t> fromBase64(const std::uint8_t* begin, const std::uint8
 }  // namespace
 
 VtkXmlFile::VtkXmlFile(const std::filesystem::path& path, const char* type)
-    : file_(path.string()), bytes_(readWhole(path)) {
+    : file_(path.string()), type_(type), bytes_(readWhole(path)) {
   const std::string_view text(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
   if (text.find("<VTKFile") == std::string_view::npos) fail("no VTK XML file");
   if (text.substr(text.size() - std::min(text.size(), kTail)).find(kEnd) == std::string_view::npos) {
@@ -74,7 +74,7 @@ VtkXmlFile::VtkXmlFile(const std::filesystem::path& path, const char* type)
   }
   root_ = document_.child("VTKFile");
   const std::string found = root_.attribute("type").value();
-  if (found != type) fail("VTK file of type \"" + found + "\" where " + type + " is needed");
+  if (found != type_) fail("VTK file of type \"" + found + "\" where " + type_ + " is needed");
 }
 
 bool VtkXmlFile::bigEndian() const {
@@ -175,7 +175,7 @@ std::vector<std::uint8_t> VtkXmlFile::arrayBytes(const pugi::xml_node& array,
 }
 
 std::string VtkXmlFile::fieldText(const std::string& name) const {
-  for (const pugi::xml_node& array : root_.child("ImageData").child("FieldData").children()) {
+  for (const pugi::xml_node& array : root_.child(type_.c_str()).child("FieldData").children()) {
     const bool text = std::string_view(array.attribute("format").value()) == "ascii";
     if (text && name == array.attribute("Name").value()) return array.child_value();
   }

@@ -24,7 +24,7 @@ class VtkXmlFile {
   /// @param expected_bytes  any other number is an Error, before anything is allocated for it
   std::vector<std::uint8_t> arrayBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
 
-  /// An array of the image's field data in text form; empty if there is none.
+  /// An array of the field data in text form; empty if there is none.
   std::string fieldText(const std::string& name) const;
   /// Position of a text of the head in the file. @throws Error (bad_input) unless it is there
   std::uint64_t headOffsetOf(const std::string& text) const;
@@ -37,6 +37,7 @@ class VtkXmlFile {
   std::vector<std::uint8_t> inflate(ByteReader& reader, std::uint64_t expected_bytes) const;
 
   std::string file_;
+  std::string type_;
   std::vector<std::uint8_t> bytes_;
   pugi::xml_document document_;
   pugi::xml_node root_;

@@ -9,6 +9,7 @@ void addBench(CLI::App& app, const GlobalOptions& global, Action& action) {
   bench->require_subcommand(1);
   addBenchCoverage(*bench, global, action);
   addBenchField(*bench, global, action);
+  addBenchMarch(*bench, global, action);
   addBenchModels(*bench, global, action);
   addBenchReconstruction(*bench, global, action);
   addBenchRender(*bench, global, action);

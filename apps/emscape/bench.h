@@ -7,6 +7,7 @@ namespace emscape::app {
 
 void addBenchCoverage(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action);
+void addBenchMarch(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchModels(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchRender(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchReconstruction(CLI::App& bench, const GlobalOptions& global, Action& action);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
+#include "emscape/base/progress.h"
 #include "emscape/render/cut_plane.h"
 #include "emscape/scenario/edit.h"
 
@@ -18,6 +19,7 @@ struct GlobalOptions {
   int threads = 0;  ///< 0: one per core
   bool json = false;
   bool quiet = false;
+  ProgressSink progress = {};  ///< of a host program; empty: standard error
 };
 
 /// An option with several values, with commas between them: a word after a blank may be the subcommand's

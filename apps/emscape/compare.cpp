@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "apps/emscape/command.h"
 #include "apps/emscape/compare_report.h"
@@ -32,6 +33,7 @@ struct CompareCommand {
   MapOptions maps;
   std::string volume;
   int areas = 3;
+  std::set<std::string> given;  ///< names of the options on the command line
 };
 
 /// Writes B less A in the voxels of A's region.
@@ -54,7 +56,22 @@ void writeVolume(const CompareCommand& command, const study::ComparedScenario& a
   logInfo("wrote " + command.volume);
 }
 
-int compare(const CompareCommand& command, const GlobalOptions& global) {
+/// Completes the folder of the differences, and prints them.
+int finish(study::MapFolder& folder, const study::Comparison& comparison, const study::ComparedScenario& a,
+           const study::ComparedScenario& b, const std::string& quantity, const GlobalOptions& global) {
+  logWarnings(comparison.warnings);
+  folder.finish(joinedWarnings(comparison.warnings), comparisonJson(comparison, a, b).dump(),
+                [&](study::HtmlReport& report) { addSections(report, comparison, quantity); });
+  if (global.json) {
+    printResult(folder.reportJson());
+    finishResult();
+  } else {
+    printComparison(comparison, quantity);
+  }
+  return 0;
+}
+
+int compareScenarios(const CompareCommand& command, const GlobalOptions& global) {
   if (command.b.empty() && command.edits_b.empty()) {
     throw Error(ErrorCode::usage, "compare: give a second scenario, or --set-b PATH=VALUE for the first one");
   }
@@ -67,6 +84,7 @@ int compare(const CompareCommand& command, const GlobalOptions& global) {
   study::CompareRequest request;
   request.coverage = requestOf(command.maps, a.scenario->clock);
   request.areas = command.areas;
+  study::checkRequest(request, *a.scenario, *b.scenario);
   const study::CoverageRequest& of = request.coverage;
 
   const study::MapArea area = areaOf(command.maps, *a.scenario);
@@ -106,48 +124,122 @@ int compare(const CompareCommand& command, const GlobalOptions& global) {
     if (!command.volume.empty()) writeVolume(command, a, b, of.times_s.front(), target.fieldOptions());
     return result;
   });
-  logWarnings(comparison.warnings);
-  folder.finish(joinedWarnings(comparison.warnings), comparisonJson(comparison, a, b).dump(),
-                [&](study::HtmlReport& report) { addSections(report, comparison, command.maps.quantity); });
-  if (global.json) {
-    printResult(folder.reportJson());
-    finishResult();
-  } else {
-    printComparison(comparison, command.maps.quantity);
+  return finish(folder, comparison, a, b, command.maps.quantity, global);
+}
+
+/// Of folders of maps only these options make sense: what the maps hold was chosen when they were computed.
+void checkFolderOptions(const CompareCommand& command) {
+  static const std::set<std::string> kAllowed{"A",         "B",       "--output", "--products",
+                                              "--heights", "--times", "--format", "--explain"};
+  for (const std::string& option : command.given) {
+    if (kAllowed.count(option) > 0) continue;
+    throw Error(ErrorCode::usage,
+                option + ": does not go with folders of maps, which are compared as they are");
   }
-  return 0;
+}
+
+int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
+  checkFolderOptions(command);
+  const auto isGiven = [&](const char* option) { return command.given.count(option) > 0; };
+  const study::CoverageFolder a = study::openCoverageFolder(command.a),
+                              b = study::openCoverageFolder(command.b);
+  study::MapChoice choice;
+  if (isGiven("--products")) choice.products = productsOf(command.maps);
+  if (isGiven("--heights")) choice.heights = study::parseHeights(command.maps.heights);
+  if (isGiven("--times")) choice.times_s = scenario::parseTimes(command.maps.times, a.scenario->clock);
+  const auto pairs = study::pairsOf(a, b, choice);
+
+  std::set<double> times_s;
+  std::vector<study::MapHeight> heights;
+  for (const auto& [of_a, of_b] : pairs) {
+    const study::CoverageMap& map = a.maps[of_a];
+    if (map.height) heights.push_back(*map.height);
+    if (map.time_s) times_s.insert(*map.time_s);
+  }
+  if (times_s.empty()) times_s.insert(0);
+  const std::string quantity = scenario::info(a.quantity).name;
+  study::MapFolder folder(command.folder,
+                          {"compare",
+                           fmt::format("Comparison of {} (A) and {} (B)", command.a, command.b),
+                           {a.scenario, b.scenario},
+                           a.terrain,
+                           a.grid,
+                           a.quantity,
+                           a.threshold,
+                           {times_s.begin(), times_s.end()},
+                           heights},
+                          command.maps.formats);
+  const study::MapGrid& grid = *a.grid;
+  if (!global.json) {
+    print("B ({}) against A ({}): {} x {} pixels of {} m in {}, {} >= {:g}\n", command.b, command.a,
+          grid.width, grid.height, grid.cell_m, grid.crs, quantity, a.threshold);
+  }
+  const ProgressSink show = progressSink(global);
+  const study::Comparison comparison = study::compareFolders(
+      a, b, pairs, command.areas, [&](const study::Map& map) { folder.add(map); },
+      [&](const std::string& step, double fraction) {
+        stopIfInterrupted();
+        show(step, fraction);
+      });
+  return finish(folder, comparison, {a.scenario, a.terrain}, {b.scenario, b.terrain}, quantity, global);
+}
+
+int compare(const CompareCommand& command, const GlobalOptions& global) {
+  const bool is_folder = std::filesystem::is_directory(command.a);
+  if (!command.b.empty() && is_folder != std::filesystem::is_directory(command.b)) {
+    throw Error(ErrorCode::usage,
+                fmt::format("compare: {} is a folder and {} is not; give two scenarios, or two "
+                            "folders of emscape coverage",
+                            is_folder ? command.a : command.b, is_folder ? command.b : command.a));
+  }
+  if (is_folder && command.b.empty()) {
+    throw Error(ErrorCode::usage, "compare: give a second folder of emscape coverage");
+  }
+  return is_folder ? compareFolders(command, global) : compareScenarios(command, global);
 }
 
 }  // namespace
 
 void addCompare(CLI::App& app, const GlobalOptions& global, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("compare", "What a scenario gains and loses against another: maps, areas, and why");
+  CLI::App* command = app.add_subcommand(
+      "compare", "What a scenario gains and loses against another, or a folder of maps: areas, and why");
   command->fallthrough();
   command->footer(R"(
-Maps are of B less A: for products that mark an area (covered, jam_loss) what is gained, lost and kept, for all others the
-difference. The table has the areas; the largest connected ones that changed are explained by the path from the emitter that
-decides, in A and in B, as `emscape profile` does. Products are those of `emscape coverage`, but best.
+A and B are two scenarios, or one with --set-b, or two folders that `emscape coverage` wrote. Maps are of B less A: for products
+that mark an area (covered, jam_loss, burn_through) what is gained, lost and kept, for all others the difference. The table has
+the areas; the largest connected ones that changed are explained by the path from the emitter that decides, in A and in B, as
+`emscape profile` does. Products are those of `emscape coverage`, but best.
+
+Folders are compared as they are: nothing is computed again. They need GeoTIFFs (--format cog) of the same pixels, quantity,
+threshold and units. All maps are compared; --products, --heights and --times choose some. Paths are explained if both scenarios
+are still there, unchanged.
 
 Examples:
   emscape compare scenarios/jacksboro.yaml -o out --set-b emitters.jammer.power_w=100 --times 80
   emscape compare scenarios/jacksboro.yaml -o out --set-b "platforms.ridge site.position.height_agl_m=40" --heights agl:30,150
   emscape compare before.yaml after.yaml -o out --products covered,min_height --volume out/difference.vdb
+  emscape compare maps_before maps_after -o out --products covered --heights agl:150
 
 DIR has maps, report.html, report.json and study.json, as `emscape coverage` writes them.)");
   auto options = std::make_shared<CompareCommand>();
-  command->add_option("A", options->a, "Scenario (YAML or JSON)")->required();
-  command->add_option("B", options->b, "Scenario that A is compared with; default: A with --set-b");
+  command->add_option("A", options->a, "Scenario (YAML or JSON), or folder of emscape coverage")->required();
+  command->add_option("B", options->b, "Scenario or folder that A is compared with; default: A with --set-b");
   addSetOption(*command, options->edits);
   addSetOption(*command, options->edits_b, "--set-b", "changes a value of B alone");
   command->add_option("-o,--output", options->folder, "Folder to write")->required();
   addMapOptions(*command, options->maps);
   command->add_option("--volume", options->volume,
                       "Volume of B less A in A's region at the first time: a .vdb, .vti or .nvdb file");
-  command->add_option("--explain", options->areas, "Changed areas that are explained, of each sign")
+  command
+      ->add_option("--explain", options->areas,
+                   "Number of areas that are explained, of those gained and of those lost each")
       ->check(CLI::Range(0, 100));
-  command->callback(
-      [options, &global, &action] { action = [options, &global] { return compare(*options, global); }; });
+  command->callback([options, command, &global, &action] {
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->count() > 0) options->given.insert(option->get_name());
+    }
+    action = [options, &global] { return compare(*options, global); };
+  });
 }
 
 }  // namespace emscape::app

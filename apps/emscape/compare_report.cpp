@@ -126,17 +126,20 @@ Json comparisonJson(const study::Comparison& comparison, const study::ComparedSc
   }
   json["changed_areas"] = Json::array();
   for (const study::ChangedArea& area : comparison.changed_areas) {
-    json["changed_areas"].push_back({{"change", area.is_gained ? "gained" : "lost"},
-                                     {"product", study::info(area.product).name},
-                                     {"height", study::nameOf(area.height)},
-                                     {"time_s", area.time_s},
-                                     {"area_km2", area.area_m2 / 1e6},
-                                     {"latitude_deg", area.latitude_deg},
-                                     {"longitude_deg", area.longitude_deg},
-                                     {"height_msl_m", area.height_msl_m},
-                                     {"emitter", area.emitter},
-                                     {"a", pathJson(area.a)},
-                                     {"b", pathJson(area.b)}});
+    Json of_area{{"change", area.is_gained ? "gained" : "lost"},
+                 {"product", study::info(area.product).name},
+                 {"height", study::nameOf(area.height)},
+                 {"time_s", area.time_s},
+                 {"area_km2", area.area_m2 / 1e6},
+                 {"latitude_deg", area.latitude_deg},
+                 {"longitude_deg", area.longitude_deg}};
+    if (comparison.has_paths) {
+      of_area["height_msl_m"] = area.height_msl_m;
+      of_area["emitter"] = area.emitter;
+      of_area["a"] = pathJson(area.a);
+      of_area["b"] = pathJson(area.b);
+    }
+    json["changed_areas"].push_back(std::move(of_area));
   }
   return json;
 }
@@ -148,12 +151,14 @@ void addSections(study::HtmlReport& report, const study::Comparison& comparison,
   if (!areas.rows.empty()) report.table(areas);
   if (!differences.rows.empty()) report.table(differences);
   if (comparison.changed_areas.empty()) return;
-  report.section("Why");
-  report.paragraph(
-      "The largest connected areas that changed, and the path to the pixel in their middle from the emitter "
-      "with the largest value there, as emscape profile explains it.");
+  report.section(comparison.has_paths ? "Why" : "Largest areas that changed");
+  if (comparison.has_paths) {
+    report.paragraph(
+        "The largest connected areas that changed, and the path to the pixel in their middle from the "
+        "emitter with the largest value there, as emscape profile explains it.");
+  }
   for (const study::ChangedArea& area : comparison.changed_areas) {
-    report.paragraph(titleOf(area) + ". " + valuesText(area, quantity));
+    report.paragraph(titleOf(area) + (comparison.has_paths ? ". " + valuesText(area, quantity) : "."));
     if (!area.emitter.empty()) report.facts({{"A", pathText(area.a)}, {"B", pathText(area.b)}});
   }
 }
@@ -163,7 +168,8 @@ void printComparison(const study::Comparison& comparison, const std::string& qua
   printTable(areas);
   printTable(differences);
   for (const study::ChangedArea& area : comparison.changed_areas) {
-    print("\n{}\n  {}\n", titleOf(area), valuesText(area, quantity));
+    print("\n{}\n", titleOf(area));
+    if (comparison.has_paths) print("  {}\n", valuesText(area, quantity));
     if (!area.emitter.empty()) print("  A: {}\n  B: {}\n", pathText(area.a), pathText(area.b));
   }
 }

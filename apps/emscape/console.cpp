@@ -24,6 +24,7 @@ constexpr std::chrono::seconds kProgressInterval(10);
 
 std::mutex console_mutex;
 std::string shown_line;  // the progress line on the screen; empty if there is none
+thread_local std::string* captured_result = nullptr;
 
 /// The text that erases the progress line.
 std::string clearLine() {
@@ -62,7 +63,19 @@ void openStandardStreams() {
   }
 }
 
+CapturedResult::CapturedResult() : outer_(captured_result) {
+  captured_result = &text_;
+}
+
+CapturedResult::~CapturedResult() {
+  captured_result = outer_;
+}
+
 void printResult(const std::string& text) {
+  if (captured_result != nullptr) {
+    *captured_result += text;
+    return;
+  }
   errno = 0;
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) failWriting(errno);
 }
@@ -88,6 +101,7 @@ std::string csvText(const std::string& text) {
 }
 
 void finishResult() {
+  if (captured_result != nullptr) return;
   errno = 0;
   std::cout.flush();  // CLI11 prints help texts through it
   if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) failWriting(errno);
@@ -136,6 +150,7 @@ void Progress::show(double fraction) {
 }
 
 ProgressSink progressSink(const GlobalOptions& global) {
+  if (global.progress) return global.progress;
   struct Current {
     std::string step;
     std::unique_ptr<Progress> progress;

@@ -25,6 +25,22 @@ void openStandardStreams();
 
 /// Writes text to standard output, which carries the result. @throws Error (other) if it cannot be written
 void printResult(const std::string& text);
+
+/// While it lives, results of the calling thread go into a text instead of standard output.
+class CapturedResult {
+ public:
+  CapturedResult();
+  ~CapturedResult();
+  CapturedResult(const CapturedResult&) = delete;
+  CapturedResult& operator=(const CapturedResult&) = delete;
+
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+  std::string* outer_;
+};
+
 template <class... Arguments>
 void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   printResult(fmt::format(format, std::forward<Arguments>(arguments)...));
@@ -68,7 +84,7 @@ class Progress {
   Clock::time_point told_;  // of the last line that is not rewritten
 };
 
-/// A progress sink for a library: a new Progress for each step. Owned by the sink.
+/// A progress sink for a library: that of the options, else a new Progress for each step. Owned by the sink.
 ProgressSink progressSink(const GlobalOptions& global);
 
 /// Logs warnings. Warnings that differ only in the emitter and in numbers are merged into one that names all

@@ -41,6 +41,7 @@ void printRow(const study::MapRecord& record) {
 int coverage(const CoverageCommand& command, const GlobalOptions& global) {
   const auto scenario = scenario::loadScenario(command.scenario, command.edits);
   const study::CoverageRequest request = requestOf(command.maps, scenario->clock);
+  study::checkRequest(request, *scenario);
   const study::MapArea area = areaOf(command.maps, *scenario);
   const auto grid = gridOf(command.maps, *scenario, area);
   const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);

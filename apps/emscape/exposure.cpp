@@ -117,7 +117,9 @@ Exit status: 0, whether the threshold is reached or not; 2 for names that the sc
   addThresholdOption(*command, options->threshold);
   command->add_option("--times", options->times,
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
-  command->add_option("--look", options->look, "Radars' beams: on the platform, or as the scan points")
+  command
+      ->add_option("--look", options->look,
+                   "Where radars look: target (at the platform) or scan (where their scan points)")
       ->check(CLI::IsMember({"target", "scan"}));
   command->add_option("--rcs-target", options->target,
                       "Target of the scenario that radars see, or none; default: that of the platform");

@@ -2,19 +2,31 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <limits>
 #include <memory>
+#include <set>
 
+#include "apps/emscape/choices_report.h"
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
+#include "apps/emscape/refractivity_report.h"
 #include "apps/emscape/waveform_report.h"
+#include "emscape/base/log.h"
 #include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/model_choices.h"
 #include "emscape/playback/inputs.h"
 #include "emscape/playback/volume_input.h"
 #include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
 #include "emscape/volume/file.h"
+#include "emscape/volume/mesh_file.h"
 #include "emscape/volume/statistics.h"
+#include "propagation/registry/model_info.h"
+#include "render/annotate/plot.h"
 #include "scenario/antenna/shapes.h"
+#include "scenario/refractivity_file.h"
 
 namespace emscape::app {
 namespace {
@@ -40,7 +52,33 @@ Json toJson(const FrameOrigin& frame) {
           {"height_msl_m", frame.height_msl_m}};
 }
 
-Json describeScenario(const std::string& file) {
+/// What the models of the emitters choose by themselves at the first step; reads the terrain only if some do.
+Json choicesOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
+  const bool has_any =
+      std::any_of(scenario->emitters.begin(), scenario->emitters.end(), [](const scenario::Emitter& emitter) {
+        return propagation::modelInfo(emitter.propagation.model).choices != nullptr;
+      });
+  if (!has_any) return Json::array();
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
+  const double time_s = scenario::timesOf(scenario->clock).front();
+  return choicesJson(
+      emfield::modelChoices(scenario::snapshotAt(scenario, terrain.get(), time_s), terrain.get()));
+}
+
+/// What a file holds.
+struct Description {
+  Json json;
+  std::shared_ptr<const propagation::Refractivity> refractivity;  ///< for the plot; null: there is none
+};
+
+/// Frequencies of a scenario's emitters, ascending, each once.
+std::vector<double> frequenciesOf(const scenario::Scenario& scenario) {
+  std::set<double> frequencies_hz;
+  for (const scenario::Emitter& emitter : scenario.emitters) frequencies_hz.insert(emitter.frequency_hz);
+  return {frequencies_hz.begin(), frequencies_hz.end()};
+}
+
+Description describeScenario(const std::string& file) {
   const auto scenario = scenario::loadScenario(file);
   const scenario::Region& region = scenario->region;
   Json emitters = Json::array();
@@ -79,47 +117,74 @@ Json describeScenario(const std::string& file) {
   }
   Json channels = Json::array();
   for (const emfield::Channel& channel : emfield::channelsOf(*scenario, {})) channels.push_back(channel.name);
-  return {{"kind", "scenario"},
-          {"file", file},
-          {"name", scenario->name},
-          {"hash", scenario->hash},
-          {"epoch_utc", scenario->clock.epoch_utc},
-          {"duration_s", scenario->clock.duration_s},
-          {"step_s", scenario->clock.step_s},
-          {"frame", toJson(region.origin)},
-          {"size_m", toJson(region.size_m)},
-          {"dims", toJson(region.dims)},
-          {"terrain_files", scenario->terrain ? Json(scenario->terrain->files) : Json::array()},
-          {"platforms", platforms},
-          {"emitters", emitters},
-          {"receivers", receivers},
-          {"targets", targets},
-          {"channels", channels}};
+  const Json choices = choicesOf(scenario);
+  Json json{{"kind", "scenario"},
+            {"file", file},
+            {"name", scenario->name},
+            {"hash", scenario->hash},
+            {"epoch_utc", scenario->clock.epoch_utc},
+            {"duration_s", scenario->clock.duration_s},
+            {"step_s", scenario->clock.step_s},
+            {"frame", toJson(region.origin)},
+            {"size_m", toJson(region.size_m)},
+            {"dims", toJson(region.dims)},
+            {"terrain_files", scenario->terrain ? Json(scenario->terrain->files) : Json::array()},
+            {"platforms", platforms},
+            {"emitters", emitters},
+            {"receivers", receivers},
+            {"targets", targets},
+            {"channels", channels}};
+  const auto& refractivity = scenario->atmosphere.refractivity;
+  if (refractivity) json["refractivity"] = refractivityJson(*refractivity, frequenciesOf(*scenario));
+  return {json, refractivity};
+}
+
+/// @param file  a CSV file of profiles, or soundings of IGRA 2
+Description describeRefractivity(const std::string& file) {
+  constexpr double kGHz = 1e9;
+  const scenario::RefractivityFile read =
+      scenario::isSoundingFile(file) ? scenario::readSounding(file, {}) : scenario::readRefractivity(file);
+  for (const std::string& warning : read.warnings) logWarning(warning);
+  auto refractivity = std::make_shared<propagation::Refractivity>();
+  refractivity->air = read.field;
+  return {{{"kind", "refractivity"},
+           {"file", file},
+           {"holds", read.description},
+           {"profiles", profilesJson(read.field, {1 * kGHz, 3 * kGHz, 10 * kGHz})}},
+          refractivity};
+}
+
+/// Appends what volumes and fields on meshes have in common.
+void addValues(Json& json, const volume::VolumeInfo& info, const volume::Statistics& statistics) {
+  json["time_s"] = info.time_s;
+  json["time_utc"] = info.time_utc;
+  json["floor"] = info.floor;
+  json["range"] = {info.range_min, info.range_max};
+  json["categorical"] = info.categorical;
+  json["min"] = statistics.min;
+  json["max"] = statistics.max;
+  json["mean"] = statistics.mean;
+}
+
+Json extraOf(const volume::VolumeInfo& info) {
+  Json extra = Json::object();
+  for (const auto& [key, value] : info.extra) extra[key] = value;
+  return extra;
 }
 
 Json describeVolume(const volume::DenseVolume& volume) {
-  const volume::VolumeInfo& info = volume.info;
   const volume::Statistics statistics = volume::statisticsOf(volume);
-  Json json{{"quantity", info.quantity},
-            {"unit", info.unit},
+  Json json{{"quantity", volume.info.quantity},
+            {"unit", volume.info.unit},
             {"dims", toJson(volume.grid.dims)},
             {"spacing_m", toJson(volume.grid.spacing_m)},
             {"first_center_m", toJson(volume.grid.first_center_m)},
-            {"frame", volume.grid.georeferenced ? toJson(volume.grid.frame) : Json(nullptr)},
-            {"time_s", info.time_s},
-            {"time_utc", info.time_utc},
-            {"floor", info.floor},
-            {"range", {info.range_min, info.range_max}},
-            {"categorical", info.categorical},
-            {"min", statistics.min},
-            {"max", statistics.max},
-            {"mean", statistics.mean},
-            {"voxels", statistics.voxels},
-            {"masked_voxels", statistics.masked},
-            {"nan_voxels", statistics.nan}};
-  Json extra = Json::object();
-  for (const auto& [key, value] : info.extra) extra[key] = value;
-  json["extra"] = extra;
+            {"frame", volume.grid.georeferenced ? toJson(volume.grid.frame) : Json(nullptr)}};
+  addValues(json, volume.info, statistics);
+  json["voxels"] = statistics.voxels;
+  json["masked_voxels"] = statistics.masked;
+  json["nan_voxels"] = statistics.nan;
+  json["extra"] = extraOf(volume.info);
   return json;
 }
 
@@ -135,6 +200,35 @@ Json describeVolumeFiles(const std::string& path) {
   json["times_s"] = Json::array();
   for (const playback::VolumeFile& file : files) json["times_s"].push_back(file.time_s);
   json["volumes"] = volumes;
+  return json;
+}
+
+/// The first step's mesh and fields; of a series also its steps.
+Json describeMeshFiles(const std::string& path) {
+  std::string quantity;
+  const std::vector<playback::VolumeFile> files = playback::meshFilesOf(path, quantity);
+  const volume::MeshFile file = volume::readMesh(files.front().file);
+  const volume::MeshBounds bounds = volume::boundsOf(*file.mesh);
+  Json json{{"kind", "mesh"},
+            {"file", path},
+            {"steps", files.size()},
+            {"times_s", Json::array()},
+            {"points", file.mesh->points_m.size()},
+            {"tetrahedra", file.mesh->cells.size()},
+            {"inverted_tetrahedra", file.inverted_cells},
+            {"boundary_faces", file.faces->boundary.size()},
+            {"lower_m", toJson(bounds.lower_m)},
+            {"upper_m", toJson(bounds.upper_m)},
+            {"frame", file.mesh->georeferenced ? toJson(file.mesh->frame) : Json(nullptr)}};
+  for (const playback::VolumeFile& step : files) json["times_s"].push_back(step.time_s);
+  for (const volume::MeshField& field : file.fields) {
+    const volume::Statistics statistics = volume::statisticsOf(field);
+    Json described{{"quantity", field.info.quantity}, {"unit", field.info.unit}};
+    addValues(described, field.info, statistics);
+    described["points_without_field"] = statistics.nan;
+    described["extra"] = extraOf(field.info);
+    json["fields"].push_back(described);
+  }
   return json;
 }
 
@@ -187,26 +281,43 @@ void printText(const Json& json, int depth) {
   }
 }
 
-Json describe(const std::string& file) {
+Description describe(const std::string& file) {
+  if (scenario::isSoundingFile(file) || scenario::isRefractivityCsv(file)) return describeRefractivity(file);
   switch (playback::inputKindOf(file)) {
     case playback::InputKind::scenario:
       return describeScenario(file);
     case playback::InputKind::volume:
-      return describeVolumeFiles(file);
+      return {describeVolumeFiles(file), nullptr};
+    case playback::InputKind::mesh:
+      return {describeMeshFiles(file), nullptr};
     case playback::InputKind::elevation:
-      return describeElevation(file);
+      return {describeElevation(file), nullptr};
     case playback::InputKind::antenna:
       break;
   }
-  return describeAntenna(file);
+  return {describeAntenna(file), nullptr};
 }
 
-int info(const std::string& file, const GlobalOptions& global) {
-  const Json report = describe(file);
+struct InfoOptions {
+  std::string file;
+  std::string plot;
+  std::string size = "1400x800";
+};
+
+int info(const InfoOptions& options, const GlobalOptions& global) {
+  const Description description = describe(options.file);
+  if (!options.plot.empty()) {
+    if (!description.refractivity) {
+      throw Error(ErrorCode::usage, "--plot draws refractivity; " + options.file + " has none");
+    }
+    plotRefractivity(*description.refractivity, std::filesystem::path(options.file).filename().string(),
+                     render::parseImageSize(options.size), options.plot);
+    logInfo("wrote " + options.plot);
+  }
   if (global.json) {
-    printJson(report);
+    printJson(description.json);
   } else {
-    printText(report, 0);
+    printText(description.json, 0);
   }
   return 0;
 }
@@ -214,18 +325,34 @@ int info(const std::string& file, const GlobalOptions& global) {
 }  // namespace
 
 void addInfo(CLI::App& app, const GlobalOptions& global, Action& action) {
-  CLI::App* command = app.add_subcommand("info", "Describe a scenario, volume, elevation or antenna file");
+  CLI::App* command = app.add_subcommand(
+      "info", "Describe a scenario, volume, mesh, elevation, antenna or refractivity file");
   command->fallthrough();
   command->footer(R"(
-Scenarios: .yaml .yml .json. Volumes: .vdb .nvdb .vti .raw .dat; series: .pvd or a folder (its first step is described).
+Scenarios: .yaml .yml .json. Volumes: .vdb .nvdb .vti .raw .dat; fields on tetrahedra: .vtu; series:
+.pvd or a folder (its first step is described).
 Elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt. Antennas: .msi .pln .csv.
+Refractivity: .csv with a column height_msl_m; soundings of IGRA 2 (any ending; the last is described). Each duct is given with
+its heights, its strength, the largest trapped angle, the number of modes at 1, 3 and 10 GHz (of a scenario, at the frequencies of
+its emitters), and the frequency from which it traps.
 
 Examples:
   emscape info scenarios/jacksboro.yaml
-  emscape info out/jacksboro_0001.vdb --json)");
-  auto file = std::make_shared<std::string>();
-  command->add_option("FILE", *file, "File, or folder of volumes")->required();
-  command->callback([file, &global, &action] { action = [file, &global] { return info(*file, global); }; });
+  emscape info out/jacksboro_0001.vdb --json
+  emscape info air.csv --plot air.png)");
+  auto options = std::make_shared<InfoOptions>();
+  command->add_option("FILE", options->file, "File, or folder of volumes")->required();
+  command
+      ->add_option(
+          "--plot", options->plot,
+          "Draw M and N against height, of refractivity and of scenarios that have it, into a .png or "
+          ".svg")
+      ->check([](const std::string& file) {
+        return render::isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+      });
+  command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return info(*options, global); }; });
 }
 
 }  // namespace emscape::app

@@ -15,7 +15,9 @@ void addMapOptions(CLI::App& command, MapOptions& options) {
   addListOption(command, "--products", options.products, "Products, with commas between them");
   command.add_option("--quantity", options.quantity, "A quantity of the field; see docs/scenario-format.md");
   addThresholdOption(command, options.threshold);
-  command.add_option("--times", options.times, "BEGIN:END:STEP, BEGIN:END or T, in seconds");
+  command.add_option(
+      "--times", options.times,
+      "BEGIN:END:STEP, BEGIN:END (in steps of the scenario) or T, in seconds since the scenario's epoch");
   command.add_option("--cell", options.cell_m, "Side of a pixel (m); default: the scenario's voxels")
       ->default_str("");
   command.add_option(
@@ -30,10 +32,16 @@ void addMapOptions(CLI::App& command, MapOptions& options) {
       ->check(CLI::IsMember(formats));
 }
 
+std::vector<study::Product> productsOf(const MapOptions& options) {
+  std::vector<study::Product> products;
+  for (const std::string& name : options.products) products.push_back(study::productNamed(name));
+  return products;
+}
+
 study::CoverageRequest requestOf(const MapOptions& options, const scenario::Clock& clock) {
   study::CoverageRequest request;
   request.heights = study::parseHeights(options.heights);
-  for (const std::string& name : options.products) request.products.push_back(study::productNamed(name));
+  request.products = productsOf(options);
   request.quantity = scenario::quantityFromName(options.quantity);
   const bool needs_threshold =
       std::any_of(request.products.begin(), request.products.end(),

@@ -27,6 +27,7 @@ struct MapOptions {
 void addMapOptions(CLI::App& command, MapOptions& options);
 
 /// @throws Error (usage) that names the option and what it allows
+std::vector<study::Product> productsOf(const MapOptions& options);
 study::CoverageRequest requestOf(const MapOptions& options, const scenario::Clock& clock);
 study::MapArea areaOf(const MapOptions& options, const scenario::Scenario& scenario);
 std::shared_ptr<const study::MapGrid> gridOf(const MapOptions& options, const scenario::Scenario& scenario,

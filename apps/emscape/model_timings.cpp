@@ -111,7 +111,7 @@ ColumnTiming timeColumns(int repeats, int posts_per_column, double top_msl_m) {
                            const DiffractionExcess excess{model, tx_msl_m};
                            for (int c = 0; c < kColumnCount; ++c) {
                              const TerrainProfile path = pathTo(c);
-                             excess({path.range_m[path.count - 1], path.height_msl_m[path.count - 1], path,
+                             excess({path.range_m[path.count - 1], 0, path.height_msl_m[path.count - 1], path,
                                      heights.data(), kColumnHeights},
                                     scratch, &by_column[static_cast<std::size_t>(c * kColumnHeights)]);
                            }

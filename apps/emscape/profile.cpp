@@ -10,11 +10,13 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/profile_plot.h"
 #include "apps/emscape/profile_report.h"
+#include "apps/emscape/section_plot.h"
 #include "apps/emscape/study_options.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/path_section.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
 #include "propagation/registry/model_info.h"
@@ -75,6 +77,33 @@ std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenar
   return result;
 }
 
+/// The first budget, of the emitter's model or a compared one, whose model has a field over range and height.
+const emfield::PathBudget* budgetOfSection(const ProfileReport& report) {
+  const auto hasSection = [](const emfield::PathBudget& budget) {
+    return propagation::modelInfo(budget.model).radial != nullptr;
+  };
+  if (hasSection(report.budget)) return &report.budget;
+  for (const Comparison& comparison : report.compared) {
+    if (comparison.refusal.empty() && hasSection(comparison.budget)) return &comparison.budget;
+  }
+  return nullptr;
+}
+
+/// Draws the loss over range and height where a model has it, else the path over the terrain.
+void draw(const ProfileReport& report, const scenario::Snapshot& snapshot, int emitter,
+          const scenario::Terrain* terrain, const ProfileOptions& options) {
+  constexpr int kRanges = 400, kHeights = 240;
+  const render::ImageSize size = render::parseImageSize(options.size);
+  if (const emfield::PathBudget* const budget = budgetOfSection(report)) {
+    const emfield::PathSection section =
+        emfield::pathSection(snapshot, emitter, budget->model, budget->profile, terrain, kRanges, kHeights);
+    plotSection(*budget, section, size, options.plot);
+  } else {
+    plotProfile(report.budget, size, options.plot);
+  }
+  logInfo("wrote " + options.plot);
+}
+
 ProfileReport makeReport(const ProfileOptions& options) {
   const scenario::SitePosition to = parsePoint(options.to, options.above_ground);
   const auto scenario = withPoint(*scenario::loadScenario(options.scenario, options.edits), to);
@@ -100,15 +129,12 @@ ProfileReport makeReport(const ProfileOptions& options) {
     }
     report.compared.push_back(std::move(comparison));
   }
+  if (!options.plot.empty()) draw(report, snapshot, emitter, terrain.get(), options);
   return report;
 }
 
 int profile(const ProfileOptions& options, const GlobalOptions& global) {
   const ProfileReport report = makeReport(options);
-  if (!options.plot.empty()) {
-    plotProfile(report.budget, render::parseImageSize(options.size), options.plot);
-    logInfo("wrote " + options.plot);
-  }
   if (global.json) {
     printJson(toJson(report));
   } else {
@@ -145,7 +171,10 @@ or a path over missing terrain.)");
   command->add_flag("--agl", options->above_ground, "HEIGHT is above the ground");
   addListOption(*command, "--model", options->models, "Models to compare with the emitter's model")
       ->check(CLI::IsMember(names));
-  command->add_option("--plot", options->plot, "Draw the path into a file, .png or .svg")
+  command
+      ->add_option(
+          "--plot", options->plot,
+          "Draw the path into a file, .png or .svg; with parabolic_equation the loss over range and height")
       ->check([](const std::string& file) {
         return render::isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
       });

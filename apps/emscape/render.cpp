@@ -18,6 +18,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frame_source.h"
+#include "emscape/playback/mesh_pictures.h"
 #include "emscape/playback/painter.h"
 #include "emscape/playback/picture_series.h"
 #include "emscape/playback/picture_sink.h"
@@ -137,12 +138,12 @@ playback::FrameSelection selectionOf(const ViewState& view, const RenderOptions&
 
 using Sinks = std::vector<std::unique_ptr<PictureSink>>;
 
-Sinks openSinks(const RenderOptions& options, const PictureStyle& style, const FrameSource& source,
+Sinks openSinks(const RenderOptions& options, const PictureStyle& style, const std::string& name,
                 int pictures, double frames_per_s) {
   Sinks sinks;
   for (const std::string& output : options.outputs) {
     removeStaleTemporariesOf(output);
-    sinks.push_back(playback::makePictureSink(output, source.name(), pictures, style.size, frames_per_s));
+    sinks.push_back(playback::makePictureSink(output, name, pictures, style.size, frames_per_s));
   }
   return sinks;
 }
@@ -197,7 +198,8 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   if (options.outputs.empty()) return 0;
   const std::unique_ptr<FrameSource>& source = stage.source;
   Painter& painter = *stage.painter;
-  const Sinks sinks = openSinks(options, style, *source, source->count(), options.frames_per_s.value_or(10));
+  const Sinks sinks =
+      openSinks(options, style, source->name(), source->count(), options.frames_per_s.value_or(10));
 
   logInfo(fmt::format("drawing {} picture{} of {}x{} into {}", source->count(),
                       source->count() == 1 ? "" : "s", style.size.width, style.size.height,
@@ -228,6 +230,51 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   return 0;
 }
 
+/// @throws Error (usage) for options that have no effect on fields on tetrahedra
+void requireMeshOptions(const RenderOptions& options, const ViewState& view) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: has no effect on {}, a field on tetrahedra", what, options.selection.input));
+  };
+  for (const char* name : {"--realtime", "--save-state", "--interpolate", "--step", "--mida-gamma",
+                           "--iso-value", "--iso-opacity", "--device-volume", "--allow-missing-terrain"}) {
+    if (options.command->count(name) > 0) refuse(name);
+  }
+  if (options.rays != "auto" && options.rays != "full") refuse("--rays " + options.rays);
+  if (!view.compare.empty()) refuse("--compare");
+}
+
+int renderMeshes(const RenderOptions& options, const GlobalOptions& global) {
+  const ViewState view = viewOf(options);
+  requireMeshOptions(options, view);
+  if (options.outputs.empty()) throw Error(ErrorCode::usage, "--output is required");
+  const PictureStyle style = styleOf(view, options);
+  Stopwatch watch;
+  playback::MeshPictures pictures(selectionOf(view, options), style, parseBackend(global.backend),
+                                  &stopFlag());
+  const Sinks sinks =
+      openSinks(options, style, pictures.name(), pictures.count(), options.frames_per_s.value_or(10));
+  {
+    Progress progress(global, "drawing");
+    playback::drawPictures(pictures, sinks,
+                           [&](int drawn) { progress.show(static_cast<double>(drawn) / pictures.count()); });
+  }
+  const double seconds = watch.lap_ms() / 1000;
+  if (global.json) {
+    printJson({{"device", toString(pictures.backend())},
+               {"size", {style.size.width, style.size.height}},
+               {"mode", "dvr"},
+               {"frames", pictures.count()},
+               {"outputs", options.outputs},
+               {"cast_ms", pictures.cast_ms()},
+               {"seconds", seconds}});
+  } else {
+    logInfo(fmt::format("{} picture{} in {:.1f} s: {}", pictures.count(), pictures.count() == 1 ? "" : "s",
+                        seconds, fmt::join(options.outputs, ", ")));
+  }
+  return 0;
+}
+
 RealTimeOptions realTimeOptionsOf(const RenderOptions& options) {
   RealTimeOptions loop;
   constexpr double kBudget_ms = 40;  // the paper's limit for real time
@@ -254,7 +301,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   saveState(options, view, stage);
   const std::unique_ptr<FrameSource>& source = stage.source;
   constexpr int kSeveral = 2;
-  const Sinks sinks = openSinks(options, style, *source, kSeveral, loop_options.frames_per_s);
+  const Sinks sinks = openSinks(options, style, source->name(), kSeveral, loop_options.frames_per_s);
 
   // Long enough for delays of the encoder.
   constexpr long long kWaitingBytes = 256LL << 20;
@@ -325,7 +372,7 @@ void addRender(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->fallthrough();
   command->footer(R"(
 A scenario is computed and drawn without intermediate files. For volumes, --scenario adds the ground and the emitters of their
-scenario.
+scenario. Fields on tetrahedra are drawn by dvr; there is no sampling step.
 
 Examples:
   emscape render scenarios/jacksboro.yaml -o now.png --times 30
@@ -334,12 +381,14 @@ Examples:
   emscape render scenarios/jacksboro.yaml -o cut.png --plane vertical:bearing_deg=60 --plane horizontal:altitude_m=3000
   emscape render out/jacksboro.pvd -o film.mp4 --scenario scenarios/jacksboro.yaml
   emscape render engine_256x256x110_uint8.raw -o engine.png --mode mida
+  emscape render out/jacksboro_0001.vtu -o mesh.png --scenario scenarios/jacksboro.yaml
   emscape render scenarios/jacksboro.yaml --realtime --size 1200x900 --fps 25 --orbit-rate 10)");
   auto options = std::make_shared<RenderOptions>();
   options->command = command;
   command
-      ->add_option("INPUT", options->selection.input,
-                   "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes")
+      ->add_option(
+          "INPUT", options->selection.input,
+          "Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd or folder of them")
       ->required();
   addSetOption(*command, options->selection.edits);
   addCompareOption(*command, options->compare, "Draw");
@@ -397,6 +446,9 @@ Examples:
   addRealTimeOptions(*command, *options);
   command->callback([options, &global, &action] {
     action = [options, &global] {
+      const std::string& input = options->selection.input;
+      if (std::filesystem::exists(input) && playback::holdsMeshes(input))
+        return renderMeshes(*options, global);
       return options->realtime ? playInRealTime(*options, global) : renderPictures(*options, global);
     };
   });

@@ -24,7 +24,8 @@ struct SimulateOptions {
   std::vector<scenario::Edit> edits;
   std::string compare;
   std::string folder;
-  std::vector<std::string> formats{"vdb"};
+  std::string mesh;
+  std::vector<std::string> formats;  ///< empty: vdb, with a mesh vtu
   std::vector<std::string> quantities;
   std::string times;
   std::string range;
@@ -34,11 +35,25 @@ struct SimulateOptions {
   double cache_mib = 0;
 };
 
+/// @throws Error (usage) unless .vtu is for a mesh, and a mesh for .vtu
+std::vector<std::string> formatsOf(const SimulateOptions& options) {
+  const std::string for_mesh = playback::kMeshFormat;
+  if (options.formats.empty()) return {options.mesh.empty() ? "vdb" : for_mesh};
+  for (const std::string& format : options.formats) {
+    if ((format == for_mesh) == options.mesh.empty()) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("--format {}: {}", format,
+                              options.mesh.empty() ? "needs --mesh" : "with --mesh the format is vtu"));
+    }
+  }
+  return options.formats;
+}
+
 playback::SeriesOptions seriesOptionsOf(const SimulateOptions& options) {
   using Existing = playback::SeriesOptions::Existing;
   playback::SeriesOptions series;
   series.folder = options.folder;
-  series.formats = options.formats;
+  series.formats = formatsOf(options);
   if (!options.range.empty()) series.range = parseRange(options.range);
   series.existing = options.resume ? Existing::resume : options.force ? Existing::replace : Existing::refuse;
   return series;
@@ -72,12 +87,18 @@ void compare(playback::FieldSeries& series, const SimulateOptions& options) {
 
 int simulate(const SimulateOptions& options, const GlobalOptions& global) {
   Stopwatch watch;
-  const playback::SeriesOptions series_options = seriesOptionsOf(options);
+  playback::SeriesOptions series_options = seriesOptionsOf(options);
+  std::optional<emfield::TerrainMeshSpec> mesh;
+  if (!options.mesh.empty()) mesh = emfield::parseTerrainMesh(options.mesh);
   checkFolderIsFree(options);
   const playback::LoadedScenario input = playback::loadScenarioWithTerrain(options.scenario, options.edits);
   const std::vector<double> times_s = options.times.empty()
                                           ? scenario::timesOf(input.scenario->clock)
                                           : scenario::parseTimes(options.times, input.scenario->clock);
+  if (mesh) {
+    series_options.mesh = std::make_shared<emfield::TerrainMesh>(*input.scenario, input.terrain.get(), *mesh);
+    series_options.mesh_text = options.mesh;
+  }
   std::string device;
   const auto series = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     device = target.device();
@@ -85,6 +106,7 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
     field_options.quantities = options.quantities;
     field_options.allow_missing_terrain = options.allow_missing_terrain;
     field_options.cache_bytes = static_cast<std::size_t>(options.cache_mib * (1 << 20));
+    if (series_options.mesh) field_options.surface = series_options.mesh->surface();
     if (!options.compare.empty()) field_options.move_tolerance_m = 0;
     auto opened = std::make_unique<playback::FieldSeries>(input, times_s, field_options, &stopFlag());
     if (!options.compare.empty()) compare(*opened, options);
@@ -125,6 +147,7 @@ folder also contains series.json, the description of the series, and series.step
 Examples:
   emscape simulate scenarios/jacksboro.yaml -o out
   emscape simulate scenarios/jacksboro.yaml -o out --format vdb,vti --quantity power_density_dbwm2,snr_db --times 0:60:1
+  emscape simulate scenarios/jacksboro.yaml -o out --mesh terrain:32,4 --times 60
   emscape simulate scenarios/jacksboro.yaml -o out --set emitters.jammer.power_w=500 --compare original
   emscape simulate scenarios/jacksboro.yaml -o out --resume        after an interruption)");
   auto options = std::make_shared<SimulateOptions>();
@@ -133,9 +156,16 @@ Examples:
   addCompareOption(*command, options->compare, "Write");
   command->add_option("-o,--output", options->folder, "Folder of the series; created if necessary")
       ->required();
+  std::vector<std::string> names = playback::writableFormats();
+  names.emplace_back(playback::kMeshFormat);
   addListOption(*command, "--format", options->formats,
-                "File formats, with commas between them: vdb, nvdb, vti, raw")
-      ->check(CLI::IsMember(playback::writableFormats()));
+                "File formats, with commas between them: vdb, nvdb, vti, raw; default: vdb. With --mesh: vtu")
+      ->check(CLI::IsMember(names));
+  command->add_option(
+      "--mesh", options->mesh,
+      "terrain:LAYERS[,FIRST_M[,RATIO]]: the field on tetrahedra that follow the ground, above "
+      "the region's columns; the lowest layer is FIRST_M thick (default 5), each further one "
+      "RATIO times the one below (default: so that they reach the region's top)");
   addListOption(
       *command, "--quantity", options->quantities,
       "Quantities, with commas between them (" + scenario::quantityNames() + "); default: the scenario's");

@@ -11,9 +11,9 @@
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/study_jobs.h"
+#include "apps/emscape/study_parts.h"
 #include "apps/emscape/study_plan.h"
 #include "apps/emscape/study_slurm.h"
-#include "apps/emscape/target.h"
 #include "apps/emscape/version.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
@@ -30,6 +30,7 @@ struct StudyCommand {
   std::vector<scenario::Edit> edits;
   std::string folder;
   bool plan = false;
+  std::string kept;
   int jobs = 1;
   std::string part;
   bool resume = false;
@@ -37,49 +38,6 @@ struct StudyCommand {
   bool partial = false;
   bool worker = false;
   SlurmOptions slurm;
-};
-
-const char* instructionSet() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f")) return "avx512";
-  if (__builtin_cpu_supports("avx2")) return "avx2";
-  return "x86-64";
-#else
-  return "generic";
-#endif
-}
-
-/// Computes parts in this process; the fields stay from part to part.
-class PartComputer {
- public:
-  PartComputer(const LoadedStudy& loaded, const study::StudyFolder& folder, const GlobalOptions& global)
-      : loaded_(loaded), folder_(folder) {
-    openOnTarget(global, "float", [&](const ComputeTarget& target) {
-      runner_ = std::make_unique<study::StudyRunner>(loaded.spec, loaded.plan, loaded.terrain,
-                                                     target.fieldOptions());
-      machine_ = fmt::format("{}, {}", target.device(), instructionSet());
-      return 0;
-    });
-  }
-
-  /// Computes a part that is not there yet.
-  void compute(int part, const ProgressSink& progress) {
-    if (folder_.hasPart(part)) return;
-    std::vector<study::VariantResult> results;
-    runner_->run(
-        folder_.variantsOf(part), [&](study::VariantResult result) { results.push_back(std::move(result)); },
-        [&](const std::string& step, double fraction) {
-          stopIfInterrupted();
-          if (progress) progress(step, fraction);
-        });
-    folder_.writePart(part, results, runner_->warnings(), machine_);
-  }
-
- private:
-  const LoadedStudy& loaded_;
-  const study::StudyFolder& folder_;
-  std::unique_ptr<study::StudyRunner> runner_;
-  std::string machine_;
 };
 
 struct PartNumber {
@@ -95,8 +53,9 @@ PartNumber parsePart(const std::string& text) {
   const auto parts = has_slash ? std::from_chars(part.ptr + 1, end, number.parts) : part;
   if (!has_slash || parts.ec != std::errc() || parts.ptr != end || number.part < 1 ||
       number.part > number.parts || number.parts > study::kMaxParts) {
-    throw Error(ErrorCode::usage, fmt::format("--part '{}' is none; write I/N with I from 1 to N, N up to {}",
-                                              text, study::kMaxParts));
+    throw Error(ErrorCode::usage,
+                fmt::format("--part '{}' is none; write I/N with I from 1 to N, N up to {}, or any", text,
+                            study::kMaxParts));
   }
   return number;
 }
@@ -173,6 +132,12 @@ int work(const LoadedStudy& loaded, study::StudyFolder& folder, const GlobalOpti
   return 0;
 }
 
+/// What --keep asks for; none: it was not given.
+std::optional<study::KeptFiles> keptFiles(const StudyCommand& command) {
+  if (command.kept.empty()) return std::nullopt;
+  return command.kept == "maps" ? study::KeptFiles::maps : study::KeptFiles::volumes;
+}
+
 std::vector<std::string> workerArguments(const StudyCommand& command, const GlobalOptions& global,
                                          int threads) {
   std::vector<std::string> arguments{
@@ -193,7 +158,7 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   if (!command.plan && command.folder.empty()) {
     throw Error(ErrorCode::usage, "--output is required, except with --plan");
   }
-  const LoadedStudy loaded(command.study, command.edits);
+  const LoadedStudy loaded(command.study, command.edits, !command.worker);
   if (command.plan) {
     const int parts =
         command.slurm.chunks > 0 ? command.slurm.chunks : study::usualParts(loaded.spec.variants.count());
@@ -202,10 +167,10 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   study::StudyFolder folder(command.folder, loaded.spec, loaded.plan, kVersion);
   const std::optional<int> planned = folder.partsOfManifest();
   const std::size_t variants = loaded.spec.variants.count();
-  if (!command.part.empty()) {
+  if (!command.part.empty() && command.part != "any") {
     const PartNumber number = parsePart(command.part);
     checkParts(number.parts, variants);
-    folder.begin(number.parts);
+    folder.begin(number.parts, keptFiles(command));
     PartComputer(loaded, folder, global).compute(number.part, progressSink(global));
     if (global.json) printJson({{"part", number.part}, {"parts", number.parts}});
     return 0;
@@ -215,14 +180,20 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
                                                : study::usualParts(variants);
   checkParts(parts, variants);
   if (!command.slurm.script.empty()) {
-    folder.begin(parts);
+    folder.begin(parts, keptFiles(command));
     return writeSlurmJobs(command.slurm, workerArguments(command, global, 0), parts, global);
   }
   if (command.merge && !planned) {
     throw Error(ErrorCode::bad_input, command.folder + ": has no manifest.json: no part was computed");
   }
-  folder.begin(parts);
+  folder.begin(parts, keptFiles(command));
   if (command.worker) return work(loaded, folder, global);
+  if (command.part == "any") {
+    PartComputer computer(loaded, folder, global);
+    computeAnyParts(computer, folder, progressSink(global));
+    if (global.json) printJson({{"parts", parts}});
+    return 0;
+  }
   const FolderLock lock(folder.path(), ".study.lock");
   if (command.merge) return mergeParts(loaded, folder, command.partial, global);
 
@@ -237,7 +208,9 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   const ProgressSink show = progressSink(global);
   if (command.jobs > 1 && missing.size() > 1) {
     const int each = std::max(1, threads / command.jobs);
-    computeInProcesses(missing, command.jobs, workerArguments(command, global, each), show);
+    computeInProcesses(
+        missing, command.jobs, workerArguments(command, global, each),
+        [&](int part) { return folder.journalBytes(part); }, show);
   } else if (!missing.empty()) {
     PartComputer computer(loaded, folder, global);
     for (std::size_t i = 0; i < missing.size(); ++i) {
@@ -262,13 +235,20 @@ The study's file says which variants of a scenario there are and what is measure
 are computed in the order in which most of the field can be kept: a change of a power needs no terrain profile.
 
 DIR/results.csv and DIR/results.nc hold the measures of every variant, DIR/report.html tables and plots. The study is cut into
-parts (DIR/parts), each written when it is complete; --resume computes those that are missing. Parts may be computed by any
-program that runs `emscape study STUDY -o DIR --part I/N`, on machines that share DIR, in any order; --merge then joins them.
+parts (DIR/parts), each written when it is complete. Finished variants of a part are kept as they come: --resume computes what
+is missing, after an interruption, a kill or a full disk. With --keep, DIR/variants has the maps or volumes of each variant.
+
+Machines that share DIR compute a study together, and --merge joins the parts:
+  --part any   each process takes parts that no other works on, until all are there; it takes over those whose process has
+               ended, or has not been heard of for 5 minutes
+  --part I/N   a scheduler says which; parts may come in any order
 The results are the same bytes.
 
 Examples:
   emscape study scenarios/study/jammer_power.yaml --plan
   emscape study scenarios/study/jammer_power.yaml -o out --jobs 2
+  emscape study scenarios/study/jammer_power.yaml -o out --keep maps
+  emscape study scenarios/study/jammer_power.yaml -o out --part any
   emscape study scenarios/study/jammer_power.yaml -o out --part 3/7
   emscape study scenarios/study/jammer_power.yaml -o out --merge
   emscape study scenarios/study/jammer_power.yaml -o out --slurm job.sh --chunks 40 --time 00:20:00)");
@@ -279,10 +259,16 @@ Examples:
   CLI::Option* plan = command->add_flag("--plan", options->plan,
                                         "Say how many variants there are, what each changes, and the time "
                                         "that they need; compute one of each kind, write nothing");
-  command->add_option("--jobs", options->jobs, "Processes that compute at the same time")
-      ->check(CLI::Range(1, 1024));
-  CLI::Option* part =
-      command->add_option("--part", options->part, "I/N: compute one of N parts, unless it is there");
+  command
+      ->add_option("--keep", options->kept,
+                   "Keep the maps of each variant (GeoTIFF) or its volumes (.vdb), in DIR/variants")
+      ->check(CLI::IsMember({"maps", "volumes"}))
+      ->default_str("");
+  CLI::Option* jobs = command->add_option("--jobs", options->jobs, "Processes that compute at the same time")
+                          ->check(CLI::Range(1, 1024));
+  CLI::Option* part = command->add_option(
+      "--part", options->part,
+      "I/N: compute what is missing of one of N parts; any: compute parts that no other process works on");
   CLI::Option* resume = command->add_flag("--resume", options->resume, "Compute the parts that are missing");
   CLI::Option* merge = command->add_flag("--merge", options->merge, "Join the parts; all must be there");
   command->add_flag("--partial", options->partial, "With --merge: join those that are there")->needs(merge);
@@ -299,7 +285,7 @@ Examples:
   command->add_flag("--submit", options->slurm.submit, "With --slurm: submit both jobs")->needs(slurm);
   command->add_flag("--worker", options->worker)->group("");
   for (CLI::Option* option : {part, resume, merge, slurm}) option->excludes(plan);
-  for (CLI::Option* option : {resume, merge, slurm}) option->excludes(part);
+  for (CLI::Option* option : {resume, merge, slurm, jobs}) option->excludes(part);
   command->callback(
       [options, &global, &action] { action = [options, &global] { return runStudy(*options, global); }; });
 }

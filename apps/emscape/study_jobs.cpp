@@ -17,6 +17,7 @@
 #include <memory>
 #include <system_error>
 
+#include "apps/emscape/command_line.h"
 #include "apps/emscape/interrupt.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
@@ -27,7 +28,8 @@ extern char** environ;
 namespace emscape::app {
 namespace {
 
-/// Times that a part may end its process, before it is taken for the cause.
+/// Times that a part may end its process without a finished variant in between, before it is taken for the
+/// cause.
 constexpr int kMaxDeaths = 5;
 constexpr int kPoll_ms = 200;
 
@@ -46,10 +48,13 @@ class Worker {
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, to_child[0], STDIN_FILENO);
     posix_spawn_file_actions_adddup2(&actions, from_child[1], STDOUT_FILENO);
-    std::vector<char*> argv{const_cast<char*>("emscape")};
+    std::vector<char*> argv;
+    for (const std::string& word : programCommand()) argv.push_back(const_cast<char*>(word.c_str()));
+    const char* const program = argv.empty() ? "/proc/self/exe" : argv.front();
+    if (argv.empty()) argv.push_back(const_cast<char*>("emscape"));
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
-    const int failure = posix_spawn(&process_, "/proc/self/exe", &actions, nullptr, argv.data(), environ);
+    const int failure = posix_spawn(&process_, program, &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     close(to_child[0]);
     close(from_child[1]);
@@ -143,11 +148,16 @@ class Stretches {
 }  // namespace
 
 void computeInProcesses(const std::vector<int>& parts, int jobs, const std::vector<std::string>& arguments,
+                        const std::function<std::uintmax_t(int)>& finishedBytes,
                         const ProgressSink& progress) {
   const std::size_t count = std::min(static_cast<std::size_t>(jobs), parts.size());
   Stretches left(parts, count);
   std::vector<std::unique_ptr<Worker>> workers(count);
-  std::map<int, int> deaths;
+  struct Deaths {
+    int count = 0;
+    std::uintmax_t finished_bytes = 0;  ///< at the last one
+  };
+  std::map<int, Deaths> deaths;
   std::size_t done = 0;
   const auto start = [&](std::size_t w, int part) {
     workers[w] = std::make_unique<Worker>(arguments);
@@ -190,11 +200,14 @@ void computeInProcesses(const std::vector<int>& parts, int jobs, const std::vect
         throw Error(static_cast<ErrorCode>(code),
                     fmt::format("the process of part {} failed; its message stands above", part));
       }
-      if (++deaths[part] == kMaxDeaths) {
+      Deaths& of_part = deaths[part];
+      const std::uintmax_t finished_bytes = finishedBytes(part);
+      if (finished_bytes > of_part.finished_bytes) of_part = {0, finished_bytes};
+      if (++of_part.count == kMaxDeaths) {
         throw Error(ErrorCode::other, fmt::format("part {} ended its process {} times, the last by signal {}",
                                                   part, kMaxDeaths, WTERMSIG(status)));
       }
-      logWarning(fmt::format("the process of part {} was ended by signal {}; the part is computed again",
+      logWarning(fmt::format("the process of part {} was ended by signal {}; another one goes on with it",
                              part, WTERMSIG(status)));
       start(which[i], part);
     }

@@ -25,6 +25,11 @@ void addThresholdOption(CLI::App& command, double& threshold) {
       .add_option(
           "--threshold", threshold,
           "Level of the quantity, in its unit; default: 0.5 of detection_probability, 0 dB of a margin")
+      ->check([](const std::string& text) {
+        double value = 0;
+        const bool is_nan = CLI::detail::lexical_cast(text, value) && std::isnan(value);
+        return is_nan ? "'" + text + "' is no number" : std::string();
+      })
       ->default_str("");
 }
 

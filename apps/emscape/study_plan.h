@@ -16,8 +16,9 @@ struct LoadedStudy {
   scenario::TerrainPtr terrain;
   study::StudyPlan plan;
 
-  LoadedStudy(const std::string& file, const std::vector<scenario::Edit>& edits)
-      : spec(study::loadStudy(file, edits, kVersion)),
+  /// @param tries_values  see loadStudy()
+  LoadedStudy(const std::string& file, const std::vector<scenario::Edit>& edits, bool tries_values)
+      : spec(study::loadStudy(file, edits, kVersion, tries_values)),
         terrain(study::loadTerrain(*spec.base, spec.area)),
         plan(study::planStudy(spec, terrain)) {}
   LoadedStudy(const LoadedStudy&) = delete;

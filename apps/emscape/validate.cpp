@@ -5,11 +5,13 @@
 #include <cmath>
 #include <memory>
 
+#include "apps/emscape/choices_report.h"
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/model_choices.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
 
@@ -69,7 +71,9 @@ void checkSteps(const std::shared_ptr<const scenario::Scenario>& scenario, const
 }
 
 /// Checks that need the whole scenario: the ground, the quantities, the models, every step.
-void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std::vector<Problem>& problems) {
+/// @param choices  receives what the models choose by themselves at the first step
+void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std::vector<Problem>& problems,
+                  std::vector<emfield::EmitterChoice>& choices) {
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
     if (terrain) checkCoverage(*scenario, *terrain, problems);
@@ -84,6 +88,9 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std
       problem.message = warning;
       problems.push_back(problem);
     }
+    choices = emfield::modelChoices(
+        scenario::snapshotAt(scenario, terrain.get(), scenario::timesOf(scenario->clock).front()),
+        terrain.get());
   } catch (const Error& error) {
     problems.push_back(problemOf(error, scenario->file));
   }
@@ -95,7 +102,8 @@ const char* toString(Severity severity) {
 
 int validate(const std::string& file, const std::vector<scenario::Edit>& edits, const GlobalOptions& global) {
   scenario::ParseResult result = scenario::parseScenario(file, edits);
-  if (result.scenario) checkMeaning(result.scenario, result.problems);
+  std::vector<emfield::EmitterChoice> choices;
+  if (result.scenario) checkMeaning(result.scenario, result.problems, choices);
   const bool ok = std::none_of(result.problems.begin(), result.problems.end(),
                                [](const Problem& problem) { return problem.severity == Severity::error; });
 
@@ -108,12 +116,16 @@ int validate(const std::string& file, const std::vector<scenario::Edit>& edits, 
                           {"severity", toString(problem.severity)},
                           {"message", problem.message}});
     }
-    printJson({{"ok", ok}, {"problems", problems}});
+    printJson({{"ok", ok}, {"problems", problems}, {"choices", choicesJson(choices)}});
   } else {
     for (const Problem& problem : result.problems) {
       print("{}: {}: {}\n", emscape::toString(problem.location), toString(problem.severity), problem.message);
     }
-    if (ok && !global.quiet) print("{}: ok\n", file);
+    if (ok && !global.quiet) {
+      for (const emfield::EmitterChoice& choice : choices)
+        print("emitter '{}': {}: {} {}\n", choice.emitter, choice.model, choice.name, choice.text);
+      print("{}: ok\n", file);
+    }
   }
   return ok ? 0 : static_cast<int>(ErrorCode::bad_input);
 }
@@ -125,12 +137,13 @@ void addValidate(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->fallthrough();
   command->footer(R"(
 Reports all faults at once, each as file:line:column: error: message. Also checks that the elevation files cover the region and that
-no platform is below the ground at any step.
+no platform is below the ground at any step. What models choose by themselves (keys that are auto) is printed with its reason.
 
 Examples:
   emscape validate scenarios/jacksboro.yaml
   emscape validate mine.yaml --set "emitters.search radar.power_w=500"
-  emscape validate mine.yaml --json        {"ok", "problems": [{"file", "line", "column", "severity", "message"}]}
+  emscape validate mine.yaml --json        {"ok", "problems": [{"file", "line", "column", "severity", "message"}],
+                                            "choices": [{"emitter", "model", "name", "text"}]}
 
 Exit status: 0 without errors (warnings are ignored), 3 otherwise.)");
   auto file = std::make_shared<std::string>();

@@ -131,18 +131,20 @@ not have by itself.)");
   command->add_flag("--blake", options->blake, "Chart over a smooth earth, with elevation angles");
   command
       ->add_option("--range", options->range_m,
-                   "To the right edge (m); default: the instrumented range, or to the region's edge")
+                   "Distance of the diagram's right edge from the emitter (m); default: the instrumented "
+                   "range, else the "
+                   "region's edge")
       ->default_str("");
   command
       ->add_option("--max-height", options->max_height_m,
-                   "Of the upper edge (m, on the height axis); default: the region's")
+                   "Height of the upper edge (m, on the height axis); default: that of the region")
       ->default_str("");
   command->add_option(
       "--quantity", options->quantity,
       "A quantity of one emitter; default: detection_probability of radars, power_density_dbwm2 of others");
   addThresholdOption(*command, options->threshold);
   command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
-  command->add_option("--grid", options->grid, "Points of the grid: RANGES,HEIGHTS")
+  command->add_option("--grid", options->grid, "Number of points of the grid: RANGES,HEIGHTS")
       ->delimiter(',')
       ->expected(2);
   command->add_option("--size", options->size, "Size of pictures in pixels, WxH");

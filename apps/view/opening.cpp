@@ -58,6 +58,9 @@ void checkInput(const ViewOptions& options, Opening& opening) {
         checkScenario(options.scenario, opening.options.view.edits, opening.left_out);
       }
       break;
+    case playback::InputKind::mesh:
+      throw Error(ErrorCode::bad_input, {options.input, 0, 0},
+                  "holds fields on tetrahedra, which the window does not show; emscape render draws them");
     case playback::InputKind::elevation:
     case playback::InputKind::antenna:
       throw Error(ErrorCode::bad_input, {options.input, 0, 0},

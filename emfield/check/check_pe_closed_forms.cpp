@@ -6,6 +6,8 @@
 #include "emfield/check/datasets.h"
 #include "emfield/check/pe_figures.h"
 #include "emfield/check/reference_table.h"
+#include "emscape/base/device.h"
+#include "propagation/parabolic_equation/march_step.h"
 
 namespace emscape::emfield {
 
@@ -44,6 +46,7 @@ void checkTwoRayPe(const ReferenceTable& cases, std::vector<FigureCheck>& figure
   Differences low, high, narrow;
   for (const auto& [key, rows] : marchesOf(cases, {"frequency_hz", "source_height_m"})) {
     MarchGrid grid = peGrid(key[0], key[0] < 5e9 ? 14 : 8, 1000, 5, 200);
+    if (std::is_same_v<Real, OnGpu> && !fitsGpu(grid)) continue;
     const double largest_rad = std::asin(0.8 * 0.6 * grid.maxSine());
     for (const PeForm form : {PeForm::wide, PeForm::narrow}) {
       grid.form = form;
@@ -182,6 +185,7 @@ DatasetCheck checkPeTwoRay(const std::filesystem::path& file) {
   DatasetCheck check{cases.rows(), {}};
   checkTwoRayPe<double>(cases, check.figures);
   checkTwoRayPe<float>(cases, check.figures);
+  if (findDevice().usable) checkTwoRayPe<OnGpu>(cases, check.figures);
   return check;
 }
 
@@ -191,6 +195,7 @@ DatasetCheck checkPeCells(const std::filesystem::path& file) {
   DatasetCheck check{cases.rows(), {}};
   checkCells<double>(cases, check.figures);
   checkCells<float>(cases, check.figures);
+  if (findDevice().usable) checkCells<OnGpu>(cases, check.figures);
   return check;
 }
 
@@ -218,7 +223,23 @@ DatasetCheck checkPeSlope(const std::filesystem::path& file) {
   DatasetCheck check{cases.rows(), {}};
   checkSlope<double>(cases, check.figures);
   checkSlope<float>(cases, check.figures);
+  if (findDevice().usable) checkSlope<OnGpu>(cases, check.figures);
   return check;
+}
+
+/// Its angle_error_percent is the square of the angle over 2, a scale that no march gives.
+DatasetCheck checkPeNarrowAngle(const std::filesystem::path& file) {
+  const ReferenceTable cases(file, {"frequency_hz", "angle_deg", "phase_error_rad_per_10km"});
+  FigureCheck phase{"phase_error_rad_per_10km", 1e-5, "relative"};
+  for (int i = 0; i < cases.rows(); ++i) {
+    const double k = 2 * kPi / wavelength_m(cases.number(i, "frequency_hz"));
+    const double angle_rad = degToRad(cases.number(i, "angle_deg")), p = k * std::sin(angle_rad);
+    const auto phaseOf = [&](bool wide, double q) { return stepExponent(wide, k, 10e3, {q * q, 0}).im; };
+    const int line = cases.location(i).line;
+    phase.compareRelative(phaseOf(false, p) - phaseOf(true, p), cases.number(i, "phase_error_rad_per_10km"),
+                          line);
+  }
+  return {cases.rows(), {phase}};
 }
 
 DatasetCheck checkRoughness(const std::filesystem::path& file) {

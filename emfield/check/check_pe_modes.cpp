@@ -5,6 +5,7 @@
 #include "emfield/check/datasets.h"
 #include "emfield/check/pe_figures.h"
 #include "emfield/check/reference_table.h"
+#include "emscape/base/device.h"
 
 namespace emscape::emfield {
 
@@ -45,7 +46,8 @@ void checkEarth(const ReferenceTable& cases, std::vector<FigureCheck>& figures) 
   }
   FigureCheck horizontal{inPrecision<Real>("F_db > -60, H"), 0.1, "dB"};
   FigureCheck vertical{inPrecision<Real>("F_db > -60, V"), 0.3, "dB"};
-  FigureCheck faint{inPrecision<Real>("F_db to -80"), 0.5, "dB"};
+  // float's rounding, about 100 dB below the strongest field, reaches 0.4 dB rms at -80 dB
+  FigureCheck faint{inPrecision<Real>("F_db to -80"), std::is_same_v<Real, OnGpu> ? 1.0 : 0.5, "dB"};
   for (const auto& [key, rows] : marches) {
     const auto& [frequency_hz, ground, source_m] = key;
     RadialPath path;
@@ -152,6 +154,7 @@ DatasetCheck checkPeSmoothEarth(const std::filesystem::path& file) {
   DatasetCheck check{cases.rows(), {}};
   checkEarth<double>(cases, check.figures);
   checkEarth<float>(cases, check.figures);
+  if (findDevice().usable) checkEarth<OnGpu>(cases, check.figures);
   return check;
 }
 
@@ -180,6 +183,7 @@ DatasetCheck checkPeDucts(const std::filesystem::path& file) {
   DatasetCheck check{cases.rows(), {}};
   checkDucts<double>(cases, check.figures);
   checkDucts<float>(cases, check.figures);
+  if (findDevice().usable) checkDucts<OnGpu>(cases, check.figures);
   return check;
 }
 
@@ -206,6 +210,7 @@ DatasetCheck checkPeLfmf(const std::filesystem::path& file) {
   const ReferenceTable cases(file, {"f__mhz", "N_s", "d__km", "epsilon", "sigma", "pol", "A_btl__db"});
   int in_double = 0, in_float = 0;
   std::vector<FigureCheck> figures = {checkLfmf<double>(cases, in_double), checkLfmf<float>(cases, in_float)};
+  if (findDevice().usable) figures.push_back(checkLfmf<OnGpu>(cases, in_float));
   return {in_double, std::move(figures)};
 }
 

@@ -48,6 +48,7 @@ DatasetCheck checkGeoid(const std::filesystem::path& folder);
 DatasetCheck checkPeTwoRay(const std::filesystem::path& file);
 DatasetCheck checkPeCells(const std::filesystem::path& file);
 DatasetCheck checkPeBeam(const std::filesystem::path& file);
+DatasetCheck checkPeNarrowAngle(const std::filesystem::path& file);
 DatasetCheck checkPeEdge(const std::filesystem::path& file);
 DatasetCheck checkPeSlope(const std::filesystem::path& file);
 DatasetCheck checkRoughness(const std::filesystem::path& file);

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "emfield/check/gpu_radial_march.h"
 #include "emscape/emfield/reference_check.h"
 #include "propagation/parabolic_equation/march.h"
+#include "propagation/parabolic_equation/march_azimuths.h"
 
 namespace emscape::emfield {
 
@@ -28,19 +31,38 @@ inline propagation::MarchGrid peGrid(double frequency_hz, double angle_deg, doub
   return grid;
 }
 
+/// In place of double or float: the march on the GPU, in float.
+struct OnGpu {};
+
 template <class Real>
-using PeMarch = propagation::RadialMarch<Real, 1>;
+struct PeMarchOf {
+  using Type = propagation::RadialMarch<Real, 1>;
+};
+template <>
+struct PeMarchOf<OnGpu> {
+  using Type = GpuRadialMarch;
+};
+template <class Real>
+using PeMarch = typename PeMarchOf<Real>::Type;
+
+/// The march on the GPU can take the grid.
+inline bool fitsGpu(const propagation::MarchGrid& grid) {
+  return grid.intervals >= propagation::kMinBlockIntervals &&
+         grid.intervals <= propagation::kMaxBlockIntervals;
+}
 
 /// Marches to a range, a multiple of the range step at or behind the present one.
-template <class Real>
-void marchTo(PeMarch<Real>& march, double range_m) {
+template <class March>
+void marchTo(March& march, double range_m) {
   while (march.range_m() < range_m - 1e-3) march.advance();
 }
 
 /// "F, float".
 template <class Real>
 std::string inPrecision(const std::string& figure) {
-  return figure + (sizeof(Real) == sizeof(float) ? ", float" : ", double");
+  return figure + (std::is_same_v<Real, OnGpu>   ? ", GPU"
+                   : std::is_same_v<Real, float> ? ", float"
+                                                 : ", double");
 }
 
 /// Differences of many cases, for figures of a share of them.

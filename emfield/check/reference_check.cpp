@@ -64,7 +64,7 @@ const std::vector<ReferenceDataset>& referenceDatasets() {
       {"pe/lobe_cell_mean.csv", checkPeCells},
       {"pe/roughness.csv", checkRoughness},
       {"pe/ntia_lfmf_check.csv", nullptr},
-      {"pe/narrow_angle_error.csv", nullptr},
+      {"pe/narrow_angle_error.csv", checkPeNarrowAngle},
   };
   return datasets;
 }

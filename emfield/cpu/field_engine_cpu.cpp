@@ -68,7 +68,8 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     kept_power_.forget(static_cast<std::size_t>(request.slot));
     EmitterGeometry::Times spent;
     geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
-                     setup_.columns, setup_.terrain.get(), spent, bounds_ ? &*bounds_ : nullptr);
+                     setup_.columns, setup_.terrain.get(), spent, bounds_ ? &*bounds_ : nullptr,
+                     setup_.has_clutter_map[request.emitter]);
     times_.columns_ms += spent.columns_ms;
     times_.excess_ms += spent.excess_ms;
 
@@ -76,13 +77,13 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     found.unknown_columns = geometry.unknownColumns();
     found.warnings = geometry.warnings();
     if (found.unknown_columns > 0) {
-      found.unknown.resize(setup_.columns.columns.size());
+      found.unknown.resize(setup_.columns.count());
       for (std::size_t c = 0; c < found.unknown.size(); ++c) found.unknown[c] = geometry.isUnknown(c);
     }
     const ColumnGeometryView view = geometry.view();
     const std::vector<float>& t_m = setup_.columns.t_m;
     const double far_m = setup_.far_field_m[request.emitter];
-    for (std::size_t c = 0; c < setup_.columns.columns.size(); ++c) {
+    for (std::size_t c = 0; c < setup_.columns.count(); ++c) {
       found.near_voxels +=
           nearVoxels(view, c, t_m.data(), static_cast<int>(t_m.size()), static_cast<float>(far_m * far_m));
     }

@@ -38,17 +38,19 @@ bool isDiffraction(const propagation::ExcessModel& model) {
 
 DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots) : setup_(setup), slots_(slots) {
   if (setup.terrain != nullptr) terrain_ = DeviceTerrain(setup.terrain->view());
-  grid_columns_.upload(setup.columns.columns);
+  grid_columns_.upload(setup.columns.of_grid);
+  place_columns_.upload(setup.columns.of_surface.data(), setup.columns.of_surface.size());
   t_m_.upload(setup.columns.t_m);
   first_valid_k_.upload(setup.columns.first_valid_k);
-  columns_.columns = grid_columns_.data();
-  columns_.count = static_cast<int>(setup.columns.columns.size());
+  columns_.columns = {setup.columns.of_grid.empty() ? nullptr : grid_columns_.data(),
+                      setup.columns.of_surface.empty() ? nullptr : place_columns_.data()};
+  columns_.count = static_cast<int>(setup.columns.count());
   columns_.row = setup.columns.dims.x;
   columns_.t_m = t_m_.data();
   columns_.layers = static_cast<int>(setup.columns.t_m.size());
   columns_.middle_m = setup.columns.middle_m();
   excess_grid_ = excessGrid(setup.columns, setup.terrain.get());
-  excess_grid_.columns = grid_columns_.data();
+  excess_grid_.columns = columns_.columns;
   excess_grid_.t_m = t_m_.data();
   excess_grid_.first_valid_k = firstValidK();
   if (excess_grid_.ground_msl_m != nullptr) {
@@ -89,7 +91,8 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   work.ground.is_smooth = setup_.terrain == nullptr;
   work.ground.terrain = terrain_.view();
   work.ground.range_count = static_cast<int>(work.ranges_m.size());
-  work.clutter = clutterMapTask(scenario, emitter, station, &extent);
+  if (setup_.has_clutter_map[request.emitter])
+    work.clutter = clutterMapTask(scenario, emitter, station, &extent);
   if (work.clutter) {
     std::vector<double> farther_m =
         clutterPostRanges(work.clutter->grid, postSpacing_m(setup_.terrain.get()));
@@ -241,9 +244,10 @@ ScratchMemory DeviceGeometry::scratch() {
 
 std::size_t DeviceGeometry::bytes() const {
   const auto bytesOf = [](const auto& buffer) { return buffer.size() * sizeof(*buffer.data()); };
-  std::size_t bytes = bytesOf(grid_columns_) + bytesOf(t_m_) + bytesOf(first_valid_k_) + bytesOf(tasks_) +
-                      bytesOf(ranges_m_) + bytesOf(shadows_) + bytesOf(terms_) + bytesOf(diffraction_) +
-                      bytesOf(scratch_) + bytesOf(ground_msl_m_) + bytesOf(model_tables_);
+  std::size_t bytes = bytesOf(grid_columns_) + bytesOf(place_columns_) + bytesOf(t_m_) +
+                      bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(shadows_) +
+                      bytesOf(terms_) + bytesOf(diffraction_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
+                      bytesOf(model_tables_);
   for (const Slot& slot : slots_) {
     bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.excess_db) +
              bytesOf(slot.reflected) + bytesOf(slot.clutter);

@@ -53,7 +53,8 @@ class DeviceGeometry {
 
   const FieldSetup& setup_;
   DeviceTerrain terrain_;
-  emscape::cuda::Buffer<GridColumn> grid_columns_;
+  emscape::cuda::Buffer<GridColumn> grid_columns_;  ///< or, of a surface:
+  emscape::cuda::Buffer<PlaceColumn> place_columns_;
   emscape::cuda::Buffer<float> t_m_;
   emscape::cuda::Buffer<std::uint16_t> first_valid_k_;
   DeviceColumns columns_;

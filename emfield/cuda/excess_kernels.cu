@@ -163,7 +163,7 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
   for (int below = 0; below < lowest; ++below) set(below, 0);
   if (grid.isLeftOut(static_cast<std::size_t>(c))) return;
   const AirLoss& air = task.air;
-  const GridColumn& column = grid.columns[c];
+  const GridColumn column = grid.columns[static_cast<std::size_t>(c)];
   bool is_unknown = false;
   for (int segment = 0; segment < grid.segments; ++segment) {
     const int end = grid.firstLayer(segment + 1);

@@ -12,7 +12,7 @@ namespace emscape::emfield::cuda {
 
 /// The grid's columns on the device.
 struct DeviceColumns {
-  const GridColumn* columns = nullptr;
+  ColumnsView columns;
   int count = 0;
   int row = 0;  ///< columns along x
   const float* t_m = nullptr;

@@ -42,7 +42,7 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
   const PathInputs inputs = pathInputs(scenario, emitter, station, terrain,
                                        {profile.range_m, profile.end.height_msl_m, profile.end.height_msl_m});
   propagation::PathColumn path({profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()},
-                               profile.range_m, end_msl_m);
+                               profile.range_m, end_msl_m, profile.azimuth_rad);
   static_cast<propagation::Explanation&>(excess) = model.explain(inputs, path);
   if (propagation::hasAirLoss(inputs.emitter)) {
     std::vector<float> tables;

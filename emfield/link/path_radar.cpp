@@ -72,6 +72,16 @@ class RadarPoint {
         withRadar(share.task, static_cast<float>(root), static_cast<float>(jamming), 1, 0));
   }
 
+  /// Gain of a beam that follows the target towards it, relative to its maximum (dB).
+  std::optional<double> lookPattern_db() const {
+    RadarTask task;
+    task.look = lookOf(scenario_.emitters[radar_], scenario_.output.radar_look);
+    if (task.look.kind == LookKind::held) return std::nullopt;
+    const RadarShare share = radarShare(scenario_, radar_, snapshot_.emitters[radar_], task, {});
+    const Vec3f direction = inAntennaFrame(beamOf(share), vecCast<float>(ray_));
+    return 2 * ratioToDb(std::abs(amplitude(aimAt(share.task.look, direction), direction)));
+  }
+
   /// Clutter over noise of a task's kind with the beam as in snr_db and detection.
   double clutterToNoise(const ClutterTask& clutter) const {
     RadarTask task;
@@ -142,6 +152,7 @@ RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const V
   RadarAtPoint result;
   channel.quantity = Quantity::snr_db;
   result.snr_db = 2 * ratioToDb(point.accumulated(channel, {}));
+  result.look_pattern_db = point.lookPattern_db();
   if (const scenario::Emitter& emitter = snapshot.scenario->emitters[static_cast<std::size_t>(radar)];
       emitter.clutter) {
     result.clutter = clutterAt(point, *snapshot.scenario, emitter);

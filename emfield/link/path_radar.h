@@ -15,6 +15,8 @@ struct RadarAtPoint {
   double snr_db = 0;                 ///< -infinity without an echo
   double jammer_to_signal_db = 0;    ///< -infinity without jamming; 100 without an echo that is jammed
   double detection_probability = 0;  ///< against clutter, noise and jamming
+  /// Of a beam that follows the target: its gain towards it, relative to its maximum (dB), <= 0.
+  std::optional<double> look_pattern_db;
 
   /// Of a radar with clutter.
   struct Clutter {

@@ -53,10 +53,16 @@ std::string pathText(const PathBudget& budget) {
       distanceText(decisive->range_m) + " away", decisive->clearance_m, radii, costText(loss_db));
 }
 
-/// For a direction in which the antenna's gain is far below its maximum.
-std::string pointingText(const PathPointing& pointing) {
+/// For a direction in which the antenna's gain is far below its maximum. Of a radar that looks at the target
+/// the direction of the scan does not count.
+std::string pointingText(const PathBudget& budget) {
   constexpr double kWorthSaying_db = -6;
-  if (pointing.pattern_db > kWorthSaying_db) return "";
+  const PathPointing& pointing = budget.pointing;
+  if (budget.look_pattern_db.value_or(pointing.pattern_db) > kWorthSaying_db) return "";
+  if (budget.look_pattern_db) {
+    return fmt::format(", but the scan does not reach there, which costs {:.1f} dB",
+                       -*budget.look_pattern_db);
+  }
   return fmt::format(", but the antenna points {:.1f} deg away, which costs {:.1f} dB",
                      radToDeg(pointing.off_axis_rad), -pointing.pattern_db);
 }
@@ -78,7 +84,7 @@ std::string pathVerdictOf(const PathBudget& budget) {
 
 std::string verdictOf(const PathBudget& budget) {
   if (!budget.active) return pathVerdictOf(budget);
-  return pathText(budget) + pointingText(budget.pointing) + detectionText(budget) + ".";
+  return pathText(budget) + pointingText(budget) + detectionText(budget) + ".";
 }
 
 }  // namespace emscape::emfield

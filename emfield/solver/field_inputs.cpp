@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "propagation/parabolic_equation/refractivity_field.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
@@ -23,7 +24,7 @@ auto membersOf(const propagation::Ground& ground) {
 }
 auto membersOf(const propagation::Atmosphere& atmosphere) {
   const auto& [k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
-               refraction, sea_level_refractivity, climate] = atmosphere;
+               refraction, sea_level_refractivity, climate, refractivity] = atmosphere;
   return std::tie(k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,
                   refraction, sea_level_refractivity, climate);
 }
@@ -177,21 +178,25 @@ GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const sc
   inputs.far_field_m = plan.far_field_m[static_cast<std::size_t>(emitter_index)];
   inputs.propagation = {frequency_hz, polarization, propagation, plan.scenario->ground,
                         plan.scenario->atmosphere};
-  inputs.clutter = clutterMapInputs(plan.scenario->emitters[static_cast<std::size_t>(emitter_index)]);
+  if (plan.has_clutter_map[static_cast<std::size_t>(emitter_index)]) {
+    inputs.clutter = clutterMapInputs(plan.scenario->emitters[static_cast<std::size_t>(emitter_index)]);
+  }
   return inputs;
 }
 
-bool haveSameSettings(const GeometryInputs& a, const GeometryInputs& b) {
-  const auto& [position, height_msl_m, far_field_m, propagation, clutter] = a;
+bool haveSameSettings(const GeometryInputs& computed, const GeometryInputs& needed) {
+  const auto& [position, height_msl_m, far_field_m, propagation, clutter] = computed;
   const auto& [frequency_hz, polarization, settings, ground, atmosphere] = propagation;
-  return far_field_m == b.far_field_m && frequency_hz == b.propagation.frequency_hz &&
-         polarization == b.propagation.polarization && areSame(settings, b.propagation.settings) &&
-         same(ground, b.propagation.ground) && same(atmosphere, b.propagation.atmosphere) &&
-         same(clutter, b.clutter);
+  return far_field_m == needed.far_field_m && frequency_hz == needed.propagation.frequency_hz &&
+         polarization == needed.propagation.polarization && areSame(settings, needed.propagation.settings) &&
+         same(ground, needed.propagation.ground) && same(atmosphere, needed.propagation.atmosphere) &&
+         propagation::areSame(atmosphere.refractivity, needed.propagation.atmosphere.refractivity) &&
+         (!needed.clutter || (clutter && same(*clutter, *needed.clutter)));
 }
 
-bool areSame(const GeometryInputs& a, const GeometryInputs& b) {
-  return same(a.position, b.position) && a.height_msl_m == b.height_msl_m && haveSameSettings(a, b);
+bool areSame(const GeometryInputs& computed, const GeometryInputs& needed) {
+  return same(computed.position, needed.position) && computed.height_msl_m == needed.height_msl_m &&
+         haveSameSettings(computed, needed);
 }
 
 bool areSame(const ProductScale& a, const ProductScale& b) {

@@ -5,6 +5,7 @@
 /// stage 3 (combine) are those of the engine.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "emfield/solver/field_engine.h"
@@ -18,15 +19,16 @@ struct GeometryInputs {
   double height_msl_m = 0;
   double far_field_m = 0;
   propagation::EmitterInputs propagation;
-  ClutterMapInputs clutter;
+  std::optional<ClutterMapInputs> clutter;  ///< none: no channel is against it, and there is no map of it
 };
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter, const scenario::EmitterState& state);
 
-/// True if all except the position is equal. Source locations are ignored.
-bool haveSameSettings(const GeometryInputs& a, const GeometryInputs& b);
+/// True if a geometry serves other inputs: all except the position is equal, and it has the map of clutter if
+/// they need one. Source locations are ignored.
+bool haveSameSettings(const GeometryInputs& computed, const GeometryInputs& needed);
 /// True if the position is also equal, to the last bit.
-bool areSame(const GeometryInputs& a, const GeometryInputs& b);
+bool areSame(const GeometryInputs& computed, const GeometryInputs& needed);
 
 /// Inputs of an emitter's part in the channels (stage 3), without its geometry.
 struct CombineInputs {

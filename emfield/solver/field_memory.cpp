@@ -27,8 +27,7 @@ std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes) {
 std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
                             volume::VoxelPrecision precision) {
   const auto voxels = static_cast<std::size_t>(setup.grid.dims.count());
-  const std::size_t columns = setup.columns.columns.size();
-  std::size_t bytes = slot_bytes + columns * sizeof(GridColumn);
+  std::size_t bytes = slot_bytes + setup.columns.bytes();
   for (const ChannelPlan& plan : setup.channel_plans) {
     const std::size_t accumulators = hasSecond(plan.reduction) ? 2 : 1;
     // all emitters' and the resting ones' sums; a volume that is shown and one that is written

@@ -15,7 +15,9 @@ struct FieldPlan {
   std::vector<Channel> channels;
   std::vector<ChannelPlan> channel_plans;  ///< one per channel
   std::vector<double> far_field_m;         ///< of each emitter: 2 D^2 / lambda
-  std::vector<std::string> warnings;       ///< of the models, on values of the scenario
+  /// Of each emitter: some channel is against its clutter of land and sea.
+  std::vector<bool> has_clutter_map;
+  std::vector<std::string> warnings;  ///< of the models, on values of the scenario
 };
 
 /// @param also_per_emitter  see FieldOptions

@@ -79,7 +79,7 @@ std::vector<bool> FieldSolver::Impl::chooseCached(const FieldPlan& plan, std::si
   std::size_t cached_bytes = 0, largest_uncached = 0;
   for (const scenario::Emitter& emitter : plan.scenario->emitters) {
     const std::size_t bytes =
-        EmitterGeometry::bytesOf(*plan.scenario, emitter, setup.columns.columns.size(),
+        EmitterGeometry::bytesOf(*plan.scenario, emitter, setup.columns.count(),
                                  static_cast<int>(setup.columns.t_m.size()), setup.columns.every_height);
     cached.push_back(options.cache_bytes == 0 || cached_bytes + bytes <= options.cache_bytes);
     if (cached.back()) {
@@ -116,7 +116,7 @@ std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine(std::size_t slot_byte
 }
 
 std::string FieldSolver::Impl::placeOf(std::size_t column) const {
-  const GeodeticPosition place = fromEcef(setup.columns.columns[column].base_ecef_m);
+  const GeodeticPosition place = fromEcef(setup.columns.view()[column].base_ecef_m);
   return fmt::format("latitude {:.5f}, longitude {:.5f} deg", place.latitude_deg, place.longitude_deg);
 }
 
@@ -129,8 +129,8 @@ void FieldSolver::Impl::checkHoles() const {
       fmt::format(
           "terrain is missing below {} of {} columns of the region, first at {}; the files cover latitude "
           "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts",
-          columns.hole_columns, columns.columns.size(), placeOf(columns.first_hole), box.south_deg,
-          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts()),
+          columns.hole_columns, columns.count(), placeOf(columns.first_hole), box.south_deg, box.north_deg,
+          box.west_deg, box.east_deg, setup.terrain->voidPosts()),
       Hint::allow_missing_terrain);
 }
 
@@ -213,7 +213,7 @@ MemoryUse FieldSolver::memoryUse() const {
                                        static_cast<double>(impl.emitters.size());
   }
   impl.engine->addMemory(use);
-  use.total_bytes += impl.setup.columns.columns.size() * sizeof(GridColumn);
+  use.total_bytes += impl.setup.columns.bytes();
   return use;
 }
 

@@ -1,12 +1,11 @@
 // The steps of a march.
 #include "propagation/parabolic_equation/march.h"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "emscape/base/error.h"
+#include "propagation/parabolic_equation/march_start.h"
+#include "propagation/parabolic_equation/march_step.h"
 
 namespace emscape::propagation {
 namespace {
@@ -16,23 +15,13 @@ using Cx = std::complex<double>;
 /// Power that may be in the upper half of the spectrum where it is dropped, over that of all.
 constexpr double kNegligible = 1e-6;
 
-/// Rate (1/m) at which the last tenth of the band is absorbed, where standard air turns rays out of it: they
-/// would come back downwards. 90 dB over the range in which it turns a ray through that tenth.
-double bandEdgeRate(double part_of_band, double max_sine) {
-  constexpr double kBegin = 0.9;
-  const double t = (part_of_band - kBegin) / (1 - kBegin);
-  if (t <= 0) return 0;
-  const double turning_m = (1 - kBegin) * max_sine / (1e-6 * kStandardGradient_m);
-  return 4 * 90 / kDbPerNeper<double> / turning_m * t * t * t;
-}
-
-/// exp(i distance (sqrt(k^2 - q^2) - k)) without cancellation; decays where q > k.
-Cx propagated(const MarchGrid& grid, double distance_m, Cx q_squared) {
-  const double k = grid.wavenumber();
-  if (grid.form == PeForm::narrow) return std::exp(Cx(0, -distance_m / (2 * k)) * q_squared);
-  Cx root = std::sqrt(k * k - q_squared);
-  if (root.imag() < 0) root = -root;
-  return std::exp(Cx(0, -distance_m) * q_squared / (root + k));
+/// exp(stepExponent()).
+Cx propagated(const MarchGrid& grid, double distance_m, Cx q_squared, double loss = 0) {
+  Complex<double> exponent = stepExponent(grid.form == PeForm::wide, grid.wavenumber(), distance_m,
+                                          {q_squared.real(), q_squared.imag()});
+  exponent.re -= loss;
+  const Complex<double> factor = exponential(exponent);
+  return {factor.re, factor.im};
 }
 
 }  // namespace
@@ -53,24 +42,11 @@ RadialMarch<Real, kLanes>::RadialMarch(const MarchGrid& grid, std::array<RadialP
   }
   for (int l = 0; l < kLanes; ++l) {
     Lane& lane = lanes_[l];
-    const double height_m = lane.path.source.height_agl_m;
-    const bool radiates = lane.path.surface.perfect ? height_m > 0 : height_m >= 0;
-    if (!radiates || !(height_m <= grid_.usableTop_m())) {
-      throw Error(
-          ErrorCode::bad_input,
-          fmt::format("parabolic_equation: antenna {} m above the ground; expected {} 0, up to {} m",
-                      height_m, lane.path.surface.perfect ? "above" : "at least", grid_.usableTop_m()));
-    }
-    const std::vector<double>& ground_m = lane.path.ground_msl_m;
-    const auto hole =
-        std::find_if(ground_m.begin(), ground_m.end(), [](double h) { return !std::isfinite(h); });
-    if (hole != ground_m.end()) {
-      throw Error(ErrorCode::bad_input, fmt::format("parabolic_equation: no terrain {} m from the antenna",
-                                                    double(hole - ground_m.begin()) * grid_.range_step_m));
-    }
+    checkSource(grid_, lane.path.source, lane.path.surface);
+    checkGround(grid_, lane.path.ground_msl_m.data(), lane.path.ground_msl_m.size());
     lane.ground_m = groundAt(lane.path, 0);
     setRatio(l);
-    start(l);
+    setField(l, startField(grid_, lane.path.source, lane.ratio));
     setPropagator(l);
     setScreen(l);
   }
@@ -84,15 +60,7 @@ double RadialMarch<Real, kLanes>::groundAt(const RadialPath& path, int step) con
 
 template <class Real, int kLanes>
 void RadialMarch<Real, kLanes>::setRatio(int l) {
-  lanes_[l].ratio = surfaceRatio(lanes_[l].path.surface, grid_.frequency_hz, heightStep_m());
-  if (std::abs(lanes_[l].ratio) <= kMaxSurfaceRatio) return;
-  throw Error(
-      ErrorCode::bad_input,
-      fmt::format(
-          "parabolic_equation: |r| of the surface is {:.6g} at {:.4g} degrees and height steps of {:.4g} "
-          "m; the mixed transform holds up to {}",
-          std::abs(lanes_[l].ratio), radToDeg(lanes_[l].path.surface.grazing_rad), heightStep_m(),
-          kMaxSurfaceRatio));
+  lanes_[l].ratio = checkedRatio(grid_, lanes_[l].path.surface, heightStep_m());
 }
 
 template <class Real, int kLanes>
@@ -100,8 +68,8 @@ void RadialMarch<Real, kLanes>::setScreen(int l) {
   const Lane& lane = lanes_[l];
   const RefractivityProfile profile = lane.path.air.at(range_m() + grid_.range_step_m / 2);
   const double k = grid_.wavenumber(), dz = heightStep_m(), surface_m_units = profile.at(lane.ground_m);
-  const double half_step_m = grid_.range_step_m / 2 / std::cos(lane.slope_rad);
-  const double middle_m = lane.ground_m + grid_.range_step_m / 2 * std::tan(lane.slope_rad);
+  const double half_step_m = grid_.range_step_m / 2 / lane.cosine;
+  const double middle_m = lane.ground_m + grid_.range_step_m / 2 * lane.sine / lane.cosine;
   for (int j = 0; j < intervals(); ++j) {
     const double m = 1e-6 * (profile.at(middle_m + j * dz) - surface_m_units);
     const double phase = k * half_step_m * (grid_.form == PeForm::wide ? m : m + m * m / 2);
@@ -114,13 +82,12 @@ void RadialMarch<Real, kLanes>::setScreen(int l) {
 
 template <class Real, int kLanes>
 void RadialMarch<Real, kLanes>::setPropagator(int l) {
-  const double cosine = std::cos(lanes_[l].slope_rad);
+  const double cosine = lanes_[l].cosine;
   const double distance_m = grid_.range_step_m / cosine;
   for (int i = 0; i < intervals(); ++i) {
     const double q = kPi * i / grid_.top_m / cosine;
     const double loss = grid_.absorber_m > 0 ? bandEdgeRate(double(i) / intervals(), maxSine()) : 0;
-    const Cx factor =
-        propagated(grid_, distance_m, q * q) * std::exp(-loss * distance_m) * (2.0 / intervals());
+    const Cx factor = propagated(grid_, distance_m, q * q, loss * distance_m) * (2.0 / intervals());
     propagator_[i].re[l] = Real(factor.real());
     propagator_[i].im[l] = Real(factor.imag());
   }
@@ -130,26 +97,19 @@ template <class Real, int kLanes>
 double RadialMarch<Real, kLanes>::bend(int l) {
   Lane& lane = lanes_[l];
   const double rise_m = groundAt(lane.path, steps_ + 1) - lane.ground_m;
-  double slope_rad = std::atan2(rise_m, grid_.range_step_m);
-  const double largest = std::min(std::sin(kMaxBreak_rad), maxSine());
-  // The start has the slope of the first piece: the source's band lies about it.
-  double turn = steps_ == 0 ? 0 : std::sin(lane.slope_rad) - std::sin(slope_rad);
-  double staircase_m = 0;
-  if (std::fabs(slope_rad) > kMaxSlope_rad || std::fabs(turn) > largest) {
-    staircase_m = rise_m;
-    slope_rad = 0;
-    turn = steps_ == 0 ? 0 : std::sin(lane.slope_rad);
-    ++staircases_;
-  }
-  if (slope_rad == lane.slope_rad) return staircase_m;
-  const double phase = grid_.wavenumber() * heightStep_m() * turn;
+  const GroundStep step = groundStep(rise_m, grid_.range_step_m, lane.sine, steps_ == 0, maxSine());
+  const double staircase_m = step.staircase ? rise_m : 0;
+  if (step.staircase) ++staircases_;
+  if (step.sine == lane.sine) return staircase_m;
+  const double phase = grid_.wavenumber() * heightStep_m() * step.turn;
   for (int j = 0; j < intervals(); ++j) {
     const double angle = std::remainder(phase * j, 2 * kPi), c = std::cos(angle), s = std::sin(angle);
     const double re = field_[j].re[l], im = field_[j].im[l];
     field_[j].re[l] = Real(re * c - im * s);
     field_[j].im[l] = Real(re * s + im * c);
   }
-  lane.slope_rad = slope_rad;
+  lane.sine = step.sine;
+  lane.cosine = step.cosine;
   setPropagator(l);
   return staircase_m;
 }
@@ -190,7 +150,7 @@ void RadialMarch<Real, kLanes>::joinSurface(int l) {
     with_field += power * Cx(y.re, y.im);
     with_itself += power * power;
   }
-  const double cosine = std::cos(lane.slope_rad);
+  const double cosine = lane.cosine;
   const Cx decay = std::log(lane.ratio) / (heightStep_m() * cosine);
   const Cx a = Cx(lane.surface_wave.re, lane.surface_wave.im) *
                    propagated(grid_, grid_.range_step_m / cosine, -decay * decay) -
@@ -238,7 +198,7 @@ void RadialMarch<Real, kLanes>::advance() {
   ++steps_;
   for (int l = 0; l < kLanes; ++l) {
     Lane& lane = lanes_[l];
-    lane.ground_m += grid_.range_step_m * std::tan(lane.slope_rad);
+    lane.ground_m += grid_.range_step_m * lane.sine / lane.cosine;
     if (staircase_m[l] != 0) shift(l, staircase_m[l]);
   }
   if (grid_.halving) halveIfEmpty();

@@ -20,11 +20,6 @@
 
 namespace emscape::propagation {
 
-/// Slopes above this are taken as steps of a staircase.
-constexpr double kMaxSlope_rad = 15 * kPi / 180;
-/// Breaks of slope above this, or above the band's largest angle, too.
-constexpr double kMaxBreak_rad = 20 * kPi / 180;
-
 /// One azimuth.
 struct RadialPath {
   PeSource source;
@@ -38,6 +33,8 @@ struct RadialPath {
 template <class Real, int kLanes>
 class RadialMarch {
  public:
+  static constexpr int kLaneCount = kLanes;
+
   /// Starts at range 0 with the sources.
   /// @throws Error (bad_input) for a grid outside its limits (checkGrid()), a source below the ground (on
   /// a perfect surface: at it) or above the usable domain, terrain with holes (NaN), or a surface outside the
@@ -80,8 +77,8 @@ class RadialMarch {
   using Value = LaneComplex<Real, kLanes>;
   struct Lane {
     RadialPath path;
-    double ground_m = 0;  ///< under the field
-    double slope_rad = 0;
+    double ground_m = 0;             ///< under the field
+    double sine = 0, cosine = 1;     ///< of the slope
     std::complex<double> ratio = 0;  ///< r of the mixed transform; 0: Dirichlet
     Complex<Real> surface_wave;      ///< A
   };
@@ -90,7 +87,6 @@ class RadialMarch {
   double maxSine() const { return wavelength_m(grid_.frequency_hz) / (2 * heightStep_m()); }
   double groundAt(const RadialPath& path, int step) const;
   void setRatio(int lane);
-  void start(int lane);
   /// Slope of the next piece; turns the field's phase at a break.
   /// @return rise (m) at the end of a piece that is taken as a step; else 0
   double bend(int lane);

@@ -7,12 +7,13 @@
 #include <limits>
 
 #include "emscape/base/error.h"
+#include "propagation/parabolic_equation/lane_march.h"
 
 namespace emscape::propagation {
 
-template <class Real, int kLanes>
-std::array<std::vector<float>, kLanes> marchCells(RadialMarch<Real, kLanes>& march,
-                                                  const RadialCells& cells) {
+template <class March>
+std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const RadialCells& cells) {
+  constexpr int kLanes = March::kLaneCount;
   if (!(cells.range_step_m >= march.grid().range_step_m)) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("parabolic_equation: cells of {} m in range; expected at least the "
@@ -31,7 +32,8 @@ std::array<std::vector<float>, kLanes> marchCells(RadialMarch<Real, kLanes>& mar
     while (march.range_m() <= last_m) {
       march.advance();
       for (int l = 0; l < kLanes; ++l) {
-        const double below_m = cells.bottom_msl_m - march.ground_m(l), top_m = march.grid().usableTop_m();
+        const double ground_m = cells.above_ground ? 0 : march.ground_m(l);
+        const double below_m = cells.bottom_msl_m - ground_m, top_m = march.grid().usableTop_m();
         for (int j = 0; j < cells.heights; ++j) {
           const double z1 = std::max(0.0, below_m + j * cells.height_step_m);
           const double z2 = std::min(top_m, below_m + (j + 1) * cells.height_step_m);
@@ -53,9 +55,10 @@ std::array<std::vector<float>, kLanes> marchCells(RadialMarch<Real, kLanes>& mar
   return excess_db;
 }
 
-template std::array<std::vector<float>, 1> marchCells<double, 1>(RadialMarch<double, 1>&, const RadialCells&);
-template std::array<std::vector<float>, 4> marchCells<double, 4>(RadialMarch<double, 4>&, const RadialCells&);
-template std::array<std::vector<float>, 1> marchCells<float, 1>(RadialMarch<float, 1>&, const RadialCells&);
-template std::array<std::vector<float>, 8> marchCells<float, 8>(RadialMarch<float, 8>&, const RadialCells&);
+template std::array<std::vector<float>, 1> marchCells(RadialMarch<double, 1>&, const RadialCells&);
+template std::array<std::vector<float>, 4> marchCells(RadialMarch<double, 4>&, const RadialCells&);
+template std::array<std::vector<float>, 1> marchCells(RadialMarch<float, 1>&, const RadialCells&);
+template std::array<std::vector<float>, 8> marchCells(RadialMarch<float, 8>&, const RadialCells&);
+template std::array<std::vector<float>, 8> marchCells(LaneMarch&, const RadialCells&);
 
 }  // namespace emscape::propagation

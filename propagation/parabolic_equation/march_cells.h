@@ -15,15 +15,16 @@ struct RadialCells {
   double bottom_msl_m = 0;
   double height_step_m = 0;
   int heights = 0;
+  bool above_ground = false;  ///< heights count from the ground instead of mean sea level
 };
 
-/// Marches through all cells.
+/// Marches through all cells. Compiled for RadialMarch and LaneMarch.
 /// @param march  at range 0
 /// @return for each lane the losses over free space (dB), ranges x heights, height fastest: the mean of F^2
 /// over all range steps in the cell and the heights in it that are above the ground and below the absorber,
 /// in dB. NaN where there are none.
 /// @throws Error (bad_input) if the cells are shorter than a range step
-template <class Real, int kLanes>
-std::array<std::vector<float>, kLanes> marchCells(RadialMarch<Real, kLanes>& march, const RadialCells& cells);
+template <class March>
+std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const RadialCells& cells);
 
 }  // namespace emscape::propagation

@@ -6,13 +6,11 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
+#include "propagation/parabolic_equation/refractivity.h"
 
 namespace emscape::propagation {
 namespace {
 
-constexpr double kTaperFlat = 0.6;       ///< part of the band that the source fills evenly (source.h)
-constexpr double kUsable = 0.8;          ///< of the height below the absorber
-constexpr double kAbsorberPart = 0.125;  ///< of the domain
 constexpr double kMinRangeStep_m = 50;
 constexpr double kTrappingStep_m = 200;  ///< at kTrappingFrequency_hz
 constexpr double kTrappingFrequency_hz = 1e10;
@@ -30,11 +28,24 @@ void requirePositive(const char* what, double value, const char* unit) {
               fmt::format("parabolic_equation: {} {} {} is not above 0", what, value, unit));
 }
 
+/// Least height of the domain whose absorber is eight vertical wavelengths thick for the ray that grazes the
+/// earth below it, in standard air. A thinner one reflects that ray, and far beyond the horizon nothing is
+/// left but its reflections: with three wavelengths -2 dB in place of -80 dB (10 GHz, 60 km).
+double grazingTop_m(double wavelength_m) {
+  constexpr double kVerticalWavelengths = 8;
+  const double sine_per_root_m = std::sqrt(2e-6 * kStandardGradient_m);  // of the ray at a height
+  return std::pow(kVerticalWavelengths * wavelength_m / (kPeAbsorberPart * sine_per_root_m), 2.0 / 3);
+}
+
 }  // namespace
 
 void setAbsorber(MarchGrid& grid, double absorber_m) {
-  grid.absorber_m = absorber_m > 0 ? absorber_m : kAbsorberPart * grid.top_m;
+  grid.absorber_m = absorber_m > 0 ? absorber_m : kPeAbsorberPart * grid.top_m;
   grid.absorber_per_m = 90 * 4 * std::min(grid.maxSine(), 1.0) / (17.4 * grid.absorber_m);
+}
+
+double absorberStep_m(const MarchGrid& grid) {
+  return grid.absorber_m / (4 * std::tan(std::asin(std::min(0.99, grid.maxSine()))));
 }
 
 void checkGrid(const MarchGrid& grid) {
@@ -68,15 +79,15 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
   const double wavelength = wavelength_m(needs.frequency_hz);
   const double sine = std::sin(needs.max_angle_rad);
   // the source fills 0.6 of the band: the wanted angle lies within that
-  const double largest_step_m = kTaperFlat * wavelength / (2 * sine);
-  const double wanted_top_m = needs.max_height_m / kUsable / (1 - kAbsorberPart);
+  const double largest_step_m = kPeEvenBand * wavelength / (2 * sine);
+  const double wanted_top_m = needs.max_height_m / kPeUsable / (1 - kPeAbsorberPart);
   // thirty vertical wavelengths of a ray at a tenth of the band in the absorber
-  const double absorber_top_m = 30 * largest_step_m * 2 / kAbsorberPart / 10;
-  const double least_top_m = std::max(wanted_top_m, absorber_top_m);
+  const double absorber_top_m = 30 * largest_step_m * 2 / kPeAbsorberPart / 10;
+  const double least_top_m = std::max({wanted_top_m, absorber_top_m, grazingTop_m(wavelength)});
   const double wanted_intervals = least_top_m / largest_step_m;
   if (wanted_intervals > kPeMaxIntervals) {
     const double affordable =
-        radToDeg(std::asin(std::min(1.0, kTaperFlat * wavelength * kPeMaxIntervals / (2 * wanted_top_m))));
+        radToDeg(std::asin(std::min(1.0, kPeEvenBand * wavelength * kPeMaxIntervals / (2 * wanted_top_m))));
     throw Error(
         ErrorCode::bad_input,
         fmt::format(
@@ -91,11 +102,12 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
   found.choices.push_back(
       {"height of the domain",
        fmt::format(
-           "{:.4g} m: {:.4g} m wanted, below {} of what the absorber leaves; {} steps, a power of two",
-           grid.top_m, needs.max_height_m, kUsable, grid.intervals)});
+           "{:.4g} m: {:.4g} m wanted, below {} of what the absorber leaves, and at least {:.3g} m for the "
+           "rays that graze the earth; {} steps, a power of two",
+           grid.top_m, needs.max_height_m, kPeUsable, grazingTop_m(wavelength), grid.intervals)});
   found.choices.push_back(
       {"height step", fmt::format("{:.4g} m: {} wavelength / (2 sin {:.3g} degrees)", grid.heightStep_m(),
-                                  kTaperFlat, radToDeg(needs.max_angle_rad))});
+                                  kPeEvenBand, radToDeg(needs.max_angle_rad))});
   found.choices.push_back(
       {"absorber", fmt::format("{:.4g} m with {:.3g} / m at the top: 90 dB at the largest angle",
                                grid.absorber_m, grid.absorber_per_m)});
@@ -105,8 +117,7 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
     const char* reason;
   };
   std::vector<Bound> bounds = {{kPlainStep_m, "error of the splitting in air that does not trap"},
-                               {grid.absorber_m / (4 * std::tan(std::asin(std::min(0.99, grid.maxSine())))),
-                                "a quarter of the absorber's length"}};
+                               {absorberStep_m(grid), "a quarter of the absorber's length"}};
   if (needs.traps) {
     bounds.push_back({kTrappingStep_m * std::sqrt(kTrappingFrequency_hz / needs.frequency_hz),
                       "error of the splitting where a layer traps"});

@@ -1,10 +1,10 @@
 /// Steps and domain of a march, and their automatic choice.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "emscape/base/units.h"
+#include "propagation/choice.h"
 #include "propagation/limits.h"
 
 namespace emscape::propagation {
@@ -14,6 +14,9 @@ constexpr ModelLimit kPeFrequency{
 constexpr ModelLimit kPeAngle{
     "largest angle", "degrees", kPi / 180, 0.1, 15, Beyond::refused, "other models serve at larger angles"};
 constexpr int kPeMaxIntervals = 32768;
+constexpr double kPeEvenBand = 0.6;        ///< part of the band that the source fills evenly (source.h)
+constexpr double kPeUsable = 0.8;          ///< of the height below the absorber
+constexpr double kPeAbsorberPart = 0.125;  ///< of the domain
 
 /// Form of the one-way equation.
 enum class PeForm {
@@ -45,6 +48,9 @@ struct MarchGrid {
 /// of the domain.
 void setAbsorber(MarchGrid& grid, double absorber_m = 0);
 
+/// Largest range step (m): a quarter of the absorber's length along its steepest ray.
+double absorberStep_m(const MarchGrid& grid);
+
 /// @throws Error (bad_input) that names the value and its range: a frequency outside its limits, N not a
 /// power of two in 8 .. 32768, a step or the domain not above 0, an absorber that is negative or fills the
 /// domain
@@ -59,15 +65,9 @@ struct MarchNeeds {
   bool traps = false;                    ///< the air has a layer that traps
 };
 
-/// A choice and why: "200 m: ...".
-struct MarchChoice {
-  std::string name;  ///< "range step"
-  std::string text;  ///< value with unit, and the reason
-};
-
 struct AutomaticGrid {
   MarchGrid grid;
-  std::vector<MarchChoice> choices;
+  std::vector<ModelChoice> choices;
 };
 
 /// Steps for a splitting error of 0.2 dB in nine of ten points, and a domain that holds the wanted heights

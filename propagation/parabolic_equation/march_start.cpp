@@ -1,8 +1,12 @@
-// The field at range 0.
+#include "propagation/parabolic_equation/march_start.h"
+
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include "propagation/parabolic_equation/march.h"
+#include "emscape/base/error.h"
+#include "propagation/parabolic_equation/sine_transform.h"
 
 namespace emscape::propagation {
 namespace {
@@ -39,44 +43,67 @@ std::vector<Cx> seriesSum(const std::vector<Cx>& sines, const std::vector<Cx>& c
 /// The source as a sum of the discrete surface's waves e^(-i p z) + R e^(i p z), R(p) = -(1 - r e^(i p dz)) /
 /// (1 - r e^(-i p dz)): for r = 0 the source and its image. The part of the delta at the source that the
 /// surface wave r^j holds is put in by itself.
-template <class Real, int kLanes>
-void RadialMarch<Real, kLanes>::start(int l) {
-  const Lane& lane = lanes_[l];
-  const PeSource& source = lane.path.source;
-  const int n = intervals();
-  const double dz = heightStep_m(), k = grid_.wavenumber(), p_max = kPi / dz;
-  const bool wide = grid_.form == PeForm::wide;
+std::vector<Cx> startField(const MarchGrid& grid, const PeSource& source, Cx ratio) {
+  const int n = grid.intervals;
+  const double dz = grid.heightStep_m(), k = grid.wavenumber(), p_max = kPi / dz;
+  const bool wide = grid.form == PeForm::wide;
   std::vector<Cx> sines(n), cosines(n);
   for (int i = 1; i < n; ++i) {
-    const double p = kPi * i / grid_.top_m;
+    const double p = kPi * i / grid.top_m;
     const Cx turn = std::polar(1.0, p * dz);
-    const Cx reflected = -(1.0 - lane.ratio * turn) / (1.0 - lane.ratio * std::conj(turn));
-    const Cx above = sourceSpectrum(source, p, p_max, k, wide) / (2 * grid_.top_m);
-    const Cx below = sourceSpectrum(source, -p, p_max, k, wide) / (2 * grid_.top_m);
+    const Cx reflected = -(1.0 - ratio * turn) / (1.0 - ratio * std::conj(turn));
+    const Cx above = sourceSpectrum(source, p, p_max, k, wide) / (2 * grid.top_m);
+    const Cx below = sourceSpectrum(source, -p, p_max, k, wide) / (2 * grid.top_m);
     const Cx up = above + reflected * below, down = below + above / reflected;
     cosines[i] = up + down;
     sines[i] = Cx(0, 1) * (up - down);
   }
   std::vector<Cx> values = seriesSum(sines, cosines);
-  if (lane.ratio != 0.0) {
+  if (ratio != 0.0) {
     Cx power = 1, with_field = 0, with_itself = 0;
-    for (int j = 0; j < n; ++j, power *= lane.ratio) {
+    for (int j = 0; j < n; ++j, power *= ratio) {
       with_field += power * values[j];
       with_itself += power * power;
     }
-    const Cx at_source = std::pow(lane.ratio, source.height_agl_m / dz) / dz;
+    const Cx at_source = std::pow(ratio, source.height_agl_m / dz) / dz;
     const Cx missing = (at_source - with_field) / with_itself;
     power = 1;
-    for (int j = 0; j < n; ++j, power *= lane.ratio) values[j] += missing * power;
+    for (int j = 0; j < n; ++j, power *= ratio) values[j] += missing * power;
   } else {
     values[0] = 0;
   }
-  setField(l, values);
+  return values;
 }
 
-template class RadialMarch<double, 1>;
-template class RadialMarch<double, 4>;
-template class RadialMarch<float, 1>;
-template class RadialMarch<float, 8>;
+void checkSource(const MarchGrid& grid, const PeSource& source, const PeSurface& surface) {
+  const double height_m = source.height_agl_m;
+  const bool radiates = surface.perfect ? height_m > 0 : height_m >= 0;
+  if (radiates && height_m <= grid.usableTop_m()) return;
+  throw Error(ErrorCode::bad_input,
+              fmt::format("parabolic_equation: antenna {} m above the ground; expected {} 0, up to {} m",
+                          height_m, surface.perfect ? "above" : "at least", grid.usableTop_m()));
+}
+
+template <class Height>
+void checkGround(const MarchGrid& grid, const Height* ground_m, std::size_t steps) {
+  const auto hole = std::find_if(ground_m, ground_m + steps, [](Height h) { return !std::isfinite(h); });
+  if (hole == ground_m + steps) return;
+  throw Error(ErrorCode::bad_input, fmt::format("parabolic_equation: no terrain {} m from the antenna",
+                                                double(hole - ground_m) * grid.range_step_m));
+}
+
+template void checkGround<float>(const MarchGrid&, const float*, std::size_t);
+template void checkGround<double>(const MarchGrid&, const double*, std::size_t);
+
+Cx checkedRatio(const MarchGrid& grid, const PeSurface& surface, double height_step_m) {
+  const Cx ratio = surfaceRatio(surface, grid.frequency_hz, height_step_m);
+  if (std::abs(ratio) <= kMaxSurfaceRatio) return ratio;
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format(
+          "parabolic_equation: |r| of the surface is {:.6g} at {:.4g} degrees and height steps of {:.4g} "
+          "m; the mixed transform holds up to {}",
+          std::abs(ratio), radToDeg(surface.grazing_rad), height_step_m, kMaxSurfaceRatio));
+}
 
 }  // namespace emscape::propagation

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 #include <set>
 
 #include "emscape/base/error.h"
@@ -14,7 +15,10 @@ namespace {
 
 constexpr int kEvaporationLevels = 256;
 constexpr double kEvaporationTop_m = 1000;
+constexpr int kAddedLevels = 96;
 constexpr double kMaxDuctHeight_m = 60;
+/// Standard air above a measured profile ends here; N falls by e in the scale height above.
+constexpr double kStandardTop_m = 5000, kScaleHeight_m = 7350;
 constexpr int kMaxLevels = 256;
 constexpr double kMaxHeight_m = 60000;
 constexpr double kMaxM = 2500;
@@ -25,26 +29,39 @@ constexpr double kMaxGradient_m = 5;
   throw Error(ErrorCode::bad_input, fmt::format("{}: {} {} is not {}", what, value, unit, allowed));
 }
 
-RefractivityProfile levelByLevel(const RefractivityProfile& a, const RefractivityProfile& b, double t) {
-  const auto lerp = [t](double from, double to) { return from + t * (to - from); };
-  RefractivityProfile between;
-  for (std::size_t i = 0; i < a.levels.size(); ++i) {
-    between.levels.push_back({lerp(a.levels[i].height_msl_m, b.levels[i].height_msl_m),
-                              lerp(a.levels[i].m_units, b.levels[i].m_units)});
-  }
-  between.top_gradient_m = lerp(a.top_gradient_m, b.top_gradient_m);
-  return between;
+bool haveSameCounts(const std::vector<RefractivityProfile>& profiles) {
+  return std::all_of(profiles.begin(), profiles.end(), [&](const RefractivityProfile& profile) {
+    return profile.levels.size() == profiles.front().levels.size();
+  });
 }
 
-RefractivityProfile heightByHeight(const RefractivityProfile& a, const RefractivityProfile& b, double t) {
-  std::set<double> heights_m;
-  for (const RefractivityProfile* profile : {&a, &b}) {
-    for (const RefractivityLevel& level : profile->levels) heights_m.insert(level.height_msl_m);
+/// Heights with a constant step in their logarithm, so that the error of straight pieces is the same
+/// everywhere, and the duct height.
+std::set<double> evaporationHeights_m(double top_m, int count, double duct_height_m) {
+  const double step = std::log1p(top_m / kEvaporationRoughness_m) / (count - 2);
+  std::set<double> heights_m{duct_height_m};
+  for (int i = 0; i < count - 1; ++i) heights_m.insert(kEvaporationRoughness_m * std::expm1(step * i));
+  return heights_m;
+}
+
+void checkDuctHeight(double duct_height_m) {
+  if (!(duct_height_m >= 0 && duct_height_m <= kMaxDuctHeight_m)) {
+    refuse("duct height", duct_height_m, "m", fmt::format("in 0 .. {} m", kMaxDuctHeight_m));
   }
-  RefractivityProfile between;
-  for (const double z : heights_m) between.levels.push_back({z, a.at(z) + t * (b.at(z) - a.at(z))});
-  between.top_gradient_m = a.top_gradient_m + t * (b.top_gradient_m - a.top_gradient_m);
-  return between;
+}
+
+/// The departure of an evaporation duct from standard air, without a constant: integral of its gradient,
+/// faded to 0 between two and three duct heights.
+double departure(double z, double d) {
+  constexpr double z0 = kEvaporationRoughness_m, excess = 0.125 - kStandardGradient_m;
+  z = std::clamp(z, 0.0, 3 * d);
+  const auto full = [&](double h) { return excess * h - 0.125 * d * std::log((h + z0) / z0); };
+  // Integral of (3 - h/d) (excess - 0.125 d / (h + z0)).
+  const auto faded = [&](double h) {
+    const double logarithm = std::log((h + z0) / z0);
+    return 3 * full(h) - excess * h * h / (2 * d) + 0.125 * (h - z0 * logarithm);
+  };
+  return z <= 2 * d ? full(z) : full(2 * d) + faded(z) - faded(2 * d);
 }
 
 }  // namespace
@@ -81,19 +98,99 @@ RefractivityProfile linearRefractivity(double gradient_m, double surface_m_units
 }
 
 RefractivityProfile evaporationDuct(double duct_height_m, double surface_m_units) {
-  if (!(duct_height_m >= 0 && duct_height_m <= kMaxDuctHeight_m)) {
-    refuse("duct height", duct_height_m, "m", fmt::format("in 0 .. {} m", kMaxDuctHeight_m));
-  }
-  // Evenly spaced in the logarithm: the error of the straight pieces is the same everywhere.
-  constexpr double z0 = kEvaporationRoughness_m;
-  const double last = std::log((kEvaporationTop_m + z0) / z0);
+  checkDuctHeight(duct_height_m);
   RefractivityProfile profile;
-  for (int i = 0; i < kEvaporationLevels; ++i) {
-    const double logarithm = last * i / (kEvaporationLevels - 1);
-    const double z = z0 * std::expm1(logarithm);
+  for (const double z : evaporationHeights_m(kEvaporationTop_m, kEvaporationLevels, duct_height_m)) {
+    const double logarithm = std::log((z + kEvaporationRoughness_m) / kEvaporationRoughness_m);
     profile.levels.push_back({z, surface_m_units + 0.125 * (z - duct_height_m * logarithm)});
   }
   return profile;
+}
+
+RefractivityProfile withEvaporationDuct(const RefractivityProfile& profile, double duct_height_m) {
+  checkDuctHeight(duct_height_m);
+  if (duct_height_m == 0) return profile;
+  std::set<double> heights_m = evaporationHeights_m(3 * duct_height_m, kAddedLevels, duct_height_m);
+  for (const RefractivityLevel& level : profile.levels) heights_m.insert(level.height_msl_m);
+  RefractivityProfile sum;
+  sum.top_gradient_m = profile.top_gradient_m;
+  for (const double z : heights_m) sum.levels.push_back({z, profile.at(z) + departure(z, duct_height_m)});
+  return sum;
+}
+
+RefractivityProfile withUpperAir(RefractivityProfile profile) {
+  RefractivityLevel top = profile.levels.back();
+  if (top.height_msl_m < kStandardTop_m) {
+    top = {kStandardTop_m, profile.at(kStandardTop_m)};
+    profile.levels.push_back(top);
+  }
+  const double n_units = top.m_units - kFlatteningGradient_m * top.height_msl_m;
+  if (n_units <= 0) return profile;
+  for (const double above_m : {1e3, 2e3, 3e3, 5e3, 7e3, 10e3, 15e3, 20e3, 35e3}) {
+    const double z = top.height_msl_m + above_m;
+    profile.levels.push_back({z, n_units * std::exp(-above_m / kScaleHeight_m) + kFlatteningGradient_m * z});
+  }
+  profile.top_gradient_m = kFlatteningGradient_m;
+  return profile;
+}
+
+RefractivityProfile meanProfile(const std::vector<RefractivityProfile>& profiles,
+                                const std::vector<double>& weights) {
+  const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const auto mean = [&](const auto& valueOf) {
+    double weighted = 0;
+    for (std::size_t i = 0; i < profiles.size(); ++i) weighted += weights[i] * valueOf(profiles[i]);
+    return weighted / sum;
+  };
+  RefractivityProfile result;
+  result.top_gradient_m = mean([](const RefractivityProfile& p) { return p.top_gradient_m; });
+  if (haveSameCounts(profiles)) {
+    for (std::size_t i = 0; i < profiles.front().levels.size(); ++i) {
+      result.levels.push_back({mean([i](const RefractivityProfile& p) { return p.levels[i].height_msl_m; }),
+                               mean([i](const RefractivityProfile& p) { return p.levels[i].m_units; })});
+    }
+    return result;
+  }
+  std::set<double> heights_m;
+  for (const RefractivityProfile& profile : profiles) {
+    for (const RefractivityLevel& level : profile.levels) heights_m.insert(level.height_msl_m);
+  }
+  for (const double z : heights_m) {
+    result.levels.push_back({z, mean([z](const RefractivityProfile& p) { return p.at(z); })});
+  }
+  return result;
+}
+
+std::vector<RefractivityLevel> thinned(const std::vector<RefractivityLevel>& levels, double tolerance) {
+  if (levels.size() < 3) return levels;
+  std::vector<bool> kept(levels.size(), false);
+  kept.front() = kept.back() = true;
+  std::vector<std::pair<std::size_t, std::size_t>> pieces{{0, levels.size() - 1}};
+  while (!pieces.empty()) {
+    const auto [first, last] = pieces.back();
+    pieces.pop_back();
+    const RefractivityLevel &a = levels[first], &b = levels[last];
+    const double gradient = (b.m_units - a.m_units) / (b.height_msl_m - a.height_msl_m);
+    std::size_t worst = first;
+    double largest = tolerance;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const double error =
+          std::fabs(a.m_units + gradient * (levels[i].height_msl_m - a.height_msl_m) - levels[i].m_units);
+      if (error > largest) {
+        largest = error;
+        worst = i;
+      }
+    }
+    if (worst == first) continue;
+    kept[worst] = true;
+    pieces.emplace_back(first, worst);
+    pieces.emplace_back(worst, last);
+  }
+  std::vector<RefractivityLevel> few;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    if (kept[i]) few.push_back(levels[i]);
+  }
+  return few;
 }
 
 RefractivityProfile surfaceDuct(double top_m, double deficit_m_units, double surface_m_units) {
@@ -178,9 +275,8 @@ RefractivityProfile RefractivityAlongPath::at(double range_m) const {
   if (above == ranges_m_.begin()) return profiles_.front();
   if (above == ranges_m_.end()) return profiles_.back();
   const std::size_t i = std::size_t(above - ranges_m_.begin());
-  const RefractivityProfile &a = profiles_[i - 1], &b = profiles_[i];
   const double t = (range_m - ranges_m_[i - 1]) / (ranges_m_[i] - ranges_m_[i - 1]);
-  return a.levels.size() == b.levels.size() ? levelByLevel(a, b, t) : heightByHeight(a, b, t);
+  return meanProfile({profiles_[i - 1], profiles_[i]}, {1 - t, t});
 }
 
 bool RefractivityAlongPath::traps() const {

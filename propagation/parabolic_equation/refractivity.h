@@ -21,6 +21,10 @@ constexpr double kEvaporationRoughness_m = 1.5e-4;
 struct RefractivityLevel {
   double height_msl_m = 0;
   double m_units = 0;
+
+  bool operator==(const RefractivityLevel& other) const {
+    return height_msl_m == other.height_msl_m && m_units == other.m_units;
+  }
 };
 
 /// M against height. Below the first level: the first layer's gradient; above the last: top_gradient_m.
@@ -31,13 +35,16 @@ struct RefractivityProfile {
   double at(double height_msl_m) const;
   /// M falls with height somewhere: a layer that traps.
   bool traps() const;
+  bool operator==(const RefractivityProfile& other) const {
+    return levels == other.levels && top_gradient_m == other.top_gradient_m;
+  }
 };
 
 RefractivityProfile standardRefractivity(double surface_m_units = kSurface_m_units);
 /// One gradient (M-units per metre) at all heights; 10^6 / (k a) for an earth of radius k a.
 RefractivityProfile linearRefractivity(double gradient_m, double surface_m_units = kSurface_m_units);
-/// M = M0 + 0.125 (z - d ln((z + z0) / z0)) up to 1 km, as 256 levels within 0.001 M-units of the formula;
-/// standard above.
+/// M = M0 + 0.125 (z - d ln((z + z0) / z0)) up to 1 km, as 256 levels, for 14 m within 0.001 M-units of the
+/// formula; standard above.
 /// @param duct_height_m  d, 0..60; 0: without the logarithm
 /// @throws Error (bad_input) outside that range
 /// @see Paulus 1985, Radio Sci. 20(4), neutral air
@@ -60,6 +67,23 @@ RefractivityProfile trilinearRefractivity(double base_m, double top_m, double de
 /// @throws Error (bad_input) that names the level, if there are not 2..256, a height is not above the one
 /// before, above 60 km or not finite, M is outside 0..2500 or its gradient outside +-5 M-units per metre
 RefractivityProfile profileOfLevels(std::vector<RefractivityLevel> levels);
+/// The profile with an evaporation duct added: its departure from standard air. The departure's gradient is
+/// that of evaporationDuct() up to twice the duct height and fades to 0 at three times the duct height, so
+/// that M is only shifted above.
+/// @param duct_height_m  0..60; 0: the profile itself
+/// @throws Error (bad_input) outside that range
+RefractivityProfile withEvaporationDuct(const RefractivityProfile& profile, double duct_height_m);
+/// A measured profile with standard air above its last level, up to 5 km, and from there, or from its last
+/// level, with N that falls by e in 7.35 km (ITU-R P.453), as levels up to 40 km.
+RefractivityProfile withUpperAir(RefractivityProfile profile);
+/// The mean of profiles: level by level, in height and in M, where all have as many levels, else M at each
+/// height.
+/// @param weights  as many, >= 0, not all 0
+RefractivityProfile meanProfile(const std::vector<RefractivityProfile>& profiles,
+                                const std::vector<double>& weights);
+/// The fewest levels, by bisection at the worst one (Douglas and Peucker), between which M differs from the
+/// levels left out by at most a tolerance (M-units).
+std::vector<RefractivityLevel> thinned(const std::vector<RefractivityLevel>& levels, double tolerance);
 /// What is wrong with the level `index`, or an empty string: the check of profileOfLevels(), for readers of
 /// files.
 std::string faultOfLevel(const std::vector<RefractivityLevel>& levels, std::size_t index);
@@ -78,6 +102,11 @@ class RefractivityAlongPath {
   RefractivityAlongPath(std::vector<double> ranges_m, std::vector<RefractivityProfile> profiles);
 
   RefractivityProfile at(double range_m) const;
+  bool operator==(const RefractivityAlongPath& other) const {
+    return ranges_m_ == other.ranges_m_ && profiles_ == other.profiles_;
+  }
+  const std::vector<double>& ranges_m() const { return ranges_m_; }
+  const std::vector<RefractivityProfile>& profiles() const { return profiles_; }
   bool constant() const { return profiles_.size() == 1; }
   bool traps() const;
   /// Some neighbours have different numbers of levels: interpolated at each height; to be warned of.

@@ -27,12 +27,13 @@
 #include "propagation/p1812/excess.h"
 #include "propagation/p452/excess.h"
 #include "propagation/p528/excess.h"
+#include "propagation/parabolic_equation/excess.h"
 #include "propagation/two_ray/excess.h"
 
 namespace emscape::propagation {
 
 using ExcessModel = std::variant<NoExcess, DiffractionExcess, EdgeExcess, TwoRayExcess, ItmExcess, P528Excess,
-                                 P1812Excess, P452Excess>;
+                                 P1812Excess, P452Excess, PeExcess>;
 
 /// True for models with a reflected ray.
 template <class Model, class = void>

@@ -7,9 +7,11 @@
 
 #include "emscape/propagation/explanation.h"
 #include "propagation/checks.h"
+#include "propagation/choice.h"
 #include "propagation/inputs.h"
 #include "propagation/limits.h"
 #include "propagation/path_column.h"
+#include "propagation/radial.h"
 #include "propagation/registry/excess_model.h"
 #include "propagation/setting.h"
 
@@ -55,6 +57,11 @@ struct ModelInfo {
   Explanation (*explain)(const PathInputs&, PathColumn&) = nullptr;
   /// Makes the excess model; null: there is none. `tables` receives the data that the result points to.
   ExcessModel (*excess)(const PathInputs&, std::vector<float>& tables) = nullptr;
+  /// The same of a model that marches outwards, in place of `excess`: marches all azimuths around the emitter
+  /// into the tables. @throws Error (bad_input) for what `choices` refuses
+  ExcessModel (*radial)(const PathInputs&, const RadialInputs&, std::vector<float>& tables) = nullptr;
+  /// What such a model chooses by itself. @throws Error (bad_input) with the value and what is allowed
+  std::vector<ModelChoice> (*choices)(const PathInputs&, const RadialInputs&) = nullptr;
 };
 
 /// All models, in the order of the enumeration.

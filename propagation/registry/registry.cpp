@@ -9,6 +9,8 @@
 #include "propagation/p452/model.h"
 #include "propagation/p528/model.h"
 #include "propagation/p528/p528.h"
+#include "propagation/parabolic_equation/model.h"
+#include "propagation/parabolic_equation/plan.h"
 #include "propagation/registry/model_info.h"
 #include "propagation/two_ray/model.h"
 
@@ -161,11 +163,34 @@ ModelInfo p452Row() {
   return row;
 }
 
+ModelInfo parabolicEquationRow() {
+  ModelInfo row =
+      rowOf(PropagationModel::parabolic_equation, "Feit and Fleck 1978; Donohue and Kuttler 2000");
+  row.accuracy = "0.3 dB from exact fields to 60 dB below free space (emscape check, pe)";
+  row.settings = peSettings();
+  row.settings_description = "settings of the model; those that are auto are chosen from the scenario";
+  row.limits = listOf(kPeLimits);
+  row.reference_datasets = {"pe/two_ray_pec_h.csv",      "pe/gaussian_beam_linear_m.csv",
+                            "pe/smooth_earth_modes.csv", "pe/smooth_earth_decay.csv",
+                            "pe/ntia_lfmf_10_30mhz.csv", "pe/knife_edge.csv",
+                            "pe/sloped_plane_pec_h.csv", "pe/duct_fields.csv",
+                            "pe/duct_modes.csv",         "pe/lobe_cell_mean.csv",
+                            "pe/roughness.csv"};
+  row.check = checkPe;
+  row.warningMessages = peWarningMessages;
+  row.explain = explainPe;
+  row.radial = [](const PathInputs& inputs, const RadialInputs& radials,
+                  std::vector<float>& tables) -> ExcessModel { return peExcess(inputs, radials, tables); };
+  row.choices = peChoices;
+  return row;
+}
+
 }  // namespace
 
 const std::vector<ModelInfo>& models() {
-  static const std::vector<ModelInfo> rows{freeSpaceRow(), horizonRow(), diffractionRow(), twoRayRow(),
-                                           itmRow(),       p528Row(),    p1812Row(),       p452Row()};
+  static const std::vector<ModelInfo> rows{freeSpaceRow(), horizonRow(), diffractionRow(),
+                                           twoRayRow(),    itmRow(),     p528Row(),
+                                           p1812Row(),     p452Row(),    parabolicEquationRow()};
   return rows;
 }
 
@@ -203,7 +228,8 @@ bool hasAirLoss(const EmitterInputs& inputs) {
 }
 
 bool hasExcess(const EmitterInputs& inputs) {
-  return modelInfo(inputs.settings.model).excess != nullptr || hasAirLoss(inputs);
+  const ModelInfo& row = modelInfo(inputs.settings.model);
+  return row.excess != nullptr || row.radial != nullptr || hasAirLoss(inputs);
 }
 
 bool needsExtent(const EmitterInputs& inputs) {

@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
+#include "study/sweep/part_rows.h"
 #include "study/sweep/result_files.h"
 
 namespace emscape::study {
@@ -41,19 +44,13 @@ Json readJson(const fs::path& file) {
                           found, expected));
 }
 
-/// Eight pixels in a byte.
-std::string packed(const std::vector<VariantResult>& results) {
-  std::string bytes;
-  for (const VariantResult& result : results) {
-    for (std::size_t p = 0; p < result.pixels.size(); p += 8) {
-      unsigned byte = 0;
-      for (std::size_t b = 0; b < 8 && p + b < result.pixels.size(); ++b) {
-        byte |= static_cast<unsigned>(result.pixels[p + b] != 0) << b;
-      }
-      bytes += static_cast<char>(byte);
-    }
+/// What a manifest or the command line says of kept files.
+KeptFiles keptOf(const Json& manifest) {
+  const std::string name = manifest.value("kept", toString(KeptFiles::nothing));
+  for (const KeptFiles kept : {KeptFiles::maps, KeptFiles::volumes}) {
+    if (name == toString(kept)) return kept;
   }
-  return bytes;
+  return KeptFiles::nothing;
 }
 
 }  // namespace
@@ -61,32 +58,55 @@ std::string packed(const std::vector<VariantResult>& results) {
 StudyFolder::StudyFolder(fs::path folder, const StudySpec& study, const StudyPlan& plan, std::string version)
     : folder_(std::move(folder)), study_(study), plan_(plan), version_(std::move(version)) {}
 
-std::optional<int> StudyFolder::partsOfManifest() const {
+std::optional<StudyFolder::Manifest> StudyFolder::readManifest() const {
   const fs::path file = folder_ / "manifest.json";
   if (!fs::exists(file)) return std::nullopt;
-  const Json manifest = readJson(file);
-  const std::string hash = manifest.value("hash", "");
+  const Json json = readJson(file);
+  const std::string hash = json.value("hash", "");
   if (hash != study_.hash) failForeign(file, hash, study_.hash);
-  const int parts = manifest.value("parts", 0);
-  if (parts < 1) throw Error(ErrorCode::bad_input, {file.string(), 0, 0}, "has no number of parts");
-  return parts;
+  const Manifest manifest{json.value("parts", 0), keptOf(json)};
+  if (manifest.parts < 1) throw Error(ErrorCode::bad_input, {file.string(), 0, 0}, "has no number of parts");
+  return manifest;
 }
 
-void StudyFolder::begin(int parts) {
+std::optional<int> StudyFolder::partsOfManifest() const {
+  const std::optional<Manifest> manifest = readManifest();
+  return manifest ? std::optional(manifest->parts) : std::nullopt;
+}
+
+void StudyFolder::begin(int parts, std::optional<KeptFiles> kept) {
   makeFolder(folder_ / "parts");
   removeStaleTemporaries(folder_);
   removeStaleTemporaries(folder_ / "parts");
   parts_ = parts;
-  if (const std::optional<int> planned = partsOfManifest()) {
-    if (*planned == parts) return;
-    throw Error(ErrorCode::bad_input, {(folder_ / "manifest.json").string(), 0, 0},
-                fmt::format("the folder's study has {} parts, not {}", *planned, parts));
+  // Of processes that begin at the same time one makes the manifest, and the others take it.
+  const fs::path file = folder_ / "manifest.json";
+  std::unique_ptr<FolderLock> lock;
+  while (lock == nullptr && !fs::exists(file)) {
+    lock = FolderLock::tryLock(folder_, ".manifest.lock");
+    if (lock == nullptr) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
+  if (const std::optional<Manifest> manifest = readManifest()) {
+    kept_ = manifest->kept;
+    if (manifest->parts != parts) {
+      throw Error(ErrorCode::bad_input, {file.string(), 0, 0},
+                  fmt::format("the folder's study has {} parts, not {}", manifest->parts, parts));
+    }
+    if (kept && *kept != kept_) {
+      throw Error(
+          ErrorCode::bad_input, {file.string(), 0, 0},
+          fmt::format("the folder keeps {} of each variant, not {}", toString(kept_), toString(*kept)));
+    }
+    return;
+  }
+  kept_ = kept.value_or(KeptFiles::nothing);
   const VariantSet& variants = study_.variants;
-  writeWhole(folder_ / "manifest.json", [&](std::ostream& out) {
+  writeWhole(file, [&](std::ostream& out) {
     out << "{\n  \"schema_version\": 1,\n  \"emscape\": " << Json(version_)
         << ",\n  \"name\": " << Json(study_.name) << ",\n  \"hash\": " << Json(study_.hash)
-        << ",\n  \"parts\": " << parts << ",\n  \"measures\": [";
+        << ",\n  \"parts\": " << parts;
+    if (kept_ != KeptFiles::nothing) out << ",\n  \"kept\": " << Json(toString(kept_));
+    out << ",\n  \"measures\": [";
     for (std::size_t m = 0; m < study_.measures.size(); ++m) {
       out << (m > 0 ? ", " : "")
           << Json{{"name", study_.measures[m].name}, {"unit", unitOf(study_.measures[m])}};
@@ -132,21 +152,29 @@ std::vector<std::size_t> StudyFolder::variantsOf(int part) const {
   return {begin + static_cast<std::ptrdiff_t>(range.begin), begin + static_cast<std::ptrdiff_t>(range.end)};
 }
 
-void StudyFolder::writePart(int part, const std::vector<VariantResult>& results,
-                            const std::set<std::string>& warnings, const std::string& machine) const {
+std::unique_ptr<PartJournal> StudyFolder::journal(int part) const {
+  return std::make_unique<PartJournal>(partFile(part, "rows"), variantsOf(part), study_.measures.size());
+}
+
+std::uintmax_t StudyFolder::journalBytes(int part) const {
+  std::error_code failed;
+  const std::uintmax_t bytes = fs::file_size(partFile(part, "rows"), failed);
+  return failed ? 0 : bytes;
+}
+
+void StudyFolder::writePart(int part, const PartJournal& journal) const {
+  const std::vector<VariantResult> results = journal.results();
   std::vector<OutputFile> files;
   files.push_back({partFile(part, "csv"), [&](std::ostream& out) {
                      out << "variant";
                      for (const StudyMeasure& measure : study_.measures) out << ',' << csvCell(measure.name);
                      out << '\n';
-                     for (const VariantResult& result : results) {
-                       out << result.variant;
-                       for (const double value : result.values) out << ',' << csvNumber(value);
-                       out << '\n';
-                     }
+                     for (const VariantResult& result : results) out << rowOf(result) << '\n';
                    }});
   if (study_.sites) {
-    files.push_back({partFile(part, "bits"), [&](std::ostream& out) { out << packed(results); }});
+    files.push_back({partFile(part, "bits"), [&](std::ostream& out) {
+                       for (const VariantResult& result : results) out << packedPixels(result.pixels);
+                     }});
   }
   const PartRange range = rangeOfPart(plan_.order.size(), part, parts_);
   const Json record{{"hash", study_.hash},
@@ -154,56 +182,49 @@ void StudyFolder::writePart(int part, const std::vector<VariantResult>& results,
                     {"parts", parts_},
                     {"order", {range.begin, range.end}},
                     {"emscape", version_},
-                    {"machine", machine},
+                    {"machines", journal.machines()},
                     {"pixels", results.empty() ? 0 : results.front().pixels.size()},
-                    {"warnings", warnings}};
+                    {"warnings", journal.warnings()}};
   files.push_back({partFile(part, "json"), [&](std::ostream& out) { out << record.dump(2) << '\n'; }});
   writeWhole(files);
+  std::error_code ignored;
+  fs::remove(partFile(part, "rows"), ignored);
 }
 
 void StudyFolder::readPart(int part, StudyResults& results) const {
   const Json record = readJson(partFile(part, "json"));
-  results.machines.insert(record.value("machine", ""));
+  for (const auto& machine : record.value("machines", Json::array())) results.machines.insert(machine);
   for (const auto& warning : record.value("warnings", Json::array())) results.warnings.insert(warning);
   const fs::path file = partFile(part, "csv");
   const std::string text = readWholeText(file);
   const std::vector<std::size_t> variants = variantsOf(part);
+  const std::size_t measures = study_.measures.size();
   const auto fail = [&](std::size_t row, const std::string& why) {
     throw Error(ErrorCode::bad_input, {file.string(), static_cast<int>(row) + 2, 0},
                 why + "; remove the part's files to compute it again");
   };
-  const char *at = text.data() + std::min(text.find('\n'), text.size() - 1) + 1, *const end = text.data() +
-                                                                                              text.size();
+  std::size_t begin = std::min(text.find('\n'), text.size() - 1) + 1;
   for (std::size_t row = 0; row < variants.size(); ++row) {
-    std::size_t variant = 0;
-    auto read = std::from_chars(at, end, variant);
-    if (read.ec != std::errc() || variant != variants[row]) {
-      fail(row, fmt::format("variant {} is expected", variants[row]));
+    const std::size_t end = text.find('\n', begin);
+    if (end == std::string::npos) fail(row, "the file ends early");
+    VariantResult result;
+    try {
+      result = readRow(std::string_view(text).substr(begin, end - begin), measures);
+    } catch (const Error& error) {
+      fail(row, error.message());
     }
-    at = read.ptr;
-    for (std::size_t m = 0; m < study_.measures.size(); ++m) {
-      double value = NAN;
-      if (at == end || *at++ != ',') fail(row, fmt::format("has less than {} measures", m + 1));
-      if (at != end && *at != ',' && *at != '\n') {
-        read = std::from_chars(at, end, value);
-        if (read.ec != std::errc()) fail(row, "holds text that is no number");
-        at = read.ptr;
-      }
-      results.values[variant * study_.measures.size() + m] = value;
-    }
-    if (at == end || *at++ != '\n') fail(row, "does not end after its last measure");
-    results.is_computed[variant] = true;
+    if (result.variant != variants[row]) fail(row, fmt::format("variant {} is expected", variants[row]));
+    std::copy(result.values.begin(), result.values.end(),
+              results.values.begin() + static_cast<std::ptrdiff_t>(result.variant * measures));
+    results.is_computed[result.variant] = true;
+    begin = end + 1;
   }
   if (!study_.sites) return;
   const std::size_t pixels = record.value("pixels", std::size_t{0}), bytes = (pixels + 7) / 8;
   const std::string bits = readWholeText(partFile(part, "bits"));
   if (bits.size() != bytes * variants.size()) fail(0, "the .bits file beside it has the wrong size");
   for (std::size_t row = 0; row < variants.size(); ++row) {
-    std::vector<std::uint8_t>& of_variant = results.pixels[variants[row]];
-    of_variant.resize(pixels);
-    for (std::size_t p = 0; p < pixels; ++p) {
-      of_variant[p] = static_cast<unsigned char>(bits[row * bytes + p / 8]) >> (p % 8) & 1u;
-    }
+    results.pixels[variants[row]] = unpackedPixels(std::string_view(bits).substr(row * bytes, bytes), pixels);
   }
 }
 

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/scenario_file.h"
 #include "study/sweep/measure.h"
+#include "study/warnings.h"
 
 namespace emscape::study {
 namespace {
@@ -35,11 +35,6 @@ bool sameBox(const scenario::GeoBox& a, const scenario::GeoBox& b) {
          a.east_deg == b.east_deg;
 }
 
-std::string withoutCount(const std::string& warning) {
-  static const std::regex kCount(R"( \(\d+ times\)$)");
-  return std::regex_replace(warning, kCount, "");
-}
-
 }  // namespace
 
 struct StudyRunner::Impl {
@@ -52,6 +47,7 @@ struct StudyRunner::Impl {
   std::set<std::string> warnings;
   ScenarioPtr terrain_of;  ///< for which `terrain` was loaded
   scenario::TerrainPtr terrain;
+  VariantFiles* files = nullptr;
   std::size_t together = 1;  ///< variants that are computed at the same time
 
   void addGroups(const emfield::FieldOptions& options) {
@@ -123,6 +119,7 @@ struct StudyRunner::Impl {
     for (std::size_t v = 0; v < variants.size(); ++v) results[v].variant = variants[v];
     for (MeasureGroup& group : groups) {
       const auto add = [&](std::size_t v, const CoverageMap& map) {
+        if (files != nullptr) files->addMap(variants[v], *scenarios[v], grid, group.request, map);
         for (const std::size_t m : group.measures) {
           const StudyMeasure& measure = study.measures[m];
           if (map.product != measure.product || (map.height && !sameHeight(*map.height, measure.height))) {
@@ -145,6 +142,7 @@ struct StudyRunner::Impl {
       }
     }
     for (std::size_t v = 0; v < variants.size(); ++v) {
+      if (files != nullptr) files->addVolumes(variants[v], scenarios[v]);
       for (std::size_t m = 0; m < study.measures.size(); ++m) {
         results[v].values.push_back(measured[v][m].value(study.measures[m]));
       }
@@ -164,7 +162,7 @@ struct StudyRunner::Impl {
 };
 
 StudyRunner::StudyRunner(const StudySpec& study, const StudyPlan& plan, scenario::TerrainPtr terrain,
-                         emfield::FieldOptions options)
+                         emfield::FieldOptions options, VariantFiles* files)
     : impl_(new Impl{study,
                      plan,
                      terrain,
@@ -173,7 +171,8 @@ StudyRunner::StudyRunner(const StudySpec& study, const StudyPlan& plan, scenario
                      {},
                      {},
                      study.base,
-                     terrain}) {
+                     terrain,
+                     files}) {
   options.move_tolerance_m = 0;  // results must not depend on what was computed before
   impl_->addGroups(options);
 }

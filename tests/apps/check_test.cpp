@@ -24,7 +24,7 @@ void put(const TemporaryFolder& folder, const std::string& name, const std::stri
 TEST(Check, PassesAFolderWhoseFiguresAreMet) {
   const TemporaryFolder folder;
   put(folder, "geoid/check_points.csv", kGoodGeoid);
-  put(folder, "pe/narrow_angle_error.csv", "");
+  put(folder, "pe/ntia_lfmf_check.csv", "");
   put(folder, "notes/todo.txt", "");
   const ProgramResult result = run({"check", folder.path().string(), "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -38,7 +38,7 @@ TEST(Check, PassesAFolderWhoseFiguresAreMet) {
   EXPECT_EQ(geoid["tolerance"], 0.02);
   EXPECT_EQ(geoid["unit"], "m");
   EXPECT_EQ(geoid["pass"], true);
-  EXPECT_EQ(report["not_checked"], json({"pe/narrow_angle_error.csv"}));
+  EXPECT_EQ(report["not_checked"], json({"pe/ntia_lfmf_check.csv"}));
   EXPECT_EQ(report["unknown"], json({"notes"}));
   EXPECT_THAT(report["absent"], testing::Contains("itm_p2p"));
 }
@@ -57,7 +57,7 @@ TEST(Check, FailsWithStatus5AndTheLineOfTheWorstCase) {
 
 TEST(Check, DoesNotPassWhereNothingCouldBeChecked) {
   const TemporaryFolder folder;
-  put(folder, "pe/narrow_angle_error.csv", "");
+  put(folder, "pe/ntia_lfmf_check.csv", "");
   const ProgramResult result = run({"check", folder.path().string()});
   EXPECT_EQ(result.status, 5);
   EXPECT_THAT(result.out, HasSubstr("not checked: no model answers to it"));

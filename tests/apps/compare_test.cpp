@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.h"
@@ -69,9 +71,116 @@ TEST(Compare, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"--set-b", "power"}, 2), HasSubstr("--set-b"));
   EXPECT_THAT(errorOf({"--set-b", "emitters.nobody.power_w=1"}, 3), HasSubstr("nobody"));
   EXPECT_THAT(errorOf({folder / "none.yaml"}, 3), HasSubstr("none.yaml"));
-  EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
   EXPECT_THAT(errorOf({"--set-b", "emitters.jammer.power_w=1", "--products", "best"}, 2),
               HasSubstr("'best'"));
+  EXPECT_THAT(errorOf({"--set-b", "emitters.jammer.power_w=1", "--products", "fraction"}, 2),
+              HasSubstr("two times or more"));
+  EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
+}
+
+/// `emscape coverage` into a folder.
+/// @param more  options, also in place of those that are set here
+void cover(const std::string& folder, const Arguments& more) {
+  Arguments arguments{"coverage", shippedScenario("jacksboro.yaml"), "-o", folder, "--quiet"};
+  const Arguments usual{"--cell",    "1000",    "--times",  "80", "--products", "covered,value,best",
+                        "--heights", "agl:100", "--format", "cog"};
+  for (std::size_t n = 0; n < usual.size(); n += 2) {
+    if (std::find(more.begin(), more.end(), usual[n]) != more.end()) continue;
+    arguments.insert(arguments.end(), {usual[n], usual[n + 1]});
+  }
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const ProgramResult result = run(arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+}
+
+TEST(Compare, FoldersOfMapsHaveTheDifferencesOfTheirScenarios) {
+  const TemporaryFolder folder;
+  const Arguments same{"--cell", "500", "--products", "covered,value,best,min_height"};
+  cover(folder / "a", same);
+  Arguments changed = same;
+  changed.insert(changed.end(), {"--set", "emitters.jammer.power_w=1"});
+  cover(folder / "b", changed);
+  const ProgramResult of_folders = run({"compare", folder / "a", folder / "b", "-o", folder / "out", "--json",
+                                        "--quiet", "--format", "cog,gpkg,nc"});
+  ASSERT_EQ(of_folders.status, 0) << of_folders.err;
+  const ProgramResult of_scenarios =
+      run(compare(folder / "solved", {"--set-b", "emitters.jammer.power_w=1", "--json", "--quiet",
+                                      "--products", "covered,value,min_height", "--format", "cog"}));
+  ASSERT_EQ(of_scenarios.status, 0) << of_scenarios.err;
+  const json found = json::parse(of_folders.out), expected = json::parse(of_scenarios.out);
+  EXPECT_EQ(found["comparison"], expected["comparison"]);
+  EXPECT_EQ(found["changed_areas"], expected["changed_areas"]) << "explained by the scenarios";
+  EXPECT_EQ(found["a"], expected["a"]);
+  EXPECT_EQ(found["b"], expected["b"]);
+  for (const char* map :
+       {"covered_change_agl100m_t80s", "value_difference_agl100m_t80s", "min_height_difference_t80s"})
+    EXPECT_TRUE(readFile(folder / ("out/maps/" + std::string(map) + ".tif")) ==
+                readFile(folder / ("solved/maps/" + std::string(map) + ".tif")))
+        << map;
+  EXPECT_FALSE(readFile(folder / "out/maps/compare.gpkg").empty());
+
+  const ProgramResult one = run({"compare", folder / "a", folder / "b", "-o", folder / "one", "--json",
+                                 "--quiet", "--products", "value"});
+  ASSERT_EQ(one.status, 0) << one.err;
+  EXPECT_EQ(json::parse(one.out)["comparison"].size(), 1u);
+}
+
+TEST(Compare, FoldersWithoutTheirScenariosAreComparedButNotExplained) {
+  const TemporaryFolder folder;
+  const std::string scenario = folder.write("own.yaml", readFile(shippedScenario("quick.yaml")));
+  for (const char* power : {"10", "1000"}) {
+    const ProgramResult result =
+        run({"coverage", scenario, "-o", folder / power, "--cell", "1000", "--quantity",
+             "power_density_dbwm2", "--threshold", "-60", "--format", "cog", "--quiet", "--set",
+             "emitters.transmitter.power_w=" + std::string(power)});
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  std::filesystem::remove(scenario);
+  const ProgramResult result =
+      run({"compare", folder / "10", folder / "1000", "-o", folder / "out", "--quiet"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("own.yaml or one of its files is not there or has changed"));
+  EXPECT_THAT(result.out, testing::AllOf(HasSubstr("Gained: "), testing::Not(HasSubstr("No emitter"))));
+  EXPECT_THAT(readFile(folder / "out/report.html"), HasSubstr("Largest areas that changed"));
+}
+
+TEST(Compare, RefusesFoldersThatDoNotFit) {
+  const TemporaryFolder folder;
+  const auto with = [&](const std::string& name, const Arguments& more) { cover(folder / name, more); };
+  with("a", {});
+  const auto errorOf = [&](const std::string& b, const Arguments& more, int status) {
+    Arguments arguments{"compare", folder / "a", folder / b, "-o", folder / "out", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, status) << result.err;
+    return result.err;
+  };
+  with("cell", {"--cell", "2000"});
+  EXPECT_THAT(errorOf("cell", {}, 3), testing::AllOf(HasSubstr("/cell: the grid of pixels differs from "),
+                                                     HasSubstr("of 2000 m in EPSG:32616"),
+                                                     HasSubstr("same --area, --cell and --crs")));
+  with("threshold", {"--threshold", "0.8"});
+  EXPECT_THAT(errorOf("threshold", {}, 3),
+              HasSubstr("the threshold of covered at 100 m above ground, t = 80 s differs from"));
+  EXPECT_EQ(errorOf("threshold", {"--products", "value"}, 0), "") << "it has no threshold";
+  with("quantity", {"--quantity", "snr_db", "--threshold", "13"});
+  EXPECT_THAT(errorOf("quantity", {}, 3), HasSubstr("the quantity differs from"));
+  with("heights", {"--heights", "agl:50"});
+  EXPECT_THAT(errorOf("heights", {}, 3),
+              HasSubstr("has no map of covered at 100 m above ground, t = 80 s, which"));
+  with("pictures", {"--format", "png"});
+  EXPECT_THAT(errorOf("pictures", {}, 3), HasSubstr("has no GeoTIFFs"));
+  EXPECT_THAT(errorOf("none", {}, 2), HasSubstr("is a folder and"));
+  EXPECT_THAT(errorOf("a", {"--products", "best"}, 2), HasSubstr("'best'"));
+  EXPECT_THAT(errorOf("a", {"--products", "count"}, 2), HasSubstr("has no map of these products"));
+  for (const Arguments& option : {Arguments{"--cell", "200"}, {"--set-b", "a=1"}, {"--quantity", "snr_db"}})
+    EXPECT_THAT(errorOf("a", option, 2), HasSubstr(option[0] + ": does not go with folders of maps"));
+  std::filesystem::remove_all(folder / "out");
+  std::filesystem::create_directories(folder / "empty");
+  EXPECT_THAT(errorOf("empty", {}, 3), HasSubstr("report.json: there is no such file"));
+  writeFile(folder / "heights/report.json", "{}");
+  EXPECT_THAT(errorOf("heights", {}, 3), HasSubstr("report.json: is no report of emscape coverage"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
 }  // namespace

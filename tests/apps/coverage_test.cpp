@@ -40,12 +40,15 @@ TEST(Coverage, WritesMapsPicturesAndAReport) {
     EXPECT_NEAR(map["known_area_km2"], 842, 40);
   }
   EXPECT_EQ(report["maps"][2]["height_msl_m"], 1200.5);
-  EXPECT_THAT(folder.files(),
-              ElementsAre("out/maps/best_agl50m_t80s.png", "out/maps/best_agl50m_t80s.tif",
-                          "out/maps/best_msl1200.5m_t80s.png", "out/maps/best_msl1200.5m_t80s.tif",
-                          "out/maps/covered_agl50m_t80s.png", "out/maps/covered_agl50m_t80s.tif",
-                          "out/maps/covered_msl1200.5m_t80s.png", "out/maps/covered_msl1200.5m_t80s.tif",
-                          "out/report.html", "out/report.json", "out/study.json"));
+  EXPECT_THAT(
+      folder.files(),
+      ElementsAre("out/maps/best_agl50m_t80s.png", "out/maps/best_agl50m_t80s.tif",
+                  "out/maps/best_agl50m_t80s.tif.aux.xml", "out/maps/best_msl1200.5m_t80s.png",
+                  "out/maps/best_msl1200.5m_t80s.tif", "out/maps/best_msl1200.5m_t80s.tif.aux.xml",
+                  "out/maps/covered_agl50m_t80s.png", "out/maps/covered_agl50m_t80s.tif",
+                  "out/maps/covered_agl50m_t80s.tif.aux.xml", "out/maps/covered_msl1200.5m_t80s.png",
+                  "out/maps/covered_msl1200.5m_t80s.tif", "out/maps/covered_msl1200.5m_t80s.tif.aux.xml",
+                  "out/report.html", "out/report.json", "out/study.json"));
   const std::string html = readFile(folder / "out/report.html");
   for (const char* text : {"Coverage of jacksboro", "1200.5 m above mean sea level", "data:image/png;base64",
                            "FieldAtPosts", "emscape profile "}) {
@@ -53,7 +56,7 @@ TEST(Coverage, WritesMapsPicturesAndAReport) {
   }
   const json study = json::parse(readFile(folder / "out/study.json"));
   EXPECT_EQ(study["scenarios"][0]["hash"], report["scenario_hash"]);
-  EXPECT_EQ(study["outputs"].size(), 8u);
+  EXPECT_EQ(study["outputs"].size(), 12u);
 }
 
 TEST(Coverage, TwoRunsWriteTheSameBytes) {
@@ -80,6 +83,7 @@ TEST(Coverage, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"--area", "36,-84"}, 2), HasSubstr("2 numbers"));
   EXPECT_THAT(errorOf({"--area", "bbox:1,2,x,4"}, 2), HasSubstr("'x' is no number"));
   EXPECT_THAT(errorOf({"--quantity", "power_density_dbwm2"}, 2), HasSubstr("--threshold"));
+  EXPECT_THAT(errorOf({"--threshold", "nan"}, 2), HasSubstr("'nan' is no number"));
   EXPECT_THAT(errorOf({"--quantity", "loudness"}, 3), HasSubstr("unknown quantity 'loudness'"));
   EXPECT_THAT(errorOf({"--products", "fraction"}, 2), HasSubstr("two times"));
   EXPECT_THAT(errorOf({"--format", "shp"}, 2), HasSubstr("shp"));

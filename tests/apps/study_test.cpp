@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.h"
@@ -124,8 +125,102 @@ TEST(Study, AKilledProcessIsReplacedAndNothingIsLost) {
   const ProgramResult result = running.wait();
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_GE(killed, 1);
-  EXPECT_THAT(result.err, HasSubstr("was ended by signal 9; the part is computed again"));
+  EXPECT_THAT(result.err, HasSubstr("was ended by signal 9; another one goes on with it"));
   expectSameResults(folder, "whole", "out");
+}
+
+/// How often the journals of a folder have each variant.
+std::map<int, int> variantsInJournals(const std::filesystem::path& parts) {
+  std::map<int, int> counts;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(parts, ignored)) {
+    if (entry.path().extension() != ".rows") continue;
+    const std::string text = readFile(entry.path());
+    static const std::string kRow = "{\"row\":\"";
+    for (std::size_t at = text.find(kRow); at != std::string::npos; at = text.find(kRow, at + 1)) {
+      ++counts[std::atoi(text.c_str() + at + kRow.size())];
+    }
+  }
+  return counts;
+}
+
+TEST(Study, AStudyWhoseProcessesAreKilledComputesNoFinishedVariantAgain) {
+  const TemporaryFolder folder;
+  const std::string file = study(folder, 150);
+  compute({"study", file, "-o", folder / "whole"});
+  RunningProgram running({"study", file, "-o", folder / "out", "--jobs", "2"});
+  std::map<int, int> seen;
+  std::size_t seen_at_kill = 0;
+  int killed = 0;
+  for (int wait = 0; wait < 6000 && !std::filesystem::exists(folder / "out/results.csv"); ++wait) {
+    usleep(5000);
+    for (const auto& [variant, count] : variantsInJournals(folder / "out/parts")) {
+      seen[variant] = std::max(seen[variant], count);
+    }
+    if (killed == 6 || seen.size() == seen_at_kill) continue;
+    for (const pid_t program : childrenOf(getpid())) {
+      const std::vector<pid_t> workers = childrenOf(program);
+      if (workers.size() != 2) continue;
+      kill(workers[static_cast<std::size_t>(killed) % 2], SIGKILL);
+      ++killed;
+      seen_at_kill = seen.size();
+    }
+  }
+  const ProgramResult result = running.wait();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_GE(killed, 3);
+  for (const auto& [variant, count] : seen) EXPECT_EQ(count, 1) << "variant " << variant;
+  expectSameResults(folder, "whole", "out");
+}
+
+TEST(Study, ProcessesChooseTheirPartsAndTakeOverThoseOfADeadOne) {
+  const TemporaryFolder folder;
+  const std::string file = study(folder, 150);
+  compute({"study", file, "-o", folder / "whole"});
+  const Arguments any{"study", file, "-o", folder / "out", "--part", "any", "--quiet"};
+  RunningProgram first(any), second(any);
+  bool is_killed = false;
+  std::error_code ignored;
+  for (int wait = 0; wait < 6000 && !is_killed; ++wait) {
+    usleep(5000);
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "out/parts", ignored)) {
+      if (entry.path().extension() != ".claim") continue;
+      const std::string claim = readFile(entry.path());
+      const std::size_t at = claim.find("process ");
+      if (at == std::string::npos || variantsInJournals(folder / "out/parts").empty()) continue;
+      kill(std::atoi(claim.c_str() + at + 8), SIGKILL);
+      is_killed = true;
+      break;
+    }
+  }
+  EXPECT_TRUE(is_killed);
+  const int statuses[] = {first.wait().status, second.wait().status};
+  EXPECT_EQ(std::min(statuses[0], statuses[1]), 0) << "the other one computes all";
+  EXPECT_EQ(std::max(statuses[0], statuses[1]), 128 + SIGKILL);
+  for (const std::string& left : folder.files()) {
+    EXPECT_THAT(left, testing::Not(testing::AnyOf(HasSubstr(".claim"), HasSubstr(".rows"))));
+  }
+  compute({"study", file, "-o", folder / "out", "--merge"});
+  expectSameResults(folder, "whole", "out");
+}
+
+TEST(Study, KeepsVolumesOfEachVariant) {
+  const TemporaryFolder folder;
+  const std::string file = study(folder, 1000);
+  const Arguments once{"study",   file,     "-o",   folder / "out", "--keep",
+                       "volumes", "--part", "1/40", "--set",        "region.dims=[20, 20, 10]"};
+  compute(once);
+  const std::vector<std::string> files = folder.files();
+  EXPECT_EQ(std::count_if(files.begin(), files.end(),
+                          [](const std::string& name) {
+                            return name.find("out/variants/") == 0 &&
+                                   name.find("/field_t40s.vdb") != std::string::npos;
+                          }),
+            1);
+  const ProgramResult other = run({"study", file, "-o", folder / "out", "--keep", "maps", "--part", "2/40",
+                                   "--set", "region.dims=[20, 20, 10]"});
+  EXPECT_EQ(other.status, 3);
+  EXPECT_THAT(other.err, HasSubstr("keeps volumes of each variant, not maps"));
 }
 
 TEST(Study, AFullDiskEndsTheStudyAndItCanBeResumed) {
@@ -137,7 +232,7 @@ TEST(Study, AFullDiskEndsTheStudyAndItCanBeResumed) {
     const ProgramResult result =
         run({"study", file, "-o", folder / "out", "--resume", "--jobs", jobs}, "trap '' XFSZ; ulimit -f 1;");
     EXPECT_EQ(result.status, 1) << result.err;
-    EXPECT_THAT(result.err, HasSubstr("part_00002.csv"));
+    EXPECT_THAT(result.err, HasSubstr("part_00002."));
   }
   for (const std::string& left : folder.files()) EXPECT_THAT(left, testing::Not(HasSubstr(".part-")));
   compute({"study", file, "-o", folder / "out", "--resume"});
@@ -198,6 +293,9 @@ TEST(Study, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"-o", out, "--part", "1/41"}, 2), HasSubstr("41 parts of 40 variants"));
   EXPECT_THAT(errorOf({"-o", out, "--merge"}, 3), HasSubstr("no part was computed"));
   EXPECT_THAT(errorOf({"-o", out, "--partial"}, 2), HasSubstr("--merge"));
+  EXPECT_THAT(errorOf({"-o", out, "--part", "some"}, 2), HasSubstr("or any"));
+  EXPECT_THAT(errorOf({"-o", out, "--part", "any", "--jobs", "2"}, 2), HasSubstr("--jobs"));
+  EXPECT_THAT(errorOf({"-o", out, "--keep", "pictures"}, 2), HasSubstr("volumes"));
   EXPECT_THAT(errorOf({"-o", out, "--set", "emitters.nobody.power_w=1"}, 3), HasSubstr("nobody"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }

@@ -112,10 +112,16 @@ TEST_F(WholeFile, TemporariesOfKilledRunsAreKnownAndRemoved) {
   EXPECT_FALSE(isTemporary("a.part-"));
   EXPECT_FALSE(isTemporary("a.part-12b"));
   EXPECT_FALSE(isTemporary(".part-12"));
+  EXPECT_TRUE(isTemporary("a.part-12"));
+  EXPECT_FALSE(isTemporary("a.part-12-host"));
   std::ofstream(mine) << "running";
   std::ofstream(folder_ / "a.vdb.part-999999999") << "killed";  // beyond the greatest process number
+  const fs::path elsewhere = folder_ / "a.vdb.part-999999999-00000000";
+  ASSERT_NE(machineName(), "00000000");
+  std::ofstream(elsewhere) << "of another machine, where it may run";
   EXPECT_EQ(removeStaleTemporaries(folder_.path()), 1);
   EXPECT_TRUE(fs::exists(mine));
+  EXPECT_TRUE(fs::remove(elsewhere));
   publish(mine, folder_ / "a.vdb");
   EXPECT_EQ(textOf(folder_ / "a.vdb"), "running");
   EXPECT_EQ(filesInFolder(), 1);

@@ -286,6 +286,34 @@ TEST_P(Clutter, OfRainIsTheClosedFormOfItsVolume) {
   EXPECT_EQ(field(scenario, "sclnr_db")->values, field(scenario, "snr_db")->values) << "none behind";
 }
 
+TEST_P(Clutter, IsMappedWhenAQuantityNeedsItAndKept) {
+  scenario::Emitter radar = cluttered(trackingRadar());
+  radar.clutter->sea_state = 5;
+  const auto of = [&](const char* quantity, int sea_state) {
+    auto scenario = lineWith(radar);
+    scenario->emitters[0].clutter->sea_state = sea_state;
+    scenario->output.quantities = {quantity};
+    return scenario;
+  };
+  FieldOptions options;
+  options.backend = GetParam();
+  FieldSolver solver(of("snr_db", 5), nullptr, options);
+  const auto update = [&](const std::shared_ptr<scenario::Scenario>& scenario) {
+    const FieldChanged changed = solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+    EXPECT_EQ(solver.volumes().front().host()->values,
+              field(scenario, scenario->output.quantities.front().c_str())->values);
+    return changed.moved.size();
+  };
+  update(of("snr_db", 5));
+  const std::size_t without = solver.memoryUse().total_bytes;
+  EXPECT_EQ(update(of("sclnr_db", 5)), 1u);
+  EXPECT_GT(solver.memoryUse().total_bytes, without) << "there was no map before";
+  EXPECT_EQ(update(of("snr_db", 5)), 0u);
+  EXPECT_EQ(update(of("sclnr_db", 5)), 0u) << "the map was kept";
+  EXPECT_EQ(update(of("snr_db", 2)), 0u) << "what nothing needs";
+  EXPECT_EQ(update(of("sclnr_db", 2)), 1u);
+}
+
 TEST_P(Clutter, EntersDetectionAsNoise) {
   scenario::Emitter radar = cluttered(trackingRadar());
   radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 40, -80);

@@ -218,7 +218,8 @@ TEST_F(CudaField, EveryModelIsTheCpus) {
   const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0);
   for (const PropagationModel model :
        {PropagationModel::free_space, PropagationModel::diffraction, PropagationModel::two_ray,
-        PropagationModel::itm, PropagationModel::p528, PropagationModel::p1812, PropagationModel::p452}) {
+        PropagationModel::itm, PropagationModel::p528, PropagationModel::p1812, PropagationModel::p452,
+        PropagationModel::parabolic_equation}) {
     SCOPED_TRACE(toString(model));
     const auto scenario = randomScenario(random, FrameKind::altitude, {model}, 1900, 3);
     for (scenario::Emitter& emitter : scenario->emitters) {

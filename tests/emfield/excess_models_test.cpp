@@ -31,7 +31,7 @@ using ::testing::HasSubstr;
 PathInputs pathsOf(const scenario::Scenario& scenario, double station_msl_m, const PathExtent& extent) {
   PathInputs inputs;
   inputs.emitter = emitterInputs(scenario, scenario.emitters[0]);
-  inputs.site = {52, station_msl_m, 6371e3, 6371e3 * scenario.atmosphere.k_factor};
+  inputs.site = {52, 0, station_msl_m, 6371e3, 6371e3 * scenario.atmosphere.k_factor};
   inputs.extent = extent;
   return inputs;
 }

@@ -47,8 +47,9 @@ TEST(GroundPosts, ChordsFollowTheGeodesic) {
         const TerrainChord& chord = walk.chordAt(range_m);
         const double along = (range_m - chord.begin_m) * chord.per_m;
         const FastDirect exact = fastDirect(station.geodesy, path.sin_azimuth, path.cos_azimuth, range_m);
-        const double north_m = 6371e3 * (chord.latitude_rad.at(along) - exact.latitude_rad);
-        const double east_rad = std::remainder(chord.longitude_rad.at(along) - exact.longitude_rad, 2 * kPi);
+        const double north_m = 6371e3 * (chord.position.latitude_rad.at(along) - exact.latitude_rad);
+        const double east_rad =
+            std::remainder(chord.position.longitude_rad.at(along) - exact.longitude_rad, 2 * kPi);
         largest_m =
             std::max(largest_m, std::hypot(north_m, 6371e3 * std::cos(exact.latitude_rad) * east_rad));
       }

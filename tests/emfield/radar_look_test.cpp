@@ -177,7 +177,7 @@ TEST(RadarRows, GiveWhatTheVoxelFunctionGives) {
         radarCpu(pass);
         pass.accumulator = plain.data();
         for (int k = 0; k < grid.dims.z; ++k) {
-          for (std::size_t column = 0; column < columns.columns.size(); ++column) {
+          for (std::size_t column = 0; column < columns.count(); ++column) {
             addEchoOfAnyPattern(pass, column, k);
           }
         }

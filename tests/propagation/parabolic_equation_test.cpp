@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "propagation/parabolic_equation/march.h"
+#include "propagation/parabolic_equation/march_azimuths.h"
 #include "propagation/parabolic_equation/march_cells.h"
 #include "propagation/parabolic_equation/march_grid.h"
 #include "propagation/parabolic_equation/refractivity.h"
@@ -203,6 +204,38 @@ TEST(RadialMarch, ConservesEnergyWithoutAbsorber) {
   EXPECT_NEAR(energyRatioAfter1000Steps<float>(), 1, 1e-4);
 }
 
+/// Energy (dB) that a beam of 15 m keeps on its way up into the absorber and back; 10 GHz, 512 m, steps of
+/// 200 m.
+double returnedDb(double absorber_m, double per_m, double elevation_deg) {
+  MarchGrid grid = gridOf(10e9, 0.25, 2048, 200);
+  grid.absorber_m = absorber_m;
+  grid.absorber_per_m = per_m;
+  RadialMarch<double, 1> march(grid, {pathOf(200, linearRefractivity(0))});
+  constexpr double kMiddle_m = 220, kRadius_m = 15;
+  const double elevation_rad = degToRad(elevation_deg), p = grid.wavenumber() * std::sin(elevation_rad);
+  std::vector<Cx> beam(std::size_t(grid.intervals));
+  for (std::size_t j = 1; j < beam.size(); ++j) {
+    const double z = double(j) * grid.heightStep_m() - kMiddle_m;
+    beam[j] = std::polar(std::exp(-z * z / (kRadius_m * kRadius_m)), p * z);
+  }
+  march.setField(0, beam);
+  const double before = march.energy(0);
+  marchTo(march, 200 * std::ceil(2 * (grid.top_m - kMiddle_m) / std::tan(elevation_rad) / 200));
+  return 10 * std::log10(march.energy(0) / before);
+}
+
+TEST(RadialMarch, ReturnsAsLittleFromTheTopAsAnotherProgram) {
+  // absorbers of 64 m with 0.02 and 0.005 / m: marched by another program
+  EXPECT_NEAR(returnedDb(64, 0.02, 3), -106, 3);
+  EXPECT_NEAR(returnedDb(64, 0.005, 3), -26, 3);
+  EXPECT_NEAR(returnedDb(64, 0.005, 2), -40, 3);
+  EXPECT_NEAR(returnedDb(64, 0.005, 1), -78, 3);
+  // below that the beam's own tails count
+  EXPECT_LT(returnedDb(64, 0.02, 2), -125);
+  EXPECT_LT(returnedDb(64, 0.02, 1), -125);
+  EXPECT_LT(returnedDb(64, 0.02, 0.5), -125);
+}
+
 TEST(RadialMarch, IsReciprocalOverFlatGround) {
   const MarchGrid grid = gridOf(1e9, 1, 1024, 200);
   RadialPath up = pathOf(10, surfaceDuct(60, 15)), down = pathOf(45, surfaceDuct(60, 15));
@@ -361,6 +394,30 @@ TEST(RadialMarch, RefusesASurfaceOutsideTheMixedTransform) {
       HasSubstr("the mixed transform holds up to 0.999"));
 }
 
+// An absorber that is thin for rays that graze the earth would fill the shadow with its reflections.
+TEST(AutomaticGrid, LowDomainsHaveTheShadowOfHighOnes) {
+  for (const double frequency_hz : {1e9, 3e9, 10e9}) {
+    const auto shadowOf = [&](double max_height_m, double max_angle_deg) {
+      MarchNeeds needs;
+      needs.frequency_hz = frequency_hz;
+      needs.max_height_m = max_height_m;
+      needs.max_angle_rad = degToRad(max_angle_deg);
+      RadialPath path;
+      path.source.height_agl_m = 10;
+      path.air = standardRefractivity();
+      RadialMarch<double, 1> march(automaticGrid(needs).grid, {path});
+      while (march.range_m() < 50e3) march.advance();
+      return march.factorDb(0, 10 * 50e3 / march.range_m());
+    };
+    const double expected = shadowOf(1000, 3);
+    EXPECT_LT(expected, -40);
+    for (const double max_height_m : {15, 60, 250}) {
+      EXPECT_NEAR(shadowOf(max_height_m, 3), expected, 1) << frequency_hz << ' ' << max_height_m;
+      EXPECT_NEAR(shadowOf(max_height_m, 1), expected, 1) << frequency_hz << ' ' << max_height_m;
+    }
+  }
+}
+
 TEST(MarchCells, HoldMeansOverHeightsAndRangeSteps) {
   const MarchGrid grid = gridOf(3e9, 0.5, 1024, 100);
   RadialMarch<float, 1> march(grid, {pathOf(20)}), again(grid, {pathOf(20)});
@@ -381,6 +438,41 @@ TEST(MarchCells, HoldMeansOverHeightsAndRangeSteps) {
                 marchCells(march, RadialCells{50, 1, 0, 25, 4});
               }),
               HasSubstr("cells of 50 m in range; expected at least the range step of 100 m"));
+}
+
+TEST(MarchAzimuths, AreTheSingleMarches) {
+  AzimuthMarch all;
+  all.grid = gridOf(3e9, 0.5, 512, 50);
+  all.source = pathOf(20).source;
+  all.surface = pathOf(20).surface;
+  all.cells = {500, 10, -50, 25, 20};
+  all.azimuths = 11;  // more than the lanes of a group, not a multiple
+  all.air = {standardRefractivity()};
+  all.ground_steps = 101;
+  for (int a = 0; a < all.azimuths; ++a) {
+    for (std::size_t i = 0; i < all.ground_steps; ++i) {
+      all.ground_msl_m.push_back(float(5 + a) * float(1 - std::cos(0.1 * double(i))));
+    }
+  }
+  std::vector<float> excess_db(all.cellCount());
+  EXPECT_EQ(marchAzimuths(all, excess_db.data()).staircases, 0);
+  for (const int a : {0, 7, 10}) {
+    RadialPath path = pathOf(20);
+    path.air = standardRefractivity();
+    const auto first = all.ground_msl_m.begin() + a * int(all.ground_steps);
+    path.ground_msl_m.assign(first, first + int(all.ground_steps));
+    RadialMarch<float, 1> march(all.grid, {path});
+    const std::vector<float> alone = marchCells(march, all.cells)[0];
+    for (std::size_t i = 0; i < alone.size(); ++i) {
+      const float here = excess_db[std::size_t(a) * alone.size() + i];
+      ASSERT_EQ(std::isnan(here), std::isnan(alone[i])) << a << ' ' << i;
+      if (std::isnan(here)) continue;
+      if (alone[i] > 60) continue;  // rounding of float
+      ASSERT_NEAR(here, alone[i], 0.01) << a << ' ' << i;
+    }
+  }
+  all.air.resize(2);
+  EXPECT_THAT(test::errorOf([&] { marchAzimuths(all, excess_db.data()); }), HasSubstr("one per azimuth"));
 }
 
 }  // namespace

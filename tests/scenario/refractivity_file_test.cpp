@@ -4,18 +4,26 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+
 #include "tests/support/errors.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {
 namespace {
 
+using propagation::RefractivityAlongPath;
 using testing::EndsWith;
 using testing::HasSubstr;
 
 class RefractivityFiles : public testing::Test {
  protected:
   RefractivityFile read(const std::string& text) { return readRefractivity(folder_.write("air.csv", text)); }
+  /// The air along a path of profiles by range, or of one profile.
+  static RefractivityAlongPath airOf(const RefractivityFile& file) {
+    if (file.field.ranges_m.empty()) return file.field.profiles.at(0);
+    return {file.field.ranges_m, file.field.profiles};
+  }
   std::string errorOf(const std::string& text) {
     return test::errorOf([&] { read(text); }, ErrorCode::bad_input);
   }
@@ -24,19 +32,19 @@ class RefractivityFiles : public testing::Test {
 
 TEST_F(RefractivityFiles, HoldOneProfileInMOrN) {
   const RefractivityFile in_m = read("height_msl_m,m_units\n0,330\n100,320\n");
-  EXPECT_DOUBLE_EQ(in_m.air.at(5e4).at(50), 325);
-  EXPECT_TRUE(in_m.air.traps());
+  EXPECT_DOUBLE_EQ(airOf(in_m).at(5e4).at(50), 325);
+  EXPECT_TRUE(airOf(in_m).traps());
   EXPECT_TRUE(in_m.warnings.empty());
   const RefractivityFile in_n = read("n_units,height_msl_m\n330,0\n290,1000\n");
-  EXPECT_NEAR(in_n.air.at(0).at(1000), 290 + 1e6 / 6371, 1e-9);
-  EXPECT_FALSE(in_n.air.traps());
+  EXPECT_NEAR(airOf(in_n).at(0).at(1000), 290 + 1e6 / 6371, 1e-9);
+  EXPECT_FALSE(airOf(in_n).traps());
 }
 
 TEST_F(RefractivityFiles, HoldProfilesByRange) {
   const RefractivityFile file =
       read("range_m,height_msl_m,m_units\n0,0,330\n0,10,320\n1000,0,330\n1000,30,320\n");
-  EXPECT_DOUBLE_EQ(file.air.at(500).at(20), 320);  // the duct is 20 m high halfway
-  EXPECT_FALSE(file.air.pointwise());
+  EXPECT_DOUBLE_EQ(airOf(file).at(500).at(20), 320);  // the duct is 20 m high halfway
+  EXPECT_FALSE(airOf(file).pointwise());
 }
 
 TEST_F(RefractivityFiles, WarnOfUnitsAndOfUnequalProfiles) {
@@ -69,6 +77,141 @@ TEST_F(RefractivityFiles, TellWhereTheyAreWrong) {
   EXPECT_THAT(errorOf("range_m,height_msl_m,m_units\n9,0,330\n9,1,331\n5,0,330\n"),
               HasSubstr("air.csv:4:1: range_m is 5 behind 9; ranges ascend"));
   EXPECT_THAT(test::errorOf([] { readRefractivity("/none/air.csv"); }), HasSubstr("/none/air.csv"));
+}
+
+TEST_F(RefractivityFiles, HoldPressureTemperatureAndHumidity) {
+  // The check of ITU-R P.453: N = 318.78.
+  const RefractivityFile file = read(
+      "height_msl_m,pressure_hpa,temperature_k,relative_humidity_percent\n0,1013,288.15,60\n100,1001,287.5,"
+      "60\n");
+  EXPECT_NEAR(file.field.profiles.at(0).at(0), 318.78, 0.01);
+}
+
+TEST_F(RefractivityFiles, HoldProfilesByPlace) {
+  const RefractivityFile file = read(
+      "latitude_deg,longitude_deg,height_msl_m,m_units\n50,1,0,330\n50,1,10,320\n51,2,0,330\n51,2,30,320\n");
+  ASSERT_EQ(file.field.places.size(), 2u);
+  EXPECT_EQ(file.field.places[1].longitude_deg, 2);
+  EXPECT_EQ(file.description, "2 profiles by place");
+  EXPECT_TRUE(file.field.ranges_m.empty());
+  EXPECT_THAT(errorOf("latitude_deg,longitude_deg,height_msl_m,m_units\n5,1,0,330\n5,1,1,331\n6,1,0,330\n"
+                      "6,1,1,331\n5,1,2,332\n"),
+              HasSubstr("air.csv:6:1: the rows of the place 5, 1 do not follow each other"));
+}
+
+TEST_F(RefractivityFiles, GuessTheUnitOfImpossibleWeather) {
+  const std::string header = "height_msl_m,pressure_hpa,temperature_k,relative_humidity_percent\n";
+  EXPECT_THAT(errorOf(header + "0,101300,288,60\n"),
+              HasSubstr("air.csv:2:3: pressure_hpa is 101300; allowed are 0.1 to 1100; is it in Pa?"));
+  EXPECT_THAT(
+      errorOf(header + "0,1013,15,60\n"),
+      HasSubstr("air.csv:2:8: temperature_k is 15; allowed are 150 to 350; is it in degrees Celsius?"));
+  EXPECT_THAT(errorOf(header + "0,1013,288,130\n"), HasSubstr("relative_humidity_percent is 130"));
+}
+
+TEST_F(RefractivityFiles, WantOneKindOfColumns) {
+  for (const char* header : {"height_msl_m,pressure_hpa,temperature_k\n",
+                             "height_msl_m,m_units,pressure_hpa\n", "height_msl_m,m_units,latitude_deg\n",
+                             "m_units\n", "range_m,latitude_deg,longitude_deg,height_msl_m,m_units\n"}) {
+    EXPECT_THAT(errorOf(header), HasSubstr("air.csv:1:1: the header has height_msl_m and")) << header;
+  }
+}
+
+TEST_F(RefractivityFiles, AreToldFromPatternsOfAntennasAndTracks) {
+  EXPECT_TRUE(isRefractivityCsv(folder_.write("a.csv", "# made\nheight_msl_m,m_units\n")));
+  EXPECT_FALSE(isRefractivityCsv(folder_.write("b.csv", "azimuth_deg,attenuation_db\n")));
+  EXPECT_FALSE(isRefractivityCsv(folder_.write("c.csv", "t_s,latitude_deg,longitude_deg,height_msl_m\n")));
+  EXPECT_FALSE(isSoundingFile(folder_.write("d.txt", "# a text\n")));
+}
+
+// Two soundings of Chanhassen, Minnesota, cut short (IGRA 2, USM00072649, 18 November 2023): real records.
+const char* const kChanhassen =
+    "#USM00072649 2023 11 18 00 2303    3 ncdc-nws           448497  -935647\n"
+    "21     0  98107B  290    65B  350   143   360     0 \n"
+    "20     7  97609   332B   66B  339   147   208    45 \n"
+    "20    33  95916   476B   60B  325   152   224    73 \n"
+    "#USM00072649 2023 11 18 12 1101    2 ncdc-nws           448497  -935647\n"
+    "21     0  98022B  290    -9B  810    28   360     0 \n"
+    "20     4  97717   316B   -1B  771    35   275    26 \n";
+constexpr std::int64_t kMidnight_ms = 1700265600000;  // 2023-11-18T00:00:00Z
+
+class Soundings : public RefractivityFiles {
+ protected:
+  RefractivityFile sounding(const std::string& text, std::optional<std::int64_t> time_ms = {}) {
+    return readSounding(folder_.write("station.txt", text), time_ms);
+  }
+  std::string soundingError(const std::string& text) {
+    return test::errorOf([&] { sounding(text); }, ErrorCode::bad_input);
+  }
+};
+
+TEST_F(Soundings, HoldTheRefractivityOfTheirLevels) {
+  const RefractivityFile last = sounding(kChanhassen), first = sounding(kChanhassen, kMidnight_ms);
+  EXPECT_THAT(last.description, HasSubstr("USM00072649, 2023-11-18T12:00:00Z (2 of 2 levels; 2 soundings"));
+  EXPECT_THAT(first.description, HasSubstr("2023-11-18T00:00:00Z"));
+  // 981.07 hPa, 6.5 C, 35 %: vapour 3.389 hPa, N = 77.6 / 279.65 (981.07 + 4810 * 3.389 / 279.65) = 288.41.
+  const propagation::RefractivityProfile& profile = first.field.profiles.at(0);
+  EXPECT_NEAR(profile.levels.front().height_msl_m, 290, 0.02);
+  EXPECT_NEAR(profile.levels.front().m_units, 288.41 + 0.15696 * 290, 0.05);
+  EXPECT_NEAR(profile.levels.back().height_msl_m, 476, 0.05);
+  EXPECT_TRUE(isSoundingFile(folder_.write("s.txt", kChanhassen)));
+}
+
+TEST_F(Soundings, TakeTheDewPointWhereTheHumidityIsMissing) {
+  std::string without = kChanhassen;
+  without.replace(without.find("  350   143"), 5, "-9999");
+  EXPECT_NEAR(sounding(without, kMidnight_ms).field.profiles.at(0).levels.front().m_units,
+              sounding(kChanhassen, kMidnight_ms).field.profiles.at(0).levels.front().m_units, 0.2);
+}
+
+TEST_F(Soundings, ComputeMissingHeights) {
+  // The archive's own heights, left out: 332 m and 476 m above a surface of 290 m; and the surface's.
+  std::string without = kChanhassen;
+  for (const char* height : {"  332B", "  476B"}) without.replace(without.find(height), 6, "-9999 ");
+  EXPECT_NEAR(sounding(without, kMidnight_ms).field.profiles.at(0).levels.back().height_msl_m, 476, 2);
+  without = kChanhassen;
+  without.replace(without.find("  290 "), 6, "-8888 ");
+  EXPECT_NEAR(sounding(without, kMidnight_ms).field.profiles.at(0).levels.front().height_msl_m, 290, 2);
+}
+
+TEST_F(Soundings, LeaveOutLevelsWithoutTemperatureOrHumidityAndAreDryAboveTheHighest) {
+  // Made by the format's text.
+  const std::string text =
+      "#XXM00000001 2020 01 01 99 9999    5                    448497  -935647\n"
+      "21     0 100000B    0   150B  800 -9999 -9999 -9999 \n"
+      "20     4  95000 -9999 -9999 -9999 -9999 -9999 -9999 \n"
+      "20     8  90000 -9999    80B-9999 -9999 -9999 -9999 \n"
+      "20     9  80000 -9999    20B  300 -9999 -9999 -9999 \n"
+      "20    10  70000 -9999   -40B-9999 -9999 -9999 -9999 \n";
+  const RefractivityFile file = sounding(text);
+  EXPECT_THAT(file.description, HasSubstr("3 of 5 levels"));
+  const propagation::RefractivityLevel& top = file.field.profiles.at(0).levels.back();
+  EXPECT_NEAR(top.m_units - 0.15696 * top.height_msl_m, 77.6 * 700 / 269.15, 0.05);
+  EXPECT_NEAR(top.height_msl_m, 2950, 60);
+}
+
+TEST_F(Soundings, TellWhereTheyAreWrong) {
+  EXPECT_THAT(soundingError(""), HasSubstr("station.txt:1:1: no soundings"));
+  EXPECT_THAT(soundingError("21     0  98107B  290\n"),
+              HasSubstr("station.txt:1:1: a sounding's header begins"));
+  std::string text = kChanhassen;
+  text.replace(text.find("   3 ncdc"), 4, "   9");
+  EXPECT_THAT(soundingError(text), HasSubstr("station.txt:1:33: NUMLEV is 9, but only 6 lines follow"));
+  text = kChanhassen;
+  text.replace(text.find("   3 ncdc"), 4, "   2");
+  EXPECT_THAT(soundingError(text), HasSubstr("station.txt:4:1: a sounding's header begins"));
+  text = kChanhassen;
+  text.replace(text.find(" 95916"), 6, " 9x916");
+  EXPECT_THAT(test::errorOf([&] { sounding(text, kMidnight_ms); }),
+              HasSubstr("station.txt:4:10: PRESS is ' 9x916', not a number"));
+  text = kChanhassen;
+  text.replace(text.find("2023 11 18 12"), 13, "2023 13 18 12");
+  EXPECT_THAT(soundingError(text), HasSubstr("station.txt:5:14: 2023-13-18T12:00:00Z is not a time"));
+  EXPECT_THAT(soundingError("#USM00072649 2023 11 18 00 2303    1\n21     0  98107B  290\n"),
+              HasSubstr("station.txt:2:22: the line ends before TEMP in columns 23 to 27"));
+  EXPECT_THAT(soundingError("#USM00072649 2023 11 18 00 2303    1\n"
+                            "21     0  -9999   290    65B  350   143   360     0 \n"),
+              HasSubstr("station.txt:1:1: the sounding has no level with"));
 }
 
 }  // namespace

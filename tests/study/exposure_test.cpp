@@ -102,6 +102,18 @@ TEST(Exposure, ThePlatformsOwnEmittersAreLeftOut) {
   EXPECT_EQ(computeExposure(given.scenario, given.terrain, request, {}).names.size(), 3u);
 }
 
+TEST(Exposure, AWarningComesOnceForAllTimes) {
+  const Given given("jacksboro.yaml");
+  ExposureRequest request;  // the jammer is nearer than its far field to the platform that carries it
+  while (given.scenario->platforms[static_cast<std::size_t>(request.platform)].name != "helicopter")
+    ++request.platform;
+  for (int t = 0; t < 80; ++t) request.times_s.push_back(t);  // three groups that are solved at once
+  const Exposure exposure = computeExposure(given.scenario, given.terrain, request, {});
+  EXPECT_THAT(exposure.warnings,
+              ::testing::ElementsAre(::testing::AllOf(HasSubstr("'jammer'"), HasSubstr("far field"),
+                                                      ::testing::Not(HasSubstr("times)")))));
+}
+
 TEST(Exposure, RefusesWhatItCannotDo) {
   const Given given("links.yaml");
   const auto refusalOf = [&](const ExposureRequest& request) {

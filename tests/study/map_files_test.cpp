@@ -1,10 +1,12 @@
 // Files of maps, read back by GDAL: shapes on their levels, bands that tile, what each format holds.
 #include <gdal_priv.h>
+#include <gdal_rat.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <ogrsf_frmts.h>
 
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -196,7 +198,7 @@ TEST_F(MapFiles, TwoRunsWriteTheSameBytes) {
   }
 }
 
-TEST_F(MapFiles, TheGeoPackageHoldsBandsContoursEmittersAndTracks) {
+TEST_F(MapFiles, TheGeoPackageHoldsBandsContoursEmittersSitesAndTracks) {
   write("a");
   const Opened package = open(folder / "a/maps/coverage.gpkg", GDAL_OF_VECTOR);
   ASSERT_NE(package, nullptr);
@@ -223,7 +225,37 @@ TEST_F(MapFiles, TheGeoPackageHoldsBandsContoursEmittersAndTracks) {
   const OGRFeatureUniquePtr track(tracks->GetNextFeature());
   EXPECT_GT(track->GetGeometryRef()->toLineString()->getM(1), 0);
   OGRLayer* const styles = package->GetLayerByName("layer_styles");
-  EXPECT_EQ(styles->GetFeatureCount(), 4);
+  EXPECT_EQ(styles->GetFeatureCount(), 5);
+  OGRLayer* const sites = package->GetLayerByName("sites");
+  EXPECT_EQ(sites->GetFeatureCount(), 5) << "the helicopter moves: two places";
+  std::map<std::string, std::string> emitters_of;
+  for (const OGRFeatureUniquePtr& feature : *sites) {
+    const std::string name = feature->GetFieldAsString("name");
+    emitters_of[name] = feature->GetFieldAsString("emitters");
+    EXPECT_EQ(feature->GetFieldAsInteger("is_moving"), name == "helicopter" ? 1 : 0);
+    EXPECT_EQ(feature->IsFieldSetAndNotNull(feature->GetFieldIndex("time")), name == "helicopter");
+    EXPECT_GT(feature->GetFieldAsDouble("height_agl_m"), 1);
+    EXPECT_GT(feature->GetFieldAsDouble("height_msl_m"), 200 + feature->GetFieldAsDouble("height_agl_m"));
+  }
+  EXPECT_EQ(emitters_of, (std::map<std::string, std::string>{{"ridge site", "search radar"},
+                                                             {"valley site", "tracking radar"},
+                                                             {"mast", "communications mast"},
+                                                             {"helicopter", "jammer"}}));
+}
+
+TEST_F(MapFiles, AGeoTiffOfClassesNamesThem) {
+  write("a");
+  const Opened map = open(folder / "a/maps/best_msl1500m_t70s.tif", GDAL_OF_RASTER);
+  ASSERT_NE(map, nullptr);
+  GDALRasterBand* const band = map->GetRasterBand(1);
+  const GDALRasterAttributeTable* const table = band->GetDefaultRAT();
+  ASSERT_NE(table, nullptr);
+  char** const names = band->GetCategoryNames();  // GDAL 3.6 has them after the table
+  ASSERT_EQ(CSLCount(names), 3);
+  EXPECT_STREQ(names[1], "it's");
+  EXPECT_STREQ(table->GetValueAsString(2, table->GetColOfUsage(GFU_Name)), "third");
+  EXPECT_THAT(test::readFile(folder / "a/study.json"), HasSubstr("best_msl1500m_t70s.tif.aux.xml"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a/maps/value_msl1500m_t70s.tif.aux.xml"));
 }
 
 TEST_F(MapFiles, TheNetCdfHoldsTheValuesOverTimeAndHeight) {

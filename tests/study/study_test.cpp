@@ -59,6 +59,13 @@ class Study {
   StudyPlan plan_;
 };
 
+void computePart(const Study& study, const StudyFolder& files, int part) {
+  const auto journal = files.journal(part);
+  StudyRunner(study.spec(), study.plan(), study.terrain(), {})
+      .run(journal->unfinished(), [&](VariantResult result) { journal->add(std::move(result), {}, "cpu"); });
+  files.writePart(part, *journal);
+}
+
 std::string errorOf(const std::string& text) {
   return test::errorOf([&] { Study study(text); });
 }
@@ -116,6 +123,7 @@ measures:
   - {name: gap, product: longest_gap, height: "agl:300"}
   - {name: lost, product: jam_loss, height: "msl:900", unit: percent}
   - {name: low, product: value, height: "agl:300", statistic: min, threshold: 0.9}
+  - {name: how low, product: min_height, statistic: mean}
 )");
   const std::vector<std::vector<double>> in_order = study.run(study.order());
   std::vector<std::size_t> backwards(study.spec().variants.count());
@@ -172,10 +180,7 @@ sweep:
     files.begin(parts);
     EXPECT_EQ(files.missingParts().size(), static_cast<std::size_t>(parts));
     for (int part = parts; part >= 1; --part) {
-      std::vector<VariantResult> results;
-      StudyRunner(study.spec(), study.plan(), study.terrain(), {})
-          .run(files.variantsOf(part), [&](VariantResult result) { results.push_back(std::move(result)); });
-      files.writePart(part, results, {}, "cpu");
+      computePart(study, files, part);
       EXPECT_TRUE(files.hasPart(part));
     }
     const StudyResults results = files.read();
@@ -210,6 +215,39 @@ TEST(Study, APartOfAnotherStudyIsRefused) {
               HasSubstr("has 2 parts, not 1"));
 }
 
+TEST(Study, KeepsTheMapsOfEachVariant) {
+  const Study study(R"(
+variants: [{name: "../as it is/ä"}, {name: no jammer, set: {emitters.jammer.power_w: 1.0e-6}}]
+)");
+  EXPECT_EQ(folderOfVariant(study.spec(), 0), "variants/0_.._as_it_is___");
+  EXPECT_EQ(folderOfVariant(study.spec(), 1), "variants/1_no_jammer");
+  const test::TemporaryFolder folder;
+  StudyFolder files(folder.path(), study.spec(), study.plan(), "test");
+  files.begin(1, KeptFiles::maps);
+  VariantFiles kept(study.spec(), folder.path(), files.kept(), {});
+  std::size_t written = 0;
+  StudyRunner(study.spec(), study.plan(), study.terrain(), {}, &kept)
+      .run({0, 1}, [&](const VariantResult& result) {
+        const auto own = folder.path() / folderOfVariant(study.spec(), result.variant);
+        EXPECT_EQ(test::readFile(own / "covered_agl300m_t0s.tif").substr(0, 2), "II");
+        written += test::readFile(own / "value_msl900m_t0s.tif").size();
+      });
+  EXPECT_GT(written, 1000u);
+  EXPECT_THAT(test::errorOf([&] {
+                StudyFolder(folder.path(), study.spec(), study.plan(), "test").begin(1, KeptFiles::volumes);
+              }),
+              HasSubstr("the folder keeps maps of each variant, not volumes"));
+  StudyFolder again(folder.path(), study.spec(), study.plan(), "test");
+  again.begin(1);
+  EXPECT_EQ(again.kept(), KeptFiles::maps) << "as the manifest says";
+}
+
+TEST(Study, FoldersOfManyVariantsHaveTwoLevels) {
+  const Study study("sweep: {emitters.jammer.power_w: {linear: {from: 1, to: 2001, count: 2001}}}");
+  EXPECT_EQ(folderOfVariant(study.spec(), 7), "variants/0000/0007");
+  EXPECT_EQ(folderOfVariant(study.spec(), 2000), "variants/2000/2000");
+}
+
 TEST(Study, SitesAreChosenFromCandidates) {
   const test::TemporaryFolder folder;
   const Study study("sites: {platform: ridge site, grid_m: 9000, choose: 2}",
@@ -218,10 +256,7 @@ TEST(Study, SitesAreChosenFromCandidates) {
   StudyFolder files(folder.path(), study.spec(), study.plan(), "test");
   files.begin(2);
   for (const int part : {1, 2}) {
-    std::vector<VariantResult> results;
-    StudyRunner(study.spec(), study.plan(), study.terrain(), {})
-        .run(files.variantsOf(part), [&](VariantResult result) { results.push_back(std::move(result)); });
-    files.writePart(part, results, {}, "cpu");
+    computePart(study, files, part);
   }
   const StudySummary summary =
       writeStudyReport(folder.path() / "report.html", study.spec(), study.plan(), files.read());

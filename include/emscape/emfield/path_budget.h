@@ -58,6 +58,9 @@ struct PathBudget {
   PathProfile profile;
   PathGeometry geometry;
   PathPointing pointing;
+  /// With the terms of detection of a radar whose beam follows the target (RadarLook::target, not fixed):
+  /// gain of that beam towards the end of the path, relative to its maximum (dB), <= 0.
+  std::optional<double> look_pattern_db;
   std::vector<PathObstacle> obstacles;
   propagation::PropagationModel model = propagation::PropagationModel::free_space;
   PathExcess excess;

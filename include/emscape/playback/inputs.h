@@ -10,9 +10,9 @@
 
 namespace emscape::playback {
 
-enum class InputKind { scenario, volume, elevation, antenna };
+enum class InputKind { scenario, volume, mesh, elevation, antenna };
 
-/// The kind by the file's extension; a folder is a series of volumes.
+/// The kind by the file's extension; a folder is a series of volumes, or of meshes (holdsMeshes()).
 /// @throws Error (bad_input) if there is no such file or its extension is unknown
 InputKind inputKindOf(const std::string& file);
 

@@ -6,8 +6,8 @@
 ///   series.steps  the journal: a line of JSON for each step whose files are complete, with the range of its
 ///   values, the range in its files, and size and CRC-32 of each file. A later line replaces an
 ///                 earlier one.
-///   NAME.pvd      with .vti files: the list for ParaView. Updated each time the number of steps has grown by
-///   half, at the end, and when the work is stopped.
+///   NAME.pvd      with .vti or .vtu files: the list for ParaView. Updated each time the number of steps has
+///   grown by half, at the end, and when the work is stopped.
 /// Each step is computed once. Its files are complete at once, with the range over the steps so far; at the
 /// end the range over the series is written into all of them (volume::setStoredRange). An interrupted and
 /// resumed series is then identical to the byte (except for FieldOptions::move_tolerance_m, which counts from
@@ -15,11 +15,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "emscape/base/progress.h"
+#include "emscape/emfield/terrain_mesh.h"
 #include "emscape/playback/field_series.h"
 
 namespace emscape::playback {
@@ -31,8 +33,12 @@ struct SeriesOptions {
     replace  ///< the files of the present series are removed
   };
   std::filesystem::path folder;             ///< created if necessary
-  std::vector<std::string> formats{"vdb"};  ///< of writableFormats()
-  std::optional<ValueRange> range;          ///< of the values, if it is known; for one channel
+  std::vector<std::string> formats{"vdb"};  ///< of writableFormats(); kMeshFormat alone with a mesh
+  /// Null: volumes. Else the series is over its surface (FieldOptions::surface), and its fields are written
+  /// on the mesh, which is the same in all steps.
+  std::shared_ptr<const emfield::TerrainMesh> mesh;
+  std::string mesh_text;            ///< how the mesh was asked for; part of the recipe
+  std::optional<ValueRange> range;  ///< of the values, if it is known; for one channel
   Existing existing = Existing::refuse;
 };
 
@@ -43,7 +49,9 @@ struct SeriesResult {
   std::vector<ValueRange> ranges;  ///< one per channel, over the series
 };
 
-/// Names of the formats that can be written.
+/// The format of fields on meshes.
+constexpr const char* kMeshFormat = "vtu";
+/// Names of the formats of volumes that can be written.
 std::vector<std::string> writableFormats();
 
 /// Computes and writes the missing steps. Files are written on a separate thread while the next step is

@@ -2,6 +2,7 @@
 /// that all of them share. propagation/registry lists the values that each model takes.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "emscape/base/error.h"
@@ -12,7 +13,17 @@ namespace emscape::propagation {
 enum class Polarization { horizontal, vertical, slant_45, slant_135, circular_right, circular_left };
 const char* toString(Polarization polarization);
 
-enum class PropagationModel { free_space, horizon, diffraction, two_ray, itm, p528, p1812, p452 };
+enum class PropagationModel {
+  free_space,
+  horizon,
+  diffraction,
+  two_ray,
+  itm,
+  p528,
+  p1812,
+  p452,
+  parabolic_equation
+};
 const char* toString(PropagationModel model);
 
 /// Method of diffraction over terrain.
@@ -97,6 +108,16 @@ struct P452Settings : ClearAirSettings {
   double transmitter_gain_dbi = 0, receiver_gain_dbi = 0;
 };
 
+/// Numbers that are 0 are chosen by the model.
+struct ParabolicEquationSettings {
+  double max_angle_deg = 0;  ///< from the horizontal, up to which the equation is solved
+  double top_m = 0;          ///< above the ground, up to which the equation is solved
+  double range_step_m = 0;
+  double azimuths = 0;  ///< around the emitter
+  RoughnessModel roughness = RoughnessModel::miller_brown;
+  double floor_db = -80;  ///< of the propagation factor; the equation's field is not read below it
+};
+
 /// The model of an emitter, and the settings of all models; settings of models that are not used have no
 /// effect.
 struct ModelSettings {
@@ -107,6 +128,7 @@ struct ModelSettings {
   P528Settings p528;
   P1812Settings p1812;
   P452Settings p452;
+  ParabolicEquationSettings parabolic_equation;
   SourceLocation location;  ///< of the chosen model's settings
 };
 
@@ -153,6 +175,8 @@ enum class RefractionProfile {
 };
 const char* toString(RefractionProfile profile);
 
+struct Refractivity;  // propagation/parabolic_equation/refractivity_field.h
+
 /// The air that the waves travel through.
 struct Atmosphere {
   double k_factor = 4.0 / 3.0;  ///< effective earth radius over earth radius
@@ -165,6 +189,8 @@ struct Atmosphere {
   RefractionProfile refraction = RefractionProfile::linear;
   double sea_level_refractivity = 301;  ///< N-units; itm derives the curvature of rays from it
   RadioClimate climate = RadioClimate::continental_temperate;
+  /// Profiles of refractivity, for parabolic_equation; null: the gradient of k_factor.
+  std::shared_ptr<const Refractivity> refractivity;
 };
 
 }  // namespace emscape::propagation

@@ -1,15 +1,18 @@
-/// Comparison of two scenarios: what the second wins and loses, on maps, in figures, and why.
+/// Comparison of two scenarios, or of two folders of maps: what the second wins and loses, on maps, in
+/// figures, and why.
 #pragma once
 
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "emscape/base/progress.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/study/coverage.h"
+#include "emscape/study/coverage_folder.h"
 #include "emscape/study/map.h"
 
 namespace emscape::study {
@@ -57,6 +60,7 @@ struct ChangedArea {
 struct Comparison {
   std::vector<ComparisonRow> rows;         ///< in the order of the maps
   std::vector<ChangedArea> changed_areas;  ///< the largest first, gained before lost
+  bool has_paths = false;                  ///< the changed areas are explained by paths
   std::vector<std::string> warnings;
 };
 
@@ -65,6 +69,9 @@ struct CompareRequest {
   int areas = 3;             ///< of changed areas that are explained, for gained and lost each
 };
 
+/// @throws Error (usage, bad_input) as computeComparison() would, before it computes anything
+void checkRequest(const CompareRequest& request, const scenario::Scenario& a, const scenario::Scenario& b);
+
 /// Computes the same maps of two scenarios and their differences. Products that mark an area give a map of
 /// classes (neither, gained, lost, kept), all others B less A. As computeCoverage() in all else.
 /// @param take  the maps, PRODUCT_change and PRODUCT_difference
@@ -72,5 +79,26 @@ struct CompareRequest {
 Comparison computeComparison(const ComparedScenario& a, const ComparedScenario& b, const MapGrid& grid,
                              const CompareRequest& request, const emfield::FieldOptions& options,
                              const std::function<void(const Map&)>& take, const ProgressSink& progress = {});
+
+/// The same of the maps that two folders hold, in the order of A's: nothing is computed again. The largest
+/// areas are explained if both folders have their scenarios still.
+/// @param grid    of both
+/// @param chosen  maps of A and of B, of the same products, heights and times; none is Product::best
+/// @throws Error (bad_input) for a GeoTIFF that is missing, or of other pixels or units than its pair
+Comparison compareFolders(const CoverageFolder& a, const CoverageFolder& b,
+                          const std::vector<std::pair<std::size_t, std::size_t>>& chosen, int areas,
+                          const std::function<void(const Map&)>& take, const ProgressSink& progress = {});
+
+/// Which maps of two folders are compared.
+struct MapChoice {
+  std::vector<Product> products;   ///< empty: all but Product::best
+  std::vector<MapHeight> heights;  ///< empty: all
+  std::vector<double> times_s;     ///< empty: all
+};
+/// Pairs of maps of two folders, in the order of A's.
+/// @throws Error (bad_input) if the folders differ in pixels, quantity or threshold, or if one has a chosen
+/// map that the other has not; (usage) for Product::best, and if no map is chosen
+std::vector<std::pair<std::size_t, std::size_t>> pairsOf(const CoverageFolder& a, const CoverageFolder& b,
+                                                         const MapChoice& choice);
 
 }  // namespace emscape::study

@@ -69,6 +69,9 @@ class CoverageSolver {
   std::unique_ptr<Impl> impl_;
 };
 
+/// @throws Error (usage) for a product that the scenario, the quantity or the times do not have
+void checkRequest(const CoverageRequest& request, const scenario::Scenario& scenario);
+
 /// Computes maps by the field's own functions at every pixel: a pixel's value is that of `emscape profile`
 /// there. Looks are at the target (RadarLook::target): coverage does not depend on where a scan happens to
 /// point. Maps come by time, height (those above ground first) and product; those over all times at last.

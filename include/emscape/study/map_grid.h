@@ -32,4 +32,10 @@ struct MapGrid {
 /// @accuracy places within 2 cm of the projection's for cells to 1 km
 MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs);
 
+/// The pixels of a map that is there, none left out.
+/// @param wkt  of its projection, in metres  @param crs  its name
+/// @throws Error (bad_input) if the projection cannot be used
+MapGrid mapGridAt(const std::string& wkt, const std::string& crs, double cell_m, double left_m, double top_m,
+                  int width, int height);
+
 }  // namespace emscape::study

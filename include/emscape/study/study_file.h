@@ -58,8 +58,10 @@ struct StudySpec {
 /// extremes.
 /// @param edits    of the scenario, before those of the variants
 /// @param version  of the program, for the hash
+/// @param tries_values  false: values are not tried, in a process that computes parts of a study that another
+/// has read before
 /// @throws Error (bad_input) that lists all faults with file, line and column
 StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& edits,
-                    const std::string& version);
+                    const std::string& version, bool tries_values = true);
 
 }  // namespace emscape::study

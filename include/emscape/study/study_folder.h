@@ -2,18 +2,26 @@
 ///
 ///     manifest.json          the study's hash, its number of parts, the variants with what they set
 ///     parts/part_00003.csv   variant, measures; a part appears when it is complete
-///     parts/part_00003.json  the hash, the machine, warnings; written last
+///     parts/part_00003.json  the hash, the machines, warnings; written last
+///     parts/part_00003.rows  the finished variants of a part that is not complete
+///     parts/part_00003.claim the process that works on a part, where several choose their parts themselves
+///     variants/              what is kept of each variant (VariantFiles)
 ///     results.csv results.nc report.html
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "emscape/study/part_claim.h"
+#include "emscape/study/part_journal.h"
 #include "emscape/study/study_plan.h"
 #include "emscape/study/study_runner.h"
+#include "emscape/study/variant_files.h"
 
 namespace emscape::study {
 
@@ -40,21 +48,31 @@ class StudyFolder {
   /// @throws Error (bad_input) if the manifest is that of another study, or cannot be read
   std::optional<int> partsOfManifest() const;
   /// Writes the manifest, unless it is there.
-  /// @throws Error (bad_input) if the folder has another study or another number of parts; (other)
-  void begin(int parts);
+  /// @param kept  what is kept of each variant; none: that of the manifest, else nothing
+  /// @throws Error (bad_input) if the folder has another study, another number of parts or keeps something
+  /// else; (other)
+  void begin(int parts, std::optional<KeptFiles> kept = std::nullopt);
 
   int parts() const { return parts_; }
+  /// What is kept of each variant; after begin().
+  KeptFiles kept() const { return kept_; }
   /// @throws Error (bad_input) if there is a part of another study
   bool hasPart(int part) const;
   std::vector<int> missingParts() const;
 
   /// The variants of a part, in the plan's order.
   std::vector<std::size_t> variantsOf(int part) const;
-  /// @param results  of variantsOf(part), in that order
-  /// @param machine  backend and instruction set
+  /// The finished variants of a part that is not complete.
+  std::unique_ptr<PartJournal> journal(int part) const;
+  /// Bytes of the journal: they grow with each finished variant. 0 without one.
+  std::uintmax_t journalBytes(int part) const;
+  /// Writes a complete part, and removes its journal.
   /// @throws Error (other)
-  void writePart(int part, const std::vector<VariantResult>& results, const std::set<std::string>& warnings,
-                 const std::string& machine) const;
+  void writePart(int part, const PartJournal& journal) const;
+
+  /// Claims a part for this process. @return null if another one holds it
+  std::unique_ptr<PartClaim> tryClaim(int part) const { return PartClaim::tryClaim(partFile(part, "claim")); }
+  bool isClaimed(int part) const { return PartClaim::isHeld(partFile(part, "claim")); }
 
   /// @throws Error (bad_input) for a part of another study, or one that cannot be read
   StudyResults read() const;
@@ -66,6 +84,11 @@ class StudyFolder {
   const std::filesystem::path& path() const { return folder_; }
 
  private:
+  struct Manifest {
+    int parts = 0;
+    KeptFiles kept = KeptFiles::nothing;
+  };
+  std::optional<Manifest> readManifest() const;
   std::filesystem::path partFile(int part, const char* ending) const;
   void readPart(int part, StudyResults& results) const;
 
@@ -74,6 +97,7 @@ class StudyFolder {
   const StudyPlan& plan_;
   std::string version_;
   int parts_ = 0;
+  KeptFiles kept_ = KeptFiles::nothing;
 };
 
 /// Names of the variants' parameters that set them apart: "name; path=value, path=value".

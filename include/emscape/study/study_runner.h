@@ -10,6 +10,7 @@
 
 #include "emscape/base/progress.h"
 #include "emscape/study/study_plan.h"
+#include "emscape/study/variant_files.h"
 
 namespace emscape::study {
 
@@ -27,8 +28,9 @@ class StudyRunner {
  public:
   /// @param terrain  as of loadTerrain() with the study's scenario and area; null: none
   /// @param options  backend and memory; the rest is set here
+  /// @param files    what is kept of each variant, written before it is taken; null: nothing
   StudyRunner(const StudySpec& study, const StudyPlan& plan, scenario::TerrainPtr terrain,
-              emfield::FieldOptions options);
+              emfield::FieldOptions options, VariantFiles* files = nullptr);
   ~StudyRunner();
 
   /// The pixels of the maps.

@@ -1,0 +1,181 @@
+#include "apps/emscape/command_line.h"
+
+#include <fmt/core.h>
+
+#include <csignal>
+#include <exception>
+#include <new>
+
+#include "apps/emscape/command.h"
+#include "apps/emscape/console.h"
+#include "apps/emscape/interrupt.h"
+#include "apps/emscape/version.h"
+#include "emscape/base/device.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+
+namespace emscape::app {
+namespace {
+
+constexpr const char* kFooter = R"(
+Examples:
+  emscape validate scenarios/jacksboro.yaml
+  emscape simulate scenarios/jacksboro.yaml -o out --format vdb,vti --times 0:10:0.5
+  emscape render scenarios/jacksboro.yaml -o jacksboro.mp4 --size 1280x720
+  emscape info out/jacksboro_0001.vdb --json
+
+Exit status: 0 done, 1 another error, 2 usage, 3 bad input, 4 device, 5 a check failed,
+128 + N stopped by signal N (130 after Ctrl-C; finished files are kept).)";
+
+void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
+  app.add_option("--backend", global.backend, "Processor: auto, cpu or cuda")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  app.add_option("--threads", global.threads, "Threads to use; 0: one per core")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app.add_flag("--json", global.json, "The result, machine-readable, alone on standard output");
+  app.add_flag("--quiet,-q", global.quiet, "Neither progress nor messages, only warnings and errors");
+}
+
+}  // namespace
+
+std::string optionText(Hint hint) {
+  switch (hint) {
+    case Hint::none:
+      break;
+    case Hint::allow_missing_terrain:
+      return " (--allow-missing-terrain draws holes)";
+  }
+  return "";
+}
+
+namespace {
+
+int fail(ErrorCode code, const std::string& message) {
+  printMessage("emscape: error: {}\n", message);
+  return static_cast<int>(code);
+}
+
+int run(const Action& action) {
+  try {
+    const int status = action();
+    finishResult();
+    return status;
+  } catch (const playback::Stopped&) {
+    printMessage("emscape: stopped by signal {}; finished files are kept\n", caughtSignal());
+    return 128 + caughtSignal();
+  } catch (const Error& error) {
+    return fail(error.code(), error.what() + optionText(error.hint()));
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::other, "out of memory; use fewer voxels (region.dims), channels or --cache-mib");
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::other, error.what());
+  } catch (...) {
+    return fail(ErrorCode::other, "unknown exception");
+  }
+}
+
+/// Parses; returns an exit status if there is nothing to run.
+int parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return -1;
+  } catch (const CLI::Success& help) {
+    return run([&] { return app.exit(help); });
+  } catch (const CLI::ParseError& error) {
+    printMessage("emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n", error.what());
+    return static_cast<int>(ErrorCode::usage);
+  }
+}
+
+/// The program's version and devices.
+std::string versionText() {
+  std::string text = std::string("emscape ") + kVersion;
+  const std::string cuda = cudaOfBuild();
+  if (cuda.empty()) return text + "\nGPU: this build has no CUDA";
+  const Device device = findDevice();
+  text += "\nGPU: " + (device.usable ? device.name : "none, " + device.why_not);
+  if (device.usable)
+    text += fmt::format(", {} MiB, {} free", device.total_bytes >> 20, device.free_bytes >> 20);
+  return text + fmt::format(" ({})", cuda);
+}
+
+/// The parser with all subcommands, and what it fills.
+struct CommandLine {
+  CLI::App app{
+      "Computes the electromagnetic environment of a scenario as a volume that changes with time, and shows "
+      "it.",
+      "emscape"};
+  GlobalOptions global;
+  Action action;
+
+  CommandLine() {
+    app.footer(kFooter);
+    app.set_version_flag("--version", std::function<std::string()>(versionText));
+    app.require_subcommand(1);
+    app.option_defaults()->always_capture_default();
+
+    addGlobalOptions(app, global);
+    addValidate(app, global, action);
+    addInfo(app, global, action);
+    addSimulate(app, global, action);
+    addRender(app, global, action);
+    addView(app, global, action);
+    addProfile(app, global, action);
+    addLink(app, global, action);
+    addCoverage(app, global, action);
+    addVertical(app, global, action);
+    addExposure(app, global, action);
+    addCompare(app, global, action);
+    addStudy(app, global, action);
+    addCheck(app, global, action);
+    addBench(app, global, action);
+  }
+};
+
+std::vector<std::string> program_command;
+
+}  // namespace
+
+int runCommandLine(int argc, char** argv) {
+  openStandardStreams();
+  CommandLine line;
+  if (const int status = parse(line.app, argc, argv); status >= 0) return status;
+  installLog(line.global);
+  setThreadLimit(line.global.threads);
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as an error of the write
+  catchInterrupts();
+  return run(line.action);
+}
+
+CommandResult commandResult(const std::vector<std::string>& arguments, const ProgressSink& progress) {
+  CommandLine line;
+  try {
+    line.app.parse(
+        std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them reversed
+  } catch (const CLI::Success&) {
+    throw Error(ErrorCode::usage, "help and version are texts of the program, without a result");
+  } catch (const CLI::ParseError& error) {
+    throw Error(ErrorCode::usage, error.what());
+  }
+  line.global.json = true;
+  line.global.quiet = true;
+  line.global.progress = progress;
+  struct ThreadLimitRemoved {
+    ~ThreadLimitRemoved() { setThreadLimit(0); }
+  } at_end;
+  const CapturedResult captured;
+  const int status = line.action();
+  return {status, captured.text()};
+}
+
+void setProgramCommand(const std::vector<std::string>& words) {
+  program_command = words;
+}
+
+const std::vector<std::string>& programCommand() {
+  return program_command;
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,36 @@
+/// The command line as functions: for the program, and for the Python package.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emscape/base/progress.h"
+
+namespace emscape::app {
+
+/// Runs a command line as a program: prints the result and messages, catches signals, sets the process's
+/// limit of threads and its log.
+/// @param argv  the program's name and its arguments, ended by a null pointer
+/// @return the exit status
+int runCommandLine(int argc, char** argv);
+
+/// Result of a subcommand.
+struct CommandResult {
+  int status = 0;    ///< exit status, 0 or that of a check that failed
+  std::string json;  ///< text that the program prints with --json; JSON
+};
+
+/// Runs one subcommand with --json within a program. Prints nothing, leaves signals and the log as they are,
+/// and removes the limit of threads that a subcommand has set.
+/// @param arguments  subcommand and its options, without the program's name
+/// @param progress   may be empty; an exception that it throws ends the work and reaches the caller
+/// @throws Error with the code that the program exits with: (usage) for arguments that cannot be parsed, else
+/// as the subcommand's functions
+CommandResult commandResult(const std::vector<std::string>& arguments, const ProgressSink& progress);
+
+/// Command that starts this program as another process, for `study --jobs`; without it, the file of the
+/// running process. For hosts whose process is not emscape. @param words  program and first arguments
+void setProgramCommand(const std::vector<std::string>& words);
+const std::vector<std::string>& programCommand();
+
+}  // namespace emscape::app

@@ -1,0 +1,17 @@
+/// The picture of a path's loss over range and height, with the air's profile beside it.
+#pragma once
+
+#include <string>
+
+#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/path_section.h"
+#include "emscape/render/image.h"
+
+namespace emscape::app {
+
+/// The file is written atomically.
+/// @throws Error (other) naming the file
+void plotSection(const emfield::PathBudget& budget, const emfield::PathSection& section,
+                 render::ImageSize size, const std::string& file);
+
+}  // namespace emscape::app

@@ -1,0 +1,68 @@
+"""Times of the Python package's own part: python bench/python_bench.py (with emscape installed, or PYTHONPATH=build/cpu/python)."""
+
+import subprocess
+import sys
+import threading
+import time
+
+import emscape as em
+
+
+def microseconds(call, count):
+    call()
+    begin = time.perf_counter()
+    for _ in range(count):
+        call()
+    return (time.perf_counter() - begin) / count * 1e6
+
+
+def main():
+    scenario = em.load("scenarios/quick.yaml")
+    solver = em.Solver(scenario, "cpu")
+    field = solver.at(0)
+    print(f"Field.numpy()                        {microseconds(field.numpy, 20000):8.2f} us")
+    print(f"Field.dlpack()                       {microseconds(field.dlpack, 20000):8.2f} us")
+    # Nothing has changed, so that nothing is computed: what is left is the call and the snapshot.
+    print(f"Solver.at(), nothing to compute      {microseconds(lambda: solver.at(0), 5000):8.2f} us")
+
+    probe = "import time; t = time.perf_counter(); import emscape; print(time.perf_counter() - t, open('/proc/self/statm').read().split()[1])"
+    runs = [subprocess.run([sys.executable, "-c", probe], check=True, capture_output=True, text=True).stdout.split() for _ in range(9)]
+    seconds, pages = min(runs, key=lambda run: float(run[0]))
+    print(f"import emscape                       {float(seconds) * 1e3:8.2f} ms, {int(pages) * 4 // 1024} MB")
+
+    larger = scenario.with_set({"region.dims": [128, 128, 64]})
+
+    def solve():
+        own = em.Solver(larger, "cpu", threads=1)
+        for i in range(10):
+            own.at(0.0, larger.with_set({"emitters.radar.power_w": 1000 + i}))
+
+    begin = time.perf_counter()
+    solve()
+    solve()
+    one = time.perf_counter() - begin
+    threads = [threading.Thread(target=solve) for _ in range(2)]
+    begin = time.perf_counter()
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    print(f"two threads with a solver each       {one / (time.perf_counter() - begin):8.2f} times as fast as one after the other")
+
+    from emscape import datasets
+
+    for backend in ("cpu", "cuda"):
+        data = datasets.VolumeDataset(64, 1, backend=backend)
+        try:
+            data.field(0)
+        except em.DeviceError as error:
+            print(f"labelled volumes of 64^3, {backend}: {error}")
+            continue
+        begin = time.perf_counter()
+        for i in range(64):
+            data[i]
+        print(f"labelled volumes of 64^3, {backend:4}       {64 / (time.perf_counter() - begin):8.1f} per second")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,125 @@
+#include "emfield/radials.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "emfield/foot_inverse.h"
+#include "emfield/read_posts.h"
+#include "emscape/base/error.h"
+
+namespace emscape::emfield {
+namespace {
+
+using propagation::RadialInputs;
+
+/// Sets the sector that holds all columns: the circle without its widest empty arc, if that is more than
+/// half.
+void setSector(const Station& station, const GridColumns& columns, RadialInputs& radials) {
+  constexpr int kArcs = 7200;
+  constexpr double kArc_rad = 2 * kPi / kArcs, kNoAzimuth_m = 1;
+  std::vector<bool> filled(kArcs);
+  const ColumnsView view = columns.view();
+  for (std::size_t c = 0; c < columns.count(); ++c) {
+    const FastInverse foot = footInverse(station, view[c], columns.middle_m());
+    if (foot.distance_m < kNoAzimuth_m) continue;
+    const double arc = std::atan2(foot.sin_azimuth, foot.cos_azimuth) / kArc_rad + kArcs;
+    filled[static_cast<std::size_t>(arc) % kArcs] = true;
+  }
+  int widest = 0, first = 0, empty = 0;
+  for (int i = 0; i < 2 * kArcs; ++i) {
+    empty = filled[static_cast<std::size_t>(i % kArcs)] ? 0 : std::min(empty + 1, kArcs);
+    if (empty <= widest) continue;
+    widest = empty;
+    first = i + 1;
+  }
+  if (widest <= kArcs / 2 || widest == kArcs) return;
+  radials.first_azimuth_rad = first % kArcs * kArc_rad;
+  radials.azimuth_span_rad = (kArcs - widest) * kArc_rad;
+}
+
+/// Distance (m) of a place from the next: on the diagonal.
+double spacingOf(const GridColumns& columns) {
+  const Dims& dims = columns.dims;
+  if (dims.x * dims.y < 2) return 0;
+  double longest_m = 2 * columns.beyond_outline_m;
+  for (const GridColumn& column : columns.outline)
+    longest_m = std::max(longest_m, length(column.foot_ecef_m - columns.outline.front().foot_ecef_m));
+  return longest_m / std::hypot(dims.x - 1, dims.y - 1);
+}
+
+void setHeights(const GridColumns& columns, const propagation::PathExtent& extent, RadialInputs& radials) {
+  const std::vector<float>& t_m = columns.t_m;
+  double step_m = t_m.size() > 1 ? static_cast<double>(t_m.back() - t_m.front()) / (t_m.size() - 1) : 0;
+  radials.above_ground = columns.every_height;
+  if (!radials.above_ground) {
+    constexpr double kOfOneLayer_m = 20;
+    radials.lowest_m = extent.lowest_msl_m;
+    radials.highest_m = extent.highest_msl_m;
+    radials.height_step_m = step_m > 0 ? step_m : kOfOneLayer_m;
+    return;
+  }
+  // Maps: the lowest height is in the middle of the second cell above the ground, where the mean over a cell
+  // is within 0.2 dB of a field that grows with the height.
+  constexpr double kLargestStep_m = 10, kSmallestStep_m = 0.5;
+  double lowest_m = HUGE_VAL, highest_m = 0;
+  for (std::size_t c = 0; c < columns.count(); ++c) {
+    const double ground_m = columns.ground_msl_m.empty() ? 0 : static_cast<double>(columns.ground_msl_m[c]);
+    if (!std::isfinite(ground_m)) continue;
+    const GridColumn column = columns.view()[c];
+    const double low_m = heightMsl_m(column, static_cast<double>(t_m.front())) - ground_m;
+    const double high_m = heightMsl_m(column, static_cast<double>(t_m.back())) - ground_m;
+    if (low_m > 0) lowest_m = std::min(lowest_m, low_m);
+    if (std::isfinite(high_m)) highest_m = std::max(highest_m, high_m);
+  }
+  lowest_m = std::clamp(lowest_m, 1.5 * kSmallestStep_m, 1.5 * kLargestStep_m);
+  radials.height_step_m = lowest_m / 1.5;
+  radials.lowest_m = radials.height_step_m / 2;
+  radials.highest_m = std::max(highest_m, lowest_m);
+}
+
+}  // namespace
+
+RadialInputs radialInputs(const Station& station, const GridColumns& columns,
+                          const scenario::Terrain* terrain, const propagation::PathExtent& extent) {
+  RadialInputs radials;
+  radials.farthest_m = std::max(extent.farthest_m, 1.0);
+  setSector(station, columns, radials);
+  radials.spacing_m = spacingOf(columns);
+  setHeights(columns, extent, radials);
+  radials.has_terrain = terrain != nullptr;
+  if (terrain == nullptr) return radials;
+
+  radials.site_ground_msl_m =
+      terrain->heightMsl_m(radToDeg(station.geodesy.latitude_rad), radToDeg(station.geodesy.longitude_rad));
+  if (std::isnan(radials.site_ground_msl_m)) {
+    throw Error(ErrorCode::bad_input, "the ground below the emitter is missing");
+  }
+  radials.ground = [station, terrain](double azimuth_rad, double step_m, int count, float* ground_msl_m) {
+    std::vector<double> ranges_m(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) ranges_m[static_cast<std::size_t>(i)] = i * step_m;
+    FastInverse path;
+    path.distance_m = ranges_m.back();
+    path.sin_azimuth = std::sin(azimuth_rad);
+    path.cos_azimuth = std::cos(azimuth_rad);
+    readPostsCpu(station, groundPosts(terrain, ranges_m), path, count, ground_msl_m);
+  };
+  // The relief, from a few azimuths: summits between them may be higher by some metres.
+  constexpr int kAzimuths = 128, kPosts = 512;
+  double lowest_m = radials.site_ground_msl_m, highest_m = radials.site_ground_msl_m;
+  std::vector<float> ground_msl_m(kPosts);
+  for (int a = 0; a < kAzimuths; ++a) {
+    radials.ground(radials.first_azimuth_rad + a * radials.azimuth_span_rad / (kAzimuths - 1),
+                   radials.farthest_m / (kPosts - 1), kPosts, ground_msl_m.data());
+    for (const float height_m : ground_msl_m) {
+      if (std::isnan(height_m)) break;
+      lowest_m = std::min(lowest_m, static_cast<double>(height_m));
+      highest_m = std::max(highest_m, static_cast<double>(height_m));
+    }
+  }
+  radials.lowest_ground_msl_m = lowest_m;
+  radials.highest_ground_msl_m = highest_m;
+  return radials;
+}
+
+}  // namespace emscape::emfield

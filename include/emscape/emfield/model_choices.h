@@ -1,0 +1,24 @@
+/// What the models of emitters choose by themselves, for reports before anything is computed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/snapshot.h"
+#include "emscape/scenario/terrain.h"
+
+namespace emscape::emfield {
+
+struct EmitterChoice {
+  std::string emitter;
+  std::string model;
+  std::string name;  ///< of the setting: "range step"
+  std::string text;  ///< value with unit, and the reason: "200 m: ..."
+};
+
+/// The choices for the region's voxels at one time; none of models that choose nothing.
+/// @param terrain  null: a smooth earth
+/// @throws Error (bad_input) naming the emitter, if it cannot be computed
+std::vector<EmitterChoice> modelChoices(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain);
+
+}  // namespace emscape::emfield

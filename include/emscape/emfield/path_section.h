@@ -1,0 +1,34 @@
+/// The loss over range and height along a path, by any model, and the air beside it.
+#pragma once
+
+#include <vector>
+
+#include "emscape/emfield/path_profile.h"
+#include "emscape/propagation/settings.h"
+#include "emscape/scenario/snapshot.h"
+
+namespace emscape::emfield {
+
+struct PathSection {
+  std::vector<double> ranges_m;       ///< along the ground from the emitter, evenly spaced
+  std::vector<double> heights_msl_m;  ///< evenly spaced, rising
+  std::vector<float> ground_msl_m;    ///< at the ranges
+  /// Basic transmission loss (dB), heights x ranges, range fastest; NaN below the ground and where the model
+  /// gives no field.
+  std::vector<float> loss_db;
+  /// Modified refractivity at the emitter, as levels.
+  struct Level {
+    double height_msl_m = 0, m_units = 0;
+  };
+  std::vector<Level> air;
+};
+
+/// The section up to the end of a path, from its lowest ground to half above its ends, the ground and the
+/// layers of the air that trap.
+/// @param ranges, heights  numbers of samples, each at least 2
+/// @throws Error (bad_input) as the model
+PathSection pathSection(const scenario::Snapshot& snapshot, int emitter, propagation::PropagationModel model,
+                        const PathProfile& profile, const scenario::Terrain* terrain, int ranges,
+                        int heights);
+
+}  // namespace emscape::emfield

@@ -1,0 +1,116 @@
+/// Fields on tetrahedra -> picture.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "emscape/base/backend.h"
+#include "emscape/base/progress.h"
+#include "emscape/render/camera.h"
+#include "emscape/render/height_field.h"
+#include "emscape/render/image.h"
+#include "emscape/render/render_settings.h"
+#include "emscape/render/transfer_function.h"
+#include "emscape/volume/mesh.h"
+
+namespace emscape::render {
+
+/// Reference steps across the box of a mesh along each axis.
+constexpr int kReferenceSteps = 100;
+
+/// The grid whose voxels are the reference steps of a mesh: the opacity of a transfer function is that of one
+/// hundredth of the box of the points along each axis. A ray that crosses n of these of opacity a lets
+/// (1 - a)^n through, however fine the mesh is.
+volume::Grid referenceGridOf(const volume::TetrahedralMesh& mesh);
+
+/// As for a volume, by the values at the points; see there. NaN is left out.
+TransferFunction defaultTransferFunction(const volume::MeshField& field);
+
+/// What a picture took.
+struct CellReport {
+  long long rays = 0;   ///< that met the mesh
+  long long cells = 0;  ///< passed by all of them
+  double cast_ms = 0;
+  bool complete = true;  ///< false: it was stopped
+};
+
+/// How projection finds where a ray leaves a cell in perspective; with parallel rays both are the same.
+enum class CellProjection {
+  published,  ///< from interpolated distances, as Moreland 2004: at times a wrong face, near the eye
+  exact
+};
+/// The order in which cells are projected, the farthest first.
+enum class CellSorting {
+  centroids,  ///< by the distances of centroids: wrong for some neighbours
+  /// Every cell after those that it hides across its faces: right for convex meshes without cycles; across
+  /// the gaps of others by centroids
+  visibility
+};
+const char* toString(CellProjection projection);
+const char* toString(CellSorting sorting);
+
+struct ProjectionOptions {
+  CellProjection projection = CellProjection::exact;
+  CellSorting sorting = CellSorting::visibility;
+};
+
+/// What a picture by projection took.
+struct ProjectionReport {
+  std::string device;    ///< as OpenGL names it
+  long long cells = 0;   ///< drawn
+  long long cycles = 0;  ///< faces across which the order is wrong; not counted by centroids
+  std::size_t sent_bytes = 0;
+  double order_ms = 0, draw_ms = 0;
+};
+
+/// Draws fields on tetrahedra by emission and absorption (dvr). The field, linear in each cell, is integrated
+/// in closed form: there is no sampling distance. The ground hides what is behind it. One thread uses it; a
+/// picture uses all threads that base/parallel.h allows.
+class CellRenderer {
+ public:
+  /// @param backend  where rays are cast; automatic: on a GPU if there is one
+  /// @throws Error (device) if cuda is requested and there is none
+  explicit CellRenderer(Backend backend = Backend::cpu);
+  ~CellRenderer();
+
+  /// cpu or cuda.
+  Backend backend() const;
+
+  /// @param faces  of the field's mesh. A field on the same mesh as before is cheap to set
+  /// @throws Error (bad_input) for categorical values, which are not linear in a cell, and malformed fields
+  void setField(const volume::MeshField& field, std::shared_ptr<const volume::MeshFaces> faces);
+  /// Null: no ground is drawn. @throws Error (bad_input) for an impossible field
+  void setHeightField(std::shared_ptr<const HeightField> height_field);
+  /// @param function  not categorical
+  void setTransferFunction(const TransferFunction& function);
+  void setCamera(const Camera& camera);
+  /// Of the settings count `exact` (no early termination, and Psi in closed form) and the exaggeration.
+  /// @throws Error (usage) for another mode than dvr, shading and planes; (bad_input) for a value out of its
+  /// range
+  void setSettings(const RenderSettings& settings);
+
+  const TransferFunction& transferFunction() const;
+  const Camera& camera() const;
+  /// The box of the mesh as it is drawn. A field must be set.
+  SceneBox sceneBox() const;
+  /// Whether the ground hides a position (frame metres) from the camera. A field must be set.
+  bool isHidden(const Vec3d& frame_m) const;
+
+  /// The picture, premultiplied, without background: every ray is followed from cell to cell. It does not
+  /// depend on the number of threads; pictures of a GPU differ by rounding (1e-5).
+  /// @param stop  set from elsewhere: returns soon, incomplete; without effect on a GPU. May be null
+  Image render(ImageSize size, const StopFlag* stop = nullptr, CellReport* report = nullptr);
+  /// The same by projection of the cells with OpenGL, without a window; to be called by one thread always.
+  /// @accuracy exact, visibility: within 1e-5 of render() in 99 % of the pixels, 2e-6 in the mean; 2e-2 at
+  /// most, where a face is seen on edge or a ray passes within 1/256 pixel of an edge: rasterisers round to
+  /// that
+  /// @throws Error (device) without OpenGL 3.3, or in a build without libepoxy
+  Image project(ImageSize size, const ProjectionOptions& options = {}, ProjectionReport* report = nullptr);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace emscape::render

@@ -1,0 +1,67 @@
+/// The parabolic equation marched over all azimuths around an emitter.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "propagation/parabolic_equation/march_cells.h"
+
+namespace emscape::propagation {
+
+/// One emitter's march: what its azimuths have in common, and what each has of its own.
+struct AzimuthMarch {
+  MarchGrid grid;
+  PeSource source;
+  PeSurface surface;
+  RadialCells cells;
+  int azimuths = 0;
+  /// One for all azimuths, or one each.
+  std::vector<RefractivityAlongPath> air;
+  /// Heights above mean sea level at 0, 1, 2, ... range steps, `ground_steps` of them per azimuth; behind the
+  /// last: level. Empty: 0 m throughout.
+  std::vector<float> ground_msl_m;
+  std::size_t ground_steps = 0;
+
+  const RefractivityAlongPath& airOf(int azimuth) const {
+    return air.size() == 1 ? air.front() : air[std::size_t(azimuth)];
+  }
+  /// Losses of all azimuths.
+  std::size_t cellCount() const { return std::size_t(azimuths) * cells.ranges * cells.heights; }
+};
+
+/// @throws Error (bad_input) for a grid outside its limits (checkGrid()), cells shorter than a range step, or
+/// sizes that do not fit
+void checkMarch(const AzimuthMarch& march);
+
+/// What happened on the way, over all azimuths.
+struct MarchNotes {
+  int staircases = 0;          ///< RadialMarch::staircases()
+  bool pointwise_air = false;  ///< RadialMarch::pointwiseAir()
+};
+
+/// Marches all azimuths in float, in parallel.
+/// @param excess_db  cellCount() elements: losses over free space (dB) as of marchCells(), azimuth slowest,
+/// then range, then height
+/// @throws Error (bad_input) as RadialMarch() and marchCells(), or if the sizes do not fit
+MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db);
+
+/// N that the GPU marches with.
+constexpr int kMinBlockIntervals = 128, kMaxBlockIntervals = 8192;
+
+/// marchAzimuths() on the GPU, without halving within 0.05 dB of it where F > -60 dB.
+/// @throws Error (device) without CUDA or a GPU; (bad_input) also for N outside 128 .. 8192, and for the
+/// narrow form over terrain
+MarchNotes marchAzimuthsOnGpu(const AzimuthMarch& march, float* excess_db);
+
+/// |u| of an azimuth after a step, at heights above the ground 0, 1, ... height steps.
+struct FieldColumn {
+  double range_m = 0, ground_msl_m = 0, height_step_m = 0;
+  std::vector<float> amplitude;
+};
+/// Columns that the GPU's march goes through, for comparison with RadialMarch.
+/// @param steps  ascending, 1 or more
+/// @return azimuths x steps
+/// @throws as marchAzimuthsOnGpu()
+std::vector<FieldColumn> columnsOnGpu(const AzimuthMarch& march, const std::vector<int>& steps);
+
+}  // namespace emscape::propagation

@@ -1,0 +1,70 @@
+/// What a step of the march is made of, at one height or one wavenumber, for host and device.
+#pragma once
+
+#include <cmath>
+
+#include "emscape/base/units.h"
+#include "propagation/complex.h"
+#include "propagation/diffraction/knife_edge.h"
+#include "propagation/parabolic_equation/refractivity.h"
+
+namespace emscape::propagation {
+
+/// Sines of the slope above which a piece of terrain is taken as a step of a staircase (15 degrees), and of
+/// the break of slope above which it is (20 degrees, or the band's largest angle).
+constexpr double kMaxSlopeSine = 0.25881904510252076;
+constexpr double kMaxBreakSine = 0.34202014332566873;
+
+/// exp(a).
+EMSCAPE_HD inline Complex<double> exponential(Complex<double> a) {
+  const double magnitude = std::exp(a.re);
+  return {magnitude * std::cos(a.im), magnitude * std::sin(a.im)};
+}
+
+/// Rate (1/m) at which the last tenth of the band is absorbed, where standard air turns rays out of it: they
+/// would come back downwards. 90 dB over the range in which it turns a ray through that tenth.
+EMSCAPE_HD inline double bandEdgeRate(double part_of_band, double max_sine) {
+  constexpr double kBegin = 0.9;
+  const double t = (part_of_band - kBegin) / (1 - kBegin);
+  if (t <= 0) return 0;
+  const double turning_m = (1 - kBegin) * max_sine / (1e-6 * kStandardGradient_m);
+  return 4 * 90 / kDbPerNeper<double> / turning_m * t * t * t;
+}
+
+/// i distance (sqrt(k^2 - q^2) - k) without cancellation; its real part is negative where q > k. The narrow
+/// form's: -i distance q^2 / 2k.
+EMSCAPE_HD inline Complex<double> stepExponent(bool wide, double k, double distance_m,
+                                               Complex<double> q_squared) {
+  if (!wide) return Complex<double>{0, -distance_m / (2 * k)} * q_squared;
+  Complex<double> root = sqrt(Complex<double>{k * k - q_squared.re, -q_squared.im});
+  if (root.im < 0) root = Complex<double>{-root.re, -root.im};
+  return Complex<double>{0, -distance_m} * q_squared / Complex<double>{root.re + k, root.im};
+}
+
+/// One range step over the ground.
+struct GroundStep {
+  double sine = 0, cosine = 1;  ///< of the slope
+  /// Sine of the slope before less that of this one: the field turns by exp(i k z turn) at the break.
+  double turn = 0;
+  bool staircase = false;  ///< taken as a level piece with its rise as a step at the end
+};
+
+/// @param rise_m       over the step
+/// @param sine_before  of the slope of the step before
+/// @param first        the march's first step: the source's band lies about its slope
+/// @param max_sine     of the band
+EMSCAPE_HD inline GroundStep groundStep(double rise_m, double range_step_m, double sine_before, bool first,
+                                        double max_sine) {
+  GroundStep step;
+  const double length_m = std::sqrt(range_step_m * range_step_m + rise_m * rise_m);
+  step.sine = rise_m / length_m;
+  step.cosine = range_step_m / length_m;
+  step.turn = first ? 0 : sine_before - step.sine;
+  const double largest = max_sine < kMaxBreakSine ? max_sine : kMaxBreakSine;
+  if (std::fabs(step.sine) > kMaxSlopeSine || std::fabs(step.turn) > largest) {
+    step = {0, 1, first ? 0 : sine_before, true};
+  }
+  return step;
+}
+
+}  // namespace emscape::propagation

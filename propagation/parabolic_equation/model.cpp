@@ -1,0 +1,340 @@
+#include "propagation/parabolic_equation/model.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+#include "propagation/diffraction/model.h"
+#include "propagation/parabolic_equation/path_air.h"
+#include "propagation/parabolic_equation/plan.h"
+#include "propagation/parabolic_equation/refractivity_field.h"
+#include "propagation/two_ray/model.h"
+
+namespace emscape::propagation {
+namespace {
+
+constexpr auto kPe = &ModelSettings::parabolic_equation;
+
+PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bool has_terrain,
+                  double site_ground_msl_m) {
+  const ParabolicEquationSettings& settings = inputs.emitter.settings.parabolic_equation;
+  PeOthers others;
+  others.tx_msl_m = static_cast<float>(inputs.site.height_msl_m);
+  others.tx_agl_m = static_cast<float>(inputs.site.height_msl_m - site_ground_msl_m);
+  others.curvature_per_m = static_cast<float>(1e-6 * air.at(0).top_gradient_m);
+  others.largest_db = static_cast<float>(-settings.floor_db);
+  others.over_terrain = has_terrain;
+  others.diffraction = diffractionExcess(inputs);
+  PathInputs smooth = inputs;
+  smooth.surface_msl_m = 0;
+  smooth.emitter.settings.two_ray.roughness_model = settings.roughness;
+  others.two_ray = twoRayExcess(smooth);
+  others.scatter = {};
+  others.scatter.clear_air.frequency_ghz = static_cast<float>(inputs.emitter.frequency_hz / 1e9);
+  others.scatter.clear_air.time_percent = 50;
+  others.scatter.clear_air.median = others.diffraction.model;
+  others.scatter.sea_level_refractivity =
+      static_cast<float>(inputs.emitter.atmosphere.sea_level_refractivity);
+  return others;
+}
+
+/// Reads the ground along all azimuths; behind the first hole it is level.
+/// @param ends_m  receives for each azimuth the range of its first hole, or infinity
+void readGround(const RadialInputs& radials, const PePlan& plan, AzimuthMarch& march,
+                std::vector<double>& ends_m) {
+  ends_m.assign(std::size_t(plan.azimuths), std::numeric_limits<double>::infinity());
+  if (!radials.has_terrain) return;
+  march.ground_steps = std::size_t(radials.farthest_m / plan.grid.range_step_m) + 2;
+  march.ground_msl_m.resize(march.ground_steps * std::size_t(plan.azimuths));
+  parallelFor(plan.azimuths, 8, [&](int begin, int end) {
+    for (int a = begin; a < end; ++a) {
+      float* const first = march.ground_msl_m.data() + std::size_t(a) * march.ground_steps;
+      float* const last = first + march.ground_steps;
+      radials.ground(plan.azimuth_rad(a), plan.grid.range_step_m, int(march.ground_steps), first);
+      first[0] = static_cast<float>(radials.site_ground_msl_m);
+      float* const hole = std::find_if(first, last, [](float height_m) { return std::isnan(height_m); });
+      if (hole == last) continue;
+      ends_m[std::size_t(a)] = double(hole - first) * plan.grid.range_step_m;
+      std::fill(hole, last, hole[-1]);
+    }
+  });
+}
+
+/// The mean of two fields' powers, in dB.
+float meanPower_db(float a_db, float b_db) {
+  return -10 * std::log10((std::pow(10.0f, -a_db / 10) + std::pow(10.0f, -b_db / 10)) / 2);
+}
+
+/// The loss of an ensemble: that of the members' mean power, or of the power below which a share of them
+/// lies.
+/// @param losses_db  of the members, none NaN; reordered
+float ofMembers_db(std::vector<float>& losses_db, const Atmosphere& atmosphere) {
+  if (losses_db.size() == 1) return losses_db.front();
+  if (const auto quantile = atmosphere.refractivity->quantile) {
+    const auto at = std::ptrdiff_t(std::lround((1 - *quantile) * double(losses_db.size() - 1)));
+    std::nth_element(losses_db.begin(), losses_db.begin() + at, losses_db.end());
+    return losses_db[std::size_t(at)];
+  }
+  double power = 0;
+  for (const float loss_db : losses_db) power += std::pow(10.0, double(-loss_db) / 10);
+  return static_cast<float>(-10 * std::log10(power / double(losses_db.size())));
+}
+
+/// Losses of all cells, of the mean power of the polarisations.
+std::vector<float> marchSurfaces(AzimuthMarch& march, const std::vector<PeSurface>& surfaces,
+                                 MarchNotes& notes) {
+  constexpr float kNoField_db = 200;  // finite, so that it can be interpolated
+  std::vector<float> cells_db(march.cellCount()), other_db;
+  for (const PeSurface& surface : surfaces) {
+    const bool is_first = &surface == &surfaces.front();
+    march.surface = surface;
+    if (!is_first) other_db.resize(cells_db.size());
+    notes = marchAzimuths(march, is_first ? cells_db.data() : other_db.data());
+  }
+  for (std::size_t i = 0; i < other_db.size(); ++i) cells_db[i] = meanPower_db(cells_db[i], other_db[i]);
+  for (float& cell_db : cells_db) {
+    if (cell_db > kNoField_db) cell_db = kNoField_db;
+  }
+  return cells_db;
+}
+
+/// Ground at even steps between the posts of a profile.
+std::vector<double> evenGround(const TerrainProfile& profile, double step_m, int steps) {
+  std::vector<double> ground_msl_m;
+  int post = 0;
+  for (int i = 0; i <= steps; ++i) {
+    const double at_m = i * step_m;
+    while (post + 2 < profile.count && profile.range_m[post + 1] < at_m) ++post;
+    const int next = std::min(post + 1, profile.count - 1);
+    const double length_m = profile.range_m[next] - profile.range_m[post];
+    const double part = length_m > 0 ? std::clamp((at_m - profile.range_m[post]) / length_m, 0.0, 1.0) : 0;
+    ground_msl_m.push_back(double(profile.height_msl_m[post]) +
+                           part * double(profile.height_msl_m[next] - profile.height_msl_m[post]));
+  }
+  return ground_msl_m;
+}
+
+/// The other model, as a model of columns.
+struct OtherColumn {
+  const PeOthers& others;
+
+  unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db) const {
+    others.fill(column, scratch, excess_db);
+    return 0;
+  }
+};
+
+/// A march along one path.
+struct PathMarch {
+  double factor_db = 0;
+  std::string text;
+};
+
+PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const RefractivityAlongPath& air,
+                    MarchGrid grid, bool has_terrain) {
+  const int steps = int(std::ceil(column.range_m / grid.range_step_m - 1e-9));
+  grid.range_step_m = column.range_m / steps;
+  const TerrainProfile& profile = column.profile;
+  PathMarch found;
+  double power = 0;
+  const std::vector<PeSurface> surfaces = planSurfaces(inputs.emitter, air);
+  int staircases = 0, halvings = 0;
+  for (const PeSurface& surface : surfaces) {
+    RadialPath path;
+    path.air = air;
+    path.surface = surface;
+    path.source.height_agl_m = inputs.site.height_msl_m - double(profile.height_msl_m[0]);
+    if (has_terrain) path.ground_msl_m = evenGround(profile, grid.range_step_m, steps);
+    RadialMarch<double, 1> march(grid, {std::move(path)});
+    for (int i = 0; i < steps; ++i) march.advance();
+    const double above_m = double(column.height_msl_m[0]) - march.ground_m(0);
+    power += std::pow(10.0, march.factorDb(0, std::max(above_m, 0.0)) / 10) / double(surfaces.size());
+    staircases = march.staircases();
+    halvings = int(std::lround(std::log2(double(grid.intervals) / march.intervals())));
+  }
+  found.factor_db = 10 * std::log10(power);
+  found.text = fmt::format("{} steps of {:.4g} m in range, {} heights of {:.3g} m", steps, grid.range_step_m,
+                           grid.intervals, grid.heightStep_m());
+  if (halvings > 0) found.text += fmt::format(", halved {} times", halvings);
+  if (staircases > 0)
+    found.text += fmt::format("; {} pieces of the ground taken as steps of a staircase", staircases);
+  return found;
+}
+
+}  // namespace
+
+std::vector<Setting> peSettings() {
+  std::vector<Setting> settings;
+  settings.push_back(automaticSetting<kPe, &ParabolicEquationSettings::max_angle_deg>(
+      "max_angle_deg", "deg", kPeAngle.min, kPeAngle.max,
+      "largest angle from the horizontal of the equation; above, two_ray or diffraction"));
+  settings.push_back(automaticSetting<kPe, &ParabolicEquationSettings::top_m>(
+      "top_m", "m", 10, 20000,
+      "height above the ground up to which the equation is solved; above, along rays"));
+  settings.push_back(automaticSetting<kPe, &ParabolicEquationSettings::range_step_m>(
+      "range_step_m", "m", 1, 2000, "step of the march in range"));
+  settings.push_back(automaticSetting<kPe, &ParabolicEquationSettings::azimuths>(
+      "azimuths", "", 2, 7200, "directions that are marched; the field is interpolated between them"));
+  settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::roughness>(
+      "roughness", RoughnessModel::miller_brown, "reduction of the reflection by roughness"));
+  settings.push_back(numberSetting<kPe, &ParabolicEquationSettings::floor_db>(
+      "floor_db", "dB", -120, -20, "lowest field of the equation over that in free space"));
+  return settings;
+}
+
+InputFaults checkPe(const EmitterInputs& inputs) {
+  InputFaults faults;
+  checkInput(kPeFrequency, inputs.frequency_hz, InputOrigin::frequency, faults);
+  if (faults.empty()) checkInput(kPeTriedFrequency, inputs.frequency_hz, InputOrigin::frequency, faults);
+  checkInput(kPeRoughness, inputs.ground.roughness_m, InputOrigin::ground, faults);
+  return faults;
+}
+
+std::vector<std::string> peWarningMessages(unsigned warnings) {
+  std::vector<std::string> messages;
+  if (warnings & kPePointwiseAir) {
+    messages.emplace_back(
+        "profiles of the air with different numbers of levels are interpolated at each height: halfway "
+        "between two ducts there are two faint ones");
+  }
+  const unsigned staircases = (warnings & ~kMissingTerrain) >> kPeStaircaseShift;
+  if (staircases > 0) {
+    messages.push_back(
+        fmt::format("{} pieces of the ground, steeper or more sharply bent than the equation allows, are "
+                    "taken as steps of "
+                    "a staircase",
+                    staircases));
+  }
+  return messages;
+}
+
+std::vector<ModelChoice> peChoices(const PathInputs& inputs, const RadialInputs& radials) {
+  return planMarch(inputs, radials).choices;
+}
+
+PeExcess peExcess(const PathInputs& inputs, const RadialInputs& radials, std::vector<float>& tables) {
+  const PePlan plan = planMarch(inputs, radials);
+  AzimuthMarch march;
+  march.grid = plan.grid;
+  march.source.height_agl_m = inputs.site.height_msl_m - radials.site_ground_msl_m;
+  march.cells = plan.cells;
+  march.azimuths = plan.azimuths;
+  std::vector<double> ends_m;
+  readGround(radials, plan, march, ends_m);
+  MarchNotes notes;
+  std::vector<std::vector<float>> members;
+  for (const std::vector<RefractivityAlongPath>& air : plan.air) {
+    march.air = air;
+    members.push_back(marchSurfaces(march, plan.surfaces, notes));
+  }
+  tables = std::move(members.front());
+  if (members.size() > 1) {
+    std::vector<float> losses_db(members.size());
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+      losses_db[0] = tables[i];
+      for (std::size_t m = 1; m < members.size(); ++m) losses_db[m] = members[m][i];
+      if (!std::isnan(tables[i])) tables[i] = ofMembers_db(losses_db, inputs.emitter.atmosphere);
+    }
+  }
+  const RadialCells& cells = plan.cells;
+  for (int a = 0; a < plan.azimuths; ++a) {  // cells that reach behind a hole are unknown
+    if (!(ends_m[std::size_t(a)] < HUGE_VAL)) continue;
+    const int first = std::min(cells.ranges, int(ends_m[std::size_t(a)] / cells.range_step_m));
+    const std::size_t begin = std::size_t(a) * cells.ranges;
+    std::fill(tables.begin() + std::ptrdiff_t((begin + first) * cells.heights),
+              tables.begin() + std::ptrdiff_t((begin + cells.ranges) * cells.heights), NAN);
+  }
+
+  PeExcess excess;
+  excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m);
+  excess.others.max_angle_rad = static_cast<float>(plan.max_angle_rad);
+  excess.others.min_range_m = static_cast<float>(plan.min_range_m);
+  excess.others.cell_range_m = static_cast<float>(cells.range_step_m);
+  excess.others.cell_height_m = static_cast<float>(cells.height_step_m);
+  excess.tables = tables.data();
+  excess.azimuths = plan.azimuths;
+  excess.ranges = cells.ranges;
+  excess.heights = cells.heights;
+  excess.is_around = plan.is_around;
+  excess.above_ground = cells.above_ground;
+  excess.first_azimuth_rad = plan.first_azimuth_rad;
+  excess.azimuth_step_rad = plan.azimuth_step_rad;
+  excess.first_range_m = static_cast<float>((cells.range_step_m + plan.grid.range_step_m) / 2);
+  excess.range_step_m = static_cast<float>(cells.range_step_m);
+  excess.bottom_m = static_cast<float>(cells.bottom_msl_m);
+  excess.height_step_m = static_cast<float>(cells.height_step_m);
+  excess.top_m = static_cast<float>(plan.top_m);
+  const unsigned staircases = unsigned(std::min(notes.staircases, (1 << (31 - kPeStaircaseShift)) - 1));
+  excess.warnings = (notes.pointwise_air ? kPePointwiseAir : 0u) | staircases << kPeStaircaseShift;
+  return excess;
+}
+
+Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
+  const ExcessColumn& column = path.column();
+  const TerrainProfile& profile = column.profile;
+  const float end_msl_m = column.height_msl_m[0];
+  const std::vector<RefractivityAlongPath> airs =
+      pathAirs(inputs.emitter.atmosphere, inputs.site, column.azimuth_rad);
+  const RefractivityAlongPath air = highestDuct(airs);
+  const auto [lowest, highest] =
+      std::minmax_element(profile.height_msl_m, profile.height_msl_m + profile.count);
+  const bool has_terrain = *lowest != 0 || *highest != 0;
+  DomainNeeds needs;
+  needs.required_m = 1.1 * (std::max(inputs.site.height_msl_m, double(*highest)) - double(*lowest)) + 30;
+  needs.wanted_m = 1.1 * double(end_msl_m - *lowest) + 30;
+  needs.post_spacing_m = has_terrain ? inputs.post_spacing_m : 0;
+  needs.farthest_m = column.range_m;
+  needs.is_single = true;
+  double max_angle_rad = 0;
+  const AutomaticGrid automatic = planGrid(inputs.emitter, air, needs, max_angle_rad);
+
+  PeOthers others = othersOf(inputs, air, has_terrain, double(profile.height_msl_m[0]));
+  others.max_angle_rad = static_cast<float>(max_angle_rad);
+  others.min_range_m = static_cast<float>(
+      std::max(2 * automatic.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz)));
+  const char* const other_name = has_terrain ? "diffraction" : "two_ray";
+  PeLoss loss;
+  loss.equation_part = others.equationPart(static_cast<float>(column.range_m), end_msl_m,
+                                           profile.height_msl_m[profile.count - 1]);
+  if (loss.equation_part < 1) loss.other_db = static_cast<float>(path.excess_db(OtherColumn{others}));
+  Explanation explanation;
+  std::string march_text = "no march";
+  if (loss.equation_part > 0) {
+    std::vector<float> losses_db;
+    for (const RefractivityAlongPath& member : airs) {
+      const PathMarch march = marchPath(inputs, column, member, automatic.grid, has_terrain);
+      losses_db.push_back(static_cast<float>(-march.factor_db));
+      march_text = march.text;
+    }
+    if (airs.size() > 1) march_text += fmt::format(", {} members of the air", airs.size());
+    loss.equation_db = std::min(ofMembers_db(losses_db, inputs.emitter.atmosphere), others.largest_db);
+  }
+  others.addScatter(column, end_msl_m, loss);
+  if (loss.equation_part > 0)
+    explanation.add("parabolic_equation", "parabolic equation",
+                    double(loss.equation_part * loss.equation_db));
+  if (loss.equation_part < 1)
+    explanation.add(std::string("outside_equation_") + other_name,
+                    fmt::format("{} outside the equation's limits", other_name),
+                    double((1 - loss.equation_part) * loss.other_db));
+  if (loss.scatter_db < HUGE_VALF)
+    explanation.add("troposcatter", "troposcatter beside it",
+                    double(loss.loss_db() - loss.withoutScatter_db()));
+  const bool scatters = loss.scatter_db < loss.withoutScatter_db();
+  explanation.why = fmt::format(
+      "{} speaks; launch angle {:.2f} of {:.3g} degrees, {}",
+      scatters                  ? "troposcatter"
+      : loss.equation_part >= 1 ? "the parabolic equation"
+      : loss.equation_part <= 0 ? other_name
+                                : fmt::format("the parabolic equation by {:.0f} %, {} for the rest,",
+                                              double(100 * loss.equation_part), other_name),
+      radToDeg(double(others.launchAngle(static_cast<float>(column.range_m), end_msl_m))),
+      radToDeg(max_angle_rad), march_text);
+  return explanation;
+}
+
+}  // namespace emscape::propagation

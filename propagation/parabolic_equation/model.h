@@ -1,0 +1,23 @@
+/// Model `parabolic_equation` in the registry.
+#pragma once
+
+#include "emscape/propagation/explanation.h"
+#include "propagation/checks.h"
+#include "propagation/choice.h"
+#include "propagation/parabolic_equation/excess.h"
+#include "propagation/path_column.h"
+#include "propagation/radial.h"
+#include "propagation/setting.h"
+
+namespace emscape::propagation {
+
+std::vector<Setting> peSettings();
+InputFaults checkPe(const EmitterInputs& inputs);
+std::vector<std::string> peWarningMessages(unsigned warnings);
+std::vector<ModelChoice> peChoices(const PathInputs& inputs, const RadialInputs& radials);
+/// Marches around the emitter. @throws Error (bad_input) as planMarch(), marchAzimuths()
+PeExcess peExcess(const PathInputs& inputs, const RadialInputs& radials, std::vector<float>& tables);
+/// Marches along the path in double precision; the field at its end, not averaged.
+Explanation explainPe(const PathInputs& inputs, PathColumn& path);
+
+}  // namespace emscape::propagation

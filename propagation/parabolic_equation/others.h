@@ -1,0 +1,134 @@
+/// The models that speak where the parabolic equation does not: close to the antenna and at large angles
+/// diffraction over terrain or two rays over a smooth earth, deep behind the horizon scattering in the
+/// troposphere; and which of them decides.
+#pragma once
+
+#include <cmath>
+
+#include "emscape/base/host_device.h"
+#include "propagation/diffraction/excess.h"
+#include "propagation/p1812/p1812.h"
+#include "propagation/two_ray/excess.h"
+
+namespace emscape::propagation {
+
+/// Part (0..1) of the angle's and the range's limits over which two models are blended, in dB.
+constexpr float kPeBlendPart = 0.2f;
+
+/// The loss over free space at one place, and its parts.
+struct PeLoss {
+  float equation_db = 0;         ///< of the parabolic equation, no larger than the floor's
+  float equation_part = 1;       ///< its weight in dB: 1 within its limits, 0 outside
+  float other_db = 0;            ///< of the other model
+  float scatter_db = HUGE_VALF;  ///< by troposcatter; infinite in sight
+  bool is_extended = false;      ///< from the top of the equation's domain along the ray
+
+  /// Without troposcatter.
+  EMSCAPE_HD float withoutScatter_db() const {
+    return equation_part >= 1   ? equation_db
+           : equation_part <= 0 ? other_db
+                                : other_db + equation_part * (equation_db - other_db);
+  }
+  EMSCAPE_HD float loss_db() const {
+    const float without_db = withoutScatter_db();
+    if (!(scatter_db < HUGE_VALF)) return without_db;
+    return -10 * std::log10(std::pow(10.0f, -without_db / 10) + std::pow(10.0f, -scatter_db / 10));
+  }
+};
+
+/// Plain data, for one emitter. Heights are above mean sea level unless named otherwise.
+struct PeOthers {
+  float tx_msl_m = 0, tx_agl_m = 0;
+  float curvature_per_m = 0;  ///< of rays over the flattened earth, upwards: 10^-6 dM/dz
+  float max_angle_rad = 0, min_range_m = 0;
+  float largest_db = 80;  ///< of the equation
+  bool over_terrain = false;
+  DiffractionExcess diffraction;  ///< over terrain
+  TwoRayExcess two_ray;           ///< over the smooth earth, at mean sea level
+  /// Size of the cells over which the equation's field is averaged, and so the two rays; 0: points.
+  float cell_range_m = 0, cell_height_m = 0;
+  P1812Model<float> scatter;  ///< what p1812TroposcatterDb() reads
+
+  /// Angle (rad) above the horizontal at which the ray to a height leaves the antenna.
+  EMSCAPE_HD float launchAngle(float range_m, float height_msl_m) const {
+    return (height_msl_m - tx_msl_m) / range_m - curvature_per_m * range_m / 2;
+  }
+
+  /// Weight of the equation.
+  EMSCAPE_HD float equationPart(float range_m, float height_msl_m, float ground_msl_m) const {
+    if (!(range_m > min_range_m)) return 0;
+    const float above_m = height_msl_m > ground_msl_m ? height_msl_m - ground_msl_m : 0;
+    const float direct = std::fabs(launchAngle(range_m, height_msl_m));
+    const float reflected = (tx_agl_m + above_m) / range_m - curvature_per_m * range_m / 2;
+    const float angle = direct > reflected ? direct : reflected;
+    const float by_angle = (1 - angle / max_angle_rad) / kPeBlendPart;
+    const float by_range = (range_m / min_range_m - 1) / kPeBlendPart;
+    const float part = by_angle < by_range ? by_angle : by_range;
+    return part < 0 ? 0 : part > 1 ? 1 : part;
+  }
+
+  /// Range (m) at which the ray to a place above a height passes that height, which is above the antenna.
+  EMSCAPE_HD float crossing_m(float range_m, float height_msl_m, float crossed_msl_m) const {
+    const float rise_m = crossed_msl_m - tx_msl_m, angle = launchAngle(range_m, height_msl_m);
+    const float under = angle * angle + 2 * curvature_per_m * rise_m;
+    const float at_m = 2 * rise_m / (angle + std::sqrt(under > 0 ? under : 0));
+    return at_m > 0 && at_m < range_m ? at_m : range_m;
+  }
+
+  /// Losses of the other model at all heights of a column; NaN behind missing terrain.
+  EMSCAPE_HD void fill(const ExcessColumn& column, const ExcessScratch& scratch, float* other_db) const {
+    if (over_terrain) {
+      diffraction(column, scratch, other_db);
+      return;
+    }
+    for (int k = 0; k < column.count; ++k) other_db[k] = twoRays_db(column.range_m, column.height_msl_m[k]);
+  }
+
+  /// Adds the troposcatter to a loss where it can matter.
+  EMSCAPE_HD void addScatter(const ExcessColumn& column, float height_msl_m, PeLoss& loss) const {
+    constexpr float kMatters_db = 30;  // troposcatter is weaker than that by 15 dB and more
+    if (loss.withoutScatter_db() < kMatters_db) return;
+    const float angle_rad = horizonAngle(column, height_msl_m);
+    if (!(angle_rad > 0)) return;
+    const auto range_m = static_cast<float>(column.range_m);
+    const float free_space_db = 92.45f + 20 * std::log10(scatter.clear_air.frequency_ghz * range_m / 1000);
+    const float scatter_db = p1812TroposcatterDb(scatter, range_m, 1000 * angle_rad) - free_space_db;
+    loss.scatter_db = scatter_db > 0 ? scatter_db : 0;
+  }
+
+ private:
+  /// Mean of the two rays over a cell, in which the difference of their paths grows linearly.
+  EMSCAPE_HD float twoRays_db(double range_m, float height_msl_m) const {
+    float excess_db = 0;
+    const ReflectedRay ray = two_ray.reflectedRay(range_m, height_msl_m, excess_db);
+    if (ray.weight < 1) return excess_db;
+    const float phase_per_m =
+        2 * float(kPi) * 2 * tx_agl_m / (float(two_ray.model.earth.wavelength_m) * float(range_m));
+    const float mean = sinc(phase_per_m * cell_height_m / 2) *
+                       sinc(phase_per_m * height_msl_m / float(range_m) * cell_range_m / 2);
+    const float power = 1 + ray.re * ray.re + ray.im * ray.im + 2 * ray.re * mean;
+    constexpr float kLowest = 1e-6f;  // 60 dB, as two_ray
+    return -10 * std::log10(power > kLowest ? power : kLowest);
+  }
+  static EMSCAPE_HD float sinc(float x) { return std::fabs(x) < 1e-3f ? 1 : std::sin(x) / x; }
+
+  /// Angle (rad) between the horizons' rays of both ends, 0 where they see each other.
+  EMSCAPE_HD float horizonAngle(const ExcessColumn& column, float height_msl_m) const {
+    const auto range_m = static_cast<float>(column.range_m);
+    const float half_curvature = scatter.clear_air.median.half_curvature;
+    const float to_rx = (height_msl_m - tx_msl_m) / range_m - half_curvature * range_m;
+    float of_tx = -HUGE_VALF, of_rx = -HUGE_VALF;
+    for (int i = 1; i < column.profile.count - 1; ++i) {
+      const auto at_m = static_cast<float>(column.profile.range_m[i]);
+      const float left_m = range_m - at_m, ground_m = column.profile.height_msl_m[i];
+      if (!(at_m > 0 && left_m > 0)) continue;
+      const float from_tx = (ground_m - tx_msl_m) / at_m - half_curvature * at_m;
+      const float from_rx = (ground_m - height_msl_m) / left_m - half_curvature * left_m;
+      of_tx = from_tx > of_tx ? from_tx : of_tx;
+      of_rx = from_rx > of_rx ? from_rx : of_rx;
+    }
+    return of_tx > to_rx ? 2 * half_curvature * range_m + of_tx + of_rx : 0;
+  }
+};
+
+}  // namespace emscape::propagation

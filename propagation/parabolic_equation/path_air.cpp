@@ -1,0 +1,87 @@
+#include "propagation/parabolic_equation/path_air.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/units.h"
+#include "propagation/parabolic_equation/refractivity_field.h"
+
+namespace emscape::propagation {
+namespace {
+
+using Place = RefractivityField::Place;
+
+constexpr int kIntervals = 128;
+constexpr double kReach = 1.25;
+constexpr double kNearest_m = 100;
+
+/// Great circles of a sphere: a profile does not depend on its place more exactly than that.
+double distance_m(const Place& a, const Place& b, double radius_m) {
+  const double lat_a = degToRad(a.latitude_deg), lat_b = degToRad(b.latitude_deg);
+  const double half_lat = std::sin((lat_b - lat_a) / 2);
+  const double half_lon = std::sin(degToRad(b.longitude_deg - a.longitude_deg) / 2);
+  const double square = half_lat * half_lat + std::cos(lat_a) * std::cos(lat_b) * half_lon * half_lon;
+  return 2 * radius_m * std::asin(std::sqrt(std::min(square, 1.0)));
+}
+
+Place placeAt(const Place& from, double azimuth_rad, double range_m, double radius_m) {
+  const double arc = range_m / radius_m, latitude = degToRad(from.latitude_deg);
+  const double sin_latitude =
+      std::sin(latitude) * std::cos(arc) + std::cos(latitude) * std::sin(arc) * std::cos(azimuth_rad);
+  const double longitude = std::atan2(std::sin(azimuth_rad) * std::sin(arc) * std::cos(latitude),
+                                      std::cos(arc) - std::sin(latitude) * sin_latitude);
+  return {radToDeg(std::asin(std::clamp(sin_latitude, -1.0, 1.0))), from.longitude_deg + radToDeg(longitude)};
+}
+
+RefractivityAlongPath byPlace(const RefractivityField& field, const Site& site, double azimuth_rad) {
+  const Place origin{site.latitude_deg, site.longitude_deg};
+  double farthest_m = 0;
+  for (const Place& place : field.places) {
+    farthest_m = std::max(farthest_m, distance_m(origin, place, site.earth_radius_m));
+  }
+  const double step_m = std::max(kReach * farthest_m, 1.0) / kIntervals;
+  std::vector<double> ranges_m, weights(field.places.size());
+  std::vector<RefractivityProfile> profiles;
+  for (int i = 0; i <= kIntervals; ++i) {
+    ranges_m.push_back(i * step_m);
+    const Place here = placeAt(origin, azimuth_rad, ranges_m.back(), site.earth_radius_m);
+    for (std::size_t p = 0; p < weights.size(); ++p) {
+      weights[p] = std::pow(std::max(distance_m(here, field.places[p], site.earth_radius_m), kNearest_m), -2);
+    }
+    profiles.push_back(meanProfile(field.profiles, weights));
+  }
+  return {std::move(ranges_m), std::move(profiles)};
+}
+
+RefractivityAlongPath alongPath(const RefractivityField& field, const Site& site, double azimuth_rad) {
+  const RefractivityAlongPath air = field.profiles.size() == 1 ? RefractivityAlongPath(field.profiles.front())
+                                    : field.ranges_m.empty()
+                                        ? byPlace(field, site, azimuth_rad)
+                                        : RefractivityAlongPath(field.ranges_m, field.profiles);
+  if (field.evaporation_duct_m == 0) return air;
+  std::vector<RefractivityProfile> profiles;
+  for (const RefractivityProfile& profile : air.profiles())
+    profiles.push_back(withEvaporationDuct(profile, field.evaporation_duct_m));
+  return {air.ranges_m(), std::move(profiles)};
+}
+
+}  // namespace
+
+RefractivityAlongPath pathAir(const Atmosphere& atmosphere, const Site& site, double azimuth_rad) {
+  if (atmosphere.refractivity) return alongPath(atmosphere.refractivity->air, site, azimuth_rad);
+  return linearRefractivity(kFlatteningGradient_m / atmosphere.k_factor);
+}
+
+std::vector<RefractivityAlongPath> pathAirs(const Atmosphere& atmosphere, const Site& site,
+                                            double azimuth_rad) {
+  std::vector<RefractivityAlongPath> airs;
+  if (atmosphere.refractivity) {
+    for (const RefractivityField& member : atmosphere.refractivity->members) {
+      airs.push_back(alongPath(member, site, azimuth_rad));
+    }
+  }
+  if (airs.empty()) airs.push_back(pathAir(atmosphere, site, azimuth_rad));
+  return airs;
+}
+
+}  // namespace emscape::propagation

@@ -1,0 +1,246 @@
+#include "propagation/parabolic_equation/plan.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/error.h"
+#include "propagation/parabolic_equation/path_air.h"
+
+namespace emscape::propagation {
+namespace {
+
+constexpr double kAngle_rad = 3 * kPi / 180, kSmallestAngle_rad = kPi / 180;
+constexpr int kPlainIntervals = 4096, kTerrainIntervals = 2048;  // the domain is no higher than they afford
+constexpr int kDearIntervals = 8192;                             // for a larger angle no more than this
+constexpr int kMaxAzimuths = 1584;
+constexpr double kFinestStep_m = 50;  // over places that are closer
+constexpr int kMaxHeights = 1024, kMaxRanges = 2000;
+constexpr double kUsablePart = 0.8;  // of the height below the absorber
+
+void require(const ModelLimit& limit, double value_si) {
+  if (!limit.holds(value_si)) throw Error(ErrorCode::bad_input, outsideMessage(limit, value_si));
+}
+
+/// Height (m) that so many height steps afford at an angle: automaticGrid().
+double affordable_m(const EmitterInputs& emitter, double angle_rad, int intervals) {
+  const double step_m = kPeEvenBand * wavelength_m(emitter.frequency_hz) / (2 * std::sin(angle_rad));
+  return intervals * step_m * kPeUsable * (1 - kPeAbsorberPart);
+}
+
+/// The largest angle, of those up to `angle_rad`, at which so many height steps afford a height.
+double affordableAngle_rad(const EmitterInputs& emitter, double angle_rad, double height_m, int intervals) {
+  const double part = affordable_m(emitter, angle_rad, intervals) / height_m;
+  return part >= 1 ? angle_rad : std::asin(std::sin(angle_rad) * part);
+}
+
+double planAngle_rad(const EmitterInputs& emitter, double height_m, std::string& why) {
+  const double given_deg = emitter.settings.parabolic_equation.max_angle_deg;
+  why = "given";
+  if (given_deg > 0) return degToRad(given_deg);
+  why = "for two rays between antennas near the ground";
+  double angle_rad = affordableAngle_rad(emitter, kAngle_rad, height_m, kDearIntervals);
+  if (angle_rad == kAngle_rad) return angle_rad;
+  angle_rad = std::max(angle_rad, kSmallestAngle_rad);
+  angle_rad = affordableAngle_rad(emitter, angle_rad, height_m, kPeMaxIntervals);
+  why = fmt::format("what the height steps afford up to {:.4g} m above the lowest ground", height_m);
+  return angle_rad;
+}
+
+/// Time (s) on one core per azimuth, step and height (docs/parabolic-equation.md, Speed).
+double secondsPerPoint(bool has_terrain, bool is_perfect) {
+  return has_terrain ? 158e-9 : is_perfect ? 10e-9 : 28e-9;
+}
+
+bool areSameAir(const std::vector<RefractivityAlongPath>& air) {
+  return std::all_of(air.begin(), air.end(), [&](const auto& other) { return other == air.front(); });
+}
+
+void planAzimuths(const PathInputs& inputs, const RadialInputs& radials, PePlan& plan) {
+  const double given = inputs.emitter.settings.parabolic_equation.azimuths;
+  const double arc_rad = 2 * std::max(radials.spacing_m, plan.grid.range_step_m) / radials.farthest_m;
+  const double automatic =
+      std::clamp(std::ceil(radials.azimuth_span_rad / arc_rad), 8.0, double(kMaxAzimuths));
+  std::string why = "two places apart at the far end, at most " + std::to_string(kMaxAzimuths) + " around";
+  plan.is_around = radials.isAround();
+  plan.azimuths = int(given > 0 ? given : automatic);
+  if (given > 0) why = "given";
+  plan.first_azimuth_rad = radials.first_azimuth_rad;
+  const int gaps = plan.is_around ? plan.azimuths : std::max(plan.azimuths - 1, 1);
+  plan.azimuth_step_rad = radials.azimuth_span_rad / gaps;
+  for (int i = 0; i < plan.azimuths; ++i) {
+    std::vector<RefractivityAlongPath> members =
+        pathAirs(inputs.emitter.atmosphere, inputs.site, plan.azimuth_rad(i));
+    plan.air.resize(members.size());
+    for (std::size_t m = 0; m < members.size(); ++m) plan.air[m].push_back(std::move(members[m]));
+  }
+  if (std::all_of(plan.air.begin(), plan.air.end(), areSameAir)) {
+    for (std::vector<RefractivityAlongPath>& member : plan.air) member.resize(1);
+    if (!radials.has_terrain) {
+      plan.azimuths = 1;
+      plan.is_around = true;
+      why = "smooth ground and the same air in all directions";
+    }
+  }
+  plan.choices.push_back({"azimuths", fmt::format("{}: {}", plan.azimuths, why)});
+}
+
+void planCells(const RadialInputs& radials, PePlan& plan) {
+  RadialCells& cells = plan.cells;
+  cells.above_ground = radials.above_ground;
+  const double spacing_m = std::max(radials.spacing_m, radials.farthest_m / kMaxRanges);
+  cells.range_step_m = plan.grid.range_step_m * std::max(1.0, std::round(spacing_m / plan.grid.range_step_m));
+  cells.ranges = int(std::ceil(radials.farthest_m / cells.range_step_m)) + 1;
+  const double lowest_m = radials.above_ground ? 0 : radials.lowest_ground_msl_m;
+  plan.top_m = lowest_m + kUsablePart * plan.grid.usableTop_m();
+  const double highest_m = std::min(radials.highest_m, plan.top_m);
+  const double bottom_m = std::min(radials.lowest_m, plan.top_m - radials.height_step_m);
+  cells.height_step_m = std::max(radials.height_step_m, (highest_m - bottom_m) / (kMaxHeights - 2));
+  cells.bottom_msl_m = bottom_m - cells.height_step_m / 2;
+  cells.heights = int(std::ceil((highest_m - bottom_m) / cells.height_step_m)) + 2;
+  plan.choices.push_back(
+      {"cells", fmt::format("{:.4g} m in range, {:.4g} m in height ({} x {}), above {}: the places' spacing",
+                            cells.range_step_m, cells.height_step_m, cells.ranges, cells.heights,
+                            cells.above_ground ? "the ground" : "mean sea level")});
+}
+
+}  // namespace
+
+double trappingTop_m(const RefractivityAlongPath& air) {
+  double top_m = 0;
+  const std::vector<RefractivityLevel> levels = air.at(0).levels;
+  for (std::size_t i = 1; i < levels.size(); ++i) {
+    if (levels[i].m_units < levels[i - 1].m_units) top_m = levels[i].height_msl_m;
+  }
+  return top_m;
+}
+
+RefractivityAlongPath highestDuct(const std::vector<RefractivityAlongPath>& airs) {
+  return *std::max_element(airs.begin(), airs.end(),
+                           [](const auto& a, const auto& b) { return trappingTop_m(a) < trappingTop_m(b); });
+}
+
+AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath& air,
+                       const DomainNeeds& needs, double& max_angle_rad) {
+  const ParabolicEquationSettings& settings = emitter.settings.parabolic_equation;
+  require(kPeFrequency, emitter.frequency_hz);
+  std::string angle_why;
+  double height_m = std::max(needs.required_m, 1.5 * trappingTop_m(air));
+  if (needs.is_single) height_m = std::max(height_m, needs.wanted_m);
+  if (settings.top_m > 0) height_m = needs.is_single ? std::max(settings.top_m, height_m) : settings.top_m;
+  max_angle_rad = planAngle_rad(emitter, height_m, angle_why);
+  if (!needs.is_single && settings.top_m <= 0) {
+    const int intervals = needs.post_spacing_m > 0 ? kTerrainIntervals : kPlainIntervals;
+    height_m = std::max(height_m, std::min(needs.wanted_m, affordable_m(emitter, max_angle_rad, intervals)));
+  }
+  if (height_m < needs.required_m) {
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format("'top_m' is {:.4g} m; the antenna and the ground along the azimuths need at least "
+                    "{:.4g} m above the lowest ground",
+                    settings.top_m, needs.required_m));
+  }
+  MarchNeeds march;
+  march.frequency_hz = emitter.frequency_hz;
+  march.max_height_m = height_m;
+  march.max_angle_rad = max_angle_rad;
+  march.post_spacing_m = needs.post_spacing_m;
+  march.traps = air.traps();
+  AutomaticGrid found = automaticGrid(march);
+  found.choices.insert(
+      found.choices.begin(),
+      {"largest angle", fmt::format("{:.3g} degrees: {}", radToDeg(max_angle_rad), angle_why)});
+  if (settings.range_step_m > 0) {
+    const double largest_m = absorberStep_m(found.grid);
+    if (settings.range_step_m > largest_m) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("'range_step_m' is {:.4g} m; the absorber allows at most {:.4g} m",
+                              settings.range_step_m, largest_m));
+    }
+    found.grid.range_step_m = settings.range_step_m;
+    found.choices.back().text = fmt::format("{:.4g} m: given", settings.range_step_m);
+  } else if (const double places_m = std::max(needs.spacing_m, kFinestStep_m);
+             needs.spacing_m > 0 && places_m < found.grid.range_step_m) {
+    found.grid.range_step_m = places_m;
+    found.choices.back().text =
+        fmt::format("{:.4g} m: the places' spacing, at least {:g} m", places_m, kFinestStep_m);
+  }
+  require(kPeDistance, needs.farthest_m);
+  require(kPeSteps, std::ceil(needs.farthest_m / found.grid.range_step_m));
+  return found;
+}
+
+std::vector<PeSurface> planSurfaces(const EmitterInputs& emitter, const RefractivityAlongPath& air) {
+  const RefractivityProfile profile = air.at(0);
+  PeSurface surface;
+  surface.ground = groundConstants(emitter.ground, emitter.frequency_hz);
+  surface.roughness_m = emitter.ground.roughness_m;
+  surface.roughness_model = emitter.settings.parabolic_equation.roughness;
+  double deficit_m_units = 0;
+  const double surface_m_units = profile.at(0);
+  for (const RefractivityLevel& level : profile.levels)
+    deficit_m_units = std::max(deficit_m_units, surface_m_units - level.m_units);
+  if (deficit_m_units > 0) surface.grazing_rad = std::sqrt(2e-6 * deficit_m_units);
+  std::vector<PeSurface> surfaces;
+  if (emitter.polarization != Polarization::vertical) {
+    surface.polarization = LinearPolarization::horizontal;
+    surface.perfect = surface.roughness_m == 0;
+    surfaces.push_back(surface);
+  }
+  if (emitter.polarization != Polarization::horizontal) {
+    surface.polarization = LinearPolarization::vertical;
+    surface.perfect = false;
+    surfaces.push_back(surface);
+  }
+  return surfaces;
+}
+
+PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
+  constexpr double kClear = 1.1, kMargin_m = 30;  // between the antenna or a summit and the top of the cells
+  RadialInputs radials = given;
+  // Places of a map are points: close to the ground the field follows the terrain's posts, not the pixels.
+  if (radials.above_ground && radials.has_terrain)
+    radials.spacing_m = std::min(radials.spacing_m, 3 * inputs.post_spacing_m);
+  const double source_msl_m = inputs.site.height_msl_m, lowest_m = radials.lowest_ground_msl_m;
+  const double highest_m = std::max(radials.highest_ground_msl_m, source_msl_m);
+  DomainNeeds needs;
+  needs.required_m = kClear * (highest_m - lowest_m) + kMargin_m;
+  needs.wanted_m = radials.highest_m + 2 * radials.height_step_m - (radials.above_ground ? 0 : lowest_m);
+  needs.post_spacing_m = radials.has_terrain ? inputs.post_spacing_m : 0;
+  needs.farthest_m = radials.farthest_m;
+  needs.spacing_m = radials.spacing_m;
+
+  PePlan plan;
+  const RefractivityAlongPath air =
+      highestDuct(pathAirs(inputs.emitter.atmosphere, inputs.site, radials.first_azimuth_rad));
+  AutomaticGrid automatic = planGrid(inputs.emitter, air, needs, plan.max_angle_rad);
+  plan.grid = automatic.grid;
+  plan.choices = std::move(automatic.choices);
+  plan.surfaces = planSurfaces(inputs.emitter, air);
+  planCells(radials, plan);
+  planAzimuths(inputs, radials, plan);
+  plan.min_range_m = std::max({2 * plan.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz),
+                               2 * plan.cells.range_step_m});
+  plan.choices.push_back(
+      {"extent",
+       fmt::format("from {:.4g} m, to {:.4g} m above {}: nearer, higher and above the largest angle "
+                   "other models speak",
+                   plan.min_range_m, plan.top_m, plan.cells.above_ground ? "the ground" : "mean sea level")});
+  const double lanes = 8.0 * std::ceil(plan.azimuths / 8.0);
+  const auto members = double(plan.air.size());
+  const double points = members * lanes * double(plan.surfaces.size()) *
+                        std::ceil(plan.cells.ranges * plan.cells.range_step_m / plan.grid.range_step_m) *
+                        plan.grid.intervals;
+  require(kPeWork, points);
+  const double cells = members * plan.azimuths * plan.cells.ranges * plan.cells.heights;
+  require(kPeCells, cells);
+  plan.choices.push_back(
+      {"cost",
+       fmt::format("{:.3g} million steps of a height, about {:.2g} s on one core; {:.0f} MiB of cells",
+                   points / 1e6, points * secondsPerPoint(radials.has_terrain, plan.surfaces.back().perfect),
+                   cells * sizeof(float) / (1 << 20))});
+  return plan;
+}
+
+}  // namespace emscape::propagation

@@ -1,0 +1,32 @@
+/// Inputs of models that march outwards from an emitter, one azimuth at a time ("per radial").
+#pragma once
+
+#include <functional>
+
+#include "emscape/base/units.h"
+
+namespace emscape::propagation {
+
+/// Where the field of an emitter is wanted, and the ground around it.
+struct RadialInputs {
+  double farthest_m = 0;              ///< along the ground
+  double first_azimuth_rad = 0;       ///< clockwise from north
+  double azimuth_span_rad = 2 * kPi;  ///< from the first azimuth clockwise; 2 pi: all around
+  double spacing_m = 0;               ///< of the places along the ground; 0: one place
+
+  /// Heights of the places: above mean sea level, or above the ground.
+  bool above_ground = false;
+  double lowest_m = 0, highest_m = 0;
+  double height_step_m = 0;  ///< between them, > 0
+
+  bool has_terrain = false;                                  ///< false: a smooth earth at mean sea level
+  double site_ground_msl_m = 0;                              ///< at the emitter
+  double lowest_ground_msl_m = 0, highest_ground_msl_m = 0;  ///< along the azimuths
+  /// Reads the ground (m above mean sea level) at 0, 1, ... count - 1 steps along an azimuth; NaN where it is
+  /// missing. For several threads at once. Not called without terrain.
+  std::function<void(double azimuth_rad, double step_m, int count, float* ground_msl_m)> ground;
+
+  bool isAround() const { return azimuth_span_rad >= 2 * kPi; }
+};
+
+}  // namespace emscape::propagation

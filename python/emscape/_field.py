@@ -1,0 +1,269 @@
+"""The solver and its fields."""
+
+from __future__ import annotations
+
+import datetime
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._native import native
+from ._scenario import Scenario
+
+if TYPE_CHECKING:
+    import pyvista
+    import xarray
+
+
+class Field:
+    """The field of one instant: a volume per quantity, on one grid.
+
+    Arrays have the axes (z, y, x), in C order: x runs fastest, towards east; y towards north; z upwards. Made by
+    ``Solver.at`` and ``read``. Later updates of the solver do not change it, and it outlives the solver.
+    """
+
+    __slots__ = ("_handle", "_grid")
+
+    def __init__(self, handle: native.Field) -> None:
+        self._handle = handle
+        self._grid: dict[str, Any] | None = None
+
+    @property
+    def grid(self) -> dict[str, Any]:
+        """The grid of the voxels.
+
+        ``dims``, ``spacing_m`` and ``first_center_m`` along (x, y, z); of a grid with a position on the earth also ``frame``
+        ("altitude": z is above mean sea level; "enu": z is along the vertical at the origin), and ``latitude_deg``,
+        ``longitude_deg``, ``height_msl_m`` of its origin, where x and y are 0.
+        """
+        if self._grid is None:
+            self._grid = self._handle.grid()
+        return self._grid
+
+    @property
+    def quantities(self) -> list[str]:
+        """Names of the volumes: the quantity, with ":" and the emitter or band where it is not of all together."""
+        return self._handle.names
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along (z, y, x)."""
+        x, y, z = self.grid["dims"]
+        return z, y, x
+
+    @property
+    def time_s(self) -> float:
+        """Time (s since the scenario's epoch)."""
+        return self._handle.time_s
+
+    @property
+    def time(self) -> datetime.datetime | None:
+        """Time (UTC); None without an epoch."""
+        epoch = self.scenario.epoch if self.scenario is not None else None
+        return epoch + datetime.timedelta(seconds=self.time_s) if epoch is not None else None
+
+    @property
+    def scenario(self) -> Scenario | None:
+        """The scenario; None for a field that was read from a file."""
+        handle = self._handle.scenario
+        return Scenario(handle) if handle is not None else None
+
+    @property
+    def is_on_gpu(self) -> bool:
+        """True if the values are in the memory of a GPU; ``numpy`` then copies them, once."""
+        return self._handle.is_on_gpu
+
+    def _name(self, quantity: str | None) -> str:
+        return quantity if quantity is not None else self.quantities[0]
+
+    def _centers(self, axis: int) -> npt.NDArray[np.float64]:
+        grid = self.grid
+        first, step, count = grid["first_center_m"][axis], grid["spacing_m"][axis], grid["dims"][axis]
+        return np.asarray(first + np.arange(count) * step, dtype=np.float64)
+
+    @property
+    def x_m(self) -> npt.NDArray[np.float64]:
+        """Voxel centres along x (east, m): shape (x,)."""
+        return self._centers(0)
+
+    @property
+    def y_m(self) -> npt.NDArray[np.float64]:
+        """Voxel centres along y (north, m): shape (y,)."""
+        return self._centers(1)
+
+    @property
+    def z_m(self) -> npt.NDArray[np.float64]:
+        """Voxel centres along z (m; above mean sea level in the frame "altitude"): shape (z,)."""
+        return self._centers(2)
+
+    def numpy(self, quantity: str | None = None) -> npt.NDArray[np.float32]:
+        """The values: (z, y, x) float32, in the quantity's unit; read-only, without a copy, kept alive by the array.
+
+        Voxels below ground or without a known field hold the floor (``info``); ``mask`` tells which.
+
+        :param quantity: None: the first
+        Raises UsageError for a quantity that the field does not have.
+        """
+        return self._handle.array(self._name(quantity))
+
+    def dlpack(self, quantity: str | None = None) -> Any:
+        """The values as an object with ``__dlpack__``, for ``numpy.from_dlpack``, ``torch.from_dlpack`` and the like: (z, y, x)
+        float32, read-only, without a copy, in the host's memory.
+        """
+        return self._handle.dlpack(self._name(quantity))
+
+    def __dlpack__(self, **arguments: Any) -> Any:
+        """The first quantity by DLPack."""
+        return self.dlpack().__dlpack__(**arguments)
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        """DLPack's type and number of the device of ``dlpack``."""
+        device: tuple[int, int] = self.dlpack().__dlpack_device__()
+        return device
+
+    def first_valid(self, quantity: str | None = None) -> npt.NDArray[np.uint16] | None:
+        """The lowest z index that holds a field, per column: (y, x) uint16; the number of voxels along z: none does. None: no
+        voxel is masked.
+        """
+        return self._handle.first_valid(self._name(quantity))
+
+    def mask(self, quantity: str | None = None) -> npt.NDArray[np.bool_]:
+        """True in voxels without a known field, such as those below ground: (z, y, x)."""
+        first = self.first_valid(quantity)
+        if first is None:
+            return np.zeros(self.shape, dtype=np.bool_)
+        return np.asarray(np.arange(self.shape[0])[:, np.newaxis, np.newaxis] < first[np.newaxis])
+
+    def ground_msl_m(self) -> npt.NDArray[np.float32] | None:
+        """Height of the ground above mean sea level (m) below the columns' centres: (y, x); NaN where it is unknown. None
+        without terrain, and for fields from files.
+        """
+        return self._handle.ground()
+
+    def info(self, quantity: str | None = None) -> dict[str, Any]:
+        """What the values are: quantity, unit, time_s, time_utc, floor, range_min, range_max, categorical, extra."""
+        return self._handle.info(self._name(quantity))
+
+    def geodetic(self, x_m: float, y_m: float, z_m: float) -> tuple[float, float, float]:
+        """Latitude (deg), longitude (deg) and height above the WGS84 ellipsoid (m) of a position of the grid's frame (m).
+
+        Raises UsageError for a grid without a position on the earth.
+        """
+        return self._handle.geodetic(x_m, y_m, z_m)
+
+    def write(self, file: str | os.PathLike[str], quantities: Sequence[str] = ()) -> None:
+        """Writes a volume file, by its ending: .vdb, .nvdb, .vti, .raw. It appears when it is complete.
+
+        :param quantities: empty: all; formats of one volume take one
+        Raises InputError for an unknown ending or too many quantities, OtherError if it cannot be written.
+        """
+        self._handle.write(os.fspath(file), list(quantities))
+
+    def to_xarray(self, quantities: Sequence[str] = ()) -> xarray.Dataset:
+        """The field as a dataset of (z, y, x) with coordinates, units and projection by the CF conventions; NaN in masked
+        voxels. The values are copied. Needs xarray.
+
+        :param quantities: empty: all
+        """
+        from ._arrays import dataset_of
+
+        return dataset_of(self, quantities)
+
+    def to_pyvista(self, quantities: Sequence[str] = ()) -> pyvista.ImageData:
+        """The field as point data of an ImageData whose points are the voxels' centres (frame metres). Needs pyvista.
+
+        :param quantities: empty: all
+        """
+        try:
+            import pyvista
+        except ImportError as missing:
+            raise ImportError("to_pyvista() needs pyvista: pip install 'emscape[view]'") from missing
+        grid = self.grid
+        image = pyvista.ImageData(dimensions=grid["dims"], spacing=grid["spacing_m"], origin=grid["first_center_m"])
+        for name in quantities or self.quantities:
+            image.point_data[name] = self.numpy(name).ravel()  # VTK's order of points is ours: x fastest
+        return image
+
+    def __repr__(self) -> str:
+        z, y, x = self.shape
+        return f"<emscape.Field t = {self.time_s:g} s: {x} x {y} x {z} voxels, {', '.join(self.quantities)}>"
+
+
+class Solver:
+    """Computes the field of a scenario at any time; what neither time nor edits change is kept.
+
+    Threads may share it: calls follow one another, and Python is not held up by them.
+    """
+
+    __slots__ = ("_handle",)
+
+    def __init__(
+        self,
+        scenario: Scenario,
+        backend: str = "auto",
+        threads: int = 0,
+        *,
+        quantities: Sequence[str] = (),
+        allow_missing_terrain: bool = False,
+        cache_mib: float = 0,
+        move_tolerance_m: float = 0.5,
+    ) -> None:
+        """Reads the terrain and prepares the grid.
+
+        :param backend: "auto" (a GPU if there is a usable one), "cpu" or "cuda"
+        :param threads: of the CPU; 0: one per core, or as many as the caller's oneTBB arena has
+        :param quantities: names; empty: those of the scenario
+        :param allow_missing_terrain: columns over holes of the terrain are masked instead of an error
+        :param cache_mib: bound on what is kept of the emitters (MiB); 0: none
+        :param move_tolerance_m: an emitter that moved less than this (m) with time keeps its geometry
+        Raises InputError where terrain is missing, DeviceError for a GPU that is not there or lacks memory.
+        """
+        self._handle = native.Solver(
+            scenario._handle, backend, threads, list(quantities), allow_missing_terrain, cache_mib, move_tolerance_m
+        )
+
+    @property
+    def scenario(self) -> Scenario:
+        """The scenario of the last field."""
+        return Scenario(self._handle.scenario)
+
+    @property
+    def backend(self) -> str:
+        """Where fields are computed: "cpu" or "cuda"."""
+        return self._handle.backend
+
+    @property
+    def quantities(self) -> list[str]:
+        """Names of the volumes of a field."""
+        return self._handle.quantities
+
+    @property
+    def warnings(self) -> list[str]:
+        """Warnings of the models so far, each once with its count."""
+        return self._handle.warnings()
+
+    def at(self, time_s: float, scenario: Scenario | None = None) -> Field:
+        """The field at a time.
+
+        Only what changed since the last call is computed: an emitter that has moved, a beam that has turned, or what an edit
+        concerns.
+
+        :param time_s: seconds since the epoch
+        :param scenario: an edited scenario (``Scenario.with_set``), from now on; None: the last one
+        Raises InputError for a platform below ground, missing terrain, or a value that a model refuses; DeviceError.
+        """
+        return Field(self._handle.at(time_s, scenario._handle if scenario is not None else None))
+
+    def __repr__(self) -> str:
+        return f"<emscape.Solver of {self.scenario.name!r} on {self.backend}>"
+
+
+def read(file: str | os.PathLike[str]) -> Field:
+    """Reads a volume file (.vdb, .nvdb, .vti, .raw) with all its quantities.
+
+    Raises InputError.
+    """
+    return Field(native.read(os.fspath(file)))

@@ -1,0 +1,23 @@
+"""The extension module, loaded when it is first needed: it brings GDAL and OpenVDB with it."""
+
+from __future__ import annotations
+
+import atexit
+import logging
+import sys
+
+from . import _emscape as native
+
+__all__ = ["native"]
+
+_LEVELS = (logging.DEBUG, logging.INFO, logging.WARNING)
+_logger = logging.getLogger("emscape")
+
+
+def _log(level: int, message: str) -> None:
+    _logger.log(_LEVELS[level], message)
+
+
+native.set_log(_log)
+native.set_program_command([sys.executable, "-m", "emscape"])
+atexit.register(native.set_log, None)

@@ -1,0 +1,184 @@
+"""Scenarios."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import logging
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Union
+
+from ._errors import Problem, ScenarioError
+from ._native import native
+
+Times = Union[str, float, Sequence[float]]
+"""Times in seconds since the epoch: "BEGIN:END:STEP", "BEGIN:END" (the scenario's step), one number, or a rising sequence of
+numbers. An empty string: all of the scenario's clock."""
+
+
+def _yaml(value: Any) -> str:
+    """A value as the text of an edit: JSON, which is YAML."""
+    if isinstance(value, (datetime.datetime, datetime.date)):
+        return json.dumps(value.isoformat())
+    if hasattr(value, "tolist"):  # numpy's scalars and arrays
+        value = value.tolist()
+    return json.dumps(value, ensure_ascii=False)
+
+
+class Scenario:
+    """A scenario: emitters, platforms, terrain and time. It does not change; ``with_set`` gives another one.
+
+    Made by ``load``. It can be pickled: it is read again from its file, with its edits.
+    """
+
+    __slots__ = ("_handle",)
+
+    def __init__(self, handle: native.Scenario) -> None:
+        self._handle = handle
+
+    @property
+    def name(self) -> str:
+        """Name of the scenario."""
+        return self._handle.name
+
+    @property
+    def file(self) -> str:
+        """File from which it was read."""
+        return self._handle.file
+
+    @property
+    def hash(self) -> str:
+        """FNV-1a (64 bits, hex) of its text with the edits and of the files that it names."""
+        return self._handle.hash
+
+    @property
+    def epoch(self) -> datetime.datetime | None:
+        """Time 0 (UTC); None: the scenario has no epoch."""
+        text = self._handle.epoch_utc
+        return datetime.datetime.fromisoformat(text.replace("Z", "+00:00")) if text else None
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the scenario's clock (s)."""
+        return self._handle.duration_s
+
+    @property
+    def step_s(self) -> float:
+        """Step of the scenario's clock (s)."""
+        return self._handle.step_s
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along (z, y, x): the shape of a field's arrays."""
+        x, y, z = self._handle.dims
+        return z, y, x
+
+    @property
+    def size_m(self) -> tuple[float, float, float]:
+        """Size of the region along x (east), y (north) and z (up), in metres."""
+        return self._handle.size_m
+
+    @property
+    def quantities(self) -> list[str]:
+        """Names of the quantities that the scenario asks for; each ends in its unit."""
+        return self._handle.quantities
+
+    @property
+    def emitters(self) -> list[str]:
+        """Names of the emitters, in the order of the file."""
+        return self._handle.emitters
+
+    @property
+    def platforms(self) -> list[str]:
+        """Names of the platforms, in the order of the file."""
+        return self._handle.platforms
+
+    @property
+    def receivers(self) -> list[str]:
+        """Names of the receivers on platforms, in the order of the file."""
+        return self._handle.receivers
+
+    @property
+    def targets(self) -> list[str]:
+        """Names of the targets, in the order of the file."""
+        return self._handle.targets
+
+    @property
+    def edits(self) -> dict[str, str]:
+        """What ``with_set`` changed since the file was read: path to value (YAML)."""
+        return dict(self._handle.edits)
+
+    @property
+    def files(self) -> list[str]:
+        """The files that it was read from: its own, tracks, antennas, elevation."""
+        return self._handle.files
+
+    def times(self, times: Times = "") -> list[float]:
+        """Times as a list of seconds since the epoch.
+
+        Raises UsageError for a text that is no time.
+        """
+        if isinstance(times, str):
+            return self._handle.times(times)
+        values: Any = times  # numpy's arrays and numbers, too
+        return [float(time_s) for time_s in values] if hasattr(values, "__iter__") else [float(values)]
+
+    def positions(self, time_s: float = 0.0) -> dict[str, tuple[float, float, float]]:
+        """Positions of all platforms at a time (s): name to (latitude deg, longitude deg, height above mean sea level m)."""
+        return dict(self._handle.positions(time_s))
+
+    def with_set(self, edits: Mapping[str, Any]) -> Scenario:
+        """A scenario with other values; this one is not changed.
+
+        Paths are those of the command line's ``--set``: keys of the scenario format with points between them, items of lists
+        by name or index: ``{"emitters.jammer.power_w": 500, "region.dims": [100, 100, 50]}``. None removes an optional key.
+        All edits are made before the result is checked.
+
+        Raises ScenarioError, with the edit as the place of a fault.
+        """
+        return _checked(*self._handle.edit([(path, _yaml(value)) for path, value in edits.items()]))
+
+    def save(self, file: str | os.PathLike[str]) -> None:
+        """Writes the scenario's text with its edits; comments and order are kept.
+
+        Raises OtherError if the file cannot be written.
+        """
+        self._handle.save(os.fspath(file))
+
+    def __repr__(self) -> str:
+        z, y, x = self.shape
+        return f"<emscape.Scenario {self.name!r}: {x} x {y} x {z} voxels, {len(self.emitters)} emitters, {self.duration_s:g} s>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _load_text, (self.file, self._handle.edits)
+
+
+def _checked(handle: native.Scenario | None, rows: Iterable[tuple[str, int, int, str, str]]) -> Scenario:
+    errors = []
+    for file, line, column, severity, message in rows:
+        if severity == "error":
+            errors.append(Problem(file, line, column, message))
+        else:
+            logging.getLogger("emscape").warning("%s:%d:%d: %s", file, line, column, message)
+    if handle is None:
+        raise ScenarioError(errors)
+    return Scenario(handle)
+
+
+def _load_text(file: str, edits: list[tuple[str, str]]) -> Scenario:
+    return _checked(*native.load(file, edits))
+
+
+def load(file: str | os.PathLike[str], edits: Mapping[str, Any] | None = None) -> Scenario:
+    """Reads a scenario (YAML or JSON) and the files that it names; elevation files are read when they are needed.
+
+    :param edits: as of ``Scenario.with_set``
+    Raises ScenarioError, whose ``problems`` lists all faults with file, line and column.
+    """
+    return _load_text(os.fspath(file), [(path, _yaml(value)) for path, value in (edits or {}).items()])
+
+
+def path_step(name: str) -> str:
+    """A name as a part of a path of edits: in quotes where it needs them, as in ``emitters."a=b".power_w``."""
+    return native.path_step(name)

@@ -1,0 +1,321 @@
+"""What-if and explanations: the command line's subcommands as functions. Results are the JSON of the command line."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Union
+
+from ._errors import InputError
+from ._native import native
+from ._progress import Progress, callback
+from ._scenario import Scenario, Times, _yaml, load
+
+if TYPE_CHECKING:
+    import xarray
+
+Json = dict[str, Any]
+_Option = Union[str, float, bool, Sequence[Any], None]
+
+
+def command(*arguments: str, progress: Progress = None) -> Any:
+    """Runs a subcommand in this process and returns the JSON that ``emscape SUBCOMMAND ... --json`` prints.
+
+    :param arguments: as on the command line: ``command("info", "out/jacksboro_0001.vdb")``
+    Raises Error: UsageError for arguments that cannot be parsed, else as the command's exit status says. A check that fails
+    is a result.
+    """
+    _, text = native.command(list(arguments), callback(progress))
+    return json.loads(text) if text.strip() else None
+
+
+def _options(options: Mapping[str, _Option]) -> list[str]:
+    """Options of the command line; None and False are left out, lists have commas."""
+    words: list[str] = []
+    for name, value in options.items():
+        if value is None or value is False or value == "" or (isinstance(value, (list, tuple)) and not value):
+            continue
+        words.append("--" + name)
+        if isinstance(value, str):
+            words[-1] += "=" + value
+        elif value is not True:
+            items = value if isinstance(value, Sequence) else [value]
+            words[-1] += "=" + ",".join(item if isinstance(item, str) else repr(float(item)) for item in items)
+    return words
+
+
+def _times(scenario: Scenario, times: Times | None) -> str | None:
+    """Times as a text of the command line, which takes evenly spaced ones."""
+    if times is None or isinstance(times, str):
+        return times
+    values = scenario.times(times)
+    if len(values) == 1:
+        return repr(values[0])
+    step = values[1] - values[0]
+    if any(abs(values[0] + i * step - value) > 1e-9 * max(1.0, abs(value)) for i, value in enumerate(values)):
+        raise ValueError("times: evenly spaced ones only, or a text BEGIN:END:STEP")
+    return f"{values[0]!r}:{values[-1]!r}:{step!r}"
+
+
+def _subject(scenario: Scenario) -> list[str]:
+    """A scenario as arguments: its file, which must still be what was loaded, and its edits."""
+    edits = scenario._handle.edits
+    current, _ = native.load(scenario.file, edits)
+    if current is None or current.hash != scenario.hash:
+        raise InputError("has changed since the scenario was loaded from it", scenario.file)
+    words = [scenario.file]
+    for path, value in edits:
+        words += ["--set", f"{path}={value}"]
+    return words
+
+
+def _run(verb: str, scenario: Scenario, options: Mapping[str, _Option], progress: Progress) -> Any:
+    return command(verb, *_subject(scenario), *_options(options), progress=progress)
+
+
+def _run_into_file(verb: str, scenario: Scenario, options: Mapping[str, _Option], progress: Progress) -> Json:
+    """The JSON file that a subcommand writes."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, verb + ".json")
+        _run(verb, scenario, {**options, "output": file}, progress)
+        with open(file, encoding="utf-8") as stream:
+            result: Json = json.load(stream)
+            return result
+
+
+def profile(
+    scenario: Scenario,
+    emitter: str,
+    to: tuple[float, float, float],
+    *,
+    agl: bool = False,
+    time_s: float = 0.0,
+    models: Sequence[str] = (),
+) -> Json:
+    """Explains one path, term by term, from the transmitter's power to the power density at a point.
+
+    :param to: latitude (deg), longitude (deg), height (m above mean sea level, with ``agl`` above the ground)
+    :param models: propagation models to compare with the emitter's own
+    :return: geometry, terms, obstacles and ``verdict``, a sentence with the dominant cause; lengths in m, angles in deg
+    Raises UsageError for an unknown emitter or a point outside the earth, InputError for one below ground.
+    """
+    place = ",".join(repr(float(value)) for value in to)
+    options: dict[str, _Option] = {"emitter": emitter, "to": place, "agl": agl, "time": time_s, "model": list(models)}
+    result: Json = _run("profile", scenario, options, None)
+    return result
+
+
+def link(
+    scenario: Scenario,
+    *,
+    emitters: Sequence[str] = (),
+    receivers: Sequence[str] = (),
+    targets: Sequence[str] = (),
+    times: Times | None = None,
+    model: str = "",
+    progress: Progress = None,
+) -> Json:
+    """Emitters at receivers, and targets in the view of radars, over time.
+
+    :param times: as ``Scenario.times``; None: the scenario's clock
+    :return: ``links`` and ``detections``, each with rows by time (powers in dBm, ratios in dB)
+    """
+    options = {"emitter": list(emitters), "receiver": list(receivers), "target": list(targets), "model": model}
+    result: Json = _run("link", scenario, {**options, "times": _times(scenario, times)}, progress)
+    return result
+
+
+def exposure(
+    scenario: Scenario,
+    platform: str,
+    *,
+    quantity: str = "detection_probability",
+    threshold: float | None = None,
+    times: Times | None = None,
+    look: str = "target",
+    rcs_target: str = "",
+    backend: str = "auto",
+    progress: Progress = None,
+) -> Json:
+    """A platform on its track through the field, by time and emitter.
+
+    :param threshold: in the quantity's unit; None: the usual one
+    :param times: as ``Scenario.times``; None: the scenario's clock
+    :param look: "target": beams on the platform; "scan": where the scans point
+    :param rcs_target: target whose cross section radars see; "none": that which they assume
+    :return: ``rows`` by time (position in deg and m, value of each emitter), ``each`` and ``together`` over all times
+    """
+    options: dict[str, _Option] = {"platform": platform, "quantity": quantity, "threshold": threshold, "look": look}
+    options |= {"times": _times(scenario, times), "rcs-target": rcs_target, "backend": backend}
+    return _run_into_file("exposure", scenario, options, progress)
+
+
+def vertical(
+    scenario: Scenario,
+    emitter: str,
+    azimuths_deg: Sequence[float],
+    *,
+    quantity: str = "",
+    threshold: float | None = None,
+    time_s: float = 0.0,
+    height_axis: str = "msl",
+    blake: bool = False,
+    range_m: float | None = None,
+    max_height_m: float | None = None,
+    backend: str = "auto",
+    progress: Progress = None,
+) -> xarray.Dataset:
+    """Vertical coverage of an emitter: a quantity over range and height at azimuths. Needs xarray.
+
+    :param azimuths_deg: clockwise from true north
+    :param height_axis: heights above mean sea level ("msl") or ground ("agl")
+    :param blake: over a smooth earth instead of the terrain
+    :param range_m: to the right edge, over the ground; None: the instrumented range, or to the region's edge
+    :return: the quantity (azimuth, height, range), NaN below ground, and ``ground_msl`` (azimuth, range) in m; attributes hold
+        station, threshold, and for each azimuth what ``emscape vertical --json`` says, contours (range m, height m) included
+    """
+    import numpy as np
+    import xarray
+
+    from ._arrays import udunit_of
+
+    options: dict[str, _Option] = {"emitter": emitter, "azimuth": list(azimuths_deg), "quantity": quantity}
+    options |= {"threshold": threshold, "time": time_s, "height-axis": height_axis, "blake": blake, "range": range_m}
+    options |= {"max-height": max_height_m, "backend": backend}
+    result = _run_into_file("vertical", scenario, options, progress)
+    height = next(key for key in result if key.startswith("height_"))
+    cuts = result.pop("azimuths")
+    ranges, heights = result.pop("range_m"), result.pop(height)
+    result.pop("order")
+    values = np.array([cut.pop("values") for cut in cuts], np.float32).reshape(len(cuts), len(heights), len(ranges))
+    ground = [cut.pop("ground_msl_m") for cut in cuts]
+    variables: dict[Any, Any] = {
+        result["quantity"]: (("azimuth", height, "range"), values, {"units": udunit_of(result["unit"])}),
+    }
+    if all(len(row) == len(ranges) for row in ground):
+        variables["ground_msl"] = (("azimuth", "range"), np.array(ground, np.float32), {"units": "m"})
+    return xarray.Dataset(
+        variables,
+        {
+            "azimuth": ("azimuth", [cut["azimuth_deg"] for cut in cuts], {"units": "degree"}),
+            height: (height, heights, {"units": "m"}),
+            "range": ("range", ranges, {"units": "m", "long_name": "range over the ground"}),
+        },
+        {**result, "azimuths": cuts},
+    )
+
+
+def compare(
+    a: Scenario,
+    b: Scenario,
+    output: str | os.PathLike[str] | None = None,
+    *,
+    heights: str = "agl:150",
+    products: Sequence[str] = (),
+    quantity: str = "detection_probability",
+    threshold: float | None = None,
+    times: Times | None = None,
+    cell_m: float | None = None,
+    area: str = "",
+    crs: str = "utm",
+    formats: Sequence[str] = (),
+    explain: int | None = None,
+    backend: str = "auto",
+    progress: Progress = None,
+) -> Json:
+    """What the second scenario wins and loses against the first, on maps, in figures, and why.
+
+    :param output: folder for the maps and the report; None: none is kept
+    :param heights: and the other parameters of maps: as of ``coverage``
+    :param formats: of the maps in the folder
+    :param explain: number of changed areas that are explained, of each sign
+    :return: report.json of the folder: areas in km2, differences, changed areas with the paths that decide
+    """
+    options: dict[str, _Option] = {"heights": heights, "products": list(products), "quantity": quantity}
+    options |= {"threshold": threshold, "times": _times(a, times), "cell": cell_m, "area": area, "crs": crs}
+    options |= {"format": list(formats), "explain": str(explain) if explain is not None else None, "backend": backend}
+    with tempfile.TemporaryDirectory() as folder:
+        options["output"] = os.fspath(output) if output is not None else os.path.join(folder, "compare")
+        if output is None and not formats:
+            options["format"] = ["cog"]
+        result: Json = command("compare", *_subjects(a, b, folder), *_options(options), progress=progress)
+        return result
+
+
+def _subjects(a: Scenario, b: Scenario, folder: str) -> list[str]:
+    """Two scenarios as arguments of ``compare``, whose --set changes both and --set-b the second.
+
+    :param folder: for copies of scenarios that the options cannot tell apart
+    """
+    words_a, words_b, common = _subject(a), _subject(b), a.edits
+    if a.file == b.file and common.keys() <= b.edits.keys():
+        words = words_a
+    elif not common:
+        words = [*words_a, b.file]
+    else:
+        words = [os.path.join(folder, name) for name in ("a.yaml", "b.yaml")]
+        a.save(words[0])
+        b.save(words[1])
+        return words
+    for word in words_b[2::2]:
+        words += ["--set-b", word]
+    return words
+
+
+def study(
+    file: str | os.PathLike[str],
+    output: str | os.PathLike[str],
+    *,
+    jobs: int = 1,
+    resume: bool = False,
+    edits: Mapping[str, Any] | None = None,
+    backend: str = "auto",
+    progress: Progress = None,
+) -> Json:
+    """Many variants of a scenario, measured; results.csv, results.nc and report.html lie in the folder then.
+
+    :param file: the study (YAML or JSON)
+    :param jobs: processes that compute at the same time
+    :param resume: computes the parts that are missing
+    :param edits: of the scenario, before those of the variants
+    :return: numbers of variants and parts, and the extremes of each measure
+    """
+    words = ["study", os.fspath(file)]
+    for path, value in (edits or {}).items():
+        words += ["--set", f"{path}={_yaml(value)}"]
+    options: dict[str, _Option] = {"output": os.fspath(output), "jobs": str(jobs), "resume": resume, "backend": backend}
+    result: Json = command(*words, *_options(options), progress=progress)
+    return result
+
+
+def check(folder: str | os.PathLike[str]) -> Json:
+    """The propagation models against a folder of reference figures.
+
+    :return: ``datasets`` with the largest difference, tolerance and unit of each, and ``pass``
+    """
+    result: Json = command("check", os.fspath(folder))
+    return result
+
+
+def simulate(
+    scenario: Scenario,
+    output: str | os.PathLike[str],
+    formats: Sequence[str] = ("vdb",),
+    *,
+    times: Times | None = None,
+    quantities: Sequence[str] = (),
+    resume: bool = False,
+    backend: str = "auto",
+    progress: Progress = None,
+) -> Any:
+    """Writes a scenario's field over time as files into a folder; an interrupted series is continued with ``resume``.
+
+    :param formats: "vdb", "nvdb", "vti", "raw"
+    :param times: as ``Scenario.times``; None: the scenario's clock
+    :return: what ``emscape simulate --json`` prints
+    """
+    options: dict[str, _Option] = {"output": os.fspath(output), "format": list(formats), "quantity": list(quantities)}
+    options |= {"times": _times(scenario, times), "resume": resume, "backend": backend}
+    return _run("simulate", scenario, options, progress)

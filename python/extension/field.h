@@ -1,0 +1,33 @@
+/// The field of one instant, as Python holds it.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/playback/inputs.h"
+#include "emscape/volume/volume.h"
+
+namespace emscape::python {
+
+/// Volumes of one instant, in the order of their names. Shares their values, which later updates do not
+/// change. Threads may share it.
+struct Field {
+  std::vector<std::string> names;
+  std::vector<volume::Volume> volumes;
+  double time_s = 0;
+  std::optional<playback::LoadedScenario> scene;           ///< none: read from a file
+  std::shared_ptr<const std::vector<float>> ground_msl_m;  ///< one per column; null: none
+  mutable std::vector<std::shared_ptr<const volume::DenseVolume>>
+      on_host;               ///< one per volume; null: not asked for yet
+  mutable std::mutex mutex;  ///< of on_host
+
+  /// @param name  empty: the first. @throws Error (usage) that lists the names
+  std::size_t indexOf(const std::string& name) const;
+  /// The values in host memory; copied from a GPU once.
+  const std::shared_ptr<const volume::DenseVolume>& host(std::size_t index) const;
+};
+
+}  // namespace emscape::python

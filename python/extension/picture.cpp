@@ -1,0 +1,83 @@
+/// Pictures of fields as arrays of pixels.
+#include "emscape/base/log.h"
+#include "emscape/playback/painter.h"
+#include "emscape/playback/scene.h"
+#include "emscape/scenario/snapshot.h"
+#include "python/extension/field.h"
+#include "python/extension/module.h"
+
+namespace emscape::python {
+namespace {
+
+using playback::ComputeTarget;
+
+/// A frame of a field's volume, with the scenario's emitters.
+playback::Frame frameOf(const Field& field, std::size_t index,
+                        const std::optional<std::pair<float, float>>& range) {
+  playback::Frame frame;
+  frame.volume = field.volumes[index];
+  if (range) {
+    volume::VolumeInfo info = frame.volume.info();
+    std::tie(info.range_min, info.range_max) = *range;
+    frame.volume.setInfo(info);
+  }
+  if (field.scene) {
+    const scenario::TerrainPtr& terrain = field.scene->terrain;
+    const auto snapshot = scenario::snapshotAt(field.scene->scenario, terrain.get(), field.time_s);
+    frame.markers = playback::markersOf(snapshot, terrain.get(), frame.volume.grid());
+  }
+  return frame;
+}
+
+nb::object render(const Field& field, const std::string& quantity, std::pair<int, int> size,
+                  const std::string& camera, const std::string& mode,
+                  const std::optional<std::pair<float, float>>& range, const std::string& transfer,
+                  const std::string& theme, bool terrain, bool emitters, bool shading,
+                  std::optional<double> iso_value, double exaggeration, const std::string& note) {
+  refuseForkedProcess();
+  render::Image8 picture;
+  {
+    const nb::gil_scoped_release unlocked;
+    playback::PictureStyle style;
+    style.size = render::parseImageSize(std::to_string(size.first) + "x" + std::to_string(size.second));
+    style.camera = render::parseCamera(camera);
+    style.theme = render::parseTheme(theme);
+    style.settings.mode = render::parseCompositingMode(mode);
+    style.settings.shading = shading;
+    if (iso_value) style.settings.iso_value = *iso_value;
+    style.settings.vertical_exaggeration = exaggeration;
+    style.transfer = transfer;
+    style.colors_span_range = range.has_value();
+    style.show_terrain = terrain;
+    style.show_emitters = emitters;
+    const playback::Frame frame = frameOf(field, field.indexOf(quantity), range);
+    const auto draw = [&](const ResolvedBackend& choice) {
+      playback::Painter painter(style, ComputeTarget{choice});
+      painter.setScene(field.scene ? field.scene->scenario->name : std::string(),
+                       field.scene ? &*field.scene : nullptr);
+      painter.setFrame(frame);
+      painter.draw({});
+      return painter.picture(note);
+    };
+    const Backend backend = field.volumes.front().isOnDevice() ? Backend::cuda : Backend::cpu;
+    picture = draw(resolveBackend(backend));
+  }
+  return ownedArray(std::move(picture.rgba), {static_cast<std::size_t>(picture.size.height),
+                                              static_cast<std::size_t>(picture.size.width), 4});
+}
+
+}  // namespace
+
+void bindPicture(nb::module_& module) {
+  module.def(
+      "render", &render, nb::arg("field"), nb::arg("quantity"), nb::arg("size"), nb::arg("camera"),
+      nb::arg("mode"), nb::arg("range").none(), nb::arg("transfer"), nb::arg("theme"), nb::arg("terrain"),
+      nb::arg("emitters"), nb::arg("shading"), nb::arg("iso_value").none(), nb::arg("exaggeration"),
+      nb::arg("note"),
+      nb::sig("def render(field: Field, quantity: str, size: tuple[int, int], camera: str, mode: str, "
+              "range: tuple[float, float] | None, transfer: str, theme: str, terrain: bool, emitters: bool, "
+              "shading: bool, iso_value: float | None, exaggeration: float, note: str) -> "
+              "numpy.typing.NDArray[numpy.uint8]"));
+}
+
+}  // namespace emscape::python

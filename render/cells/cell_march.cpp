@@ -1,0 +1,44 @@
+#include "render/cells/cell_march.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "emscape/base/parallel.h"
+
+namespace emscape::render {
+
+int cellAt(const CellMesh& mesh, const Vec3d& position) {
+  const auto vectorTo = [&](std::int32_t point) { return mesh.point(point) - position; };
+  const int cells = static_cast<int>(mesh.mesh->cells.size());
+  std::atomic<int> found{cells};
+  parallelFor(cells, 4096, [&](int begin, int end) {
+    for (int n = begin; n < end && n < found.load(); ++n) {
+      const auto& cell = mesh.cell(n);
+      const bool inside =
+          std::all_of(std::begin(volume::kFaceVertices), std::end(volume::kFaceVertices), [&](const int* v) {
+            const auto to = [&](int i) { return vectorTo(cell[static_cast<std::size_t>(v[i])]); };
+            return dot(cross(to(0), to(1)), to(2)) >= 0;
+          });
+      if (!inside) continue;
+      int known = found.load();
+      while (n < known && !found.compare_exchange_weak(known, n)) {
+      }
+    }
+  });
+  return found.load() < cells ? found.load() : -1;
+}
+
+void marchAll(const CellMeshView& mesh, const RayFrame& frame, std::vector<EntryHit>& entries,
+              const MarchLimits& limits, RayIntegral& integral, long long& cells) {
+  std::sort(entries.begin(), entries.end());
+  double been = -std::numeric_limits<double>::infinity();
+  for (const EntryHit& entry : entries) {
+    if (isPassed(entry, been)) continue;
+    if (entry.distance >= limits.distance || integral.through() < limits.through) return;
+    been = march(mesh, frame, entry, limits, integral, cells);
+  }
+}
+
+}  // namespace emscape::render

@@ -1,0 +1,27 @@
+/// The order in which projected cells are drawn: the farthest first.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "render/cells/cell_mesh.h"
+#include "render/raycast.h"
+
+namespace emscape::render {
+
+struct CellOrder {
+  std::vector<std::int32_t> cells;  ///< the farthest first
+  /// Faces across which the order is wrong, as cells overlap each other in a circle; 0 by centroids: not
+  /// known.
+  long long cycles = 0;
+};
+
+/// By the distances of centroids from the eye (parallel rays: by their depths). Wrong for some neighbours.
+CellOrder centroidOrder(const CellMesh& mesh, const CameraView& camera);
+
+/// Every cell after those that it hides across its faces, otherwise by centroids (MPVO: P. Williams,
+/// Visibility-ordering meshed polyhedra, 1992). Right for convex meshes without cycles. Where a mesh is not
+/// convex, cells on both sides of a gap are ordered by centroids.
+CellOrder visibilityOrder(const CellMesh& mesh, const CameraView& camera);
+
+}  // namespace emscape::render

@@ -1,0 +1,117 @@
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "base/stopwatch.h"
+#include "emscape/base/parallel.h"
+#include "render/cells/cell_order.h"
+#include "render/cells/cell_renderer_impl.h"
+#include "render/cells/projected_cells.h"
+
+namespace emscape::render {
+namespace {
+
+/// False if the cell holds no field.
+bool seenFrom(const Vec3d& eye, const CellMesh& mesh, std::int32_t cell, SeenCell& seen) {
+  const auto& vertices = mesh.cell(cell);
+  for (std::size_t i = 0; i < 4; ++i) {
+    seen.points[i] = mesh.point(vertices[i]) - eye;
+    seen.values[i] = static_cast<double>(mesh.values[static_cast<std::size_t>(vertices[i])]);
+    if (std::isnan(seen.values[i])) return false;
+  }
+  return true;
+}
+
+/// Draws all cells that hold a field.
+void drawCells(const CellMesh& mesh, const std::vector<std::int32_t>& order, const gl::CellView& view,
+               gl::CellRasterizer& rasterizer, ProjectionReport& report) {
+  rasterizer.begin(view);
+  const Vec3d* const along = view.camera.orthographic ? &view.camera.forward : nullptr;
+  const auto numbers = static_cast<std::size_t>(cellNumbers(view.projection));
+  std::atomic<std::int32_t> around_eye{-1};
+  std::atomic<long long> drawn{0};
+  for (std::size_t first = 0; first < order.size(); first += gl::CellRasterizer::kBatchCells) {
+    const std::size_t count = std::min(gl::CellRasterizer::kBatchCells, order.size() - first);
+    const gl::CellRasterizer::Batch batch = rasterizer.nextBatch();
+    parallelFor(static_cast<int>(count), 1024, [&](int begin, int end) {
+      long long here = 0;
+      for (auto n = static_cast<std::size_t>(begin); n < static_cast<std::size_t>(end); ++n) {
+        const std::int32_t cell = order[first + n];
+        float* const vertices = batch.vertices + 4 * kFloatsOfVertex * n;
+        SeenCell seen;
+        if (!seenFrom(view.camera.eye, mesh, cell, seen)) {
+          std::fill_n(vertices, 4 * kFloatsOfVertex, 0.0f);  // of no area
+          continue;
+        }
+        if (!projectCell(seen, along, view.projection, vertices, batch.numbers + numbers * n))
+          around_eye = cell;
+        ++here;
+      }
+      drawn += here;
+    });
+    rasterizer.draw(count);
+  }
+  if (SeenCell seen; around_eye >= 0 && seenFrom(view.camera.eye, mesh, around_eye, seen)) {
+    const gl::CellRasterizer::Batch batch = rasterizer.nextBatch();
+    float exact[cellNumbers(CellProjection::exact)];
+    projectCell(seen, nullptr, CellProjection::exact, batch.vertices, exact);
+    projectCell(seen, nullptr, view.projection, batch.vertices, batch.numbers);
+    rasterizer.drawAround(exact[4]);
+  }
+  report.cells = drawn;
+  report.sent_bytes = rasterizer.sentFloats() * sizeof(float);
+}
+
+/// Depths of points on the pixels' rays.
+std::vector<float> depthsOf(const std::vector<GroundHit>& hits, const CameraView& camera) {
+  std::vector<float> depths(hits.size(), std::numeric_limits<float>::max());
+  for (std::size_t pixel = 0; pixel < hits.size(); ++pixel) {
+    if (!hits[pixel].found) continue;
+    const auto n = static_cast<int>(pixel);
+    const auto ray = camera.rayThrough<double>(n % camera.size.width, n / camera.size.width);
+    depths[pixel] = static_cast<float>(hits[pixel].distance / length(ray.direction));
+  }
+  return depths;
+}
+
+}  // namespace
+
+const char* toString(CellProjection projection) {
+  return projection == CellProjection::published ? "published" : "exact";
+}
+const char* toString(CellSorting sorting) {
+  return sorting == CellSorting::centroids ? "centroids" : "visibility";
+}
+
+Image CellRenderer::project(ImageSize size, const ProjectionOptions& options, ProjectionReport* report) {
+  Impl& impl = *impl_;
+  if (!impl.rasterizer) impl.rasterizer = std::make_unique<gl::CellRasterizer>();
+  gl::CellRasterizer& rasterizer = *impl.rasterizer;
+  impl.scene.prepare();
+  const RaycastTask task = impl.scene.task(size);
+  const std::vector<GroundHit> ground = impl.ground(task);
+  const gl::CellView view{task.camera, options.projection, depthsOf(ground, task.camera)};
+  rasterizer.setTransfer(*impl.transfer);
+
+  ProjectionReport done;
+  done.device = rasterizer.device();
+  Stopwatch watch;
+  const CellOrder order = options.sorting == CellSorting::visibility
+                              ? visibilityOrder(impl.cells, task.camera)
+                              : centroidOrder(impl.cells, task.camera);
+  done.cycles = order.cycles;
+  done.order_ms = watch.lap_ms();
+  drawCells(impl.cells, order.cells, view, rasterizer, done);
+  Image image;
+  rasterizer.fetch(image);
+  for (std::size_t pixel = 0; pixel < ground.size(); ++pixel) {
+    if (ground[pixel].found) image.pixels[pixel] = over(image.pixels[pixel], ground[pixel].color);
+  }
+  done.draw_ms = watch.lap_ms();
+  if (report != nullptr) *report = done;
+  return image;
+}
+
+}  // namespace emscape::render

@@ -1,0 +1,121 @@
+#include "emscape/study/part_journal.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+
+#include "base/whole_file.h"
+#include "emscape/base/error.h"
+#include "study/sweep/part_rows.h"
+
+namespace emscape::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kChecksumDigits = 8;
+
+std::string checksumOf(std::string_view text) {
+  return fmt::format("{:08x}", crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size()));
+}
+
+std::string hexOf(const std::string& bytes) {
+  std::string text;
+  for (const char byte : bytes) text += fmt::format("{:02x}", static_cast<unsigned char>(byte));
+  return text;
+}
+
+std::string bytesOf(const std::string& hex) {
+  std::string bytes;
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
+    bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+  return bytes;
+}
+
+}  // namespace
+
+PartJournal::PartJournal(std::filesystem::path file, std::vector<std::size_t> variants, std::size_t measures)
+    : file_(std::move(file)), variants_(std::move(variants)), measures_(measures) {
+  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) {
+    throw Error(ErrorCode::other, {file_.string(), 0, 0},
+                "cannot write: " + std::generic_category().message(errno));
+  }
+  read(readWholeText(file_));
+}
+
+PartJournal::~PartJournal() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void PartJournal::read(const std::string& text) {
+  const std::set<std::size_t> own(variants_.begin(), variants_.end());
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line(text.data() + begin, end - begin);
+    begin = end + 1;
+    if (line.size() <= kChecksumDigits + 1) continue;
+    const std::string_view content = line.substr(kChecksumDigits + 1);
+    if (line.substr(0, kChecksumDigits) != checksumOf(content)) continue;
+    const Json record = Json::parse(content);
+    VariantResult result = readRow(record["row"].get<std::string>(), measures_);
+    if (own.count(result.variant) == 0) continue;
+    if (record.contains("pixels")) {
+      result.pixels = unpackedPixels(bytesOf(record["bits"]), record["pixels"]);
+    }
+    machines_.insert(record["machine"]);
+    for (const std::string warning : record["warnings"]) warnings_.insert(warning);
+    const std::size_t variant = result.variant;
+    finished_.emplace(variant, std::move(result));
+  }
+}
+
+std::vector<std::size_t> PartJournal::unfinished() const {
+  std::vector<std::size_t> left;
+  std::copy_if(variants_.begin(), variants_.end(), std::back_inserter(left),
+               [&](std::size_t variant) { return finished_.count(variant) == 0; });
+  return left;
+}
+
+void PartJournal::add(VariantResult result, const std::set<std::string>& warnings,
+                      const std::string& machine) {
+  Json record{{"row", rowOf(result)}, {"machine", machine}, {"warnings", Json::array()}};
+  for (const std::string& warning : warnings) {
+    if (told_.insert(warning).second) record["warnings"].push_back(warning);
+  }
+  if (!result.pixels.empty()) {
+    record["pixels"] = result.pixels.size();
+    record["bits"] = hexOf(packedPixels(result.pixels));
+  }
+  const std::string content = record.dump();
+  // The line before may have been torn: this one has a beginning of its own.
+  const std::string line = '\n' + checksumOf(content) + ' ' + content + '\n';
+  for (std::size_t done = 0; done < line.size();) {
+    const ssize_t written = ::write(descriptor_, line.data() + done, line.size() - done);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) {
+      throw Error(ErrorCode::other, {file_.string(), 0, 0},
+                  "cannot write: " + std::generic_category().message(errno));
+    }
+    done += static_cast<std::size_t>(written);
+  }
+  machines_.insert(machine);
+  warnings_.insert(warnings.begin(), warnings.end());
+  const std::size_t variant = result.variant;
+  finished_.emplace(variant, std::move(result));
+}
+
+std::vector<VariantResult> PartJournal::results() const {
+  std::vector<VariantResult> results;
+  for (const std::size_t variant : variants_) results.push_back(finished_.at(variant));
+  return results;
+}
+
+}  // namespace emscape::study

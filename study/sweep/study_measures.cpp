@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "emscape/study/study_file.h"
+#include "study/sweep/study_reading.h"
+
+namespace emscape::study {
+namespace {
+
+using document::Section;
+
+void readFigure(StudyReading& reading, const Section& item, StudyMeasure& measure) {
+  using Figure = StudyMeasure::Figure;
+  const bool has_area = info(measure.product).area_class >= 0;
+  const std::string unit = item.text("unit");
+  const bool is_area = unit == "km2" || unit == "percent" || (unit.empty() && has_area);
+  if (item.has("statistic") && (unit == "km2" || unit == "percent")) {
+    reading.fault(item.locationOf("statistic"),
+                  fmt::format("'statistic' goes with values, not with areas in {}", unit));
+  } else if (item.has("statistic") || !is_area) {
+    measure.figure = item.has("statistic")
+                         ? static_cast<Figure>(static_cast<int>(Figure::mean) + item.choiceIndex("statistic"))
+                         : Figure::mean;
+    if (!unit.empty() && unit != unitOf(measure)) {
+      reading.fault(item.locationOf("unit"), fmt::format("product '{}' is in '{}', not {}",
+                                                         info(measure.product).name, unitOf(measure), unit));
+    }
+  } else {
+    measure.figure = unit == "percent" ? Figure::percent : Figure::km2;
+    if (!has_area) {
+      reading.fault(item.locationOf("unit"),
+                    fmt::format("product '{}' has no area; its unit is '{}', with statistic mean, min or max",
+                                info(measure.product).name, info(measure.product).unit));
+    }
+  }
+}
+
+}  // namespace
+
+std::string unitOf(const StudyMeasure& measure) {
+  switch (measure.figure) {
+    case StudyMeasure::Figure::km2:
+      return "km2";
+    case StudyMeasure::Figure::percent:
+      return "percent";
+    default:
+      break;
+  }
+  const char* const unit = info(measure.product).unit;
+  return unit != nullptr ? unit : scenario::info(measure.quantity).unit;
+}
+
+void readMeasures(StudyReading& reading, const Section& root) {
+  StudySpec& spec = reading.spec;
+  for (const Section& item : root.sections("measures")) {
+    StudyMeasure measure;
+    measure.name = item.text("name");
+    measure.product = productNamed(item.text("product"));
+    const ProductInfo& product = info(measure.product);
+    reading.reportAt(item.locationOf("height"), [&] {
+      const std::vector<MapHeight> heights = parseHeights(item.text("height"));
+      if (heights.size() != 1) throw Error(ErrorCode::usage, "a measure has one height");
+      measure.height = heights.front();
+    });
+    const Section& with_quantity = item.has("quantity") ? item : root;
+    reading.reportAt(with_quantity.locationOf("quantity"),
+                     [&] { measure.quantity = scenario::quantityFromName(with_quantity.text("quantity")); });
+    const std::optional<double> given =
+        item.has("threshold") ? item.optionalNumber("threshold") : root.optionalNumber("threshold");
+    const std::optional<double> usual = defaultThreshold(measure.quantity);
+    if (!given && !usual && measure.product != Product::value) {
+      reading.fault(item.location(),
+                    fmt::format("measure '{}' needs a threshold: quantity '{}' has no usual one",
+                                measure.name, scenario::info(measure.quantity).name));
+    }
+    measure.threshold = given.value_or(usual.value_or(0));
+    if (product.over_time && spec.times_s.size() < 2) {
+      reading.fault(item.location(),
+                    fmt::format("product '{}' is over time: give the study 'times' with two times or more",
+                                product.name));
+    }
+    readFigure(reading, item, measure);
+    if (item.text("over") != "region") {
+      measure.over = reading.resolve(item.text("over"));
+      if (!std::filesystem::is_regular_file(measure.over)) {
+        reading.fault(item.locationOf("over"), measure.over + ": no such file; polygons, or 'region'");
+      } else {
+        reading.files.push_back(measure.over);
+      }
+    }
+    spec.measures.push_back(std::move(measure));
+  }
+}
+
+}  // namespace emscape::study

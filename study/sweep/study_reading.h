@@ -1,0 +1,48 @@
+/// What the readers of a study's parts share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "document/document.h"
+#include "document/section.h"
+#include "emscape/base/error.h"
+#include "emscape/study/study_file.h"
+
+namespace emscape::study {
+
+/// A study while it is read. Faults are collected.
+struct StudyReading {
+  std::string file;
+  document::ProblemList problems;
+  /// The document as it is, whose maps from paths to values checkable() rewrites.
+  document::DocumentNodePtr original;
+  std::vector<std::string> files;  ///< named by the study, besides the scenario
+  StudySpec spec;
+  bool tries_values = true;  ///< see loadStudy()
+
+  /// A name in the study, relative to its folder.
+  std::string resolve(const std::string& name) const;
+  SourceLocation at(const document::TextPosition& position) const {
+    return {file, position.line, position.column};
+  }
+  void fault(const SourceLocation& location, const std::string& message) {
+    problems.addError(location, message);
+  }
+  /// Calls a function; its error becomes a fault at a location of the study.
+  template <class Read>
+  void reportAt(const SourceLocation& location, const Read& read) {
+    try {
+      read();
+    } catch (const Error& error) {
+      fault(location, error.what());
+    }
+  }
+};
+
+/// Reads `measures`; after the times and the base scenario.
+void readMeasures(StudyReading& reading, const document::Section& root);
+/// Reads `variants`, `sweep`, `samples` and `sites`; after the measures. @throws Error (bad_input)
+void readVariants(StudyReading& reading, const document::Section& root);
+
+}  // namespace emscape::study

@@ -1,0 +1,141 @@
+#include "emscape/study/variant_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "emscape/base/error.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/study/geotiff.h"
+#include "emscape/volume/file.h"
+#include "study/map_report.h"
+
+namespace emscape::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kPerFolder = 1000, kMaxName = 60;
+
+/// A name as a part of a path on any file system.
+std::string pathNameOf(const std::string& name) {
+  std::string text;
+  for (const char c : name.substr(0, kMaxName)) {
+    const bool is_safe =
+        (std::isalnum(static_cast<unsigned char>(c)) != 0 && static_cast<unsigned char>(c) < 128) ||
+        c == '.' || c == '-';
+    text += is_safe ? c : '_';
+  }
+  return text;
+}
+
+fs::path madeFolder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) {
+    throw Error(ErrorCode::other,
+                fmt::format("{}: the folder cannot be made ({})", folder.string(), failed.message()));
+  }
+  return folder;
+}
+
+/// Quantities and thresholds of the measures.
+std::set<std::pair<scenario::Quantity, double>> levelsOf(const StudySpec& study) {
+  std::set<std::pair<scenario::Quantity, double>> levels;
+  for (const StudyMeasure& measure : study.measures) levels.emplace(measure.quantity, measure.threshold);
+  return levels;
+}
+
+bool sameBox(const scenario::GeoBox& a, const scenario::GeoBox& b) {
+  return a.south_deg == b.south_deg && a.north_deg == b.north_deg && a.west_deg == b.west_deg &&
+         a.east_deg == b.east_deg;
+}
+
+}  // namespace
+
+const char* toString(KeptFiles kept) {
+  return kept == KeptFiles::maps ? "maps" : kept == KeptFiles::volumes ? "volumes" : "nothing";
+}
+
+fs::path folderOfVariant(const StudySpec& study, std::size_t variant) {
+  const std::size_t count = study.variants.count();
+  const std::size_t digits = std::to_string(count - 1).size();
+  fs::path folder = "variants";
+  if (count > kPerFolder) folder /= fmt::format("{:0{}}", variant / kPerFolder * kPerFolder, digits);
+  const std::string name = pathNameOf(study.variants.name(variant));
+  return folder / fmt::format("{:0{}}{}{}", variant, digits, name.empty() ? "" : "_", name);
+}
+
+struct VariantFiles::State {
+  const StudySpec& study;
+  fs::path folder;
+  KeptFiles kept;
+  emfield::FieldOptions options;
+  bool has_levels = false;  ///< several quantities or thresholds
+  std::optional<emfield::FieldSolver> solver;
+  std::shared_ptr<const scenario::Scenario> terrain_of;  ///< for which `terrain` was loaded
+  scenario::TerrainPtr terrain;
+
+  const scenario::TerrainPtr& terrainFor(const std::shared_ptr<const scenario::Scenario>& scenario) {
+    const bool is_same = terrain_of != nullptr && scenario->terrain == terrain_of->terrain &&
+                         (!scenario->terrain || sameBox(terrainBox(*scenario), terrainBox(*terrain_of)));
+    if (!is_same) {
+      terrain = scenario::loadTerrain(*scenario);
+      terrain_of = scenario;
+    }
+    return terrain;
+  }
+};
+
+VariantFiles::VariantFiles(const StudySpec& study, fs::path folder, KeptFiles kept,
+                           const emfield::FieldOptions& options)
+    : state_(new State{study, std::move(folder), kept, options, levelsOf(study).size() > 1, {}, {}, {}}) {
+  std::set<std::string> quantities;
+  for (const auto& [quantity, threshold] : levelsOf(study)) quantities.insert(scenario::info(quantity).name);
+  state_->options.quantities.assign(quantities.begin(), quantities.end());
+  state_->options.allow_missing_terrain = true;
+  state_->options.move_tolerance_m = 0;
+}
+
+VariantFiles::~VariantFiles() = default;
+
+void VariantFiles::addMap(std::size_t variant, const scenario::Scenario& scenario, const MapGrid& grid,
+                          const CoverageRequest& request, const CoverageMap& map) {
+  const State& state = *state_;
+  if (state.kept != KeptFiles::maps) return;
+  const std::string level =
+      state.has_levels ? fmt::format("{}_{}_", scenario::info(request.quantity).name, request.threshold) : "";
+  auto metadata = metadataOf(scenario, request.quantity, request.threshold, map);
+  metadata.emplace_back("EMSCAPE_VARIANT", fmt::format("{}", variant));
+  writeGeoTiff(
+      madeFolder(state.folder / folderOfVariant(state.study, variant)) / (level + fileNameOf(map) + ".tif"),
+      grid, map, metadata);
+}
+
+void VariantFiles::addVolumes(std::size_t variant,
+                              const std::shared_ptr<const scenario::Scenario>& scenario) {
+  State& state = *state_;
+  if (state.kept != KeptFiles::volumes) return;
+  auto own = std::make_shared<scenario::Scenario>(*scenario);
+  own->output.radar_look = scenario::RadarLook::target;
+  if (own->output.combine != scenario::CombineMode::max) own->output.combine = scenario::CombineMode::sum;
+  const scenario::TerrainPtr& terrain = state.terrainFor(scenario);
+  const fs::path folder = madeFolder(state.folder / folderOfVariant(state.study, variant));
+  for (const double time_s : state.study.times_s) {
+    if (!state.solver) state.solver.emplace(own, terrain, state.options);
+    state.solver->update(scenario::snapshotAt(own, terrain.get(), time_s), terrain);
+    std::vector<std::shared_ptr<const volume::DenseVolume>> kept;
+    std::vector<const volume::DenseVolume*> volumes;
+    for (const volume::Volume& volume : state.solver->volumes()) {
+      kept.push_back(volume.host());
+      volumes.push_back(kept.back().get());
+    }
+    volume::writeVolumes((folder / fmt::format("field_t{}s.vdb", time_s)).string(), volumes);
+  }
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,30 @@
+/// Colours of the values of a vertical diagram.
+#pragma once
+
+#include "emscape/render/transfer_function.h"
+#include "emscape/study/vertical.h"
+#include "render/annotate/canvas.h"
+
+namespace emscape::study {
+
+/// A scale of shades: of probabilities from 0 to 1, of other quantities down to 80 dB below the strongest
+/// values.
+class VerticalColors {
+ public:
+  explicit VerticalColors(const VerticalDiagram& diagram);
+
+  const render::TransferFunction& function() const { return function_; }
+  /// The shade of a value; -1: blank, where there is no field.
+  int shadeOf(float value) const;
+  render::Ink inkOf(int shade) const;
+
+ private:
+  bool hasField(float value) const { return static_cast<double>(value) > (is_part_ ? 0.005 : floor_); }
+
+  bool is_part_;  ///< a probability
+  double floor_;
+  double low_ = 0, high_ = 1;
+  render::TransferFunction function_;
+};
+
+}  // namespace emscape::study

@@ -1,0 +1,80 @@
+// emscape info on refractivity.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+const char* const kSurfaceBased = "height_msl_m,m_units\n0,330\n200,353.6\n300,313.6\n";
+
+TEST(InfoOfRefractivity, ListsWhatAProfileTraps) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("air.csv", kSurfaceBased);
+  const ProgramResult result = run({"info", file, "--json", "--plot", folder / "air.png"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report.at("kind"), "refractivity");
+  const json& duct = report.at("profiles").at(0).at("ducts").at(0);
+  EXPECT_EQ(duct.at("kind"), "surface-based");
+  EXPECT_EQ(duct.at("top_msl_m"), 300);
+  EXPECT_EQ(duct.at("strength_m_units"), 40);
+  EXPECT_EQ(duct.at("trapped_modes").at(1).at("modes"), 42);  // at 3 GHz
+  EXPECT_GT(std::filesystem::file_size(folder / "air.png"), 10000u);
+  EXPECT_THAT(run({"info", file}).out, HasSubstr("kind: surface-based"));
+}
+
+TEST(InfoOfRefractivity, ReadsSoundingsByTheirContent) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run({"info",
+           folder.write("USM00072649-data.txt",
+                        "#USM00072649 2023 11 18 00 2303    2 ncdc-nws           448497  -935647\n"
+                        "21     0  98107B  290    65B  350   143   360     0 \n"
+                        "20    33  95916   476B   60B  325   152   224    73 \n"),
+           "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(json::parse(result.out).at("profiles").at(0).at("levels"), 2);
+}
+
+TEST(InfoOfRefractivity, IsPartOfAScenario) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("duct.yaml", R"(schema_version: 1
+name: duct
+region: {origin: {latitude_deg: 36, longitude_deg: -84}, size_m: [1000, 1000, 1000], dims: [4, 4, 4]}
+atmosphere: {refractivity: {kind: evaporation_duct, duct_height_m: {mean: 14, deviation: 3}, members: 10}}
+platforms: [{name: site, position: {latitude_deg: 36, longitude_deg: -84, height_msl_m: 100}}]
+emitters:
+  - {name: r, platform: site, kind: transmitter, frequency_hz: 1.0e10, power_w: 10, antenna: {pattern: isotropic}}
+)");
+  const ProgramResult result = run({"info", file, "--json", "--plot", folder / "duct.svg"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json report = json::parse(result.out).at("refractivity");
+  EXPECT_EQ(report.at("profiles").at(0).at("ducts").at(0).at("kind"), "evaporation");
+  EXPECT_EQ(report.at("profiles").at(0).at("ducts").at(0).at("trapped_modes").at(0).at("frequency_hz"), 1e10);
+  EXPECT_EQ(report.at("members").at("count"), 10);
+  EXPECT_LT(report.at("members").at("duct_top_msl_m").at(0), 14);
+  EXPECT_EQ(readFile(folder / "duct.svg"), [&] {
+    run({"info", file, "--plot", folder / "again.svg"});
+    return readFile(folder / "again.svg");
+  }());
+}
+
+TEST(InfoOfRefractivity, RefusesAPlotOfOtherFiles) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run({"info", quick(), "--plot", folder / "x.png"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("--plot draws refractivity"));
+  EXPECT_EQ(run({"info", quick(), "--plot", folder / "x.pdf"}).status, 2);
+  EXPECT_EQ(run({"info", folder.write("air.csv", "height_msl_m,m_units\n0,330\n")}).status, 3);
+}
+
+}  // namespace
+}  // namespace emscape::test

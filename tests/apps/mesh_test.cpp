@@ -1,0 +1,107 @@
+// Fields on tetrahedra through the program: simulate --mesh, info and render.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+Arguments simulate(const std::string& folder, const Arguments& more = {}) {
+  Arguments arguments{"simulate", shippedScenario("jacksboro.yaml"), "-o",      folder,
+                      "--set",    "region.dims=[20, 18, 10]",        "--times", "0:20:10",
+                      "--quiet"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+TEST(MeshSeries, IsComputedDescribedAndDrawnTheSameTwice) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "b"}) {
+    const ProgramResult result = run(simulate(folder / name, {"--mesh", "terrain:9,4"}));
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  for (const char* file : {"jacksboro.pvd", "jacksboro_0001.vtu", "jacksboro_0003.vtu", "series.json"}) {
+    EXPECT_EQ(readFile(folder / ("a/" + std::string(file))), readFile(folder / ("b/" + std::string(file))))
+        << file;
+  }
+  EXPECT_THAT(readFile(folder / "a/jacksboro.pvd"), HasSubstr("jacksboro_0003.vtu"));
+  EXPECT_EQ(run(simulate(folder / "a", {"--mesh", "terrain:9,4", "--resume"})).status, 0);
+  EXPECT_EQ(run(simulate(folder / "a", {"--mesh", "terrain:9,5", "--resume"})).status, 3);
+
+  for (const char* input : {"a", "a/jacksboro.pvd"}) {
+    const ProgramResult described = run({"info", folder / input, "--json"});
+    ASSERT_EQ(described.status, 0) << described.err;
+    const json info = json::parse(described.out);
+    EXPECT_EQ(info["kind"], "mesh");
+    EXPECT_EQ(info["steps"], 3);
+    EXPECT_EQ(info["points"], 20 * 18 * 10);
+    EXPECT_EQ(info["tetrahedra"], 6 * 19 * 17 * 9);
+    EXPECT_EQ(info["inverted_tetrahedra"], 0);
+    EXPECT_EQ(info["fields"][0]["quantity"], "power_density_dbwm2");
+    EXPECT_EQ(info["fields"][0]["unit"], "dBW/m2");
+  }
+
+  const auto render = [&](const Arguments& more) {
+    Arguments arguments{"render", folder / "a", "--size", "320x240", "--quiet"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  for (const char* name : {"one.png", "two.png"}) {
+    const ProgramResult drawn =
+        render({"-o", folder / name, "--scenario", shippedScenario("jacksboro.yaml"), "--times", "10"});
+    ASSERT_EQ(drawn.status, 0) << drawn.err;
+  }
+  EXPECT_EQ(readFile(folder / "one.png"), readFile(folder / "two.png"));
+  EXPECT_EQ(render({"-o", folder / "frames"}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames/a_0003.png"));
+
+  const auto refusal = [&](const Arguments& more) {
+    Arguments arguments{"-o", folder / "no.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = render(arguments);
+    EXPECT_EQ(result.status, 2);
+    return result.err;
+  };
+  EXPECT_THAT(refusal({"--mode", "mida"}),
+              HasSubstr("mode mida: a field on tetrahedra is drawn by dvr alone"));
+  EXPECT_THAT(refusal({"--rays", "columns"}), HasSubstr("--rays columns: has no effect"));
+  EXPECT_THAT(refusal({"--step", "0.5"}), HasSubstr("--step: has no effect"));
+  EXPECT_THAT(refusal({"--plane", "horizontal:altitude_m=900"}), HasSubstr("plane"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "no.png"));
+}
+
+TEST(MeshSeries, FormatsAndMeshesGoTogether) {
+  const TemporaryFolder folder;
+  const auto refusal = [&](const Arguments& more) {
+    const ProgramResult result = run(simulate(folder / "a", more));
+    EXPECT_EQ(result.status, 2);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a"));
+    return result.err;
+  };
+  EXPECT_THAT(refusal({"--format", "vtu"}), HasSubstr("--format vtu: needs --mesh"));
+  EXPECT_THAT(refusal({"--format", "vti", "--mesh", "terrain:9"}),
+              HasSubstr("--format vti: with --mesh the format is vtu"));
+  EXPECT_THAT(refusal({"--mesh", "terrain:none"}), HasSubstr("LAYERS 'none' must be a number 1..4096"));
+  EXPECT_THAT(refusal({"--mesh", "terrain:100,500"}), HasSubstr("FIRST_M must be at most"));
+}
+
+TEST(MeshFile, DamageIsReportedInOneLine) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("a.vtu", "<VTKFile type=\"UnstructuredGrid\"></VTKFile>");
+  for (const Arguments& arguments :
+       {Arguments{"info", file}, Arguments{"render", file, "-o", folder / "a.png"}}) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 3);
+    EXPECT_THAT(result.err, HasSubstr("a.vtu: an unstructured grid in one piece can be read"));
+  }
+}
+
+}  // namespace
+}  // namespace emscape::test

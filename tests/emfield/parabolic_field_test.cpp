@@ -1,0 +1,472 @@
+// The model parabolic_equation in the field: cells between azimuths against marches of their own, other
+// models around it, seams, edits, limits.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "emfield/emitter_excess.h"
+#include "emfield/foot_inverse.h"
+#include "emfield/radials.h"
+#include "emscape/emfield/path_budget.h"
+#include "propagation/parabolic_equation/model.h"
+#include "propagation/parabolic_equation/path_air.h"
+#include "propagation/parabolic_equation/plan.h"
+#include "propagation/parabolic_equation/refractivity_field.h"
+#include "tests/emfield/made_terrain.h"
+#include "tests/emfield/test_scenario.h"
+#include "tests/support/errors.h"
+
+namespace emscape::emfield {
+namespace {
+
+using propagation::PePlan;
+using propagation::Polarization;
+using propagation::PropagationModel;
+using propagation::RadialInputs;
+using testing::MadeTerrain;
+using testing::solve;
+
+constexpr double kLatitude_deg = 51, kLongitude_deg = 5;
+
+/// One emitter in the middle of a region, antenna at a height above mean sea level.
+std::shared_ptr<scenario::Scenario> around(double frequency_hz, double height_msl_m, Vec3d size_m, Dims dims,
+                                           double lowest_msl_m = 0) {
+  auto scenario = testing::emptyScenario(FrameKind::altitude, kLatitude_deg, kLongitude_deg, size_m, dims);
+  scenario->region.origin.height_msl_m = lowest_msl_m;
+  scenario->atmosphere.gases = propagation::GasLosses::never;
+  scenario::Emitter emitter = testing::plainEmitter("tower", 0);
+  emitter.frequency_hz = frequency_hz;
+  emitter.polarization = Polarization::horizontal;
+  emitter.propagation.model = PropagationModel::parabolic_equation;
+  testing::addEmitter(*scenario, {kLatitude_deg, kLongitude_deg, 0}, emitter);
+  scenario::SitePosition& site = scenario->platforms[0].track[0].position;
+  site.height_ellipsoid_m.reset();
+  site.height_msl_m = height_msl_m;
+  return scenario;
+}
+
+/// Gentle hills, 60 m high and some 5 km apart.
+scenario::TerrainPtr gentleHills() {
+  return std::make_shared<const MadeTerrain>(
+      kLatitude_deg, kLongitude_deg, 1.0, [](double east, double north) {
+        return 100 + 30 * std::sin(80 * east + 1) * std::cos(50 * north) +
+               15 * std::sin(190 * north + 40 * east);
+      });
+}
+
+/// What the excess of the first emitter is made from.
+struct Made {
+  Station station;
+  GridColumns columns;
+  RadialInputs radials;
+  propagation::PathInputs inputs;
+  PePlan plan;
+
+  Made(const scenario::Scenario& scenario, const scenario::Terrain* terrain)
+      : station(makeStation(stateOf(scenario, terrain).position, stateOf(scenario, terrain).height_msl_m,
+                            scenario.atmosphere)),
+        columns(makeGridColumns(gridOf(scenario.region), terrain)),
+        radials(radialInputs(station, columns, terrain, pathExtent(station, columns))),
+        inputs(pathInputs(scenario, scenario.emitters[0], station, terrain, pathExtent(station, columns))),
+        plan(planMarch(inputs, radials)) {}
+
+  static scenario::EmitterState stateOf(const scenario::Scenario& scenario,
+                                        const scenario::Terrain* terrain) {
+    return scenario::snapshotAt(std::make_shared<scenario::Scenario>(scenario), terrain, 0).emitters[0];
+  }
+};
+
+/// Excess (dB) of the emitter's voxels: with an isotropic antenna the rest is free space.
+double excessIn(const volume::DenseVolume& volume, const Made& made, int i, int j, int k) {
+  const GridColumn column = made.columns.view()[static_cast<std::size_t>(j * volume.grid.dims.x + i)];
+  const Vec3d place =
+      column.base_ecef_m + column.axis * static_cast<double>(made.columns.t_m[static_cast<std::size_t>(k)]);
+  const double distance_m = length(place - made.station.ecef_m);
+  return 10 * std::log10(1000 / (4 * kPi * distance_m * distance_m)) -
+         static_cast<double>(testing::valueAt(volume, i, j, k));
+}
+
+double quantileOf(std::vector<double> values, double part) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+}
+
+// Each point by a march along its own azimuth, averaged over the voxel as the cells are.
+std::vector<double> differencesFromSingleMarches(const scenario::TerrainPtr& terrain, double height_msl_m,
+                                                 double lowest_msl_m) {
+  const auto scenario = around(3e8, height_msl_m, {24e3, 24e3, 400}, {80, 80, 20}, lowest_msl_m);
+  const auto volume = solve(scenario, terrain);
+  const Made made(*scenario, terrain.get());
+  const PePlan& plan = made.plan;
+  std::vector<float> tables;
+  const propagation::PeExcess excess = peExcess(made.inputs, made.radials, tables);
+  std::mt19937 random(1);
+  std::vector<double> differences;
+  while (differences.size() < 200) {
+    const int i = static_cast<int>(random() % 80), j = static_cast<int>(random() % 80),
+              k = static_cast<int>(random() % 20);
+    const auto c = static_cast<std::size_t>(j * 80 + i);
+    if (!made.columns.first_valid_k.empty() && k < made.columns.first_valid_k[c]) continue;
+    const double voxel_msl_m = heightMsl_m(
+        made.columns.view()[c], static_cast<double>(made.columns.t_m[static_cast<std::size_t>(k)]));
+    const FastInverse foot = footInverse(made.station, made.columns.view()[c], 0);
+    const auto part =
+        excess.others.equationPart(static_cast<float>(foot.distance_m), static_cast<float>(voxel_msl_m),
+                                   terrain ? made.columns.ground_msl_m[c] : 0.0F);
+    if (part < 1 || voxel_msl_m > plan.top_m) continue;  // other models speak
+
+    propagation::RadialPath path;
+    path.source.height_agl_m = height_msl_m - made.radials.site_ground_msl_m;
+    path.surface = plan.surfaces[0];
+    path.air = plan.air[0][0];
+    const double half_m = plan.cells.range_step_m / 2;
+    propagation::MarchGrid grid = plan.grid;  // with a step at the point
+    grid.range_step_m = foot.distance_m / std::round(foot.distance_m / grid.range_step_m);
+    const int steps = static_cast<int>((foot.distance_m + half_m) / grid.range_step_m) + 1;
+    std::vector<float> ground_msl_m(static_cast<std::size_t>(steps) + 1);
+    if (terrain)
+      made.radials.ground(std::atan2(foot.sin_azimuth, foot.cos_azimuth), grid.range_step_m, steps + 1,
+                          ground_msl_m.data());
+    path.ground_msl_m.assign(ground_msl_m.begin(), ground_msl_m.end());
+    propagation::RadialMarch<double, 1> march(grid, {path});
+    double sum = 0;
+    int count = 0;
+    for (int step = 0; step < steps; ++step) {
+      march.advance();
+      if (std::abs(march.range_m() - foot.distance_m) > 0.999 * half_m) continue;
+      const double z1 = std::max(0.0, voxel_msl_m - plan.cells.height_step_m / 2 - march.ground_m(0));
+      const double z2 = voxel_msl_m + plan.cells.height_step_m / 2 - march.ground_m(0);
+      if (z2 <= z1) continue;
+      sum += march.meanSquaredFactor(0, z1, z2);
+      ++count;
+    }
+    if (count == 0 || sum / count < 0.1) continue;  // nulls
+    differences.push_back(std::abs(excessIn(*volume, made, i, j, k) + 10 * std::log10(sum / count)));
+  }
+  return differences;
+}
+
+TEST(ParabolicField, IsThatOfSingleMarchesAtRandomPointsOverASmoothEarth) {
+  const std::vector<double> differences = differencesFromSingleMarches(nullptr, 60, 0);
+  EXPECT_LT(quantileOf(differences, 0.9), 0.3);
+  EXPECT_LT(quantileOf(differences, 1), 2.5);  // close to the antenna, where lobes are smaller than cells
+}
+
+// Between azimuths the terrain differs, and so do the reflections: lobes move.
+TEST(ParabolicField, IsThatOfSingleMarchesAtRandomPointsOverHills) {
+  const std::vector<double> differences = differencesFromSingleMarches(gentleHills(), 180, 80);
+  EXPECT_LT(quantileOf(differences, 0.5), 0.4);
+  EXPECT_LT(quantileOf(differences, 0.9), 1.0);
+}
+
+// Lobes that the voxels resolve.
+TEST(ParabolicField, IsTwoRayInsideTheHorizonOverTheSea) {
+  const auto scenario = around(1e9, 30, {20e3, 300, 200}, {400, 3, 80});
+  scenario->ground.kind = propagation::GroundKind::sea;
+  const auto volume = solve(scenario);
+  scenario->emitters[0].propagation.model = PropagationModel::two_ray;
+  const auto expected = solve(scenario);
+  std::vector<double> differences;
+  for (int i = 0; i < 400; ++i) {
+    if (std::abs(i - 199.5) * 50 < 4000) continue;
+    for (int k = 0; k < 80; ++k) {
+      const double expected_db = static_cast<double>(testing::valueAt(*expected, i, 1, k));
+      differences.push_back(std::abs(static_cast<double>(testing::valueAt(*volume, i, 1, k)) - expected_db));
+    }
+  }
+  EXPECT_LT(quantileOf(differences, 0.5), 0.2);
+  EXPECT_LT(quantileOf(differences, 0.8), 1.0);  // the rest are nulls, which the cells fill
+}
+
+// Where the equation goes over to two rays, by the angle and by the range.
+TEST(ParabolicField, HasNoSeamOverASmoothEarth) {
+  const auto scenario = around(1e9, 30, {12e3, 300, 800}, {240, 3, 160});
+  const Made made(*scenario, nullptr);
+  std::vector<float> tables;
+  const propagation::PeExcess excess = peExcess(made.inputs, made.radials, tables);
+  std::vector<double> steps;
+  for (double range_m = 1.5 * made.plan.min_range_m; range_m < 6e3; range_m += 130) {
+    propagation::ExcessColumn column;
+    column.range_m = range_m;
+    for (float height_m = 22.5F; height_m < 700; height_m += 5) {
+      const propagation::PeLoss loss = excess.equationAt(column, height_m);
+      if (loss.equation_part <= 0 || loss.equation_part >= 1) continue;
+      column.height_msl_m = &height_m;
+      column.count = 1;
+      float other_db = 0;
+      excess.others.fill(column, {}, &other_db);
+      if (other_db > 3) continue;  // nulls, which are narrower than cells
+      steps.push_back(static_cast<double>(std::abs(loss.equation_db - other_db)));
+    }
+  }
+  ASSERT_GT(steps.size(), 100u);
+  EXPECT_LT(quantileOf(steps, 0.5), 0.2);
+  EXPECT_LT(quantileOf(steps, 0.95), 0.5) << quantileOf(steps, 0.95);
+}
+
+// The places' exact paths, which are not averaged, against voxels that are smaller than lobes.
+TEST(ParabolicField, IsThatOfTheExplainedPathOverASmoothEarth) {
+  const auto scenario = around(1e9, 50, {120e3, 300, 300}, {400, 3, 60});
+  const auto volume = solve(scenario);
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
+  const GeoFrame frame(volume->grid.frame);
+  for (int i : {10, 60, 110, 160}) {
+    for (int k : {4, 30, 55}) {
+      const GeodeticPosition place = frame.toGeodetic(volume->grid.center_m(i, 1, k));
+      const PathEnd end{place, volume->grid.center_m(i, 1, k).z};
+      const PathBudget budget = pathBudget(snapshot, 0, end, PropagationModel::parabolic_equation, nullptr);
+      if (budget.excess.loss_db > 10) continue;  // nulls
+      EXPECT_NEAR(budget.find("power_density_dbwm2")->value,
+                  static_cast<double>(testing::valueAt(*volume, i, 1, k)), 0.7)
+          << i << ", " << k << ": " << budget.excess.why;
+    }
+  }
+}
+
+// The loss is the same from a low antenna to a high place and back.
+TEST(ParabolicField, IsReciprocalOverASmoothEarth) {
+  const auto low = around(3e8, 12.5, {80e3, 300, 300}, {160, 3, 60});
+  const auto high = around(3e8, 202.5, {80e3, 300, 300}, {160, 3, 60});
+  const auto upwards = solve(low), downwards = solve(high);
+  for (int i : {4, 20, 50}) {
+    const double up = static_cast<double>(testing::valueAt(*upwards, i, 1, 40));
+    EXPECT_NEAR(up, static_cast<double>(testing::valueAt(*downwards, i, 1, 2)), 0.3) << i;
+  }
+}
+
+TEST(ParabolicField, IsThatOfDiffractionWithinSomeDecibelsOverHills) {
+  const scenario::TerrainPtr terrain = gentleHills();
+  const auto scenario = around(3e8, 180, {24e3, 24e3, 400}, {40, 40, 20}, 80);
+  const auto volume = solve(scenario, terrain);
+  scenario->emitters[0].propagation.model = PropagationModel::diffraction;
+  const auto other = solve(scenario, terrain);
+  std::vector<double> differences;
+  for (std::size_t v = 0; v < volume->values.size(); ++v) {
+    if (volume->values[v] > -290 && other->values[v] > -290)
+      differences.push_back(static_cast<double>(volume->values[v] - other->values[v]));
+  }
+  const double median_db = quantileOf(differences, 0.5);
+  RecordProperty("median_db", std::to_string(median_db));
+  EXPECT_LT(std::abs(median_db), 6);
+}
+
+TEST(ParabolicField, PathsAcrossAHoleAreUnknownAndOthersAreNot) {
+  const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 0.6, 0.05);
+  const auto scenario = around(3e8, 1200, {36e3, 36e3, 1000}, {24, 24, 4}, 1100);
+  EXPECT_THAT(test::errorOf([&] { solve(scenario, terrain); }, ErrorCode::bad_input),
+              ::testing::HasSubstr("missing"));
+  FieldOptions options;
+  options.allow_missing_terrain = true;
+  const auto volume = solve(scenario, terrain, options);
+  const auto known = std::count_if(volume->first_valid_k.begin(), volume->first_valid_k.end(),
+                                   [](std::uint16_t k) { return k < 4; });
+  EXPECT_GT(known, 500);
+  EXPECT_LT(known, 24 * 24);
+}
+
+TEST(ParabolicField, SurfacesNearTheGroundAreThatOfThePaths) {
+  const scenario::TerrainPtr terrain = gentleHills();
+  const auto scenario = around(3e8, 180, {24e3, 24e3, 400}, {4, 4, 4}, 80);
+  const auto made_surface = std::make_shared<Surface>();
+  Surface& surface = *made_surface;
+  surface.width = surface.height = 30;
+  for (int n = 0; n < 900; ++n) {
+    surface.places.push_back(
+        {kLatitude_deg - 0.1 + 0.2 * (n / 30) / 29, kLongitude_deg - 0.15 + 0.3 * (n % 30) / 29});
+  }
+  surface.heights_m = {3, 30, 100};
+  FieldOptions options;
+  options.surface = made_surface;
+  const auto volume = solve(scenario, terrain, options);
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), 0);
+  std::vector<double> differences;
+  for (int n = 7; n < 900; n += 47) {
+    for (int k = 0; k < 3; ++k) {
+      scenario::SitePosition place;
+      const auto& at = surface.places[static_cast<std::size_t>(n)];
+      const double height_msl_m = terrain->heightMsl_m(at.latitude_deg, at.longitude_deg) +
+                                  surface.heights_m[static_cast<std::size_t>(k)];
+      const PathBudget budget =
+          pathBudget(snapshot, 0, {{at.latitude_deg, at.longitude_deg, height_msl_m}, height_msl_m},
+                     PropagationModel::parabolic_equation, terrain.get());
+      differences.push_back(std::abs(budget.find("power_density_dbwm2")->value -
+                                     static_cast<double>(testing::valueAt(*volume, n % 30, n / 30, k))));
+    }
+  }
+  EXPECT_LT(quantileOf(differences, 0.5), 0.5);
+  EXPECT_LT(quantileOf(differences, 0.9), 4);  // nulls between hills
+}
+
+TEST(ParabolicField, ATurnedBeamIsCombinedAloneAndSettingsMarchAnew) {
+  const auto scenario = around(1e9, 30, {20e3, 20e3, 200}, {20, 20, 10});
+  FieldSolver solver(scenario, nullptr, {});
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  const auto editedBy = [&](auto edit) {
+    auto edited = std::make_shared<scenario::Scenario>(*scenario);
+    edit(*edited);
+    return solver.update(scenario::snapshotAt(edited, nullptr, 0));
+  };
+  EXPECT_THAT(editedBy([](auto& s) { s.emitters[0].power_w *= 2; }).moved, ::testing::IsEmpty());
+  EXPECT_THAT(editedBy([](auto& s) { s.emitters[0].propagation.parabolic_equation.max_angle_deg = 2; }).moved,
+              ::testing::ElementsAre(0));
+  EXPECT_THAT(editedBy([](auto& s) { s.atmosphere.k_factor = 1.5; }).moved, ::testing::ElementsAre(0));
+}
+
+TEST(ParabolicField, SlantedWavesAreHalfOfEach) {
+  const auto scenario = around(3e8, 30, {20e3, 300, 200}, {40, 3, 20});
+  const auto powerOf = [&](Polarization polarization) {
+    scenario->emitters[0].polarization = polarization;
+    return std::pow(10.0, static_cast<double>(testing::valueAt(*solve(scenario), 3, 1, 5)) / 10);
+  };
+  const double mean = (powerOf(Polarization::horizontal) + powerOf(Polarization::vertical)) / 2;
+  EXPECT_NEAR(10 * std::log10(powerOf(Polarization::slant_45) / mean), 0, 0.02);
+}
+
+TEST(ParabolicField, ReportsWhatItChooses) {
+  const auto scenario = around(1e9, 30, {20e3, 20e3, 200}, {20, 20, 10});
+  const Made made(*scenario, nullptr);
+  std::string all;
+  for (const propagation::ModelChoice& choice : made.plan.choices)
+    all += choice.name + " " + choice.text + "\n";
+  for (const char* name :
+       {"largest angle 3 degrees", "height step", "range step", "absorber", "azimuths 1:", "cells", "cost"})
+    EXPECT_THAT(all, ::testing::HasSubstr(name));
+}
+
+std::shared_ptr<propagation::Refractivity> duct(std::vector<double> heights_m) {
+  auto refractivity = std::make_shared<propagation::Refractivity>();
+  const auto airOf = [](double height_m) {
+    propagation::RefractivityField field;
+    field.profiles = {propagation::evaporationDuct(height_m)};
+    return field;
+  };
+  refractivity->air = airOf(heights_m.front());
+  if (heights_m.size() > 1)
+    for (const double height_m : heights_m) refractivity->members.push_back(airOf(height_m));
+  return refractivity;
+}
+
+/// A radar 10 m above the sea at 10 GHz.
+std::shared_ptr<scenario::Scenario> overTheSea(double highest_m, int layers) {
+  const auto scenario = around(10e9, 10, {160e3, 300, highest_m}, {160, 3, layers});
+  scenario->ground.kind = propagation::GroundKind::sea;
+  return scenario;
+}
+
+// The figure of duct_fields.csv: 10 to 10 m at 60 km 6.84 dB over free space in a duct of 14 m; without, deep
+// behind the horizon.
+TEST(ParabolicField, AnEvaporationDuctGuidesBeyondTheHorizon) {
+  const auto scenario = overTheSea(20, 5);
+  const auto plain = solve(scenario);
+  scenario->atmosphere.refractivity = duct({14});
+  const auto ducted = solve(scenario);
+  const Made made(*scenario, nullptr);
+  EXPECT_NEAR(-excessIn(*ducted, made, 20, 1, 2), 6.84, 1.0);
+  EXPECT_LT(-excessIn(*plain, made, 20, 1, 2), -40);
+}
+
+TEST(ParabolicField, DuctsChangeNothingHighUpAndAtLargeAngles) {
+  const auto scenario = overTheSea(6000, 30);
+  const auto plain = solve(scenario);
+  scenario->atmosphere.refractivity = duct({14});
+  const auto ducted = solve(scenario);
+  int compared = 0;
+  for (int i = 0; i < 160; ++i) {
+    for (int k = 10; k < 30; ++k) {
+      const double height_m = 200.0 * k + 100, range_m = std::abs(i - 79.5) * 1000;
+      if (height_m / range_m < std::tan(degToRad(5.0))) continue;
+      ++compared;
+      EXPECT_NEAR(static_cast<double>(testing::valueAt(*ducted, i, 1, k)),
+                  static_cast<double>(testing::valueAt(*plain, i, 1, k)), 0.1);
+    }
+  }
+  EXPECT_GT(compared, 500);
+}
+
+TEST(ParabolicField, AnEnsembleHasTheMeanPowerOrAQuantile) {
+  const auto scenario = overTheSea(20, 5);
+  const auto valueOf = [&](const std::shared_ptr<propagation::Refractivity>& refractivity) {
+    scenario->atmosphere.refractivity = refractivity;
+    return static_cast<double>(testing::valueAt(*solve(scenario), 20, 1, 2));
+  };
+  const double low = valueOf(duct({6})), middle = valueOf(duct({10})), high = valueOf(duct({14}));
+  const double mean =
+      10 * std::log10((std::pow(10, low / 10) + std::pow(10, middle / 10) + std::pow(10, high / 10)) / 3);
+  EXPECT_NEAR(valueOf(duct({6, 10, 14})), mean, 0.3);
+  const auto median = duct({6, 10, 14});
+  median->quantile = 0.5;
+  EXPECT_NEAR(valueOf(median), middle, 0.3);
+}
+
+struct Refusal {
+  const char* name;
+  std::function<void(scenario::Scenario&)> edit;
+  const char* message;
+};
+
+TEST(ParabolicField, RefusesWhatIsOutsideItsLimits) {
+  const std::vector<Refusal> refusals{
+      {"frequency", [](auto& s) { s.emitters[0].frequency_hz = 20e6; },
+       "frequency 20 MHz is outside 30..40000"},
+      {"top", [](auto& s) { s.emitters[0].propagation.parabolic_equation.top_m = 25; }, "'top_m' is 25 m"},
+      {"step", [](auto& s) { s.emitters[0].propagation.parabolic_equation.range_step_m = 2000; },
+       "'range_step_m' is 2000 m; the absorber allows at most"},
+      {"distance",
+       [](auto& s) {
+         s.region.size_m = {2.9e6, 300, 200};
+       },
+       "outside 0..1000 km"},
+      {"steps",
+       [](auto& s) {
+         s.region.size_m.x = 400e3;
+         s.emitters[0].propagation.parabolic_equation.range_step_m = 5;
+       },
+       "is outside 1..20000"},
+      {"heights",
+       [](auto& s) {
+         s.emitters[0].frequency_hz = 10e9;
+         s.emitters[0].propagation.parabolic_equation.max_angle_deg = 15;
+         s.emitters[0].propagation.parabolic_equation.top_m = 5000;
+       },
+       "at most 32768"},
+  };
+  for (const Refusal& refusal : refusals) {
+    SCOPED_TRACE(refusal.name);
+    const auto scenario = around(1e9, 30, {20e3, 300, 200}, {20, 3, 10});
+    refusal.edit(*scenario);
+    EXPECT_THAT(test::errorOf([&] { solve(scenario); }, ErrorCode::bad_input),
+                ::testing::HasSubstr(refusal.message));
+  }
+}
+
+TEST(ParabolicField, WarnsBeyondWhatWasMeasured) {
+  const auto warningsOf = [](auto edit) {
+    const auto scenario = around(1e9, 30, {20e3, 300, 200}, {20, 3, 10});
+    edit(*scenario);
+    FieldSolver solver(scenario, nullptr, {});
+    solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+    std::string all;
+    for (const std::string& warning : solver.warnings()) all += warning + "\n";
+    return all;
+  };
+  EXPECT_EQ(warningsOf([](auto&) {}), "");
+  EXPECT_THAT(warningsOf([](auto& s) { s.emitters[0].frequency_hz = 25e9; }),
+              ::testing::HasSubstr("frequency, of measurements 25000 MHz is outside 30..20000"));
+  EXPECT_THAT(warningsOf([](auto& s) { s.ground.roughness_m = 3; }),
+              ::testing::HasSubstr("roughness (rms) 3 m"));
+}
+
+TEST(ParabolicField, CountsGroundThatIsTooSteep) {
+  const auto terrain = std::make_shared<const MadeTerrain>(
+      kLatitude_deg, kLongitude_deg, 0.4, [](double east, double) { return east > 0.3 ? 400.0 : 100.0; });
+  const auto scenario = around(3e8, 200, {20e3, 2e3, 400}, {20, 3, 4}, 420);
+  FieldSolver solver(scenario, terrain, {});
+  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
+  EXPECT_THAT(solver.warnings(), ::testing::Contains(::testing::HasSubstr("taken as steps of a staircase")));
+}
+
+}  // namespace
+}  // namespace emscape::emfield

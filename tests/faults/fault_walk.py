@@ -1,0 +1,223 @@
+"""Fails system calls of emscape one after another, as SQLite's tests do.
+
+Every command runs once without a fault, under strace. Then it runs again for each system call that touches its
+inputs or outputs, and that call fails (strace --inject). After each run:
+- the exit status is 0, and every file is as without the fault, or it is 1 or 3, with one error message;
+- no file is torn: each one under its final name is as without the fault, or an older whole state of the bookkeeping;
+- no temporary file is left;
+- the command again (with --resume where it has it) completes to the same bytes.
+
+usage: fault_walk.py EMSCAPE SCENARIO_FOLDER [--all] [COMMAND...]
+  --all   every occurrence of every call; otherwise the first two, the last two and the middle one
+"""
+
+import argparse
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+SKIPPED = 77
+# What a call can fail with. Not pwrite64, by which HDF5 alone writes: where its last write fails, it crashes.
+FAULTS = {
+    "write": ["ENOSPC", "EIO", "EINTR"],
+    "writev": ["ENOSPC"],
+    "fsync": ["EIO"],
+    "rename": ["EACCES"],
+    "openat": ["EACCES", "EMFILE", "EINTR"],
+    "mkdir": ["ENOSPC"],
+    "ftruncate": ["EIO"],
+    "read": ["EIO", "EINTR"],
+    "mmap": ["ENOMEM"],
+}
+# Files that are rewritten on the way, volumes for the range of the whole series: an earlier state may stay.
+VOLUMES = re.compile(r"\.(vdb|nvdb|vti|raw)$")  # `emscape info` reads them
+BOOKKEEPING = re.compile(r"series\.(json|steps)|\.pvd|\.(raw|nvdb)\.json|study\.json|manifest\.json|parts/part_\d+\.(rows|json|csv)$")
+# Without content, or with a process's own.
+IGNORED = re.compile(r"(^|/)[^/]*\.lock$")
+CALL = re.compile(r"^(\d+) +(\w+)\((.*)$")
+
+
+class Commands:
+    def __init__(self, emscape, scenarios):
+        self.emscape = str(emscape)
+        quick = str(scenarios / "quick.yaml")
+        small = ["--set", "duration_s=1", "--set", "region.dims=[12,12,6]"]
+        simulate = ["-q", "simulate", quick, *small, "-o", "{out}/series"]
+        self.table = {
+            "simulate-vdb": (simulate + ["--format", "vdb"], ["--resume"]),
+            "simulate-nvdb": (simulate + ["--format", "nvdb"], ["--resume"]),
+            "simulate-vti": (simulate + ["--format", "vti"], ["--resume"]),
+            "simulate-raw": (simulate + ["--format", "raw"], ["--resume"]),
+            "render": (["-q", "render", quick, *small, "--size", "64x48", "--times", "0", "-o", "{out}/picture.png"], []),
+            "frames": (["-q", "render", quick, *small, "--size", "64x48", "-o", "{out}/frames"], []),
+            "film": (["-q", "render", quick, *small, "--size", "64x48", "-o", "{out}/film.mp4"], []),
+            "coverage": (
+                ["-q", "coverage", quick, "--quantity", "power_density_dbwm2", "--threshold", "-60", "--heights", "agl:100",
+                 "--cell", "2000", "--format", "cog,png,gpkg,nc,kmz,czml", "-o", "{out}/map"],
+                [],
+            ),
+            "study": (["-q", "study", str(scenarios / "study" / "jammer_power.yaml"), "-o", "{out}/study"], ["--resume"]),
+        }
+
+
+def files_of(folder):
+    found = {}
+    for path in sorted(folder.rglob("*")):
+        name = str(path.relative_to(folder))
+        if path.is_file() and not IGNORED.search(name):
+            found[name] = hashlib.sha256(path.read_bytes()).hexdigest()
+    return found
+
+
+def run(command, out, inject=None, log=None):
+    arguments = [part.format(out=out) for part in command]
+    if inject or log:
+        calls = ",".join(FAULTS)
+        tracing = ["strace", "-f", "-qq", "-y", "-e", "signal=none", "-o", str(log or "/dev/null")]
+        tracing += ["-e", f"inject={inject}"] if inject else []
+        # Calls that are not traced run at full speed.
+        tracing += ["--seccomp-bpf", "-e", f"trace={inject.split(':')[0] if inject else calls}"]
+        arguments = tracing + arguments
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=120, errors="replace")
+    return done.returncode, done.stderr
+
+
+def occurrences(log, touched):
+    """For each call the numbers, per thread as strace counts them, at which it touches one of the folders."""
+    counts, found, loaded = {}, {}, {}
+    for line in log.read_text(errors="replace").splitlines():
+        match = CALL.match(line)
+        if not match or match[2] not in FAULTS:
+            continue
+        thread, call, rest = match.groups()
+        counts[thread, call] = counts.get((thread, call), 0) + 1
+        # Calls of the loader of libraries come before; strace counts by thread, so that others share its numbers.
+        touches = any(folder in rest for folder in touched)
+        if touches and not loaded:
+            loaded = {kind: counts.get((thread, kind), 1) - 1 for kind in ("mmap", "read", "openat")}
+            loaded[call] = counts[thread, call] - 1
+        if (touches or (call == "mmap" and "MAP_ANONYMOUS" in rest)) and loaded:
+            if counts[thread, call] > loaded.get(call, 0):
+                found.setdefault(call, set()).add(counts[thread, call])
+    return {call: sorted(numbers) for call, numbers in found.items()}
+
+
+def some_of(numbers, all_of_them):
+    if all_of_them or len(numbers) <= 4:
+        return numbers
+    return [numbers[i] for i in sorted({0, 1, len(numbers) // 2, len(numbers) - 2, len(numbers) - 1})]
+
+
+class Walk:
+    def __init__(self, name, command, resume):
+        self.name, self.command, self.resume = name, command, resume
+        self.faults = self.findings = 0
+
+    def report(self, inject, problem, stderr):
+        self.findings += 1
+        print(f"{self.name}, {inject}: {problem}")
+        for line in [line for line in stderr.splitlines() if "warning:" not in line][-4:]:
+            print(f"    {line[:300]}")
+
+    def is_whole(self, path):
+        return subprocess.run([self.command[0], "-q", "info", str(path)], capture_output=True).returncode == 0
+
+    def check(self, inject, status, stderr, out, expected):
+        found = files_of(out)
+        left = [name for name in found if ".part-" in name]
+        if left:
+            self.report(inject, f"temporary files are left: {left[:3]}", stderr)
+        torn = [
+            name
+            for name, digest in found.items()
+            if name not in left
+            and digest != expected.get(name)
+            and not (status != 0 and BOOKKEEPING.search(name))
+            and not (status != 0 and VOLUMES.search(name) and self.is_whole(out / name))
+        ]
+        if torn:
+            self.report(inject, f"status {status}: not as without the fault: {torn[:5]}", stderr)
+        if status == 0:
+            missing = [name for name in expected if name not in found]
+            if missing:
+                self.report(inject, f"status 0, but files are missing: {missing[:5]}", stderr)
+        elif status not in (1, 3):
+            self.report(inject, f"status {status}", stderr)
+        elif "error:" not in stderr and inject.startswith("write:"):
+            pass  # the message itself could not be written
+        elif len(re.findall(r"^(emscape|[^ :]+): error:", stderr, re.MULTILINE)) != 1:
+            self.report(inject, "not one error message", stderr)
+        elif re.search(r"std::|basic_|terminate|exception|what\(\)", stderr):
+            self.report(inject, "a library's text as the message", stderr)
+
+    def walk(self, root, scenarios, all_of_them):
+        out = root / "out"
+        log = root / "log"
+
+        def fresh():
+            shutil.rmtree(out, ignore_errors=True)
+            out.mkdir()
+
+        fresh()
+        status, stderr = run(self.command, out, log=log)
+        if status != 0:
+            sys.exit(f"{self.name}: failed without a fault: {stderr}")
+        expected = files_of(out)
+        fresh()
+        run(self.command, out)
+        if files_of(out) != expected:
+            unequal = [n for n, d in files_of(out).items() if expected.get(n) != d]
+            self.report("no fault", f"two runs differ: {unequal[:5]}", "")
+        for call, numbers in occurrences(log, [str(out), str(scenarios)]).items():
+            for number in some_of(numbers, all_of_them):
+                for error in FAULTS[call]:
+                    inject = f"{call}:error={error}:when={number}"
+                    fresh()
+                    try:
+                        status, stderr = run(self.command, out, inject)
+                    except subprocess.TimeoutExpired:
+                        self.report(inject, "does not end", "")
+                        continue
+                    self.faults += 1
+                    self.check(inject, status, stderr, out, expected)
+                    status, stderr = run(self.command + self.resume, out)
+                    if status != 0 or files_of(out) != expected:
+                        unequal = [n for n, d in expected.items() if files_of(out).get(n) != d]
+                        self.report(inject, f"again: status {status}, unequal: {unequal[:5]}", stderr)
+        return self.findings
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("emscape", type=Path)
+    parser.add_argument("scenarios", type=Path)
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("commands", nargs="*")
+    options = parser.parse_args()
+    if not shutil.which("strace"):
+        print("skipped: strace is missing")
+        return SKIPPED
+    if subprocess.run(["strace", "-f", "-o", "/dev/null", "true"], capture_output=True).returncode != 0:
+        print("skipped: strace cannot trace here")
+        return SKIPPED
+    table = Commands(options.emscape, options.scenarios).table
+    findings = faults = 0
+    for name, (command, resume) in table.items():
+        if options.commands and name not in options.commands:
+            continue
+        with tempfile.TemporaryDirectory(prefix="emscape-faults-") as root:
+            walk = Walk(name, [str(options.emscape), *command], resume)
+            findings += walk.walk(Path(root), options.scenarios.resolve(), options.all)
+            faults += walk.faults
+            print(f"{name}: {walk.faults} faults, {walk.findings} findings", flush=True)
+    print(f"{faults} faults, {findings} findings")
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

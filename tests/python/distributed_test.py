@@ -1,0 +1,23 @@
+"""Studies on Dask's workers."""
+
+import pytest
+from conftest import SCENARIOS
+
+import emscape as em
+
+distributed = pytest.importorskip("distributed")
+
+
+def test_workers_compute_what_one_process_does(tmp_path):
+    from emscape import distributed as studies
+
+    file = SCENARIOS / "study" / "jammer_power.yaml"
+    em.study(file, tmp_path / "processes", jobs=2)
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+        with distributed.Client(cluster) as client:
+            result = studies.study(file, tmp_path / "dask", client, parts=3)
+            assert result["parts"] == 3 and result["missing_parts"] == []
+            with pytest.raises(em.InputError, match="parts"):
+                studies.study(file, tmp_path / "dask", client, parts=2)
+    for name in ("results.csv",):
+        assert (tmp_path / "dask" / name).read_bytes() == (tmp_path / "processes" / name).read_bytes()

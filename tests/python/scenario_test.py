@@ -1,0 +1,109 @@
+"""Reading and editing scenarios; errors with their places."""
+
+import datetime
+import os
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import SCENARIOS
+
+import emscape as em
+
+
+def test_says_what_the_file_holds(quick):
+    assert quick.name == "quick"
+    assert quick.shape == (20, 40, 40)
+    assert quick.size_m == (20000, 20000, 5000)
+    assert quick.epoch == datetime.datetime(2026, 6, 1, 6, tzinfo=datetime.timezone.utc)
+    assert quick.emitters == ["radar", "transmitter"]
+    assert quick.platforms == ["radar site", "mast"]
+    assert quick.times("") == [0, 1, 2, 3, 4]
+    assert quick.times("0:1:0.5") == [0, 0.5, 1]
+    assert quick.times([1, 3]) == [1, 3]
+    latitude, longitude, height_msl_m = quick.positions()["mast"]
+    assert (latitude, longitude) == (52.05, 5.06)
+    assert height_msl_m == pytest.approx(50)
+
+
+def test_an_edit_gives_another_scenario(quick):
+    edited = quick.with_set({"emitters.radar.power_w": np.float64(500), "name": 'a "name": #1'})
+    assert edited.edits == {"emitters.radar.power_w": "500.0", "name": '"a \\"name\\": #1"'}
+    assert edited.name == 'a "name": #1'
+    assert quick.edits == {} and quick.name == "quick"
+    assert edited.hash != quick.hash
+    assert edited.with_set({"emitters.radar.power_w": 10000, "name": "quick"}).emitters == quick.emitters
+
+
+def test_null_removes_a_key(quick):
+    assert quick.with_set({"epoch": None}).epoch is None
+
+
+def test_a_pickled_scenario_is_the_same(quick):
+    edited = quick.with_set({"emitters.radar.power_w": 500})
+    again = pickle.loads(pickle.dumps(edited))
+    assert (again.hash, again.edits) == (edited.hash, edited.edits)
+
+
+def test_a_saved_scenario_is_the_same(quick, tmp_path):
+    edited = quick.with_set({"emitters.radar.power_w": 500})
+    edited.save(tmp_path / "saved.yaml")
+    assert "power_w: 500" in (tmp_path / "saved.yaml").read_text()
+    assert em.load(tmp_path / "saved.yaml").edits == {}
+
+
+def test_all_faults_of_a_file_are_listed_with_their_places(tmp_path):
+    text = (SCENARIOS / "quick.yaml").read_text()
+    file = tmp_path / "faulty.yaml"
+    file.write_text(text.replace("power_w: 10000", "power_w: -1").replace("step_s: 1", "step_s: 0"))
+    with pytest.raises(em.ScenarioError) as caught:
+        em.load(file)
+    problems = caught.value.problems
+    assert [(p.file, p.line, p.column) for p in problems] == [(str(file), 6, 9), (str(file), 19, 14)]
+    assert problems[1].message == "'power_w' is -1, outside the allowed above 0 to 1 TW"
+    assert str(caught.value).splitlines()[1] == f"{file}:19:14: {problems[1].message}"
+    assert caught.value.status == 3
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert again.problems == problems
+
+
+def test_the_place_of_a_faulty_edit_is_the_edit(quick):
+    with pytest.raises(em.ScenarioError) as caught:
+        quick.with_set({"emitters.radar.power_w": -1})
+    assert caught.value.problems[0].file == "emitters.radar.power_w=-1"
+
+
+def test_errors_have_the_class_and_the_status_of_their_kind(quick, tmp_path):
+    with pytest.raises(em.ScenarioError, match="nowhere.yaml") as caught:
+        em.load(tmp_path / "nowhere.yaml")
+    assert isinstance(caught.value, em.InputError) and isinstance(caught.value, ValueError)
+    with pytest.raises(em.UsageError, match="auto, cpu") as caught:
+        em.Solver(quick, "gpu")
+    assert caught.value.status == 2
+    with pytest.raises(em.InputError, match="power_density_dbwm2"):
+        em.Solver(quick, "cpu", quantities=["loudness"])
+    field = em.Solver(quick, "cpu").at(0)
+    with pytest.raises(em.UsageError, match="the field has no quantity 'loudness'; it has power_density_dbwm2"):
+        field.numpy("loudness")
+    with pytest.raises(em.OtherError, match="none"):
+        field.write(tmp_path / "none" / "x.vdb")
+    with pytest.raises(em.InputError, match="vdb"):
+        field.write(tmp_path / "x.txt")
+    statuses = {cls: cls.status for cls in (em.OtherError, em.UsageError, em.InputError, em.DeviceError, em.CheckError)}
+    assert sorted(statuses.values()) == [1, 2, 3, 4, 5]
+    assert all(issubclass(cls, em.Error) for cls in statuses)
+
+
+def test_a_gpu_that_is_missing_is_a_device_error(quick):
+    probe = "import emscape as em, sys; em.Solver(em.load(sys.argv[1]), 'cuda')"
+    result = subprocess.run(
+        [sys.executable, "-c", probe, quick.file], capture_output=True, text=True, env={**os.environ, "CUDA_VISIBLE_DEVICES": ""}
+    )
+    assert "emscape._errors.DeviceError" in result.stderr
+
+
+def test_names_that_need_quotes_are_quoted():
+    assert em.path_step("a=b") == '"a=b"'
+    assert em.path_step("radar") == "radar"

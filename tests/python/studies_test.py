@@ -1,0 +1,135 @@
+"""The command line's results; pictures; messages and progress."""
+
+import json
+import logging
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import SCENARIOS
+
+import emscape as em
+
+
+def said(program, *arguments):
+    return json.loads(subprocess.run([program, *arguments, "--json", "--quiet"], check=True, capture_output=True).stdout)
+
+
+def test_a_profile_is_that_of_the_command_line(jamming, program):
+    edited = jamming.with_set({"emitters.search radar.power_w": 500})
+    result = em.profile(edited, "search radar", (36.3, -84.2, 100), agl=True, time_s=40, models=["free_space"])
+    words = ["profile", str(SCENARIOS / "jamming.yaml"), "--emitter", "search radar", "--to", "36.3,-84.2,100", "--agl", "--time", "40"]
+    words += ["--model", "free_space", "--set", "emitters.search radar.power_w=500", "--set", "region.dims=[60,60,25]"]
+    expected = said(program, *words)
+    assert result == expected
+    assert result["verdict"]
+
+
+def test_exposure_and_links_are_those_of_the_command_line(program, tmp_path):
+    file = SCENARIOS / "links.yaml"
+    scenario = em.load(file)
+    assert em.link(scenario, times="0:20:10") == said(program, "link", str(file), "--times", "0:20:10")
+    result = em.exposure(scenario, scenario.platforms[-1], quantity="power_density_dbwm2", threshold=-70, times=[0, 10, 20])
+    assert [row["time_s"] for row in result["rows"]] == [0, 10, 20]
+
+
+def test_vertical_coverage_is_an_array(jamming):
+    cuts = em.vertical(jamming, "search radar", [30, 120])
+    assert cuts.detection_probability.dims == ("azimuth", "height_msl_m", "range")
+    below = cuts.height_msl_m < cuts.ground_msl
+    assert np.all(np.isnan(cuts.detection_probability.where(below.transpose("azimuth", "height_msl_m", "range"), drop=False).values))
+    assert len(cuts.attrs["azimuths"]) == 2
+
+
+def test_compare_tells_what_is_won_and_lost(jamming):
+    louder = jamming.with_set({"emitters.stand-off jammer.power_w": 5000})
+    options = {"times": 40, "cell_m": 1000, "products": ["covered"]}
+    lost = em.compare(jamming, louder, **options)["comparison"][0]
+    won = em.compare(louder, jamming, **options)["comparison"][0]
+    assert lost["lost_km2"] == won["gained_km2"] > 0
+    assert lost["gained_km2"] == won["lost_km2"] == 0
+
+
+def test_a_study_in_processes_equals_one_in_this_process(tmp_path):
+    file = SCENARIOS / "study" / "jammer_power.yaml"
+    one = em.study(file, tmp_path / "one")
+    two = em.study(file, tmp_path / "two", jobs=2)
+    assert one["variants"] == two["variants"] > 1
+    assert (tmp_path / "one" / "results.csv").read_bytes() == (tmp_path / "two" / "results.csv").read_bytes()
+
+
+def test_a_file_that_has_changed_is_refused(tmp_path):
+    file = tmp_path / "quick.yaml"
+    file.write_text((SCENARIOS / "quick.yaml").read_text())
+    scenario = em.load(file)
+    file.write_text(file.read_text().replace("10000", "20000"))
+    with pytest.raises(em.InputError, match="has changed since the scenario was loaded"):
+        em.profile(scenario, "radar", (52.05, 5.05, 500))
+
+
+def test_progress_is_called_and_may_end_the_work(jamming):
+    steps = []
+    em.coverage(jamming, times=40, cell_m=500, progress=lambda step, fraction: steps.append((step, fraction)))
+    assert steps and all(0 <= fraction <= 1 for _, fraction in steps)
+
+    def stop(step, fraction):
+        raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        em.coverage(jamming, times=40, cell_m=500, progress=stop)
+    with pytest.raises(RuntimeError, match="enough"):
+        em.link(em.load(SCENARIOS / "links.yaml"), progress=stop)
+
+
+def test_messages_go_to_the_logger(jamming, caplog):
+    with caplog.at_level(logging.WARNING, "emscape"):
+        em.vertical(jamming, "search radar", [30])
+    assert any("far field" in record.message or "terrain" in record.message for record in caplog.records)
+
+
+def test_unknown_options_are_usage_errors(jamming):
+    with pytest.raises(em.UsageError, match="--quantitie"):
+        em.command("coverage", jamming.file, "-o", "none", "--quantitie", "x")
+    with pytest.raises(em.UsageError, match="'nobody'"):
+        em.profile(jamming, "nobody", (36.3, -84.2, 100))
+
+
+def test_the_command_line_runs_in_the_process(program):
+    words = ["validate", str(SCENARIOS / "quick.yaml"), "--json"]
+    here = subprocess.run([sys.executable, "-m", "emscape", *words], capture_output=True, text=True)
+    there = subprocess.run([program, *words], capture_output=True, text=True)
+    assert (here.returncode, here.stdout, here.stderr) == (there.returncode, there.stdout, there.stderr)
+    wrong = subprocess.run([sys.executable, "-m", "emscape", "validate", "nowhere.yaml"], capture_output=True, text=True)
+    assert wrong.returncode == 3 and "nowhere.yaml" in wrong.stderr + wrong.stdout
+
+
+def test_a_picture_has_ground_field_and_labels(jamming):
+    field = em.Solver(jamming, "cpu").at(40)
+    picture = em.render(field, "detection_probability", size=(320, 200), camera={"azimuth_deg": 200, "elevation_deg": 35})
+    assert picture.shape == (200, 320, 4) and picture.dtype == np.uint8
+    assert len(np.unique(picture.reshape(-1, 4), axis=0)) > 100
+    assert np.array_equal(picture, em.render(field, "detection_probability", size=(320, 200), camera="orbit:azimuth_deg=200,elevation_deg=35"))
+    with pytest.raises(em.UsageError, match="azimuth_degrees"):
+        em.render(field, camera={"azimuth_degrees": 3})
+
+
+def test_import_is_light(program):
+    probe = (
+        "import sys, time; t = time.process_time(); import emscape; t = time.process_time() - t;"
+        "kb = int(open('/proc/self/statm').read().split()[1]) * 4; print(t, kb, 'numpy' in sys.modules)"
+    )
+    seconds, resident_kb, has_numpy = subprocess.run(
+        [sys.executable, "-c", probe], check=True, capture_output=True, text=True
+    ).stdout.split()
+    assert float(seconds) < 0.1 and int(resident_kb) < 30000 and has_numpy == "False"
+
+
+def test_every_public_name_is_documented():
+    undocumented = [name for name in em.__all__ if not name.startswith("_") and not getattr(em, name).__doc__]
+    for cls in (em.Scenario, em.Solver, em.Field, em.Error, em.Problem):
+        for name, member in vars(cls).items():
+            if not name.startswith("_") and not getattr(member, "__doc__", None):
+                undocumented.append(f"{cls.__name__}.{name}")
+    assert not undocumented
+    assert "load" in dir(em)

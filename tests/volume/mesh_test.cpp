@@ -1,0 +1,123 @@
+#include "emscape/volume/mesh.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/errors.h"
+#include "tests/support/meshes.h"
+
+namespace emscape::volume {
+namespace {
+
+using test::boxMesh;
+using test::errorOf;
+using ::testing::HasSubstr;
+
+const SourceLocation kFile{"a.vtu"};
+
+double volumeOf(const TetrahedralMesh& mesh) {
+  double sum = 0;
+  for (const auto& cell : mesh.cells) {
+    const auto p = [&](std::size_t n) { return mesh.points_m[static_cast<std::size_t>(cell[n])]; };
+    sum += dot(cross(p(1) - p(0), p(2) - p(0)), p(3) - p(0)) / 6;
+  }
+  return sum;
+}
+
+TetrahedralMesh oneCell() {
+  TetrahedralMesh mesh;
+  mesh.points_m = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.cells = {{0, 1, 2, 3}};
+  return mesh;
+}
+
+TEST(Mesh, LatticeCellsFillTheBoxAndConform) {
+  TetrahedralMesh mesh = boxMesh({4, 5, 6}, {-1, 0, 2}, {3, 7, 4}, 0.2);
+  EXPECT_EQ(mesh.cells.size(), 6U * 3 * 4 * 5);
+  EXPECT_EQ(orientCells(mesh, kFile), 0);
+  EXPECT_NEAR(volumeOf(mesh), 4 * 7 * 2, 1e-12 * 56);
+  const MeshFaces faces = facesOf(mesh, kFile);
+  // Two triangles for each square of the box's sides.
+  EXPECT_EQ(faces.boundary.size(), 2U * 2 * (3 * 4 + 4 * 5 + 5 * 3));
+  for (std::size_t id = 0; id < faces.other_side.size(); ++id) {
+    const FaceId other = faces.other_side[id];
+    if (other == kNoFace) continue;
+    EXPECT_EQ(faces.other_side[static_cast<std::size_t>(other)], static_cast<FaceId>(id));
+  }
+}
+
+TEST(Mesh, ThinLayersOverSteepGroundAreNotInverted) {
+  TetrahedralMesh mesh = boxMesh({9, 9, 5}, {0, 0, 0}, {800, 800, 4});
+  for (Vec3d& point : mesh.points_m) point.z += 300 * std::sin(point.x) * std::cos(1.7 * point.y);
+  EXPECT_EQ(orientCells(mesh, kFile), 0);
+  EXPECT_NEAR(volumeOf(mesh), 800.0 * 800 * 4, 1e-6);
+  EXPECT_EQ(facesOf(mesh, kFile).boundary.size(), 2U * 2 * (8 * 8 + 8 * 4 + 4 * 8));
+}
+
+TEST(Mesh, InvertedCellsAreReordered) {
+  TetrahedralMesh mesh = oneCell();
+  std::swap(mesh.cells[0][0], mesh.cells[0][3]);
+  EXPECT_LT(volumeOf(mesh), 0);
+  EXPECT_EQ(orientCells(mesh, kFile), 1);
+  EXPECT_NEAR(volumeOf(mesh), 1.0 / 6, 1e-15);
+  EXPECT_EQ(orientCells(mesh, kFile), 0);
+}
+
+TEST(Mesh, RefusesWhatIsNoMesh) {
+  const auto errorAfter = [](const std::function<void(TetrahedralMesh&)>& damage) {
+    TetrahedralMesh mesh = oneCell();
+    damage(mesh);
+    return errorOf([&] { orientCells(mesh, kFile); }, ErrorCode::bad_input);
+  };
+  EXPECT_THAT(errorAfter([](auto& m) { m.cells.clear(); }), HasSubstr("a.vtu: the mesh has no cells"));
+  EXPECT_THAT(errorAfter([](auto& m) { m.points_m[2].y = std::nan(""); }),
+              HasSubstr("point 2 has a coordinate that is not finite"));
+  EXPECT_THAT(errorAfter([](auto& m) { m.cells[0][1] = 4; }),
+              HasSubstr("cell 0 (points 0, 4, 2, 3): points must be 0..3"));
+  EXPECT_THAT(errorAfter([](auto& m) { m.cells[0][1] = -1; }), HasSubstr("points must be 0..3"));
+  EXPECT_THAT(errorAfter([](auto& m) { m.cells[0][1] = 0; }), HasSubstr("is degenerate"));
+  EXPECT_THAT(errorAfter([](auto& m) {
+                m.points_m[3] = {0.3, 0.4, 0};
+              }),
+              HasSubstr("cell 0 (points 0, 1, 2, 3) is degenerate: it has no volume"));
+}
+
+TEST(Mesh, ThinCellsAreNoFault) {
+  TetrahedralMesh mesh = oneCell();
+  for (Vec3d& point : mesh.points_m) point = {point.x * 1e4, point.y * 1e4, point.z * 1e-3};
+  EXPECT_EQ(orientCells(mesh, kFile), 0);
+}
+
+TEST(Mesh, RefusesFacesThatDoNotConform) {
+  TetrahedralMesh mesh = oneCell();
+  mesh.points_m.push_back({1, 1, 1});
+  mesh.points_m.push_back({2, 2, 1});
+  mesh.cells.push_back({1, 2, 3, 4});
+  orientCells(mesh, kFile);
+  EXPECT_EQ(facesOf(mesh, kFile).boundary.size(), 6U);
+  mesh.cells.push_back({1, 2, 3, 5});
+  orientCells(mesh, kFile);
+  EXPECT_THAT(errorOf([&] { facesOf(mesh, kFile); }, ErrorCode::bad_input),
+              HasSubstr("the face of points 1, 2, 3 belongs to 3 cells, among them cell 0"));
+  mesh.cells.erase(mesh.cells.begin());
+  EXPECT_THAT(errorOf([&] { facesOf(mesh, kFile); }), HasSubstr("on its same side: they overlap"));
+}
+
+TEST(Mesh, StatisticsLeaveOutWhatIsNotKnown) {
+  MeshField field = test::fieldOn(oneCell(), [](const Vec3d& p) { return p.x + 2 * p.y; });
+  field.values[3] = std::numeric_limits<float>::quiet_NaN();
+  const Statistics statistics = statisticsOf(field);
+  EXPECT_EQ(statistics.voxels, 4);
+  EXPECT_EQ(statistics.valid, 3);
+  EXPECT_EQ(statistics.nan, 1);
+  EXPECT_EQ(statistics.max, 2);
+  EXPECT_DOUBLE_EQ(statistics.mean, 1);
+  field.values[1] = std::numeric_limits<float>::infinity();
+  EXPECT_THAT(errorOf([&] { checkMeshField(field, kFile); }), HasSubstr("is infinite at point 1"));
+}
+
+}  // namespace
+}  // namespace emscape::volume
