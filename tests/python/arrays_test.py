@@ -77,13 +77,12 @@ def test_maps_are_those_of_profiles(jamming):
 def test_a_pixel_equals_the_profile_there(jamming):
     pyproj = pytest.importorskip("pyproj")
     value = em.coverage(jamming, "agl:150", "value", quantity="snr_db", threshold=10, times=40, cell_m=2000)
-    known = np.argwhere(np.isfinite(value.values))
-    y, x = known[len(known) // 2]
     to_geographic = pyproj.Transformer.from_crs(pyproj.CRS.from_wkt(value.spatial_ref.attrs["crs_wkt"]), "EPSG:4326", always_xy=True)
-    longitude, latitude = to_geographic.transform(float(value.x[x]), float(value.y[y]))
-    path = em.profile(jamming, "search radar", (latitude, longitude, 150), agl=True, time_s=40)
-    term = path["budget"]["snr_db"]
-    assert term == pytest.approx(float(value[y, x]), abs=0.1)
+    lit = np.argwhere(value.values > value.values[np.isfinite(value.values)].min())
+    for y, x in lit[::7]:
+        longitude, latitude = to_geographic.transform(float(value.x[x]), float(value.y[y]))
+        path = em.profile(jamming, "search radar", (latitude, longitude, 150), agl=True, time_s=40)
+        assert path["budget"]["snr_db"] == pytest.approx(float(value[y, x]), abs=0.01)
 
 
 def test_a_dataset_goes_to_netcdf_and_back(jamming, tmp_path):
