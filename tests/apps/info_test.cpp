@@ -1,9 +1,13 @@
-// emscape info on refractivity.
+// emscape info: signals, refractivity.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
 
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/apps/program.h"
 
@@ -14,6 +18,29 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 
 const char* const kSurfaceBased = "height_msl_m,m_units\n0,330\n200,353.6\n300,313.6\n";
+
+TEST(Info, EndsAtTheFirstSignalWhateverItReads) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "never_written.tif";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  RunningProgram info({"info", pipe});
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  info.signal(SIGTERM);
+  const ProgramResult result = info.wait();
+  EXPECT_EQ(result.status, 128 + SIGTERM);
+  EXPECT_EQ(result.err, "emscape: stopped by signal 15\n");
+}
+
+TEST(Info, NamesAListOnceAndKeepsEachTextOnALine) {
+  const TemporaryFolder folder;
+  std::string text = readFile(quick());
+  const std::string file =
+      folder.write("two.yaml", text.replace(text.find("name: quick"), 11, "name: \"two\\nlines\""));
+  const std::string out = run({"info", file}).out;
+  EXPECT_THAT(out, HasSubstr("name: \"two\\nlines\"\n"));
+  EXPECT_THAT(out, HasSubstr("emitters:\n  -\n    name: radar\n"));
+  EXPECT_EQ(out.find("emitters:"), out.rfind("emitters:"));
+}
 
 TEST(InfoOfRefractivity, ListsWhatAProfileTraps) {
   const TemporaryFolder folder;
