@@ -1,8 +1,10 @@
 // emscape info: signals, refractivity.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
@@ -24,11 +26,17 @@ TEST(Info, EndsAtTheFirstSignalWhateverItReads) {
   const std::string pipe = folder / "never_written.tif";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   RunningProgram info({"info", pipe});
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  int writer = -1;  // can be opened once the program reads
+  for (int n = 0; n < 1000 && writer < 0; ++n) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    writer = open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  }
+  EXPECT_GE(writer, 0);
   info.signal(SIGTERM);
   const ProgramResult result = info.wait();
   EXPECT_EQ(result.status, 128 + SIGTERM);
   EXPECT_EQ(result.err, "emscape: stopped by signal 15\n");
+  close(writer);
 }
 
 TEST(Info, NamesAListOnceAndKeepsEachTextOnALine) {
