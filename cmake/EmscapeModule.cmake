@@ -20,7 +20,7 @@ function(emscape_warnings target)
                                            $<$<BOOL:${EMSCAPE_WERROR}>:-Werror>>
     $<$<COMPILE_LANGUAGE:CUDA>:-Xcompiler=-Wall,-Wextra
                                $<$<BOOL:${EMSCAPE_WERROR}>:-Werror=all-warnings -Xcompiler=-Werror>>)
-  if(EMSCAPE_SANITIZE)
+  if(EMSCAPE_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # the sanitizers' own code makes GCC see uninitialised values in the standard headers
     target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
   endif()

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/json_reading.h"
 #include "emscape/base/error.h"
 #include "playback/series_state.h"
 
@@ -68,17 +69,22 @@ std::vector<std::optional<StepRecord>> SeriesJournal::read(int steps, std::size_
   const std::vector<std::uint8_t> bytes = readWhole(file_);
   const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(wholeLines(bytes));
   int line = 1;
+  const auto fail = [&](const std::string& fault) {
+    throw Error(ErrorCode::bad_input, {file_.string(), line},
+                "not a step of the series (" + fault + "); start the series again");
+  };
   for (auto at = bytes.begin(); at != end; ++line) {
     const auto line_end = std::find(at, end, '\n');
     try {
       StepRecord record = recordFrom(Json::parse(at, line_end), steps, channels);
       const auto step = static_cast<std::size_t>(record.step);
       records[step] = std::move(record);
+    } catch (const nlohmann::json::parse_error&) {
+      fail("no JSON");
+    } catch (const nlohmann::json::exception& error) {
+      fail(faultOf(error));
     } catch (const std::exception& error) {
-      const bool is_json = dynamic_cast<const nlohmann::json::parse_error*>(&error) == nullptr;
-      throw Error(ErrorCode::bad_input, {file_.string(), line},
-                  std::string("not a step of the series (") + (is_json ? error.what() : "no JSON") +
-                      "); start the series again");
+      fail(error.what());
     }
     at = line_end + 1;
   }

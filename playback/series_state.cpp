@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <stdexcept>
 
+#include "base/json_reading.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 
@@ -26,23 +26,18 @@ Json toJson(const SeriesState& state) {
 }
 
 SeriesState fromJson(const Json& json) {
-  if (json.at("format_version") != kFormatVersion) throw std::invalid_argument("format_version is not 2");
+  if (json.at("format_version") != kFormatVersion)
+    throw Error(ErrorCode::bad_input, "format_version is not 2");
   SeriesState state;
   state.recipe = json.at("recipe");
-  if (!state.recipe.is_object()) throw std::invalid_argument("recipe is not an object");
-  if (!state.recipe.at("times").is_array()) throw std::invalid_argument("recipe: times is not a list");
+  if (!state.recipe.is_object()) throw Error(ErrorCode::bad_input, "recipe is not an object");
+  if (!state.recipe.at("times").is_array()) throw Error(ErrorCode::bad_input, "recipe: times is not a list");
   state.complete = json.at("complete").get<bool>();
   for (const auto& [channel, range] : json.at("ranges").items()) {
     state.channels.push_back(channel);
     state.ranges.push_back(rangeFromJson(range));
   }
   return state;
-}
-
-/// Line of a byte of a text; counts from 1.
-int lineOf(const std::vector<std::uint8_t>& text, std::size_t byte) {
-  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
-  return 1 + static_cast<int>(std::count(text.begin(), end, '\n'));
 }
 
 }  // namespace
@@ -79,28 +74,19 @@ Json toJson(const ValueRange& range) {
 
 ValueRange rangeFromJson(const Json& json) {
   if (json.is_null()) return {};
-  if (!json.is_array() || json.size() != 2) throw std::invalid_argument("a range is two numbers or null");
+  if (!json.is_array() || json.size() != 2)
+    throw Error(ErrorCode::bad_input, "a range is two numbers or null");
   const ValueRange range{json.at(0).get<float>(), json.at(1).get<float>()};
-  if (!(range.min <= range.max)) throw std::invalid_argument("a range whose minimum exceeds its maximum");
+  if (!(range.min <= range.max))
+    throw Error(ErrorCode::bad_input, "a range whose minimum exceeds its maximum");
   return range;
 }
 
 std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kStateFile;
   if (!std::filesystem::exists(file)) return std::nullopt;
-  const std::vector<std::uint8_t> bytes = readWhole(file);
-  const auto fail = [&](int line, const char* what) {
-    throw Error(ErrorCode::bad_input, {file.string(), line, 0},
-                std::string("not the state of a series (") + what + "); start the series again");
-  };
-  try {
-    return fromJson(Json::parse(bytes.begin(), bytes.end()));
-  } catch (const nlohmann::json::parse_error& error) {
-    fail(lineOf(bytes, error.byte), "no JSON");
-  } catch (const std::exception& error) {
-    fail(0, error.what());
-  }
-  return std::nullopt;
+  return readJson<Json>(readWholeText(file), file.string(), fromJson,
+                        ": not the state of a series; start the series again");
 }
 
 void writeSeriesState(const std::filesystem::path& folder, const SeriesState& state) {

@@ -28,7 +28,7 @@ Json recipeOf(const FieldSeries& series, const SeriesOptions& options);
 
 /// null for an empty range.
 Json toJson(const ValueRange& range);
-/// @throws nlohmann::json::exception or std::invalid_argument for what is no range
+/// @throws nlohmann::json::exception or Error (bad_input) for what is no range
 ValueRange rangeFromJson(const Json& json);
 
 /// The state of a folder; none if it holds no series.

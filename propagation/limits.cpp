@@ -5,16 +5,22 @@
 namespace emscape::propagation {
 namespace {
 
-std::string_view toString(Beyond beyond) {
+/// What a message says of a value beyond its limit.
+std::string_view consequenceOf(Beyond beyond) {
   switch (beyond) {
     case Beyond::warned:
-      return "computed, with a warning";
+      return "computed all the same";
     case Beyond::clamped:
-      return "taken as the nearest allowed value, with a warning";
+      return "the nearest allowed value is used";
     case Beyond::refused:
       return "refused";
   }
   return "";
+}
+
+/// The same in the table of limits.
+std::string inTable(Beyond beyond) {
+  return std::string(consequenceOf(beyond)) + (beyond == Beyond::refused ? "" : ", with a warning");
 }
 
 /// With a space before it, if there is one.
@@ -24,7 +30,7 @@ std::string unitOf(const ModelLimit& limit) {
 
 std::string rangeOf(const ModelLimit& limit) {
   return fmt::format("outside {:.6g}..{:.6g}{}: {}", limit.min, limit.max, unitOf(limit),
-                     toString(limit.beyond));
+                     consequenceOf(limit.beyond));
 }
 
 }  // namespace
@@ -43,7 +49,7 @@ std::string limitsTable(const ModelLimit* const* limits, int count) {
   for (int i = 0; i < count; ++i) {
     const ModelLimit& limit = *limits[i];
     table += fmt::format("| {} | {} | {:.6g} | {:.6g} | {} | {} |\n", limit.parameter, limit.unit, limit.min,
-                         limit.max, toString(limit.beyond), limit.remark);
+                         limit.max, inTable(limit.beyond), limit.remark);
   }
   return table;
 }

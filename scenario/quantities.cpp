@@ -82,7 +82,7 @@ Quantity quantityFromName(const std::string& name) {
   for (const QuantityInfo& entry : quantityTable()) {
     if (name == entry.name) return entry.quantity;
   }
-  throw Error(ErrorCode::bad_input, "unknown quantity '" + name + "'; one of " + quantityNames());
+  throw Error(ErrorCode::usage, "unknown quantity '" + name + "'; one of " + quantityNames());
 }
 
 }  // namespace emscape::scenario

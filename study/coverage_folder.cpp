@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/json_reading.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/scenario_file.h"
@@ -26,11 +27,7 @@ using Json = nlohmann::json;
 /// Calls a function that takes values out of a report; what is missing or of another type is named.
 template <class Read>
 void readFrom(const fs::path& file, const Read& read) {
-  try {
-    read(Json::parse(readWholeText(file)));
-  } catch (const Json::exception& error) {
-    fail(file, fmt::format("is no report of emscape coverage ({})", error.what()));
-  }
+  readJson<Json>(readWholeText(file), file.string(), read, ": no report of emscape coverage");
 }
 
 /// The scenario of a folder, if it and its elevation files still have their content; else one with its name
@@ -93,9 +90,10 @@ CoverageMap mapOf(const Json& record, const CoverageFolder& folder) {
 }
 
 Dataset openGeoTiff(const scenario::GdalMessages& messages, const fs::path& file) {
+  static const char* const kGeoTiff[] = {"GTiff", nullptr};
   driverOf("GTiff");
   Dataset dataset(
-      GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
+      GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kGeoTiff, nullptr, nullptr));
   if (dataset == nullptr || dataset->GetRasterCount() != 1)
     fail(file, messages.explain("cannot be read as a map"));
   return dataset;

@@ -23,6 +23,19 @@ GDALDriver* driverOf(const char* name) {
   return driver;
 }
 
+Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file) {
+  static const char* const kDrivers[] = {"GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf", "KML", "LIBKML",
+                                         "GML",  "CSV",     nullptr};
+  GDALAllRegister();
+  Dataset dataset(
+      GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, nullptr, nullptr));
+  if (dataset == nullptr) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0},
+                messages.explain("not a file of points or polygons that can be read"));
+  }
+  return dataset;
+}
+
 void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
   throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
 }

@@ -22,6 +22,11 @@ using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 /// @throws Error (other) if GDAL was built without it
 GDALDriver* driverOf(const char* name);
 
+/// Opens a file of points or polygons: GeoPackage, GeoJSON, shapefile, FlatGeobuf, KML, GML or CSV. Nothing
+/// else, so that no file makes GDAL connect to a network or read others.
+/// @throws Error (bad_input) that names the file and GDAL's reason
+Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file);
+
 /// @throws Error (other) that names the file and GDAL's reason
 [[noreturn]] void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file);
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/utc.h"
+
 namespace emscape::volume {
 namespace {
 
@@ -56,11 +58,19 @@ FrameOrigin frameFromJson(const Json& json) {
   return frame;
 }
 
+/// ISO 8601; empty: none.
+std::string timeFromJson(const Json& value) {
+  const auto text = value.get<std::string>();
+  if (!text.empty() && !parseUtc_ms(text))
+    throw Error(ErrorCode::bad_input, value.dump().substr(0, 40) + " is not a time YYYY-MM-DDTHH:MM:SSZ");
+  return text;
+}
+
 void setMember(VolumeInfo& info, const std::string& key, const Json& value) {
   if (key == "quantity") info.quantity = value.get<std::string>();
   if (key == "unit") info.unit = value.get<std::string>();
   if (key == "time_s") info.time_s = numberFromJson(value);
-  if (key == "time_utc") info.time_utc = value.get<std::string>();
+  if (key == "time_utc") info.time_utc = timeFromJson(value);
   if (key == "floor") info.floor = static_cast<float>(numberFromJson(value));
   if (key == "range_min") info.range_min = static_cast<float>(numberFromJson(value));
   if (key == "range_max") info.range_max = static_cast<float>(numberFromJson(value));
@@ -97,7 +107,7 @@ void eachMember(const Json& json, const std::string& file, const char* what, con
     } catch (const Error& error) {
       throw Error(ErrorCode::bad_input, {file}, "key " + key + ": " + error.message());
     } catch (const nlohmann::json::exception& error) {
-      throw Error(ErrorCode::bad_input, {file}, "key " + key + ": " + error.what());
+      throw Error(ErrorCode::bad_input, {file}, "key " + key + ": " + faultOf(error));
     }
   }
 }
@@ -180,11 +190,7 @@ MeshField meshFieldFromJson(const Json& json, const std::string& file) {
 }
 
 Json parseJson(const std::string& text, const std::string& file) {
-  try {
-    return Json::parse(text);
-  } catch (const nlohmann::json::exception& error) {
-    throw Error(ErrorCode::bad_input, {file}, error.what());
-  }
+  return readJson<Json>(text, file, [](Json& json) { return std::move(json); });
 }
 
 std::string dumpJson(const Json& json) {

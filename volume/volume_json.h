@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/json_reading.h"
 #include "emscape/volume/dense_volume.h"
 #include "emscape/volume/mesh.h"
 
@@ -38,7 +39,7 @@ Value requiredFromJson(const nlohmann::ordered_json& json, const char* key, cons
   try {
     return json.at(key).get<Value>();
   } catch (const nlohmann::json::exception& error) {
-    throw Error(ErrorCode::bad_input, {file}, "key " + std::string(key) + ": " + error.what());
+    throw Error(ErrorCode::bad_input, {file}, "key " + std::string(key) + ": " + faultOf(error));
   }
 }
 

@@ -11,8 +11,10 @@
 #include "apps/emscape/choices_report.h"
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
+#include "apps/emscape/interrupt.h"
 #include "apps/emscape/refractivity_report.h"
 #include "apps/emscape/waveform_report.h"
+#include "apps/emscape/work_report.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/emfield/model_choices.h"
@@ -63,6 +65,17 @@ Json choicesOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
   const double time_s = scenario::timesOf(scenario->clock).front();
   return choicesJson(
       emfield::modelChoices(scenario::snapshotAt(scenario, terrain.get(), time_s), terrain.get()));
+}
+
+/// What the field takes; null where it cannot be computed, which `validate` explains.
+Json workOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
+  emfield::FieldOptions options;
+  options.allow_missing_terrain = true;
+  try {
+    return workJson(workEstimateOf({scenario, scenario::loadTerrain(*scenario), options}, *scenario));
+  } catch (const Error&) {
+    return nullptr;
+  }
 }
 
 /// What a file holds.
@@ -133,7 +146,8 @@ Description describeScenario(const std::string& file) {
             {"emitters", emitters},
             {"receivers", receivers},
             {"targets", targets},
-            {"channels", channels}};
+            {"channels", channels},
+            {"work", workOf(scenario)}};
   const auto& refractivity = scenario->atmosphere.refractivity;
   if (refractivity) json["refractivity"] = refractivityJson(*refractivity, frequenciesOf(*scenario));
   return {json, refractivity};
@@ -261,21 +275,30 @@ Json describeAntenna(const std::string& file) {
           {"beamwidth_el_deg", antenna->beamwidth_el_deg}};
 }
 
-/// A JSON report as indented lines of text: the same facts for people.
+/// A text as it is if it fits on a line, else quoted.
+std::string onOneLine(const std::string& text) {
+  const bool fits =
+      std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
+  return fits ? text : Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// A JSON report as indented lines of text: the same facts for people. Members of a list begin with "-".
 void printText(const Json& json, int depth) {
   const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
   for (const auto& [key, value] : json.items()) {
     const bool nested =
         value.is_object() || (value.is_array() && !value.empty() && value.front().is_object());
     if (!nested) {
-      print("{}{}: {}\n", indent, key, value.is_string() ? value.get<std::string>() : value.dump());
+      print("{}{}: {}\n", indent, key,
+            value.is_string() ? onOneLine(value.get<std::string>()) : value.dump());
     } else if (value.is_object()) {
       print("{}{}:\n", indent, key);
       printText(value, depth + 1);
     } else {
+      print("{}{}:\n", indent, key);
       for (const Json& item : value) {
-        print("{}{}:\n", indent, key);
-        printText(item, depth + 1);
+        print("{}  -\n", indent);
+        printText(item, depth + 2);
       }
     }
   }
@@ -305,6 +328,7 @@ struct InfoOptions {
 };
 
 int info(const InfoOptions& options, const GlobalOptions& global) {
+  if (options.plot.empty()) endAtInterrupts();
   const Description description = describe(options.file);
   if (!options.plot.empty()) {
     if (!description.refractivity) {

@@ -1,5 +1,7 @@
 #include "apps/emscape/interrupt.h"
 
+#include <unistd.h>
+
 #include <csignal>
 
 namespace emscape::app {
@@ -7,9 +9,22 @@ namespace {
 
 StopFlag stop{false};
 volatile std::sig_atomic_t signal_caught = 0;
+volatile std::sig_atomic_t ends_at_once = 0;
 static_assert(StopFlag::is_always_lock_free, "a signal handler may set only lock-free atomics");
 
+/// Without what a signal handler must not call.
+[[noreturn]] void endAtOnce(int signal) {
+  constexpr char kText[] = "emscape: stopped by signal ";
+  const char number[] = {static_cast<char>('0' + signal / 10), static_cast<char>('0' + signal % 10), '\n'};
+  const std::size_t zeros = signal < 10 ? 1 : 0;
+  if (write(STDERR_FILENO, kText, sizeof kText - 1) > 0) {
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, number + zeros, sizeof number - zeros);
+  }
+  _exit(128 + signal);
+}
+
 void onSignal(int signal) {
+  if (ends_at_once != 0) endAtOnce(signal);
   signal_caught = signal;
   stop = true;
 }
@@ -28,6 +43,10 @@ void catchSignal(int signal) {
 
 void catchInterrupts() {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) catchSignal(signal);
+}
+
+void endAtInterrupts() {
+  ends_at_once = 1;
 }
 
 const StopFlag& stopFlag() {

@@ -9,6 +9,10 @@ namespace emscape::app {
 /// that is ignored at the start stays ignored.
 void catchInterrupts();
 
+/// For commands that write no files and may be in a library's reader for long: from now on the first signal
+/// that catchInterrupts() catches ends the program at once, with status 128 + N.
+void endAtInterrupts();
+
 /// Set once the user wants the program to stop.
 const StopFlag& stopFlag();
 /// The signal that set it; 0 before.

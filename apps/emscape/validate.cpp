@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "apps/emscape/choices_report.h"
 #include "apps/emscape/command.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
+#include "apps/emscape/work_report.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/emfield/model_choices.h"
@@ -72,8 +74,9 @@ void checkSteps(const std::shared_ptr<const scenario::Scenario>& scenario, const
 
 /// Checks that need the whole scenario: the ground, the quantities, the models, every step.
 /// @param choices  receives what the models choose by themselves at the first step
+/// @param work     receives what the field takes, if it can be computed
 void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std::vector<Problem>& problems,
-                  std::vector<emfield::EmitterChoice>& choices) {
+                  std::vector<emfield::EmitterChoice>& choices, std::optional<WorkEstimate>& work) {
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
     if (terrain) checkCoverage(*scenario, *terrain, problems);
@@ -81,6 +84,7 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std
     emfield::FieldOptions options;
     options.allow_missing_terrain = true;  // reported above
     const emfield::FieldSolver solver(scenario, terrain, options);
+    work = workEstimateOf(solver, *scenario);
     for (const std::string& warning : solver.warnings()) {
       Problem problem;
       problem.location.file = scenario->file;
@@ -101,9 +105,11 @@ const char* toString(Severity severity) {
 }
 
 int validate(const std::string& file, const std::vector<scenario::Edit>& edits, const GlobalOptions& global) {
+  endAtInterrupts();
   scenario::ParseResult result = scenario::parseScenario(file, edits);
   std::vector<emfield::EmitterChoice> choices;
-  if (result.scenario) checkMeaning(result.scenario, result.problems, choices);
+  std::optional<WorkEstimate> work;
+  if (result.scenario) checkMeaning(result.scenario, result.problems, choices, work);
   const bool ok = std::none_of(result.problems.begin(), result.problems.end(),
                                [](const Problem& problem) { return problem.severity == Severity::error; });
 
@@ -116,7 +122,10 @@ int validate(const std::string& file, const std::vector<scenario::Edit>& edits, 
                           {"severity", toString(problem.severity)},
                           {"message", problem.message}});
     }
-    printJson({{"ok", ok}, {"problems", problems}, {"choices", choicesJson(choices)}});
+    printJson({{"ok", ok},
+               {"problems", problems},
+               {"choices", choicesJson(choices)},
+               {"work", work ? workJson(*work) : Json(nullptr)}});
   } else {
     for (const Problem& problem : result.problems) {
       print("{}: {}: {}\n", emscape::toString(problem.location), toString(problem.severity), problem.message);
@@ -124,6 +133,7 @@ int validate(const std::string& file, const std::vector<scenario::Edit>& edits, 
     if (ok && !global.quiet) {
       for (const emfield::EmitterChoice& choice : choices)
         print("emitter '{}': {}: {} {}\n", choice.emitter, choice.model, choice.name, choice.text);
+      if (work) print("{}\n", workText(*work));
       print("{}: ok\n", file);
     }
   }
@@ -137,13 +147,16 @@ void addValidate(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->fallthrough();
   command->footer(R"(
 Reports all faults at once, each as file:line:column: error: message. Also checks that the elevation files cover the region and that
-no platform is below the ground at any step. What models choose by themselves (keys that are auto) is printed with its reason.
+no platform is below the ground at any step, and that the field fits into the memory. The last line but one says how much memory
+`simulate` takes at most, and how long and large a series is. What models choose by themselves (keys that are auto) is printed with its reason.
 
 Examples:
   emscape validate scenarios/jacksboro.yaml
   emscape validate mine.yaml --set "emitters.search radar.power_w=500"
   emscape validate mine.yaml --json        {"ok", "problems": [{"file", "line", "column", "severity", "message"}],
-                                            "choices": [{"emitter", "model", "name", "text"}]}
+                                            "choices": [{"emitter", "model", "name", "text"}],
+                                            "work": {"memory_mib", "volumes_mib", "emitters_mib", "available_mib",
+                                                     "steps", "step_mib"}}
 
 Exit status: 0 without errors (warnings are ignored), 3 otherwise.)");
   auto file = std::make_shared<std::string>();

@@ -59,14 +59,13 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
   emitters.resize(setup.scenario->emitters.size());
   masks.resize(setup.channels.size());
   volumes.resize(setup.channels.size());
-  std::size_t slot_bytes = 0;
-  const std::vector<bool> cached = chooseCached(setup, &slot_bytes);
+  const std::vector<bool> cached = chooseCached(setup, &estimate.emitters);
   for (std::size_t e = 0; e < emitters.size(); ++e) emitters[e].is_cached = cached[e];
   engine = withBackendFallback(
       options.backend,
       [&](const ResolvedBackend& resolved) {
         backend = resolved.backend;
-        return makeEngine(slot_bytes);
+        return makeEngine();
       },
       logInfo);
 }
@@ -91,11 +90,12 @@ std::vector<bool> FieldSolver::Impl::chooseCached(const FieldPlan& plan, std::si
   return cached;
 }
 
-std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine(std::size_t slot_bytes) const {
+std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine() {
   const int slots = static_cast<int>(emitters.size()) + 1;
   const bool on_host = backend == Backend::cpu;
-  const std::size_t needed = on_host ? cpuEngineBytes(setup, slot_bytes)
-                                     : cudaEngineBytes(setup, slot_bytes, options.device_precision);
+  const std::size_t needed = on_host ? cpuEngineBytes(setup, estimate.emitters)
+                                     : cudaEngineBytes(setup, estimate.emitters, options.device_precision);
+  estimate.volumes = needed - estimate.emitters;
   const std::size_t free = on_host ? availableMemory_bytes().value_or(needed) : findDevice().free_bytes;
   if (needed > free) {
     constexpr double kMebibyte = 1 << 20;
@@ -214,6 +214,10 @@ MemoryUse FieldSolver::memoryUse() const {
   impl.engine->addMemory(use);
   use.total_bytes += impl.setup.columns.bytes();
   return use;
+}
+
+MemoryEstimate FieldSolver::memoryEstimate() const {
+  return impl_->estimate;
 }
 
 std::vector<std::string> FieldSolver::warnings() const {

@@ -38,6 +38,7 @@ struct FieldSolver::Impl {
   Backend backend = Backend::cpu;  ///< cpu or cuda
   std::unique_ptr<FieldEngine>
       engine;  ///< one slot per emitter plus a shared one for emitters that are not cached
+  MemoryEstimate estimate;
   std::vector<EmitterCache> emitters;
   std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
   std::vector<volume::Volume> volumes;
@@ -54,7 +55,7 @@ struct FieldSolver::Impl {
        FieldOptions options_in);
 
   std::vector<bool> chooseCached(const FieldPlan& plan, std::size_t* slot_bytes) const;
-  std::unique_ptr<FieldEngine> makeEngine(std::size_t slot_bytes) const;
+  std::unique_ptr<FieldEngine> makeEngine();
   void checkHoles() const;
   std::string placeOf(std::size_t column) const;
 

@@ -11,7 +11,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/units.h"
-#include "scenario/terrain/gdal_messages.h"
+#include "study/gdal_support.h"
 
 namespace emscape::study {
 namespace {
@@ -59,10 +59,7 @@ void addLayer(OGRLayer& layer, const std::string& file, std::vector<CandidateSit
 
 std::vector<CandidateSite> readCandidates(const std::string& file) {
   const scenario::GdalMessages messages;
-  GDALAllRegister();
-  const GDALDatasetUniquePtr dataset(
-      GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
-  if (dataset == nullptr) throw Error(ErrorCode::bad_input, {file, 0, 0}, messages.explain("cannot be read"));
+  const Dataset dataset = openVectors(messages, file);
   std::vector<CandidateSite> sites;
   for (OGRLayer* layer : dataset->GetLayers()) addLayer(*layer, file, sites);
   if (sites.empty() || sites.size() > kMaxCandidates) {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
-#include "scenario/terrain/gdal_messages.h"
+#include "study/gdal_support.h"
 
 namespace emscape::study {
 
@@ -18,9 +18,7 @@ std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& g
   const auto fail = [&](const std::string& why) {
     throw Error(ErrorCode::bad_input, {file, 0, 0}, messages.explain(why.c_str()));
   };
-  const GDALDatasetUniquePtr polygons(
-      GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, nullptr, nullptr));
-  if (polygons == nullptr) fail("cannot be read");
+  const Dataset polygons = openVectors(messages, file);
   const GDALDatasetUniquePtr raster(GetGDALDriverManager()->GetDriverByName("MEM")->Create(
       "", grid.width, grid.height, 1, GDT_Byte, nullptr));
   double transform[6] = {grid.left_m, grid.cell_m, 0, grid.top_m, 0, -grid.cell_m};

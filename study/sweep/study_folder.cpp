@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/json_reading.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "study/sweep/part_rows.h"
@@ -28,13 +29,10 @@ void makeFolder(const fs::path& folder) {
   }
 }
 
-Json readJson(const fs::path& file) {
-  try {
-    return Json::parse(readWholeText(file));
-  } catch (const Json::exception& error) {
-    throw Error(ErrorCode::bad_input, {file.string(), 0, 0},
-                fmt::format("is no JSON ({}); remove it to compute it again", error.what()));
-  }
+/// Reads a record of this program.
+template <class Read>
+auto readRecord(const fs::path& file, const Read& read) {
+  return readJson<Json>(readWholeText(file), file.string(), read, "; remove the file to compute it again");
 }
 
 [[noreturn]] void failForeign(const fs::path& file, const std::string& found, const std::string& expected) {
@@ -61,12 +59,13 @@ StudyFolder::StudyFolder(fs::path folder, const StudySpec& study, const StudyPla
 std::optional<StudyFolder::Manifest> StudyFolder::readManifest() const {
   const fs::path file = folder_ / "manifest.json";
   if (!fs::exists(file)) return std::nullopt;
-  const Json json = readJson(file);
-  const std::string hash = json.value("hash", "");
-  if (hash != study_.hash) failForeign(file, hash, study_.hash);
-  const Manifest manifest{json.value("parts", 0), keptOf(json)};
-  if (manifest.parts < 1) throw Error(ErrorCode::bad_input, {file.string(), 0, 0}, "has no number of parts");
-  return manifest;
+  return readRecord(file, [&](const Json& json) {
+    const std::string hash = json.value("hash", "");
+    if (hash != study_.hash) failForeign(file, hash, study_.hash);
+    const Manifest manifest{json.value("parts", 0), keptOf(json)};
+    if (manifest.parts < 1) throw Error(ErrorCode::bad_input, "has no number of parts");
+    return std::optional(manifest);
+  });
 }
 
 std::optional<int> StudyFolder::partsOfManifest() const {
@@ -129,13 +128,14 @@ fs::path StudyFolder::partFile(int part, const char* ending) const {
 bool StudyFolder::hasPart(int part) const {
   const fs::path file = partFile(part, "json");
   if (!fs::exists(file)) return false;
-  const Json record = readJson(file);
-  const std::string hash = record.value("hash", "");
-  if (hash != study_.hash || record.value("parts", 0) != parts_) {
-    failForeign(file, fmt::format("{} in {} parts", hash, record.value("parts", 0)),
-                fmt::format("{} in {}", study_.hash, parts_));
-  }
-  return true;
+  return readRecord(file, [&](const Json& record) {
+    const std::string hash = record.value("hash", "");
+    if (hash != study_.hash || record.value("parts", 0) != parts_) {
+      failForeign(file, fmt::format("{} in {} parts", hash, record.value("parts", 0)),
+                  fmt::format("{} in {}", study_.hash, parts_));
+    }
+    return true;
+  });
 }
 
 std::vector<int> StudyFolder::missingParts() const {
@@ -192,9 +192,11 @@ void StudyFolder::writePart(int part, const PartJournal& journal) const {
 }
 
 void StudyFolder::readPart(int part, StudyResults& results) const {
-  const Json record = readJson(partFile(part, "json"));
-  for (const auto& machine : record.value("machines", Json::array())) results.machines.insert(machine);
-  for (const auto& warning : record.value("warnings", Json::array())) results.warnings.insert(warning);
+  const std::size_t pixels = readRecord(partFile(part, "json"), [&](const Json& record) {
+    for (const auto& machine : record.value("machines", Json::array())) results.machines.insert(machine);
+    for (const auto& warning : record.value("warnings", Json::array())) results.warnings.insert(warning);
+    return record.value("pixels", std::size_t{0});
+  });
   const fs::path file = partFile(part, "csv");
   const std::string text = readWholeText(file);
   const std::vector<std::size_t> variants = variantsOf(part);
@@ -220,7 +222,7 @@ void StudyFolder::readPart(int part, StudyResults& results) const {
     begin = end + 1;
   }
   if (!study_.sites) return;
-  const std::size_t pixels = record.value("pixels", std::size_t{0}), bytes = (pixels + 7) / 8;
+  const std::size_t bytes = (pixels + 7) / 8;
   const std::string bits = readWholeText(partFile(part, "bits"));
   if (bits.size() != bytes * variants.size()) fail(0, "the .bits file beside it has the wrong size");
   for (std::size_t row = 0; row < variants.size(); ++row) {

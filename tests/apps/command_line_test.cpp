@@ -77,6 +77,8 @@ TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {
       {"simulate", quick, "-o", folder / "x", "--resume", "--force"},
       {"render", quick, "-o", folder / "x.png", "--size", "0x10"},
       {"render", quick, "-o", folder / "x.png", "--camera", "orbit:azimuth=3"},
+      {"simulate", quick, "-o", folder / "x", "--quantity", "loudness"},
+      {"render", quick, "-o", folder / "x.png", "--quantity", "loudness"},
       {"render", quick, "-o", folder / "x.gif"},
       {"render", quick, "-o", folder / "x.png", "--times", "0:4:1"},
       {"validate", quick, "--threads", "-1"},

@@ -84,7 +84,7 @@ TEST(Coverage, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"--area", "bbox:1,2,x,4"}, 2), HasSubstr("'x' is no number"));
   EXPECT_THAT(errorOf({"--quantity", "power_density_dbwm2"}, 2), HasSubstr("--threshold"));
   EXPECT_THAT(errorOf({"--threshold", "nan"}, 2), HasSubstr("'nan' is no number"));
-  EXPECT_THAT(errorOf({"--quantity", "loudness"}, 3), HasSubstr("unknown quantity 'loudness'"));
+  EXPECT_THAT(errorOf({"--quantity", "loudness"}, 2), HasSubstr("unknown quantity 'loudness'"));
   EXPECT_THAT(errorOf({"--products", "fraction"}, 2), HasSubstr("two times"));
   EXPECT_THAT(errorOf({"--format", "shp"}, 2), HasSubstr("shp"));
   EXPECT_THAT(errorOf({"--crs", "EPSG:4326"}, 2), HasSubstr("no projection in metres"));

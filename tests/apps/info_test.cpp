@@ -1,9 +1,15 @@
-// emscape info on refractivity.
+// emscape info: signals, refractivity.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/apps/program.h"
 
@@ -14,6 +20,35 @@ using nlohmann::json;
 using ::testing::HasSubstr;
 
 const char* const kSurfaceBased = "height_msl_m,m_units\n0,330\n200,353.6\n300,313.6\n";
+
+TEST(Info, EndsAtTheFirstSignalWhateverItReads) {
+  const TemporaryFolder folder;
+  const std::string pipe = folder / "never_written.tif";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  RunningProgram info({"info", pipe});
+  int writer = -1;  // can be opened once the program reads
+  for (int n = 0; n < 1000 && writer < 0; ++n) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    writer = open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  }
+  EXPECT_GE(writer, 0);
+  info.signal(SIGTERM);
+  const ProgramResult result = info.wait();
+  EXPECT_EQ(result.status, 128 + SIGTERM);
+  EXPECT_EQ(result.err, "emscape: stopped by signal 15\n");
+  close(writer);
+}
+
+TEST(Info, NamesAListOnceAndKeepsEachTextOnALine) {
+  const TemporaryFolder folder;
+  std::string text = readFile(quick());
+  const std::string file =
+      folder.write("two.yaml", text.replace(text.find("name: quick"), 11, "name: \"two\\nlines\""));
+  const std::string out = run({"info", file}).out;
+  EXPECT_THAT(out, HasSubstr("name: \"two\\nlines\"\n"));
+  EXPECT_THAT(out, HasSubstr("emitters:\n  -\n    name: radar\n"));
+  EXPECT_EQ(out.find("emitters:"), out.rfind("emitters:"));
+}
 
 TEST(InfoOfRefractivity, ListsWhatAProfileTraps) {
   const TemporaryFolder folder;

@@ -36,6 +36,31 @@ TEST_F(Validate, ShippedScenariosAreWithoutFault) {
   }
 }
 
+TEST_F(Validate, TellsWhatTheFieldTakes) {
+  const json work = json::parse(run({"validate", shippedScenario("quick.yaml"), "--json"}).out).at("work");
+  EXPECT_EQ(work.at("steps"), 5);
+  EXPECT_DOUBLE_EQ(work.at("step_mib"), 40 * 40 * 20 * 4 / 1048576.0);  // one channel
+  // at least the sum and the volume of the channel, at most ten times as much
+  EXPECT_GT(work.at("volumes_mib"), 2 * work.at("step_mib").get<double>());
+  EXPECT_LT(work.at("volumes_mib"), 10 * work.at("step_mib").get<double>());
+  EXPECT_DOUBLE_EQ(work.at("memory_mib"),
+                   work.at("volumes_mib").get<double>() + work.at("emitters_mib").get<double>());
+  EXPECT_EQ(json::parse(run({"info", shippedScenario("quick.yaml"), "--json"}).out).at("work").at("step_mib"),
+            work.at("step_mib"));
+}
+
+TEST_F(Validate, RefusesAFieldThatDoesNotFitIntoTheMemory) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
+#endif
+  const ProgramResult result =
+      run({"validate", shippedScenario("quick.yaml"), "--set", "region.dims=[512, 512, 256]"},
+          "ulimit -v 1500000;");
+  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_THAT(result.out, testing::HasSubstr("the field of 512 x 512 x 256 voxels"));
+  EXPECT_THAT(result.out, testing::HasSubstr("fewer voxels (region.dims)"));
+}
+
 TEST_F(Validate, TellsPlaceAndSeverityOfEveryProblem) {
   const std::string file = changed("power_w: 1000\n", "power_w: -1000\n    colour: red\n");
   const ProgramResult text = run({"validate", file});

@@ -30,6 +30,20 @@ TEST(Error, WithoutAPlaceIsTheMessageAlone) {
   EXPECT_TRUE(error.location().file.empty());
 }
 
+TEST(Error, QuotesWhatItFoundInClearLines) {
+  EXPECT_STREQ(Error(ErrorCode::usage, "size '1\x1b[2J\x7f'\nsecond\tline").what(),
+               "size '1?[2J?'\nsecond?line");
+  const std::string token(70000, 'x');
+  const std::string what = Error(ErrorCode::usage, "first\nvalue '" + token + "' is no number").what();
+  EXPECT_LT(what.size(), 800U);
+  EXPECT_EQ(what.substr(0, 17), "first\nvalue 'xxxx");
+  EXPECT_EQ(what.substr(what.size() - 16), "xx' is no number");
+  std::string characters;
+  for (int n = 0; n < 1000; ++n) characters += "\u00fc";  // two bytes each: none is cut
+  const std::string cut = Error(ErrorCode::usage, characters).what();
+  EXPECT_EQ(cut.find(" ... ") % 2, 0U);
+}
+
 TEST(Error, CarriesAHintForProgramsAndNoneByDefault) {
   EXPECT_EQ(Error(ErrorCode::bad_input, {"a.yaml", 3, 7}, "void").hint(), Hint::none);
   const Error error(ErrorCode::bad_input, {"a.yaml", 3, 7}, "void", Hint::allow_missing_terrain);

@@ -267,7 +267,7 @@ TEST_F(SeriesWriter, ADamagedStateIsAnErrorThatNamesTheFile) {
   const std::string whole = readFile(*this / "s/series.json");
   writeFile(*this / "s/series.json", whole.substr(0, whole.find("\"recipe\"")));
   EXPECT_THAT(errorOf([&] { write(2, into("s", {"raw"}, Existing::resume)); }),
-              AllOf(HasSubstr("series.json:"), HasSubstr("no JSON")));
+              AllOf(HasSubstr("series.json:"), HasSubstr("not valid JSON")));
   for (const char* key : {"format_version", "complete", "ranges", "recipe"}) {
     json damaged = json::parse(whole);
     damaged.erase(key);

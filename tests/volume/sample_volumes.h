@@ -24,7 +24,7 @@ using emscape::test::errorOf;
 using emscape::test::TemporaryFolder;
 
 /// Uneven dims, spacing without short decimals, a mask with empty and full columns, voxels at the floor above
-/// the ground, a block of one value (a tile in .vdb), and a NaN.
+/// the ground, a block of one value (a tile in .vdb), and a NaN. @param dims  at least 4 x 5 x 4
 inline DenseVolume fieldVolume(Dims dims = {21, 17, 18}) {
   DenseVolume volume;
   volume.grid.dims = dims;

@@ -80,6 +80,15 @@ struct MemoryUse {
   int uncached_emitters = 0;
 };
 
+/// Upper bounds of the memory (bytes) of a field, on the host or the GPU on which it is computed. The
+/// constructor refuses a field for which their sum exceeds what is free.
+struct MemoryEstimate {
+  std::size_t volumes = 0;   ///< sums over the emitters and the channels' volumes; with cuda also columns and
+                             ///< ground
+  std::size_t emitters = 0;  ///< what is kept of each emitter: geometry and excess losses
+  std::size_t total() const { return volumes + emitters; }
+};
+
 /// Computes the field of a scenario step by step; only what time or an edit of the scenario has invalidated
 /// is computed. The volumes of an update equal, bit for bit, those of a new solver of the same snapshot,
 /// except for the tolerance move_tolerance_m. One thread calls it; it uses all threads that base/parallel.h
@@ -124,6 +133,8 @@ class FieldSolver {
 
   StageTimes stageTimes() const;
   MemoryUse memoryUse() const;
+  /// Of the scenario that the solver was made with.
+  MemoryEstimate memoryEstimate() const;
   /// Warnings on the current scenario so far, each once with its count: model limits exceeded, near field,
   /// holes crossed. Those of emitters that have been edited since are dropped.
   std::vector<std::string> warnings() const;

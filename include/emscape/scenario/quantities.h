@@ -56,7 +56,7 @@ const std::vector<QuantityInfo>& quantityTable();
 const QuantityInfo& info(Quantity quantity);
 /// The names of all, with commas between them.
 std::string quantityNames();
-/// @throws Error (bad_input) that lists the allowed names
+/// @throws Error (usage) that lists the allowed names
 Quantity quantityFromName(const std::string& name);
 
 }  // namespace emscape::scenario

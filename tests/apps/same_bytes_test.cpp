@@ -1,0 +1,72 @@
+// Files do not depend on the number of threads, and hold neither the time of day nor anything random.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+/// Runs a command in one thread and in three, into a folder of its own each, and compares all files.
+/// @param arguments  "OUT" in them becomes the folder
+void expectSameBytes(const Arguments& arguments) {
+  const TemporaryFolder one, three;
+  for (const auto& [folder, threads] : {std::pair(&one, "1"), std::pair(&three, "3")}) {
+    Arguments with{"--threads", threads, "--quiet"};
+    for (std::string argument : arguments) {
+      if (argument.compare(0, 3, "OUT") == 0) argument.replace(0, 3, folder->path().string());
+      with.push_back(argument);
+    }
+    const ProgramResult result = run(with);
+    ASSERT_EQ(result.status, 0) << result.err;
+  }
+  ASSERT_FALSE(one.files().empty());
+  ASSERT_EQ(one.files(), three.files());
+  for (const std::string& file : one.files())
+    EXPECT_TRUE(readFile(one / file) == readFile(three / file)) << arguments.front() << ": " << file;
+}
+
+TEST(SameBytes, VolumesInEveryFormat) {
+  expectSameBytes({"simulate", shippedScenario("jamming.yaml"), "-o", "OUT/series", "--format",
+                   "vdb,nvdb,vti,raw", "--quantity",
+                   "power_density_dbwm2,detection_probability,dominant_emitter", "--set",
+                   "region.dims=[40, 40, 16]", "--times", "20:40:20"});
+}
+
+TEST(SameBytes, FieldsOnMeshes) {
+  expectSameBytes({"simulate", shippedScenario("jamming.yaml"), "-o", "OUT/series", "--mesh", "terrain:6",
+                   "--set", "region.dims=[24, 24, 16]", "--times", "40"});
+}
+
+TEST(SameBytes, Pictures) {
+  expectSameBytes({"render", quick(), "-o", "OUT/frames", "--size", "160x120", "--times", "0:2:1"});
+}
+
+TEST(SameBytes, Videos) {
+  if (std::system("command -v ffmpeg >/dev/null") != 0) GTEST_SKIP() << "ffmpeg is not installed";
+  expectSameBytes({"render", quick(), "-o", "OUT/film.mp4", "--size", "160x120", "--times", "0:4:1"});
+}
+
+TEST(SameBytes, MapsOfCoverage) {
+  expectSameBytes({"coverage", shippedScenario("jamming.yaml"), "-o", "OUT/maps", "--cell", "500", "--times",
+                   "40", "--format", "cog,png,gpkg,nc,kmz,czml"});
+}
+
+TEST(SameBytes, Studies) {
+  const TemporaryFolder folder;
+  const std::string study =
+      folder.write("study.yaml", "schema_version: 1\nscenario: " + shippedScenario("jamming.yaml") +
+                                     R"(
+times: 40
+cell_m: 1000
+sweep:
+  emitters.stand-off jammer.power_w: {log: {from: 1, to: 1000, count: 6}}
+measures:
+  - {name: covered, height: "agl:300"}
+)");
+  expectSameBytes({"study", study, "-o", "OUT/study"});
+}
+
+}  // namespace
+}  // namespace emscape::test

@@ -1,0 +1,167 @@
+// Readers of scenarios and of the files that they name, except elevation.
+#include <algorithm>
+#include <limits>
+
+#include "emscape/base/error.h"
+#include "emscape/scenario/clock.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
+#include "scenario/antenna/shapes.h"
+#include "scenario/refractivity_file.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/support/files.h"
+
+namespace emscape::test {
+namespace {
+
+namespace fs = std::filesystem;
+using scenario::Edit;
+
+void checkProblems(const scenario::ParseResult& result) {
+  for (const scenario::Problem& problem : result.problems) checkFuzzMessage(problem.message);
+}
+
+/// What a program does next: the instant at the first step. Without ground.
+void useScenario(const std::shared_ptr<const scenario::Scenario>& scenario) {
+  if (scenario) scenario::snapshotAt(scenario, nullptr, scenario::timesOf(scenario->clock).front());
+}
+
+/// The contents of all files of a folder with one of the endings.
+std::vector<std::string> contentsOf(const fs::path& folder, const std::vector<std::string>& endings) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    for (const std::string& ending : endings) {
+      if (entry.path().extension() == ending) files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  std::vector<std::string> contents;
+  for (const fs::path& file : files) contents.push_back(readFile(file));
+  return contents;
+}
+
+std::vector<std::string> scenarioSeeds() {
+  std::vector<std::string> seeds = contentsOf(sourceFile("scenarios"), {".yaml"});
+  for (std::string& broken : contentsOf(sourceFile("tests/scenario/broken"), {".yaml"}))
+    seeds.push_back(std::move(broken));
+  seeds.push_back(R"({"schema_version": 1, "name": "json", "epoch": "2026-06-01T06:00:00Z", "duration_s": 4,
+"step_s": 1, "region": {"origin": {"latitude_deg": 52, "longitude_deg": 5, "height_msl_m": 0},
+"size_m": [20000, 20000, 5000], "dims": [40, 40, 20]},
+"platforms": [{"name": "mast", "position": {"latitude_deg": 52.05, "longitude_deg": 5.06, "height_agl_m": 50}}],
+"emitters": [{"name": "transmitter", "platform": "mast", "kind": "transmitter", "frequency_hz": 1e8,
+"power_w": 1000, "antenna": {"pattern": "isotropic"}}]})");
+  return seeds;
+}
+
+/// Lines of PATH=VALUE, applied together.
+void readEdits(const std::string& text) {
+  static const std::shared_ptr<const scenario::Scenario> base =
+      scenario::loadScenario(shippedScenario("links.yaml"));
+  std::vector<Edit> edits;
+  for (std::size_t begin = 0; begin < text.size() && edits.size() < 8;) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    edits.push_back(scenario::parseEdit(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  const scenario::ParseResult result = scenario::editScenario(*base, edits);
+  checkProblems(result);
+  useScenario(result.scenario);
+}
+
+/// A scenario in the input's folder whose edits name the input.
+void readNamed(const fs::path& file, const std::vector<Edit>& edits) {
+  const scenario::ParseResult result = scenario::parseScenario(file.parent_path() / "quick.yaml", edits);
+  checkProblems(result);
+  useScenario(result.scenario);
+}
+
+const FuzzTargetsAdded added({
+    {"scenario", "input.yaml",
+     [](const fs::path& file, const std::string&) {
+       const scenario::ParseResult result = scenario::parseScenario(file);
+       checkProblems(result);
+       useScenario(result.scenario);
+     },
+     scenarioSeeds, copyScenarios, scenario::scenarioJsonSchema},
+    {"set",
+     "input.txt",
+     [](const fs::path&, const std::string& bytes) { readEdits(bytes); },
+     [] {
+       return std::vector<std::string>{
+           "emitters.radar.power_w=500",
+           "region.dims.2=10\nduration_s=1",
+           "platforms.helicopter.track=null\nplatforms.helicopter.position={latitude_deg: 36.5, "
+           "longitude_deg: -84.2, height_msl_m: 900}",
+           "output.quantities=[power_density_dbwm2, snr_db]",
+           "emitters.\"a=b\".power_w=[1, {}]",
+           "receivers=[]",
+           "targets.0=null",
+           "terrain=null",
+           "atmosphere={refraction: exponential}",
+           "atmosphere.refractivity={kind: evaporation, height_m: 12}"};
+     },
+     {},
+     scenario::scenarioJsonSchema},
+    {"track_csv", "input.csv",
+     [](const fs::path& file, const std::string&) {
+       readNamed(file, {{"platforms.mast.position", "null"}, {"platforms.mast.track", "{file: input.csv}"}});
+     },
+     [] {
+       return std::vector<std::string>{readFile(sourceFile("tests/scenario/data/track.csv")),
+                                       readFile(sourceFile("scenarios/data/helicopter.csv")),
+                                       "t_s,latitude_deg,longitude_deg,height_agl_m,heading_deg,pitch_deg,"
+                                       "roll_deg\n0,52,5,100,10,1,2\n4,52.1,5.1,200,350,-1,0\n"};
+     },
+     copyScenarios},
+    {"rcs_csv", "input.csv",
+     [](const fs::path& file, const std::string&) {
+       readNamed(file, {{"targets", "[{name: aircraft, platform: mast, rcs_file: input.csv}]"}});
+     },
+     [] { return std::vector<std::string>{readFile(sourceFile("scenarios/data/helicopter_rcs.csv"))}; },
+     copyScenarios},
+    {"antenna_csv", "input.csv",
+     [](const fs::path& file, const std::string&) { scenario::readAntenna(file, 20); },
+     [] {
+       return std::vector<std::string>{
+           "azimuth_deg,elevation_deg,gain_db\n-180,-90,-30\n0,-90,-10\n180,-90,-30\n-180,90,-30\n0,90,0\n"
+           "180,90,-30\n"};
+     }},
+    {"antenna_msi", "input.msi",
+     [](const fs::path& file, const std::string&) {
+       scenario::readAntenna(file, std::numeric_limits<double>::quiet_NaN());
+     },
+     [] {
+       return std::vector<std::string>{readFile(sourceFile("tests/scenario/data/sector.msi")),
+                                       readFile(sourceFile("scenarios/data/sector_450mhz.msi"))};
+     }},
+    {"refractivity_csv", "input.csv",
+     [](const fs::path& file, const std::string&) {
+       scenario::isRefractivityCsv(file);
+       for (const std::string& warning : scenario::readRefractivity(file).warnings) checkFuzzMessage(warning);
+     },
+     [] {
+       return std::vector<std::string>{
+           "height_msl_m,m_units\n0,330\n100,320\n", "n_units,height_msl_m\n330,0\n290,1000\n",
+           "range_m,height_msl_m,m_units\n0,0,330\n0,10,320\n1000,0,330\n1000,30,320\n",
+           "latitude_deg,longitude_deg,height_msl_m,m_units\n52,5,0,330\n52,5,10,320\n52,6,0,330\n52,6,9,3\n",
+           "height_msl_m,pressure_hpa,temperature_k,relative_humidity_percent\n0,1013,288,80\n90,1000,287,"
+           "60\n"};
+     }},
+    {"sounding", "input.txt",
+     [](const fs::path& file, const std::string&) {
+       scenario::isSoundingFile(file);
+       for (const std::string& warning : scenario::readSounding(file, {}).warnings) checkFuzzMessage(warning);
+     },
+     [] {
+       return std::vector<std::string>{
+           "#USM00072649 2023 11 18 12 1102    5 ncdc-nws ncdc-nws  448500  -935700\n"
+           "21 -9999  99100   288B   10B  780  -9999   300    15 \n"
+           "10 -9999  92500   830B   50B  600  -9999   310    60 \n"
+           "20 -9999  85000  1520B   20B  400  -9999   320    80 \n"
+           "10 -9999  70000  3100B  -80B  300  -9999   300   100 \n"
+           "10 -9999  50000  5700B -220B  200  -9999   290   150 \n"};
+     }},
+});
+
+}  // namespace
+}  // namespace emscape::test

@@ -1,0 +1,82 @@
+// Elevation files in each format that is read.
+#include <cmath>
+
+#include "emscape/scenario/terrain.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/scenario/dem_file.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kPosts = 6;
+constexpr double kStep_deg = 0.01;
+
+DemFile smallDem() {
+  return geographicDem(5, 52, kStep_deg, kPosts, kPosts, [](double latitude_deg, double longitude_deg) {
+    return 1e3 * latitude_deg + longitude_deg;
+  });
+}
+
+std::string bytesOf(const DemFile& dem) {
+  const TemporaryFolder folder;
+  dem.write(folder / "a.tif");
+  return readFile(folder / "a.tif");
+}
+
+/// A file that GDAL writes with the seed in another format. @param driver  GDAL's name of the format
+std::string converted(const std::string& driver, const std::string& raster, const std::string& wanted) {
+  const TemporaryFolder folder;
+  smallDem().write(folder / "a.tif");
+  convertDem(folder / "a.tif", driver, folder / raster);
+  return readFile(folder / wanted);
+}
+
+/// Describes the file and reads its heights about the seeds' place.
+void readElevation(const fs::path& file, const std::string&) {
+  scenario::TerrainSpec spec;
+  spec.files = {file.string()};
+  const scenario::TerrainPtr terrain = scenario::Terrain::load(spec, {51.9, 52.1, 4.9, 5.1});
+  terrain->heightMsl_m(51.97, 5.03);
+  scenario::Terrain::describe(file.string());
+}
+
+std::vector<std::string> geotiffs() {
+  DemFile projected = smallDem();
+  projected.crs = "EPSG:32631";
+  projected.transform = {637000, 30, 0, 5763000, 0, -30};
+  DemFile scaled = smallDem();
+  scaled.is_point = true;
+  scaled.nodata = -9999;
+  scaled.unit = "ft";
+  scaled.scale = 0.5;
+  return {bytesOf(smallDem()), bytesOf(projected), bytesOf(scaled)};
+}
+
+const FuzzTargetsAdded added({
+    {"terrain_tif", "input.tif", readElevation, geotiffs},
+    {"terrain_asc", "input.asc", readElevation,
+     [] { return std::vector<std::string>{converted("AAIGrid", "a.asc", "a.asc")}; }},
+    {"terrain_bil_header", "input.hdr",
+     [](const fs::path& file, const std::string& bytes) {
+       readElevation(fs::path(file).replace_extension(".bil"), bytes);
+     },
+     [] { return std::vector<std::string>{converted("EHdr", "a.bil", "a.hdr")}; },
+     [](const fs::path& folder) { writeFile(folder / "input.bil", converted("EHdr", "a.bil", "a.bil")); }},
+    {"terrain_vrt", "input.vrt", readElevation,
+     [] {
+       return std::vector<std::string>{
+           R"(<VRTDataset rasterXSize="6" rasterYSize="6"><SRS>EPSG:4326</SRS>
+<GeoTransform>5, 0.01, 0, 52, 0, -0.01</GeoTransform><VRTRasterBand dataType="Float32" band="1">
+<NoDataValue>-9999</NoDataValue><SimpleSource><SourceFilename relativeToVRT="1">tile.tif</SourceFilename>
+<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="6" ySize="6"/>
+<DstRect xOff="0" yOff="0" xSize="6" ySize="6"/></SimpleSource></VRTRasterBand></VRTDataset>)"};
+     },
+     [](const fs::path& folder) { writeFile(folder / "tile.tif", bytesOf(smallDem())); }},
+});
+
+}  // namespace
+}  // namespace emscape::test
