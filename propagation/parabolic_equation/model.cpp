@@ -208,6 +208,8 @@ std::vector<Setting> peSettings() {
       "roughness", RoughnessModel::miller_brown, "reduction of the reflection by roughness"));
   settings.push_back(numberSetting<kPe, &ParabolicEquationSettings::floor_db>(
       "floor_db", "dB", -120, -20, "lowest field of the equation over that in free space"));
+  settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::cells>(
+      "cells", PeCells::point, "mean power over a voxel's height and range, or the field at its middle"));
   return settings;
 }
 
