@@ -27,18 +27,18 @@ PICTURES = {
     "clutter_mti": "-10:50",
 }
 LEVEL = {"clutter", "clutter_mti"}
-SHIP = ["vertical", "ship_duct.yaml", "--emitter", "ship radar", "--azimuth", "90", "--range", "80000", "--max-height", "60"]
-COAST = ["vertical", "coast_duct.yaml", "--emitter", "coastal radar", "--azimuth", "300", "--range", "200000", "--max-height", "3000"]
-MAST = ["vertical", "jacksboro.yaml", "--emitter", "communications mast", "--azimuth", "310", "--range", "16000",
-        "--max-height", "1500", "--quantity", "power_density_dbwm2", "--threshold", "-90"]
-# Name: command, scenario in scenarios and options.
+SHIP = ["profile", "ship_duct.yaml", "--emitter", "ship radar", "--to", "51.3,4.15,5", "--plot"]
+COAST = ["vertical", "coast_duct.yaml", "--emitter", "coastal radar", "--azimuth", "300", "--range", "200000", "--max-height", "3000", "-o"]
+MAST = ["vertical", "jacksboro.yaml", "--emitter", "communications mast", "--azimuth", "190", "--range", "14000",
+        "--max-height", "900", "--quantity", "power_density_dbwm2", "--threshold", "-90", "-o"]
+# Name: command, scenario in scenarios, options, the last of them for the picture; then more options.
 DIAGRAMS = {
-    "ship_duct": SHIP,
-    "ship_standard": [*SHIP, "--set", "atmosphere.refractivity.duct_height_m=0"],
-    "coast_duct": COAST,
-    "coast_cliff": [*COAST, "--set", "platforms.coast.position.height_msl_m=500"],
-    "mast_parabolic": [*MAST, "--set", "emitters.communications mast.propagation=parabolic_equation"],
-    "mast_diffraction": [*MAST, "--set", "emitters.communications mast.propagation=diffraction"],
+    "ship_duct": (SHIP, []),
+    "ship_standard": (SHIP, ["--set", "atmosphere.refractivity.duct_height_m=0"]),
+    "coast_duct": (COAST, []),
+    "coast_cliff": (COAST, ["--set", "platforms.coast.position.height_msl_m=500"]),
+    "mast_parabolic": (MAST, ["--set", "emitters.communications mast.propagation=parabolic_equation"]),
+    "mast_diffraction": (MAST, ["--set", "emitters.communications mast.propagation=diffraction"]),
 }
 
 
@@ -51,11 +51,12 @@ def compress(full, picture):
     print(f"{picture.relative_to(ROOT)}: {picture.stat().st_size / 1024:.1f} KiB")
 
 
-def draw_diagram(emscape, picture, command, scenario, *options):
+def draw_diagram(emscape, picture, words, more):
+    command, scenario, *options = words
     with tempfile.TemporaryDirectory() as folder:
         full = pathlib.Path(folder) / "full.png"
-        subprocess.run([emscape, command, ROOT / "scenarios" / scenario, "-o", full, "--quiet", "--backend", "cpu",
-                        "--size", "900x400", *options], check=True)
+        subprocess.run([emscape, command, ROOT / "scenarios" / scenario, *options, full, *more, "--quiet", "--size", "900x400"],
+                       check=True, stdout=subprocess.DEVNULL)
         compress(full, picture)
 
 
