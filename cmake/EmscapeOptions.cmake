@@ -21,10 +21,14 @@ endif()
 
 find_program(EMSCAPE_CCACHE ccache)
 mark_as_advanced(EMSCAPE_CCACHE)
-if(EMSCAPE_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  # Options that ccache needs to cache objects made with precompiled headers.
-  set(CMAKE_CXX_COMPILER_LAUNCHER
-    "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${EMSCAPE_CCACHE}")
+# Paths below the source folder are hashed as relative ones: build folders of equal depth, such as those of the presets and of
+# `pip install .`, share objects. The sloppiness is needed with precompiled headers.
+if(EMSCAPE_CCACHE)
+  set(EMSCAPE_CCACHE_COMMAND "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}"
+    CCACHE_SLOPPINESS=pch_defines,time_macros "${EMSCAPE_CCACHE}")
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set(CMAKE_CXX_COMPILER_LAUNCHER "${EMSCAPE_CCACHE_COMMAND}")
+  endif()
 endif()
 
 if(EMSCAPE_SANITIZE STREQUAL "address")

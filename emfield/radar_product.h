@@ -12,6 +12,7 @@
 #include "base/fast_math.h"
 #include "emfield/clutter_echo.h"
 #include "emfield/combine.h"
+#include "emfield/look_weights.h"
 #include "emfield/radar/detection.h"
 #include "emfield/radar/look.h"
 #include "emscape/base/host_device.h"
@@ -59,50 +60,52 @@ struct RadarTask {
   int jammer_count = 0;
 };
 
-/// Root of an echo's signal-to-noise without the excess loss of the path; 0 in shadow.
+/// Root of an echo's signal-to-noise over RadarTask::echo_root, without the excess loss of the path; 0 in
+/// shadow.
 /// @param beam  with the look's frame as its forward, right and up
 template <scenario::PatternKind kind>
-EMSCAPE_HD inline float echoToNoiseRoot(const RadarTask& task, const EmitterBeam& beam, std::size_t column,
-                                        float t_m) {
+EMSCAPE_HD inline float echoWeight(const RadarLook& look, const EmitterBeam& beam, std::size_t column,
+                                   float t_m) {
   const VoxelRay ray = voxelRay(beam, column, t_m);
-  const Aim aim = aimAt(task.look, ray.direction);
+  const Aim aim = aimAt(look, ray.direction);
   const Vec3f unit = ray.direction * (1 / std::sqrt(ray.length2_m2 + 1e-12f));
   const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, unit);
-  return task.echo_root * ray.isotropic_wm2 * amplitude * amplitude;
+  return ray.isotropic_wm2 * (amplitude * amplitude);
 }
 
 /// The same with the reflected ray, which the echo takes too: with both rays' amplitude F there and F back.
 template <scenario::PatternKind kind>
-EMSCAPE_HD inline float echoToNoiseRoot(const RadarTask& task, const EmitterBeam& beam,
-                                        const ReflectedRayCode& code, std::size_t column, float t_m) {
+EMSCAPE_HD inline float echoWeight(const RadarLook& look, const EmitterBeam& beam,
+                                   const ReflectedRayCode& code, std::size_t column, float t_m) {
   const VoxelRay ray = voxelRay(beam, column, t_m);
   const ReflectedRay reflected = reflectedRay(code);
-  const Aim aim = aimAt(task.look, ray.direction);
+  const Aim aim = aimAt(look, ray.direction);
   const Vec3f unit = ray.direction * (1 / std::sqrt(ray.length2_m2 + 1e-12f));
   const Vec3f below = reflectedDirection(beam, reflected, column, t_m);
   const float power = powerOfBothRays(reflected, amplitudeTowards<kind, true>(beam.pattern, aim, unit),
                                       amplitudeTowards<kind, true>(beam.pattern, aim, below));
-  return task.echo_root * ray.isotropic_wm2 * power;
+  return ray.isotropic_wm2 * power;
 }
 
-/// One jammer's power over the noise while the radar looks at the voxel.
+/// One jammer's power over the noise while the radar looks at the voxel, over
+/// JammerAtRadar::boresight_to_noise.
 template <scenario::PatternKind kind>
-EMSCAPE_HD inline float jammingToNoise(const RadarTask& task, const EmitterBeam& beam,
-                                       const JammerAtRadar& jammer, std::size_t column, float t_m) {
-  const Aim aim = aimAt(task.look, voxelRay(beam, column, t_m).direction);
+EMSCAPE_HD inline float jammingWeight(const RadarLook& look, const EmitterBeam& beam,
+                                      const JammerAtRadar& jammer, std::size_t column, float t_m) {
+  const Aim aim = aimAt(look, voxelRay(beam, column, t_m).direction);
   const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, jammer.direction);
-  return jammer.boresight_to_noise * amplitude * amplitude;
+  return amplitude * amplitude;
 }
 
 /// The same of a jammer with a reflected ray.
 template <scenario::PatternKind kind>
-EMSCAPE_HD inline float jammingOfBothRaysToNoise(const RadarTask& task, const EmitterBeam& beam,
-                                                 const JammerAtRadar& jammer, std::size_t column, float t_m) {
-  const Aim aim = aimAt(task.look, voxelRay(beam, column, t_m).direction);
+EMSCAPE_HD inline float jammingWeightOfBothRays(const RadarLook& look, const EmitterBeam& beam,
+                                                const JammerAtRadar& jammer, std::size_t column, float t_m) {
+  const Aim aim = aimAt(look, voxelRay(beam, column, t_m).direction);
   const float direct = amplitudeTowards<kind, true>(beam.pattern, aim, jammer.direction);
   const float reflected = amplitudeTowards<kind, true>(beam.pattern, aim, jammer.reflected_direction);
-  return jammer.boresight_to_noise * powerOfBothRays(jammer.reflected, jammer.direct_amplitude * direct,
-                                                     jammer.reflected_amplitude * reflected);
+  return powerOfBothRays(jammer.reflected, jammer.direct_amplitude * direct,
+                         jammer.reflected_amplitude * reflected);
 }
 
 /// Number of looks at a voxel.
@@ -175,7 +178,9 @@ EMSCAPE_HD inline float withRadar(const RadarTask& task, float echo_to_noise_roo
 /// A pass of one radar over the voxels of a channel.
 struct RadarPass {
   RadarTask task;
-  EmitterBeam beam;  ///< with the look's frame as its forward, right and up
+  /// With the look's frame as its forward, right and up. Its EIRP may be in the task's echo_root instead,
+  /// and is then 4 pi W here, so that weights do not contain it.
+  EmitterBeam beam;
   Dims dims;
   const float* t_m = nullptr;        ///< z of each layer
   const int* first_row_k = nullptr;  ///< for each y the lowest layer with a voxel above ground; null: 0
@@ -193,19 +198,21 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
   const RadarTask& task = pass.task;
   const std::size_t voxel = static_cast<std::size_t>(k) * pass.dims.x * pass.dims.y + column;
   const float t_m = pass.t_m[k];
-  float root;
+  float weight;
   if (kReflected && weighsReflectedRays(pass.beam)) {
-    root = echoToNoiseRoot<kind>(task, pass.beam, pass.beam.geometry.reflected[voxel], column, t_m);
+    weight = echoWeight<kind>(task.look, pass.beam, pass.beam.geometry.reflected[voxel], column, t_m);
   } else {
-    root = echoToNoiseRoot<kind>(task, pass.beam, column, t_m);
+    weight = echoWeight<kind>(task.look, pass.beam, column, t_m);
   }
-  if (!pass.beam.geometry.excess.isEmpty()) root *= pass.beam.geometry.excess.factor(voxel);
+  if (!pass.beam.geometry.excess.isEmpty()) weight *= pass.beam.geometry.excess.factor(voxel);
+  const float root = task.echo_root * weight;
   float jamming = 0;
   for (int n = 0; n < task.jammer_count; ++n) {
     const JammerAtRadar& jammer = task.jammers[n];
-    jamming += kReflected && jammer.has_reflected_ray
-                   ? jammingOfBothRaysToNoise<kind>(task, pass.beam, jammer, column, t_m)
-                   : jammingToNoise<kind>(task, pass.beam, jammer, column, t_m);
+    jamming += jammer.boresight_to_noise *
+               (kReflected && jammer.has_reflected_ray
+                    ? jammingWeightOfBothRays<kind>(task.look, pass.beam, jammer, column, t_m)
+                    : jammingWeight<kind>(task.look, pass.beam, jammer, column, t_m));
   }
   if constexpr (kClutter) {
     if (!task.clutter.isNone()) {
@@ -224,7 +231,7 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
 }
 
 /// Runs a pass on the CPU. Voxels below first_row_k are not changed.
-void radarCpu(const RadarPass& pass);
+void radarCpu(const RadarPass& pass, const LookWeights& weights = {});
 
 /// A radar's part in a channel with the data that it points to.
 struct RadarShare {
@@ -244,6 +251,8 @@ inline RadarPass radarPass(const RadarShare& share, const EmitterBeam& beam,
       share.task, beam, task.dims, task.t_m, task.first_row_k, accumulator, weighsReflectedRays(beam),
       clutter_map};
   for (const JammerAtRadar& jammer : share.jammers) pass.has_reflected_rays |= jammer.has_reflected_ray;
+  pass.task.echo_root *= beam.eirp_over_4pi_w;
+  pass.beam.eirp_over_4pi_w = 1;
   pass.beam.forward = share.forward;
   pass.beam.right = share.right;
   pass.beam.up = share.up;

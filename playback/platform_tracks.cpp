@@ -103,4 +103,8 @@ std::vector<render::Track> PlatformTracks::at(double time_s, const LoadedScenari
   return tracks;
 }
 
+std::vector<render::Track> tracksOf(const LoadedScenario& scene, const volume::Grid& grid, double time_s) {
+  return PlatformTracks().at(time_s, scene, grid);
+}
+
 }  // namespace emscape::playback

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/snapshot.h"
@@ -85,72 +86,94 @@ void checkRequest(const CoverageRequest& request, const scenario::Scenario& scen
 }
 
 struct CoverageSolver::Impl {
+  /// The field of one reference of height, with the maps of each request.
+  struct OfReference {
+    SurfaceField field;
+    std::vector<SurfaceMaps> maps;
+    std::vector<std::vector<std::string>> warnings;  ///< of each scenario after its last time
+  };
+
   const MapGrid& grid;
-  const CoverageRequest request;
+  const std::vector<CoverageRequest> requests;
   emfield::FieldOptions options;
-  LeastHeights least_heights;
-  std::vector<std::unique_ptr<SurfaceMaps>> maps;
+  std::vector<OfReference> references;
+  std::deque<LeastHeights> least_heights;  ///< one per request
 
   /// @param of_maps  without quantities
-  Impl(const MapGrid& map_grid, const CoverageRequest& of_request, const emfield::FieldOptions& of_maps)
-      : grid(map_grid),
-        request(of_request),
-        options(of_maps),
-        least_heights(map_grid, of_request.threshold, of_maps) {}
+  Impl(const MapGrid& map_grid, std::vector<CoverageRequest> of_maps_requests,
+       const emfield::FieldOptions& of_maps)
+      : grid(map_grid), requests(std::move(of_maps_requests)), options(of_maps) {
+    for (const HeightReference reference : {HeightReference::ground, HeightReference::mean_sea_level}) {
+      SurfaceField field(grid, requests, reference, options);
+      if (!field.hasHeights()) continue;
+      references.push_back({std::move(field), {}, {}});
+      OfReference& of_reference = references.back();
+      for (const CoverageRequest& request : requests)
+        of_reference.maps.emplace_back(grid, request, reference, of_reference.field);
+    }
+    for (const CoverageRequest& request : requests)
+      least_heights.emplace_back(grid, request.threshold, options);
+  }
 };
 
-CoverageSolver::CoverageSolver(const MapGrid& grid, const CoverageRequest& request,
+CoverageSolver::CoverageSolver(const MapGrid& grid, std::vector<CoverageRequest> requests,
                                const emfield::FieldOptions& options)
-    : impl_(new Impl(grid, request, withoutQuantities(options))) {
-  for (const HeightReference reference : {HeightReference::ground, HeightReference::mean_sea_level}) {
-    const bool is_asked = std::any_of(request.heights.begin(), request.heights.end(),
-                                      [&](const MapHeight& height) { return height.reference == reference; });
-    if (is_asked) {
-      impl_->maps.push_back(std::make_unique<SurfaceMaps>(grid, impl_->request, reference, impl_->options));
-    }
-  }
-}
+    : impl_(new Impl(grid, std::move(requests), withoutQuantities(options))) {}
 
 CoverageSolver::~CoverageSolver() = default;
 
 std::vector<std::vector<std::string>> CoverageSolver::compute(
     const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
     const scenario::TerrainPtr& terrain, const ScenarioMapSink& take, const ProgressSink& progress) {
-  const CoverageRequest& request = impl_->request;
+  const std::vector<CoverageRequest>& requests = impl_->requests;
+  const std::vector<double>& times_s = requests.front().times_s;
   std::vector<std::shared_ptr<const scenario::Scenario>> at_targets;
   for (const auto& scenario : scenarios) {
-    checkRequest(request, *scenario);
-    at_targets.push_back(atTargets(*scenario, request.quantity));
+    for (const CoverageRequest& request : requests) checkRequest(request, *scenario);
+    at_targets.push_back(atTargets(*scenario, requests.front().quantity));
   }
-  const bool has_least =
-      std::count(request.products.begin(), request.products.end(), Product::min_height) > 0;
-  const double steps = static_cast<double>(request.times_s.size() * scenarios.size() *
-                                           (impl_->maps.size() + (has_least ? 1 : 0)));
+  const auto hasLeast = [](const CoverageRequest& request) {
+    return std::count(request.products.begin(), request.products.end(), Product::min_height) > 0;
+  };
+  const auto with_least = static_cast<std::size_t>(std::count_if(requests.begin(), requests.end(), hasLeast));
+  const double steps =
+      static_cast<double>(times_s.size() * scenarios.size() * (impl_->references.size() + with_least));
   double done = 0;
-  for (const auto& of_reference : impl_->maps) of_reference->begin(scenarios.size());
-  for (const double time_s : request.times_s) {
+  const auto step = [&] {
+    if (progress) progress("maps", done++ / steps);
+  };
+  for (Impl::OfReference& of : impl_->references) {
+    of.warnings.assign(scenarios.size(), {});
+    for (SurfaceMaps& maps : of.maps) maps.begin(scenarios.size());
+  }
+  for (const double time_s : times_s) {
     for (std::size_t s = 0; s < scenarios.size(); ++s) {
-      const MapSink take_map = [&](CoverageMap map) { take(s, std::move(map)); };
-      for (const auto& of_reference : impl_->maps) {
-        if (progress) progress("maps", done / steps);
-        of_reference->addTime(s, at_targets[s], terrain, time_s, take_map);
-        ++done;
+      const auto takeOf = [&](std::size_t r) {
+        return [&take, s, r](CoverageMap map) { take(s, r, std::move(map)); };
+      };
+      for (Impl::OfReference& of : impl_->references) {
+        step();
+        const SurfaceValues values = of.field.at(at_targets[s], terrain, time_s);
+        of.warnings[s] = of.field.warnings();
+        for (std::size_t r = 0; r < requests.size(); ++r)
+          of.maps[r].addTime(s, at_targets[s], values, time_s, takeOf(r));
       }
-      if (!has_least) continue;
-      if (progress) progress("maps", done / steps);
-      const std::vector<float> heights_m = impl_->least_heights.compute(at_targets[s], terrain, time_s);
-      CoverageMap map = emptyMap(*at_targets[s], request, Product::min_height, std::nullopt);
-      map.time_s = time_s;
-      setValues(map, impl_->grid, heights_m);
-      take_map(std::move(map));
-      ++done;
+      for (std::size_t r = 0; r < requests.size(); ++r) {
+        if (!hasLeast(requests[r])) continue;
+        step();
+        CoverageMap map = emptyMap(*at_targets[s], requests[r], Product::min_height, std::nullopt);
+        map.time_s = time_s;
+        setValues(map, impl_->grid, impl_->least_heights[r].compute(at_targets[s], terrain, time_s));
+        takeOf(r)(std::move(map));
+      }
     }
   }
   std::vector<std::vector<std::string>> warnings(scenarios.size());
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
-    for (const auto& of_reference : impl_->maps) {
-      of_reference->finish(s, [&](CoverageMap map) { take(s, std::move(map)); });
-      for (const std::string& warning : of_reference->warnings(s)) {
+    for (Impl::OfReference& of : impl_->references) {
+      for (std::size_t r = 0; r < requests.size(); ++r)
+        of.maps[r].finish(s, [&](CoverageMap map) { take(s, r, std::move(map)); });
+      for (const std::string& warning : of.warnings[s]) {
         if (std::find(warnings[s].begin(), warnings[s].end(), warning) == warnings[s].end()) {
           warnings[s].push_back(warning);
         }
@@ -165,10 +188,11 @@ std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::S
                                          const scenario::TerrainPtr& terrain, const MapGrid& grid,
                                          const CoverageRequest& request, const emfield::FieldOptions& options,
                                          const MapSink& take, const ProgressSink& progress) {
-  CoverageSolver solver(grid, request, options);
+  CoverageSolver solver(grid, {request}, options);
   return solver
       .compute(
-          {scenario}, terrain, [&](std::size_t, CoverageMap map) { take(std::move(map)); }, progress)
+          {scenario}, terrain, [&](std::size_t, std::size_t, CoverageMap map) { take(std::move(map)); },
+          progress)
       .front();
 }
 

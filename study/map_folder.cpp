@@ -42,16 +42,32 @@ const std::vector<Format>& formatTable() {
   return kTable;
 }
 
-std::filesystem::path madeMapsFolder(const std::filesystem::path& folder) {
-  const std::filesystem::path maps = folder / "maps";
-  std::error_code failed;
-  std::filesystem::create_directories(maps, failed);
-  if (failed) {
-    throw Error(ErrorCode::other,
-                fmt::format("{}: the folder cannot be made ({})", maps.string(), failed.message()));
+/// Makes a folder and those above it. Those that were not there before are removed at the end of life if
+/// they are empty: after an error before the first file.
+class MadeFolder {
+ public:
+  explicit MadeFolder(const std::filesystem::path& folder) {
+    std::error_code failed;
+    for (std::filesystem::path at = folder; !at.empty() && !std::filesystem::exists(at, failed);
+         at = at.parent_path()) {
+      made_.push_back(at);
+    }
+    std::filesystem::create_directories(folder, failed);
+    if (failed) {
+      throw Error(ErrorCode::other,
+                  fmt::format("{}: the folder cannot be made ({})", folder.string(), failed.message()));
+    }
   }
-  return maps;
-}
+  ~MadeFolder() {
+    std::error_code is_not_empty;
+    for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, is_not_empty);
+  }
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+
+ private:
+  std::vector<std::filesystem::path> made_;  // the innermost first
+};
 
 }  // namespace
 
@@ -75,6 +91,7 @@ struct MapFolder::State {
   };
 
   std::filesystem::path folder;
+  MadeFolder maps_folder;
   FolderLock lock;
   MapStudy study;
   bool has_cog = false, has_png = false;
@@ -85,7 +102,7 @@ struct MapFolder::State {
   std::string report_json;
 
   State(const std::filesystem::path& path, MapStudy of)
-      : folder(path), lock(madeMapsFolder(path).parent_path(), ".maps.lock"), study(std::move(of)) {
+      : folder(path), maps_folder(path / "maps"), lock(path, ".maps.lock"), study(std::move(of)) {
     if (study.terrain != nullptr) ground_msl_m = groundOf(*study.grid, *study.terrain);
   }
 

@@ -19,8 +19,10 @@ namespace emscape::study {
 namespace {
 
 constexpr double kMaxPixels = 1 << 26;
-/// Pixels between places that are transformed exactly; those between are on a bilinear patch.
-constexpr int kLattice = 8;
+/// Longest side of the patches on which places are interpolated: they are within a millimetre of the
+/// projection's to 80 degrees of latitude.
+constexpr double kPatch_m = 3000;
+constexpr int kMaxPatchPixels = 64;
 
 struct Middle {
   double latitude_deg, longitude_deg;
@@ -119,20 +121,29 @@ double metres2PerDegree2(const SineCosine& latitude) {
   return kA2 * (1 - kWgs84EccentricitySquared) / (root * root) * latitude.cosine * kPerDegree2;
 }
 
-/// Longitudes and latitudes of every kLattice-th pixel.
+/// Longitudes and latitudes at the corners, the middles of the sides and the middles of square patches.
 struct Lattice {
-  int nodes_x = 0, nodes_y = 0;
+  int side = 2;  ///< pixels along a patch, even: every node is the centre of a pixel
+  int patches_x = 0, patches_y = 0;
   std::vector<double> longitudes_deg, latitudes_deg;
+
+  int nodesX() const { return 2 * patches_x + 1; }
+  /// First of a patch's nodes.
+  std::size_t node(int patch_x, int patch_y) const {
+    return static_cast<std::size_t>(2 * patch_y) * nodesX() + 2 * patch_x;
+  }
 };
 
 Lattice latticeOf(const Projection& toEarth, const MapGrid& grid) {
   Lattice lattice;
-  lattice.nodes_x = (grid.width + kLattice - 1) / kLattice + 1;
-  lattice.nodes_y = (grid.height + kLattice - 1) / kLattice + 1;
-  for (int j = 0; j < lattice.nodes_y; ++j) {
-    for (int i = 0; i < lattice.nodes_x; ++i) {
-      lattice.longitudes_deg.push_back(grid.left_m + (i * kLattice + 0.5) * grid.cell_m);
-      lattice.latitudes_deg.push_back(grid.top_m - (j * kLattice + 0.5) * grid.cell_m);
+  lattice.side = 2 * static_cast<int>(std::clamp(kPatch_m / 2 / grid.cell_m, 1.0, kMaxPatchPixels / 2.0));
+  lattice.patches_x = (grid.width + lattice.side - 1) / lattice.side;
+  lattice.patches_y = (grid.height + lattice.side - 1) / lattice.side;
+  const int step = lattice.side / 2;
+  for (int j = 0; j <= 2 * lattice.patches_y; ++j) {
+    for (int i = 0; i <= 2 * lattice.patches_x; ++i) {
+      lattice.longitudes_deg.push_back(grid.left_m + (i * step + 0.5) * grid.cell_m);
+      lattice.latitudes_deg.push_back(grid.top_m - (j * step + 0.5) * grid.cell_m);
     }
   }
   if (!toEarth(lattice.longitudes_deg, lattice.latitudes_deg)) {
@@ -141,28 +152,49 @@ Lattice latticeOf(const Projection& toEarth, const MapGrid& grid) {
   return lattice;
 }
 
-/// The bilinear patch between four nodes.
+/// The parabola through three values at 0, 1/2 and 1.
+struct Parabola {
+  double c0 = 0, c1 = 0, c2 = 0;
+
+  static Parabola through(double begin, double middle, double end) {
+    return {begin, 4 * middle - 3 * begin - end, 2 * (begin + end) - 4 * middle};
+  }
+  double at(double x) const { return c0 + x * (c1 + x * c2); }
+  double slope(double x) const { return c1 + 2 * x * c2; }
+};
+
+/// The patch through 3 x 3 nodes of which each row and each column is a parabola.
 class Patch {
  public:
   /// @param turn  nodes are taken in the same turn of so much as the first; 0: as they are
   Patch(const std::vector<double>& at, std::size_t node, int nodes_x, double turn) : origin_(at[node]) {
-    const auto turned = [&](double value) {
-      return turn == 0 ? value : origin_ + std::remainder(value - origin_, turn);
+    const auto fromOrigin = [&](int i, int j) {
+      const double difference = at[node + static_cast<std::size_t>(j) * nodes_x + i] - origin_;
+      return turn == 0 ? difference : std::remainder(difference, turn);
     };
-    const double east = turned(at[node + 1]), south = turned(at[node + nodes_x]),
-                 corner = turned(at[node + nodes_x + 1]);
-    east_ = east - origin_;
-    south_ = south - origin_;
-    twist_ = corner - east - south + origin_;
+    for (int i = 0; i < 3; ++i) {
+      columns_[i] = Parabola::through(fromOrigin(i, 0), fromOrigin(i, 1), fromOrigin(i, 2));
+    }
   }
-  /// @param u, v  0..1 to the east and to the south
-  double at(double u, double v) const { return origin_ + u * east_ + v * south_ + u * v * twist_; }
-  /// Differences from a pixel to the next, to the east and to the south.
-  double perColumn(double v) const { return (east_ + v * twist_) / kLattice; }
-  double perRow(double u) const { return (south_ + u * twist_) / kLattice; }
+
+  /// A row of the patch: values and their slopes to the south.
+  struct Row {
+    Parabola value, slope_south;
+  };
+  /// @param v  0..1 to the south
+  Row row(double v) const {
+    const auto across = [&](auto function) {
+      return Parabola::through((columns_[0].*function)(v), (columns_[1].*function)(v),
+                               (columns_[2].*function)(v));
+    };
+    Row row{across(&Parabola::at), across(&Parabola::slope)};
+    row.value.c0 += origin_;
+    return row;
+  }
 
  private:
-  double origin_, east_, south_, twist_;
+  double origin_;
+  Parabola columns_[3];
 };
 
 /// Where the pixels of a patch are.
@@ -183,71 +215,75 @@ class AreaTest {
            east_deg - 360 * std::floor((east_deg + kMargin_deg) / 360) <=
                area_.box.east_deg - area_.box.west_deg + kMargin_deg;
   }
-  /// Of a patch with these corners.
-  PatchPart partOf(const emfield::Surface::Place (&corners)[4]) const {
+  /// Of a patch.
+  /// @param radius_m  no place of it is farther from its middle
+  PatchPart partOf(const emfield::Surface::Place& middle, double radius_m) const {
     if (!area_.circle) return PatchPart::across;
-    double nearest_m = HUGE_VAL, farthest_m = 0;
-    for (const emfield::Surface::Place& corner : corners) {
-      nearest_m = std::min(nearest_m, distance_m(corner));
-      farthest_m = std::max(farthest_m, distance_m(corner));
-    }
-    // No place is farther from a corner than the longer diagonal; twice that is beyond any doubt.
-    const double diagonal_m =
-        2 * std::max(between_m(corners[0], corners[3]), between_m(corners[1], corners[2]));
-    return nearest_m + diagonal_m <= area_.circle->radius_m  ? PatchPart::inside
-           : nearest_m - diagonal_m > area_.circle->radius_m ? PatchPart::outside
-                                                             : PatchPart::across;
+    const double middle_m = distance_m(middle);
+    return middle_m + radius_m <= area_.circle->radius_m  ? PatchPart::inside
+           : middle_m - radius_m > area_.circle->radius_m ? PatchPart::outside
+                                                          : PatchPart::across;
   }
 
  private:
   double distance_m(const emfield::Surface::Place& place) const {
     return fastInverse(middle_, toEcef({place.latitude_deg, place.longitude_deg, 0})).distance_m;
   }
-  static double between_m(const emfield::Surface::Place& a, const emfield::Surface::Place& b) {
-    return length(toEcef({a.latitude_deg, a.longitude_deg, 0}) -
-                  toEcef({b.latitude_deg, b.longitude_deg, 0}));
-  }
 
   const MapArea& area_;
   FastGeodesy middle_{};
 };
+
+/// Farthest that a place of a patch is from its middle (m).
+double radiusOf(const Lattice& lattice, std::size_t node) {
+  const auto at = [&](int i, int j) {
+    const std::size_t n = node + static_cast<std::size_t>(j) * lattice.nodesX() + i;
+    return toEcef({lattice.latitudes_deg[n], lattice.longitudes_deg[n], 0});
+  };
+  constexpr double kMargin = 1.05;  // for bent sides
+  const Vec3d middle = at(1, 1);
+  double chord_m = 0;
+  for (const int i : {0, 2}) {
+    for (const int j : {0, 2}) chord_m = std::max(chord_m, length(at(i, j) - middle));
+  }
+  return kMargin * chord_m;
+}
 
 /// Sets places and areas, on patches between the nodes of a lattice.
 void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
   grid.places.resize(static_cast<std::size_t>(grid.width) * grid.height);
   grid.areas_m2.resize(grid.places.size());
   const AreaTest test(area);
-  parallelFor(lattice.nodes_y - 1, 1, [&](int begin, int end) {
+  const int side = lattice.side, nodes_x = lattice.nodesX();
+  const double per_side2 = 1.0 / (static_cast<double>(side) * side);
+  parallelFor(lattice.patches_y * lattice.patches_x, 1, [&](int begin, int end) {
     NearAngle latitude_sine;
-    for (int patch = begin * (lattice.nodes_x - 1); patch < end * (lattice.nodes_x - 1); ++patch) {
-      const int patch_x = patch % (lattice.nodes_x - 1), patch_y = patch / (lattice.nodes_x - 1);
-      const std::size_t node = static_cast<std::size_t>(patch_y) * lattice.nodes_x + patch_x;
-      const Patch longitudes(lattice.longitudes_deg, node, lattice.nodes_x, 360);
-      const Patch latitudes(lattice.latitudes_deg, node, lattice.nodes_x, 0);
-      const PatchPart part = test.partOf({{latitudes.at(0, 0), longitudes.at(0, 0)},
-                                          {latitudes.at(1, 0), longitudes.at(1, 0)},
-                                          {latitudes.at(0, 1), longitudes.at(0, 1)},
-                                          {latitudes.at(1, 1), longitudes.at(1, 1)}});
-      const int columns = std::min(kLattice, grid.width - patch_x * kLattice);
-      const int rows = std::min(kLattice, grid.height - patch_y * kLattice);
+    for (int patch = begin; patch < end; ++patch) {
+      const int patch_x = patch % lattice.patches_x, patch_y = patch / lattice.patches_x;
+      const std::size_t node = lattice.node(patch_x, patch_y), middle = node + nodes_x + 1;
+      const Patch longitudes(lattice.longitudes_deg, node, nodes_x, 360);
+      const Patch latitudes(lattice.latitudes_deg, node, nodes_x, 0);
+      const PatchPart part = test.partOf({lattice.latitudes_deg[middle], lattice.longitudes_deg[middle]},
+                                         radiusOf(lattice, node));
+      const int columns = std::min(side, grid.width - patch_x * side);
+      const int rows = std::min(side, grid.height - patch_y * side);
       for (int j = 0; j < rows; ++j) {
-        const double v = static_cast<double>(j) / kLattice;
-        const double lon_u = longitudes.perColumn(v), lat_u = latitudes.perColumn(v);
-        const std::size_t first =
-            static_cast<std::size_t>(patch_y * kLattice + j) * grid.width + patch_x * kLattice;
+        const double v = static_cast<double>(j) / side;
+        const Patch::Row longitude = longitudes.row(v), latitude = latitudes.row(v);
+        const std::size_t first = static_cast<std::size_t>(patch_y * side + j) * grid.width + patch_x * side;
         for (int i = 0; i < columns; ++i) {
-          const double u = static_cast<double>(i) / kLattice;
-          const double latitude = latitudes.at(u, v);
+          const double u = static_cast<double>(i) / side;
+          const double latitude_deg = latitude.value.at(u);
           emfield::Surface::Place& place =
-              grid.places[first + i] = {latitude, wrapLongitude_deg(longitudes.at(u, v))};
+              grid.places[first + i] = {latitude_deg, wrapLongitude_deg(longitude.value.at(u))};
           if (part == PatchPart::outside || (part == PatchPart::across && !test.isInside(place))) {
             place.latitude_deg = NAN;
             continue;  // its area is 0
           }
-          const double lon_v = longitudes.perRow(u), lat_v = latitudes.perRow(u);
-          grid.areas_m2[first + i] =
-              static_cast<float>(std::abs(lon_u * lat_v - lon_v * lat_u) *
-                                 metres2PerDegree2(latitude_sine.at(degToRad(latitude))));
+          const double degrees2 = longitude.value.slope(u) * latitude.slope_south.at(u) -
+                                  longitude.slope_south.at(u) * latitude.value.slope(u);
+          grid.areas_m2[first + i] = static_cast<float>(
+              std::abs(degrees2) * per_side2 * metres2PerDegree2(latitude_sine.at(degToRad(latitude_deg))));
         }
       }
     }

@@ -219,6 +219,20 @@ ReportTable tableOf(const std::vector<MapRecord>& records) {
   return table;
 }
 
+void addModels(HtmlReport& report, const scenario::Scenario& scenario) {
+  report.section("Models and their accuracy");
+  ReportTable models{{"emitter", "model", "reference", "accuracy (test)"}, {}, ""};
+  for (const scenario::Emitter& emitter : scenario.emitters) {
+    const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+    models.rows.push_back({emitter.name, model.name, model.reference, model.accuracy});
+  }
+  report.table(models);
+  report.paragraph(
+      "The accuracy is that of the implementation against its reference. It does not say how far the model "
+      "is "
+      "from a measurement: that depends on the terrain, the weather and the model's assumptions.");
+}
+
 void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapRecord>& records) {
   report.section("Inputs");
   std::vector<std::pair<std::string, std::string>> facts;
@@ -246,17 +260,7 @@ void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapR
   facts.emplace_back("emscape", EMSCAPE_VERSION);
   report.facts(facts);
 
-  report.section("Models and their accuracy");
-  ReportTable models{{"emitter", "model", "reference", "accuracy (test)"}, {}, ""};
-  for (const scenario::Emitter& emitter : study.scenarios.front()->emitters) {
-    const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
-    models.rows.push_back({emitter.name, model.name, model.reference, model.accuracy});
-  }
-  report.table(models);
-  report.paragraph(
-      "The accuracy is that of the implementation against its reference. It does not say how far the model "
-      "is "
-      "from a measurement: that depends on the terrain, the weather and the model's assumptions.");
+  addModels(report, *study.scenarios.front());
 
   const std::string command = explainCommand(study, records);
   if (command.empty()) return;

@@ -29,6 +29,8 @@ std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& fold
 
 /// The table of the maps, their areas and ranges.
 ReportTable tableOf(const std::vector<MapRecord>& records);
+/// A section on the models of a scenario's emitters and their accuracy.
+void addModels(HtmlReport& report, const scenario::Scenario& scenario);
 /// Sections on the inputs, the models and their accuracy, and the explanation of a pixel.
 void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapRecord>& records);
 

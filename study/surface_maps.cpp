@@ -90,65 +90,85 @@ void setValues(CoverageMap& map, const MapGrid& grid, std::vector<float> values)
   map.class_area_m2 = summary.class_area_m2;
 }
 
-SurfaceMaps::SurfaceMaps(const MapGrid& grid, const CoverageRequest& request, HeightReference reference,
-                         const emfield::FieldOptions& options)
-    : request_(request), grid_(grid), options_(options) {
+SurfaceField::SurfaceField(const MapGrid& grid, const std::vector<CoverageRequest>& requests,
+                           HeightReference reference, const emfield::FieldOptions& options)
+    : options_(options) {
   auto surface = std::make_shared<emfield::Surface>();
   surface->width = grid.width;
   surface->height = grid.height;
   surface->places = grid.places;
   surface->reference = reference;
-  for (const MapHeight& height : request.heights) {
-    if (height.reference == reference) surface->heights_m.push_back(height.metres);
+  for (const CoverageRequest& request : requests) {
+    for (const MapHeight& height : request.heights) {
+      if (height.reference == reference) surface->heights_m.push_back(height.metres);
+    }
+    options_.also_per_emitter = options_.also_per_emitter || hasAny(request.products, isPerEmitter);
+    options_.also_unjammed = options_.also_unjammed || hasAny(request.products, isOfJamming);
   }
   std::sort(surface->heights_m.begin(), surface->heights_m.end());
   surface->heights_m.erase(std::unique(surface->heights_m.begin(), surface->heights_m.end()),
                            surface->heights_m.end());
-  for (const double metres : surface->heights_m) heights_.push_back({reference, metres});
   options_.surface = surface;
   options_.allow_missing_terrain = true;  // masked, and reported by the maps' known area
-  options_.also_per_emitter = hasAny(request.products, isPerEmitter);
+}
+
+std::size_t SurfaceField::layerOf(const MapHeight& height) const {
+  const std::vector<double>& heights_m = options_.surface->heights_m;
+  return static_cast<std::size_t>(std::lower_bound(heights_m.begin(), heights_m.end(), height.metres) -
+                                  heights_m.begin());
+}
+
+SurfaceValues SurfaceField::at(const std::shared_ptr<const scenario::Scenario>& scenario,
+                               const scenario::TerrainPtr& terrain, double time_s) {
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), time_s);
+  if (!solver_) solver_ = std::make_unique<emfield::FieldSolver>(scenario, terrain, options_);
+  solver_->update(snapshot, terrain);
+  const std::vector<volume::Volume>& volumes = solver_->volumes();
+  SurfaceValues values;
+  values.all = volumes.front().host();
+  if (options_.also_unjammed) values.unjammed = volumes.back().host();
+  const std::size_t end = volumes.size() - (options_.also_unjammed ? 1 : 0);
+  for (std::size_t c = 1; c < end; ++c) {
+    const int emitter = solver_->channels()[c].emitters.front();
+    const GeodeticPosition& position = snapshot.emitters[emitter].position;
+    values.each.push_back(
+        {emitter, volumes[c].host(), fastGeodesy(position.latitude_deg, position.longitude_deg)});
+  }
+  return values;
+}
+
+SurfaceMaps::SurfaceMaps(const MapGrid& grid, const CoverageRequest& request, HeightReference reference,
+                         const SurfaceField& field)
+    : request_(request), grid_(grid) {
+  for (const MapHeight& height : request.heights) {
+    if (height.reference == reference) layers_.push_back({height, field.layerOf(height)});
+  }
+  const auto isLower = [](const Layer& a, const Layer& b) { return a.k < b.k; };
+  const auto isSame = [](const Layer& a, const Layer& b) { return a.k == b.k; };
+  std::sort(layers_.begin(), layers_.end(), isLower);
+  layers_.erase(std::unique(layers_.begin(), layers_.end(), isSame), layers_.end());
 }
 
 void SurfaceMaps::begin(std::size_t scenarios) {
   states_.assign(scenarios, {});
   for (State& state : states_) {
-    state.figures.assign(heights_.size(), {isOverTime() ? grid_.pixels() : 0, request_.times_s});
+    state.figures.assign(layers_.size(), {isOverTime() ? grid_.pixels() : 0, request_.times_s});
   }
 }
 
 void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenario::Scenario>& scenario,
-                          const scenario::TerrainPtr& terrain, double time_s, const MapSink& take) {
-  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), time_s);
-  if (!solver_) solver_.emplace(scenario, terrain, options_);
-  Values values;
-  if (hasAny(request_.products, isOfJamming)) {
-    scenario::Snapshot quiet = snapshot;
-    for (std::size_t e = 0; e < quiet.emitters.size(); ++e) {
-      if (scenario->emitters[e].kind == scenario::EmitterKind::jammer) quiet.emitters[e].active = false;
-    }
-    solver_->update(quiet, terrain);
-    values.unjammed = solver_->volumes().front().host();
-  }
-  solver_->update(snapshot, terrain);
-  const std::vector<volume::Volume>& volumes = solver_->volumes();
-  values.all = volumes.front().host();
+                          const SurfaceValues& values, double time_s, const MapSink& take) {
   State& state = states_[index];
   state.scenario = scenario;
   state.last = isOverTime() ? values.all : nullptr;
-  state.warnings = solver_->warnings();
-  for (std::size_t c = 1; c < volumes.size(); ++c) {
-    const int emitter = solver_->channels()[c].emitters.front();
-    const GeodeticPosition& at = snapshot.emitters[emitter].position;
-    values.each.push_back({emitter, volumes[c].host(), fastGeodesy(at.latitude_deg, at.longitude_deg)});
-  }
-  for (std::size_t k = 0; k < heights_.size(); ++k) {
+  for (std::size_t n = 0; n < layers_.size(); ++n) {
+    const std::size_t k = layers_[n].k;
     if (isOverTime()) {
-      state.figures[k].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); });
+      state.figures[n].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); });
     }
     for (const Product product : request_.products) {
       if (info(product).over_time || !info(product).at_heights) continue;
-      CoverageMap map = emptyMap(*scenario, request_, product, heights_[k]);
+      CoverageMap map = emptyMap(*scenario, request_, product, layers_[n].height);
       map.time_s = time_s;
       setValues(map, grid_, valuesOf(grid_, [&](std::size_t p) { return valueOf(product, values, k, p); }));
       take(std::move(map));
@@ -158,19 +178,21 @@ void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenari
 
 void SurfaceMaps::finish(std::size_t index, const MapSink& take) {
   const State& state = states_[index];
-  for (std::size_t k = 0; k < heights_.size(); ++k) {
+  for (std::size_t n = 0; n < layers_.size(); ++n) {
     for (const Product product : request_.products) {
       if (!info(product).over_time) continue;
-      CoverageMap map = emptyMap(*state.scenario, request_, product, heights_[k]);
+      CoverageMap map = emptyMap(*state.scenario, request_, product, layers_[n].height);
       setValues(map, grid_, valuesOf(grid_, [&](std::size_t p) {
-                  return std::isnan(valueAt(*state.last, k, p)) ? NAN : state.figures[k].figure(product, p);
+                  return std::isnan(valueAt(*state.last, layers_[n].k, p))
+                             ? NAN
+                             : state.figures[n].figure(product, p);
                 }));
       take(std::move(map));
     }
   }
 }
 
-float SurfaceMaps::valueOf(Product product, const Values& values, std::size_t k, std::size_t p) const {
+float SurfaceMaps::valueOf(Product product, const SurfaceValues& values, std::size_t k, std::size_t p) const {
   const float value = valueAt(*values.all, k, p);
   if (std::isnan(value)) return value;
   switch (product) {
@@ -192,12 +214,12 @@ float SurfaceMaps::valueOf(Product product, const Values& values, std::size_t k,
   }
 }
 
-float SurfaceMaps::ofEmitters(Product product, const std::vector<ValuesOfOne>& each, std::size_t k,
+float SurfaceMaps::ofEmitters(Product product, const std::vector<SurfaceValues::OfOne>& each, std::size_t k,
                               std::size_t p) const {
   int count = 0, best = -1;
   float largest = 0;
   double farthest_m = NAN;
-  for (const ValuesOfOne& one : each) {
+  for (const SurfaceValues::OfOne& one : each) {
     const float value = valueAt(*one.values, k, p);
     if (!isCovered(value)) continue;
     if (count++ == 0 || value > largest) {

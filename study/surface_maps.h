@@ -27,40 +27,67 @@ CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& 
 /// Sets the values of a map, NaN where there is none, and its areas.
 void setValues(CoverageMap& map, const MapGrid& grid, std::vector<float> values);
 
-/// The maps of one reference of height. The field is kept from scenario to scenario.
+/// A quantity on the surfaces of one reference of height at a time.
+struct SurfaceValues {
+  struct OfOne {
+    int emitter;
+    std::shared_ptr<const volume::DenseVolume> values;
+    FastGeodesy geodesy;  ///< from its position
+  };
+  std::shared_ptr<const volume::DenseVolume> all;
+  std::vector<OfOne> each;                              ///< if a product asks for them
+  std::shared_ptr<const volume::DenseVolume> unjammed;  ///< if a product asks for it
+};
+
+/// The field of one reference of height, which is kept from time to time and from scenario to scenario.
+class SurfaceField {
+ public:
+  /// @param requests  of one quantity
+  SurfaceField(const MapGrid& grid, const std::vector<CoverageRequest>& requests,
+               emfield::HeightReference reference, const emfield::FieldOptions& options);
+
+  /// False: no request has a height of the reference.
+  bool hasHeights() const { return !options_.surface->heights_m.empty(); }
+  /// Index of a height in the values' layers.
+  std::size_t layerOf(const MapHeight& height) const;
+  SurfaceValues at(const std::shared_ptr<const scenario::Scenario>& scenario,
+                   const scenario::TerrainPtr& terrain, double time_s);
+  /// Of the last time.
+  std::vector<std::string> warnings() const { return solver_->warnings(); }
+
+ private:
+  emfield::FieldOptions options_;
+  /// Its channels: all emitters together; each alone, if a product asks for it; all without jamming, if a
+  /// product asks for it.
+  std::unique_ptr<emfield::FieldSolver> solver_;
+};
+
+/// The maps of a request at the heights of one reference.
 class SurfaceMaps {
  public:
   /// @param grid, request  must outlive the maps
   SurfaceMaps(const MapGrid& grid, const CoverageRequest& request, emfield::HeightReference reference,
-              const emfield::FieldOptions& options);
+              const SurfaceField& field);
 
   /// Begins with a number of scenarios.
   void begin(std::size_t scenarios);
   /// The maps of a scenario, by its index, at the next time.
   void addTime(std::size_t index, const std::shared_ptr<const scenario::Scenario>& scenario,
-               const scenario::TerrainPtr& terrain, double time_s, const MapSink& take);
+               const SurfaceValues& values, double time_s, const MapSink& take);
   /// The maps of a scenario over all times.
   void finish(std::size_t index, const MapSink& take);
-  /// Of a scenario, after its last time.
-  const std::vector<std::string>& warnings(std::size_t index) const { return states_[index].warnings; }
 
  private:
+  /// A height, and its index in the layers of values.
+  struct Layer {
+    MapHeight height;
+    std::size_t k;
+  };
   /// A scenario between its times.
   struct State {
     std::shared_ptr<const scenario::Scenario> scenario;
-    std::vector<TimeFigures> figures;  ///< one per height
+    std::vector<TimeFigures> figures;  ///< one per layer
     std::shared_ptr<const volume::DenseVolume> last;
-    std::vector<std::string> warnings;
-  };
-  struct ValuesOfOne {
-    int emitter;
-    std::shared_ptr<const volume::DenseVolume> values;
-    FastGeodesy geodesy;  ///< from its position
-  };
-  /// The quantity at a time.
-  struct Values {
-    std::shared_ptr<const volume::DenseVolume> all, unjammed;
-    std::vector<ValuesOfOne> each;
   };
 
   bool isOverTime() const {
@@ -74,15 +101,13 @@ class SurfaceMaps {
     return is_valid ? volume.values[k * grid_.pixels() + p] : NAN;
   }
 
-  float valueOf(Product product, const Values& values, std::size_t k, std::size_t p) const;
-  float ofEmitters(Product product, const std::vector<ValuesOfOne>& each, std::size_t k, std::size_t p) const;
+  float valueOf(Product product, const SurfaceValues& values, std::size_t k, std::size_t p) const;
+  float ofEmitters(Product product, const std::vector<SurfaceValues::OfOne>& each, std::size_t k,
+                   std::size_t p) const;
 
   const CoverageRequest& request_;
   const MapGrid& grid_;
-  emfield::FieldOptions options_;
-  std::vector<MapHeight> heights_;
-  /// Its first channel is of all emitters, those after it of one each.
-  std::optional<emfield::FieldSolver> solver_;
+  std::vector<Layer> layers_;
   std::vector<State> states_;  ///< one per scenario
 };
 

@@ -11,10 +11,10 @@ namespace emscape::emfield {
 /// @param reflected  of the row's first voxel
 void bothRaysRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected, const Row& row, float* out);
 
-/// Echoes and jamming of a pass with reflected rays; without the excess.
-/// @param voxel    index of the row's first voxel
-/// @param root     receives the roots of the echoes' signal-to-noise
-/// @param jamming  receives the jamming over noise
-void echoesOfBothRays(const RadarPass& pass, std::size_t voxel, const Row& row, float* root, float* jamming);
+/// Weights of a radar's look with reflected rays; without the excess.
+/// @param jammer  of which they are; null: of the echo
+/// @param voxel   index of the row's first voxel
+void weightsOfBothRays(const RadarPass& pass, const JammerAtRadar* jammer, std::size_t voxel, const Row& row,
+                       float* out);
 
 }  // namespace emscape::emfield

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "base/simd.h"
 #include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/echo_rows.h"
@@ -9,90 +7,67 @@ namespace {
 
 using scenario::PatternKind;
 
-/// @param reflected  of the row's first voxel
-template <PatternKind kind>
-__attribute__((always_inline)) inline void fillEchoesOfBothRays(const RadarPass& pass,
-                                                                const ReflectedRayCode* reflected,
-                                                                const Row& row, float* root) {
-  const RadarTask task = pass.task;
-  const EmitterBeam beam = pass.beam;
-#pragma omp simd
-  for (int i = 0; i < row.count; ++i) {
-    root[i] = echoToNoiseRoot<kind>(task, beam, reflected[i], row.column + i, row.t_m);
-  }
-}
-
-template <PatternKind kind>
-__attribute__((always_inline)) inline void addJammingOfBothRays(const RadarPass& pass,
-                                                                const JammerAtRadar& jammer, const Row& row,
-                                                                float* jamming) {
-  const RadarTask task = pass.task;
-  const EmitterBeam beam = pass.beam;
-  const JammerAtRadar local = jammer;
-#pragma omp simd
-  for (int i = 0; i < row.count; ++i) {
-    jamming[i] += jammingOfBothRaysToNoise<kind>(task, beam, local, row.column + i, row.t_m);
-  }
-}
-
+/// @param jammer     null: the echo's weights
 /// @param reflected  of the row's first voxel; null: the radar's reflected rays are not weighed
 template <PatternKind kind>
-__attribute__((always_inline)) inline void fillRowOfBothRays(const RadarPass& pass,
-                                                             const ReflectedRayCode* reflected,
-                                                             const Row& row, float* root, float* jamming) {
-  if (kind != PatternKind::isotropic && reflected != nullptr) {
-    fillEchoesOfBothRays<kind>(pass, reflected, row, root);
+__attribute__((always_inline)) inline void fillWeightsOfBothRays(const RadarPass& pass,
+                                                                 const JammerAtRadar* jammer,
+                                                                 const ReflectedRayCode* reflected,
+                                                                 const Row& row, float* out) {
+  const RadarLook look = pass.task.look;
+  const EmitterBeam beam = pass.beam;
+  if (jammer == nullptr && kind != PatternKind::isotropic && reflected != nullptr) {
+#pragma omp simd
+    for (int i = 0; i < row.count; ++i)
+      out[i] = echoWeight<kind>(look, beam, reflected[i], row.column + i, row.t_m);
+  } else if (jammer != nullptr && jammer->has_reflected_ray) {
+    const JammerAtRadar local = *jammer;
+#pragma omp simd
+    for (int i = 0; i < row.count; ++i)
+      out[i] = jammingWeightOfBothRays<kind>(look, beam, local, row.column + i, row.t_m);
   } else {
-    fillEchoes<kind>(pass, row, root);
-  }
-  std::fill_n(jamming, row.count, 0.0f);
-  for (int n = 0; n < pass.task.jammer_count; ++n) {
-    const JammerAtRadar& jammer = pass.task.jammers[n];
-    if (jammer.has_reflected_ray) {
-      addJammingOfBothRays<kind>(pass, jammer, row, jamming);
-    } else {
-      addJamming<kind>(pass, jammer, row, jamming);
-    }
+    fillWeights<kind>(pass, jammer, row, out);
   }
 }
 
-EMSCAPE_SIMD_CLONES void isotropicEchoes(const RadarPass& pass, const ReflectedRayCode* reflected,
-                                         const Row& row, float* root, float* jamming) {
-  fillRowOfBothRays<PatternKind::isotropic>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void isotropicWeights(const RadarPass& pass, const JammerAtRadar* jammer,
+                                          const ReflectedRayCode* reflected, const Row& row, float* out) {
+  fillWeightsOfBothRays<PatternKind::isotropic>(pass, jammer, reflected, row, out);
 }
-EMSCAPE_SIMD_CLONES void gaussianEchoes(const RadarPass& pass, const ReflectedRayCode* reflected,
-                                        const Row& row, float* root, float* jamming) {
-  fillRowOfBothRays<PatternKind::gaussian>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void gaussianWeights(const RadarPass& pass, const JammerAtRadar* jammer,
+                                         const ReflectedRayCode* reflected, const Row& row, float* out) {
+  fillWeightsOfBothRays<PatternKind::gaussian>(pass, jammer, reflected, row, out);
 }
-EMSCAPE_SIMD_CLONES void separableEchoes(const RadarPass& pass, const ReflectedRayCode* reflected,
-                                         const Row& row, float* root, float* jamming) {
-  fillRowOfBothRays<PatternKind::separable>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void separableWeights(const RadarPass& pass, const JammerAtRadar* jammer,
+                                          const ReflectedRayCode* reflected, const Row& row, float* out) {
+  fillWeightsOfBothRays<PatternKind::separable>(pass, jammer, reflected, row, out);
 }
-EMSCAPE_SIMD_CLONES void phasedArrayEchoes(const RadarPass& pass, const ReflectedRayCode* reflected,
-                                           const Row& row, float* root, float* jamming) {
-  fillRowOfBothRays<PatternKind::phased_array>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void phasedArrayWeights(const RadarPass& pass, const JammerAtRadar* jammer,
+                                            const ReflectedRayCode* reflected, const Row& row, float* out) {
+  fillWeightsOfBothRays<PatternKind::phased_array>(pass, jammer, reflected, row, out);
 }
-EMSCAPE_SIMD_CLONES void gridEchoes(const RadarPass& pass, const ReflectedRayCode* reflected, const Row& row,
-                                    float* root, float* jamming) {
-  fillRowOfBothRays<PatternKind::grid>(pass, reflected, row, root, jamming);
+EMSCAPE_SIMD_CLONES void gridWeights(const RadarPass& pass, const JammerAtRadar* jammer,
+                                     const ReflectedRayCode* reflected, const Row& row, float* out) {
+  fillWeightsOfBothRays<PatternKind::grid>(pass, jammer, reflected, row, out);
 }
 
 }  // namespace
 
-void echoesOfBothRays(const RadarPass& pass, std::size_t voxel, const Row& row, float* root, float* jamming) {
+void weightsOfBothRays(const RadarPass& pass, const JammerAtRadar* jammer, std::size_t voxel, const Row& row,
+                       float* out) {
   const ReflectedRayCode* const reflected =
       weighsReflectedRays(pass.beam) ? pass.beam.geometry.reflected + voxel : nullptr;
   switch (pass.beam.pattern.kind) {
     case PatternKind::isotropic:
-      return isotropicEchoes(pass, reflected, row, root, jamming);
+      return isotropicWeights(pass, jammer, reflected, row, out);
     case PatternKind::gaussian:
-      return gaussianEchoes(pass, reflected, row, root, jamming);
+      return gaussianWeights(pass, jammer, reflected, row, out);
     case PatternKind::separable:
-      return separableEchoes(pass, reflected, row, root, jamming);
+      return separableWeights(pass, jammer, reflected, row, out);
     case PatternKind::phased_array:
-      return phasedArrayEchoes(pass, reflected, row, root, jamming);
+      return phasedArrayWeights(pass, jammer, reflected, row, out);
     case PatternKind::grid:
-      return gridEchoes(pass, reflected, row, root, jamming);
+      return gridWeights(pass, jammer, reflected, row, out);
   }
 }
 

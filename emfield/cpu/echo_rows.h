@@ -1,4 +1,4 @@
-/// Rows of echoes and of jamming without reflected rays, for the loops of radars.
+/// Rows of a look's weights without reflected rays, for the loops of radars.
 #pragma once
 
 #include "emfield/cpu/row.h"
@@ -6,25 +6,20 @@
 
 namespace emscape::emfield {
 
+/// @param jammer  null: the echo's weights, without the excess
 template <scenario::PatternKind kind>
-__attribute__((always_inline)) inline void fillEchoes(const RadarPass& pass, const Row& row, float* root) {
-  const RadarTask task = pass.task;
+__attribute__((always_inline)) inline void fillWeights(const RadarPass& pass, const JammerAtRadar* jammer,
+                                                       const Row& row, float* out) {
+  const RadarLook look = pass.task.look;
   const EmitterBeam beam = pass.beam;
+  if (jammer == nullptr) {
 #pragma omp simd
-  for (int i = 0; i < row.count; ++i) {
-    root[i] = echoToNoiseRoot<kind>(task, beam, row.column + i, row.t_m);
-  }
-}
-
-template <scenario::PatternKind kind>
-__attribute__((always_inline)) inline void addJamming(const RadarPass& pass, const JammerAtRadar& jammer,
-                                                      const Row& row, float* jamming) {
-  const RadarTask task = pass.task;
-  const EmitterBeam beam = pass.beam;
-  const JammerAtRadar local = jammer;
+    for (int i = 0; i < row.count; ++i) out[i] = echoWeight<kind>(look, beam, row.column + i, row.t_m);
+  } else {
+    const JammerAtRadar local = *jammer;
 #pragma omp simd
-  for (int i = 0; i < row.count; ++i) {
-    jamming[i] += jammingToNoise<kind>(task, beam, local, row.column + i, row.t_m);
+    for (int i = 0; i < row.count; ++i)
+      out[i] = jammingWeight<kind>(look, beam, local, row.column + i, row.t_m);
   }
 }
 

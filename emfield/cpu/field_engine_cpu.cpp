@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/stopwatch.h"
+#include "emfield/cpu/kept_looks.h"
 #include "emfield/solver/field_engine.h"
 #include "emfield/solver/kept_power.h"
 
@@ -25,6 +26,8 @@ class CpuEngine : public FieldEngine {
         voxels_(static_cast<std::size_t>(setup.grid.dims.count())),
         slots_(slots),
         kept_power_(static_cast<std::size_t>(std::max(0, slots - 1)), voxels_,
+                    availableMemory_bytes().value_or(0)),
+        kept_looks_(static_cast<std::size_t>(std::max(0, slots - 1)), voxels_,
                     availableMemory_bytes().value_or(0)) {
     planChanged(true);
     if (setup.columns.every_height && setup.terrain != nullptr) bounds_.emplace(setup.terrain->view());
@@ -57,6 +60,7 @@ class CpuEngine : public FieldEngine {
   std::optional<TerrainBounds> bounds_;  // of surfaces over terrain
   std::vector<EmitterGeometry> slots_;
   KeptPower<std::vector<float>> kept_power_;  // without the last slot, which emitters share
+  KeptLooks kept_looks_;                      // the same
   std::vector<ChannelBuffers> buffers_;
   StageTimes times_;
 };
@@ -66,6 +70,7 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
   for (const GeometryRequest& request : requests) {
     EmitterGeometry& geometry = slots_[request.slot];
     kept_power_.forget(static_cast<std::size_t>(request.slot));
+    kept_looks_.forget(static_cast<std::size_t>(request.slot));
     EmitterGeometry::Times spent;
     geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
                      setup_.columns, setup_.terrain.get(), spent, bounds_ ? &*bounds_ : nullptr,
@@ -140,12 +145,16 @@ void CpuEngine::combine(const CombinePass& pass) {
   Stopwatch watch;
   combineCpu(task);
   for (std::size_t m = 0; m < pass.members.size(); ++m) {
+    const int slot = pass.members[m].slot;
+    const scenario::AntennaPtr& antenna =
+        setup_.scenario->emitters[pass.members[m].emitter.emitter_index].antenna;
     EmitterBeam beam = task.emitters[m].beam;
-    beam.pattern = setup_.scenario->emitters[pass.members[m].emitter.emitter_index].antenna->view();
+    beam.pattern = antenna->view();
     for (const RadarShare& share : pass.members[m].radars) {
       float* const accumulator = task.accumulators[share.channel].value;
       if (accumulator == nullptr) continue;
-      radarCpu(radarPass(share, beam, slots_[pass.members[m].slot].clutterMap(), task, accumulator));
+      const LookWeights weights = kept_looks_.choose(static_cast<std::size_t>(slot), antenna, share);
+      radarCpu(radarPass(share, beam, slots_[slot].clutterMap(), task, accumulator), weights);
     }
     for (const OccupancyShare& share : pass.members[m].occupancies) {
       float* const accumulator = task.accumulators[share.channel].value;
@@ -198,7 +207,7 @@ void CpuEngine::addMemory(MemoryUse& use) const {
   }
   use.bytes_per_voxel_and_channel = static_cast<double>(channel_bytes) / static_cast<double>(voxels_) /
                                     static_cast<double>(std::max<std::size_t>(1, buffers_.size()));
-  use.total_bytes += channel_bytes + kept_power_.bytes();
+  use.total_bytes += channel_bytes + kept_power_.bytes() + kept_looks_.bytes();
   for (const EmitterGeometry& geometry : slots_) use.total_bytes += geometry.bytes();
 }
 

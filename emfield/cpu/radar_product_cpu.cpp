@@ -15,43 +15,53 @@ namespace {
 
 using scenario::PatternKind;
 
-template <PatternKind kind>
-__attribute__((always_inline)) inline void fillRow(const RadarPass& pass, const Row& row, float* root,
-                                                   float* jamming) {
-  fillEchoes<kind>(pass, row, root);
-  std::fill_n(jamming, row.count, 0.0f);
-  for (int n = 0; n < pass.task.jammer_count; ++n) addJamming<kind>(pass, pass.task.jammers[n], row, jamming);
+EMSCAPE_SIMD_CLONES void isotropicWeights(const RadarPass& pass, const JammerAtRadar* jammer, const Row& row,
+                                          float* out) {
+  fillWeights<PatternKind::isotropic>(pass, jammer, row, out);
+}
+EMSCAPE_SIMD_CLONES void gaussianWeights(const RadarPass& pass, const JammerAtRadar* jammer, const Row& row,
+                                         float* out) {
+  fillWeights<PatternKind::gaussian>(pass, jammer, row, out);
+}
+EMSCAPE_SIMD_CLONES void separableWeights(const RadarPass& pass, const JammerAtRadar* jammer, const Row& row,
+                                          float* out) {
+  fillWeights<PatternKind::separable>(pass, jammer, row, out);
+}
+EMSCAPE_SIMD_CLONES void phasedArrayWeights(const RadarPass& pass, const JammerAtRadar* jammer,
+                                            const Row& row, float* out) {
+  fillWeights<PatternKind::phased_array>(pass, jammer, row, out);
+}
+EMSCAPE_SIMD_CLONES void gridWeights(const RadarPass& pass, const JammerAtRadar* jammer, const Row& row,
+                                     float* out) {
+  fillWeights<PatternKind::grid>(pass, jammer, row, out);
 }
 
-EMSCAPE_SIMD_CLONES void isotropicRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
-  fillRow<PatternKind::isotropic>(pass, row, root, jamming);
-}
-EMSCAPE_SIMD_CLONES void gaussianRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
-  fillRow<PatternKind::gaussian>(pass, row, root, jamming);
-}
-EMSCAPE_SIMD_CLONES void separableRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
-  fillRow<PatternKind::separable>(pass, row, root, jamming);
-}
-EMSCAPE_SIMD_CLONES void phasedArrayRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
-  fillRow<PatternKind::phased_array>(pass, row, root, jamming);
-}
-EMSCAPE_SIMD_CLONES void gridRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
-  fillRow<PatternKind::grid>(pass, row, root, jamming);
+/// @param jammer  of which the weights are; null: of the echo, with the excess
+/// @param voxel   index of the row's first voxel
+void weightsOf(const RadarPass& pass, const JammerAtRadar* jammer, std::size_t voxel, const Row& row,
+               float* out) {
+  const auto fill = [&] {
+    if (pass.has_reflected_rays) return weightsOfBothRays(pass, jammer, voxel, row, out);
+    switch (pass.beam.pattern.kind) {
+      case PatternKind::isotropic:
+        return isotropicWeights(pass, jammer, row, out);
+      case PatternKind::gaussian:
+        return gaussianWeights(pass, jammer, row, out);
+      case PatternKind::separable:
+        return separableWeights(pass, jammer, row, out);
+      case PatternKind::phased_array:
+        return phasedArrayWeights(pass, jammer, row, out);
+      case PatternKind::grid:
+        return gridWeights(pass, jammer, row, out);
+    }
+  };
+  fill();
+  if (jammer == nullptr) applyExcess(pass.beam.geometry.excess, voxel, row.count, out);
 }
 
-void fillRow(const RadarPass& pass, const Row& row, float* root, float* jamming) {
-  switch (pass.beam.pattern.kind) {
-    case PatternKind::isotropic:
-      return isotropicRow(pass, row, root, jamming);
-    case PatternKind::gaussian:
-      return gaussianRow(pass, row, root, jamming);
-    case PatternKind::separable:
-      return separableRow(pass, row, root, jamming);
-    case PatternKind::phased_array:
-      return phasedArrayRow(pass, row, root, jamming);
-    case PatternKind::grid:
-      return gridRow(pass, row, root, jamming);
-  }
+EMSCAPE_SIMD_CLONES void addWeighted(float factor, const float* weights, int count, float* sum) {
+#pragma omp simd
+  for (int i = 0; i < count; ++i) sum[i] += factor * weights[i];
 }
 
 EMSCAPE_SIMD_CLONES void countLooks(const RadarPass& pass, const Row& row, float* looks) {
@@ -70,48 +80,58 @@ EMSCAPE_SIMD_CLONES void findAges(const RadarPass& pass, const Row& row, float* 
 
 template <RadarMeasure measure>
 __attribute__((always_inline)) inline void accumulate(const RadarTask& pass_task, int count,
-                                                      const float* root, const float* jamming,
+                                                      const float* weights, const float* jamming,
                                                       const float* looks, float* accumulator) {
   const RadarTask task = pass_task;
 #pragma omp simd
   for (int i = 0; i < count; ++i) {
-    accumulator[i] = withEcho<measure>(task, root[i], jamming[i], looks[i], accumulator[i]);
+    accumulator[i] =
+        withEcho<measure>(task, task.echo_root * weights[i], jamming[i], looks[i], accumulator[i]);
   }
 }
 
-EMSCAPE_SIMD_CLONES void accumulateRow(const RadarTask& task, int count, const float* root,
+/// @param weights  of the echo
+EMSCAPE_SIMD_CLONES void accumulateRow(const RadarTask& task, int count, const float* weights,
                                        const float* jamming, const float* looks, float* accumulator) {
   switch (task.measure) {
     case RadarMeasure::root_of_signal_to_noise:
-      return accumulate<RadarMeasure::root_of_signal_to_noise>(task, count, root, jamming, looks,
+      return accumulate<RadarMeasure::root_of_signal_to_noise>(task, count, weights, jamming, looks,
                                                                accumulator);
     case RadarMeasure::signal_to_jamming:
-      return accumulate<RadarMeasure::signal_to_jamming>(task, count, root, jamming, looks, accumulator);
+      return accumulate<RadarMeasure::signal_to_jamming>(task, count, weights, jamming, looks, accumulator);
     case RadarMeasure::detection:
-      return accumulate<RadarMeasure::detection>(task, count, root, jamming, looks, accumulator);
+      return accumulate<RadarMeasure::detection>(task, count, weights, jamming, looks, accumulator);
     case RadarMeasure::detection_age:
-      return accumulate<RadarMeasure::detection_age>(task, count, root, jamming, looks, accumulator);
+      return accumulate<RadarMeasure::detection_age>(task, count, weights, jamming, looks, accumulator);
     case RadarMeasure::root_of_signal_to_clutter_and_noise:
-      return accumulate<RadarMeasure::root_of_signal_to_clutter_and_noise>(task, count, root, jamming, looks,
-                                                                           accumulator);
+      return accumulate<RadarMeasure::root_of_signal_to_clutter_and_noise>(task, count, weights, jamming,
+                                                                           looks, accumulator);
   }
 }
 
 }  // namespace
 
-void radarCpu(const RadarPass& pass) {
+void radarCpu(const RadarPass& pass, const LookWeights& weights) {
   const Dims& dims = pass.dims;
   parallelFor(dims.y, 1, [&](int begin, int end) {
-    std::vector<float> root(dims.x), jamming(dims.x), looks(dims.x, 1.0f);
+    std::vector<float> buffer(dims.x), echo(dims.x), jamming(dims.x), looks(dims.x, 1.0f);
     for (int j = begin; j < end; ++j) {
       for (int k = pass.first_row_k == nullptr ? 0 : pass.first_row_k[j]; k < dims.z; ++k) {
         const std::size_t column = static_cast<std::size_t>(j) * dims.x;
         const std::size_t voxel = static_cast<std::size_t>(k) * dims.x * dims.y + column;
         const Row row{column, dims.x, pass.t_m[k]};
-        if (pass.has_reflected_rays) {
-          echoesOfBothRays(pass, voxel, row, root.data(), jamming.data());
-        } else {
-          fillRow(pass, row, root.data(), jamming.data());
+        const auto weightsIn = [&](const WeightArray& kept, const JammerAtRadar* jammer, float* own) {
+          float* const out = kept.values != nullptr ? kept.values + voxel : own;
+          if (!kept.is_known) weightsOf(pass, jammer, voxel, row, out);
+          return static_cast<const float*>(out);
+        };
+        const float* const of_echo = weightsIn(weights.echo, nullptr, echo.data());
+        std::fill(jamming.begin(), jamming.end(), 0.0f);
+        for (int n = 0; n < pass.task.jammer_count; ++n) {
+          const JammerAtRadar& jammer = pass.task.jammers[n];
+          const WeightArray kept = weights.jammers.empty() ? WeightArray{} : weights.jammers[n];
+          addWeighted(jammer.boresight_to_noise, weightsIn(kept, &jammer, buffer.data()), dims.x,
+                      jamming.data());
         }
         if (!pass.task.clutter.isNone()) addClutter(pass, row, jamming.data());
         if (pass.task.measure == RadarMeasure::detection_age) {
@@ -119,8 +139,7 @@ void radarCpu(const RadarPass& pass) {
         } else if (pass.task.is_cumulative) {
           countLooks(pass, row, looks.data());
         }
-        applyExcess(pass.beam.geometry.excess, voxel, dims.x, root.data());
-        accumulateRow(pass.task, dims.x, root.data(), jamming.data(), looks.data(), pass.accumulator + voxel);
+        accumulateRow(pass.task, dims.x, of_echo, jamming.data(), looks.data(), pass.accumulator + voxel);
       }
     }
   });

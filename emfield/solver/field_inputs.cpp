@@ -81,28 +81,22 @@ bool samePasses(const LastPasses& a, const LastPasses& b) {
 }
 
 bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
-  const auto& [direction, boresight_to_noise, has_reflected_ray, reflected, reflected_direction,
-               direct_amplitude, reflected_amplitude] = a;
-  return direction == b.direction && boresight_to_noise == b.boresight_to_noise &&
-         has_reflected_ray == b.has_reflected_ray && same(reflected, b.reflected) &&
-         reflected_direction == b.reflected_direction && direct_amplitude == b.direct_amplitude &&
-         reflected_amplitude == b.reflected_amplitude;
+  return a.boresight_to_noise == b.boresight_to_noise && sameRays(a, b);
 }
 
 bool sameTask(const RadarTask& a, const RadarTask& b) {
-  // The jammers are in RadarShare.
+  // The jammers are in RadarShare; sameLook() compares the look.
   const auto& [measure, reduction, look, is_cumulative, looks, last_passes, echo_root, factor, lowest,
                ceiling, curve, clutter, jammers, jammer_count] = a;
-  return measure == b.measure && reduction == b.reduction && same(look, b.look) &&
-         is_cumulative == b.is_cumulative && sameLooks(looks, b.looks) &&
-         samePasses(last_passes, b.last_passes) && echo_root == b.echo_root && factor == b.factor &&
-         lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) && same(clutter, b.clutter);
+  return measure == b.measure && reduction == b.reduction && is_cumulative == b.is_cumulative &&
+         sameLooks(looks, b.looks) && samePasses(last_passes, b.last_passes) && echo_root == b.echo_root &&
+         factor == b.factor && lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) &&
+         same(clutter, b.clutter);
 }
 
 bool sameShare(const RadarShare& a, const RadarShare& b) {
   const auto& [channel, task, forward, right, up, jammers] = a;
-  return channel == b.channel && sameTask(task, b.task) && forward == b.forward && right == b.right &&
-         up == b.up &&
+  return channel == b.channel && sameTask(task, b.task) && sameLook(a, b) &&
          std::equal(jammers.begin(), jammers.end(), b.jammers.begin(), b.jammers.end(), sameJammer);
 }
 
@@ -163,6 +157,18 @@ const Share* shareIn(const std::vector<Share>& shares, int channel) {
 
 bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
   return a == b || samePattern(a->view(), b->view());
+}
+
+bool sameLook(const RadarShare& a, const RadarShare& b) {
+  return same(a.task.look, b.task.look) && a.forward == b.forward && a.right == b.right && a.up == b.up;
+}
+
+bool sameRays(const JammerAtRadar& a, const JammerAtRadar& b) {
+  const auto& [direction, boresight_to_noise, has_reflected_ray, reflected, reflected_direction,
+               direct_amplitude, reflected_amplitude] = a;
+  return direction == b.direction && has_reflected_ray == b.has_reflected_ray &&
+         same(reflected, b.reflected) && reflected_direction == b.reflected_direction &&
+         direct_amplitude == b.direct_amplitude && reflected_amplitude == b.reflected_amplitude;
 }
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const scenario::EmitterState& state) {

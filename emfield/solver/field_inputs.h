@@ -40,6 +40,13 @@ struct CombineInputs {
 /// True if two antennas, not null, have the same pattern; their gains may differ.
 bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b);
 
+/// True if two radars' shares weigh voxels alike where the radars' patterns are the same: the same look in
+/// the same frame. Powers, jammers and channels may differ.
+bool sameLook(const RadarShare& a, const RadarShare& b);
+
+/// True if two jammers are seen along the same rays. Their powers may differ.
+bool sameRays(const JammerAtRadar& a, const JammerAtRadar& b);
+
 /// Marks the channels in which an emitter's part has changed.
 /// @param before    of the last update; null: it was not active
 /// @param now       null: it is not active

@@ -9,16 +9,21 @@ namespace emscape::emfield {
 
 using scenario::Emitter;
 
-FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
-                   const std::vector<std::string>& quantities, bool also_per_emitter) {
+FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario, const FieldOptions& options) {
   FieldPlan plan;
   plan.scenario = std::move(scenario);
   plan.warnings = checkModels(*plan.scenario);
-  plan.channels = channelsOf(*plan.scenario, quantities);
-  if (also_per_emitter) {
+  plan.channels = channelsOf(*plan.scenario, options.quantities);
+  const std::vector<Channel> of_output = plan.channels;
+  if (options.also_per_emitter) {
     const std::vector<Channel> each =
-        channelsOf(*plan.scenario, quantities, scenario::CombineMode::per_emitter);
+        channelsOf(*plan.scenario, options.quantities, scenario::CombineMode::per_emitter);
     plan.channels.insert(plan.channels.end(), each.begin(), each.end());
+  }
+  for (const Channel& channel : of_output) {
+    if (options.also_unjammed && scenario::needsJammer(channel.quantity)) {
+      plan.channels.push_back({channel.quantity, channel.name + " without jamming", channel.emitters});
+    }
   }
   for (const Channel& channel : plan.channels)
     plan.channel_plans.push_back(channelPlan(channel, *plan.scenario));

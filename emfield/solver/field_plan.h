@@ -20,11 +20,9 @@ struct FieldPlan {
   std::vector<std::string> warnings;       ///< of the models, on values of the scenario
 };
 
-/// @param also_per_emitter  see FieldOptions
-/// @param quantities  names; empty: the scenario's
+/// @param options  which channels
 /// @throws Error (bad_input) for a scenario that the field or its models cannot compute
-FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario,
-                   const std::vector<std::string>& quantities, bool also_per_emitter);
+FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario, const FieldOptions& options);
 
 /// True if two plans have the same channels, with sums of the same kinds.
 bool haveSameChannels(const FieldPlan& a, const FieldPlan& b);

@@ -45,8 +45,7 @@ volume::Grid gridOf(const scenario::Region& region) {
 FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
                         FieldOptions options_in)
     : options(std::move(options_in)) {
-  static_cast<FieldPlan&>(setup) =
-      makePlan(std::move(scenario), options.quantities, options.also_per_emitter);
+  static_cast<FieldPlan&>(setup) = makePlan(std::move(scenario), options);
   setup.terrain = std::move(terrain);
   if (options.surface != nullptr) {
     setup.columns = makeGridColumns(*options.surface, setup.terrain.get());
@@ -193,7 +192,7 @@ FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot, scenario::T
   if (snapshot.scenario == impl_->setup.scenario && terrain == impl_->setup.terrain) {
     return impl_->update(snapshot, std::nullopt);
   }
-  FieldPlan plan = makePlan(snapshot.scenario, impl_->options.quantities, impl_->options.also_per_emitter);
+  FieldPlan plan = makePlan(snapshot.scenario, impl_->options);
   if (impl_->canKeep(plan, terrain)) return impl_->update(snapshot, std::move(plan));
   auto fresh = std::make_unique<Impl>(snapshot.scenario, std::move(terrain), impl_->options);
   const FieldChanged changed = fresh->update(snapshot, std::nullopt);

@@ -14,6 +14,14 @@ namespace emscape::emfield {
 bool samePower(const scenario::AntennaPtr& antenna_a, const EmitterBeam& a,
                const scenario::AntennaPtr& antenna_b, const EmitterBeam& b);
 
+/// Bytes that a cache may take: an eighth of those available, but not more than 1 GiB.
+constexpr std::size_t keptBytes(std::size_t available_bytes) {
+  constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
+  constexpr std::size_t kPartOfMemory = 8;
+  const std::size_t bytes = available_bytes / kPartOfMemory;
+  return bytes < kMaxBytes ? bytes : kMaxBytes;
+}
+
 /// An emitter that enters a second sum unchanged is computed once more and stored; after that it is read,
 /// which is many times faster and bit-identical.
 /// @tparam Array  of floats: std::vector<float> or a GPU's buffer
@@ -22,14 +30,11 @@ class KeptPower {
  public:
   /// @param slots            emitters with geometry of their own
   /// @param voxels           of the grid
-  /// @param available_bytes  an eighth of it, but not more than 1 GiB, is used
+  /// @param available_bytes  keptBytes() of it are used
   KeptPower(std::size_t slots, std::size_t voxels, std::size_t available_bytes)
-      : voxels_(voxels), slots_(slots) {
-    constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
-    constexpr std::size_t kPartOfMemory = 8;
-    const std::size_t bytes = available_bytes / kPartOfMemory;
-    limit_ = (bytes < kMaxBytes ? bytes : kMaxBytes) / (sizeof(float) * (voxels > 0 ? voxels : 1));
-  }
+      : voxels_(voxels),
+        limit_(keptBytes(available_bytes) / (sizeof(float) * (voxels > 0 ? voxels : 1))),
+        slots_(slots) {}
 
   /// Sets the array to which the next pass writes, or from which it reads, the power of an emitter. The pass
   /// must be run with the emitter in it (takesPart()), otherwise the array is never written.
@@ -85,8 +90,8 @@ class KeptPower {
   }
 
   std::size_t voxels_;
+  std::size_t limit_;      // of taken_
   std::size_t taken_ = 0;  // arrays
-  std::size_t limit_ = 0;  // of taken_
   std::vector<Slot> slots_;
   std::vector<Array> free_;
 };

@@ -11,7 +11,7 @@ namespace {
 
 using playback::ComputeTarget;
 
-/// A frame of a field's volume, with the scenario's emitters.
+/// A frame of a field's volume, with the scenario's emitters and the ways of its platforms.
 playback::Frame frameOf(const Field& field, std::size_t index,
                         const std::optional<std::pair<float, float>>& range) {
   playback::Frame frame;
@@ -25,6 +25,7 @@ playback::Frame frameOf(const Field& field, std::size_t index,
     const scenario::TerrainPtr& terrain = field.scene->terrain;
     const auto snapshot = scenario::snapshotAt(field.scene->scenario, terrain.get(), field.time_s);
     frame.markers = playback::markersOf(snapshot, terrain.get(), frame.volume.grid());
+    frame.tracks = playback::tracksOf(*field.scene, frame.volume.grid(), field.time_s);
   }
   return frame;
 }

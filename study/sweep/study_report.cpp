@@ -10,6 +10,7 @@
 #include "document/schema_check.h"
 #include "emscape/study/html_report.h"
 #include "emscape/study/map_grid.h"
+#include "study/map_report.h"
 #include "study/sweep/choose_sites.h"
 #include "study/sweep/measure_plot.h"
 
@@ -45,6 +46,7 @@ class ReportWriter {
     if (study_.sites) addSites();
     for (std::size_t m = 0; m < study_.measures.size(); ++m) addMeasure(m);
     addTable();
+    addModels(report_, *study_.base);
     report_.write(file);
     return std::move(summary_);
   }
@@ -63,7 +65,8 @@ class ReportWriter {
                    {"Times", times_s.size() == 1 ? fmt::format("{} s", times_s.front())
                                                  : fmt::format("{} from {} to {} s", times_s.size(),
                                                                times_s.front(), times_s.back())},
-                   {"Pixels", fmt::format("{} m, {}", study_.cell_m, study_.crs)}});
+                   {"Pixels", fmt::format("{} m, {}", study_.cell_m, study_.crs)},
+                   {"Emscape", EMSCAPE_VERSION}});
     ReportTable measures{{"Measure", "Product", "Quantity", "Threshold", "Over", "Unit"}, {}, ""};
     for (const StudyMeasure& measure : study_.measures) {
       const ProductInfo& product = info(measure.product);

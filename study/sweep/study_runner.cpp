@@ -19,10 +19,15 @@ using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 constexpr std::size_t kMaxKeptBytes = std::size_t{512} << 20;
 constexpr std::size_t kKeptBytesPerValue = 48;
 
-/// Measures of one quantity and threshold: of one field.
+/// Measures of one quantity and threshold.
 struct MeasureGroup {
   std::vector<std::size_t> measures;
   CoverageRequest request;
+};
+
+/// Measures of one quantity: of one field.
+struct QuantityGroup {
+  std::vector<MeasureGroup> thresholds;
   std::unique_ptr<CoverageSolver> solver;
 };
 
@@ -42,7 +47,7 @@ struct StudyRunner::Impl {
   const StudyPlan& plan;
   scenario::TerrainPtr base_terrain;
   MapGrid grid;
-  std::vector<MeasureGroup> groups;
+  std::vector<QuantityGroup> groups;
   std::vector<std::vector<std::uint8_t>> pixels;  ///< of each measure; empty: all
   std::set<std::string> warnings;
   ScenarioPtr terrain_of;  ///< for which `terrain` was loaded
@@ -50,20 +55,29 @@ struct StudyRunner::Impl {
   VariantFiles* files = nullptr;
   std::size_t together = 1;  ///< variants that are computed at the same time
 
+  MeasureGroup& groupOf(const StudyMeasure& measure) {
+    const auto quantity = std::find_if(groups.begin(), groups.end(), [&](const QuantityGroup& known) {
+      return known.thresholds.front().request.quantity == measure.quantity;
+    });
+    std::vector<MeasureGroup>& thresholds =
+        (quantity != groups.end() ? *quantity : groups.emplace_back()).thresholds;
+    const auto group = std::find_if(thresholds.begin(), thresholds.end(), [&](const MeasureGroup& known) {
+      return known.request.threshold == measure.threshold;
+    });
+    if (group != thresholds.end()) return *group;
+    CoverageRequest& request = thresholds.emplace_back().request;
+    request.quantity = measure.quantity;
+    request.threshold = measure.threshold;
+    request.times_s = study.times_s;
+    return thresholds.back();
+  }
+
   void addGroups(const emfield::FieldOptions& options) {
     for (std::size_t m = 0; m < study.measures.size(); ++m) {
       const StudyMeasure& measure = study.measures[m];
-      auto group = std::find_if(groups.begin(), groups.end(), [&](const MeasureGroup& known) {
-        return known.request.quantity == measure.quantity && known.request.threshold == measure.threshold;
-      });
-      if (group == groups.end()) {
-        group = groups.insert(groups.end(), MeasureGroup{});
-        group->request.quantity = measure.quantity;
-        group->request.threshold = measure.threshold;
-        group->request.times_s = study.times_s;
-      }
-      group->measures.push_back(m);
-      CoverageRequest& request = group->request;
+      MeasureGroup& group = groupOf(measure);
+      group.measures.push_back(m);
+      CoverageRequest& request = group.request;
       if (std::count(request.products.begin(), request.products.end(), measure.product) == 0) {
         request.products.push_back(measure.product);
       }
@@ -74,9 +88,13 @@ struct StudyRunner::Impl {
       pixels.push_back(measure.over.empty() ? std::vector<std::uint8_t>{} : pixelsWithin(measure.over, grid));
     }
     std::size_t kept_bytes = 1;
-    for (MeasureGroup& group : groups) {
-      group.solver = std::make_unique<CoverageSolver>(grid, group.request, options);
-      kept_bytes += grid.pixels() * group.request.heights.size() * kKeptBytesPerValue;
+    for (QuantityGroup& group : groups) {
+      std::vector<CoverageRequest> requests;
+      for (const MeasureGroup& threshold : group.thresholds) {
+        requests.push_back(threshold.request);
+        kept_bytes += grid.pixels() * threshold.request.heights.size() * kKeptBytesPerValue;
+      }
+      group.solver = std::make_unique<CoverageSolver>(grid, std::move(requests), options);
     }
     if (study.times_s.size() > 1) together = std::max<std::size_t>(1, kMaxKeptBytes / kept_bytes);
   }
@@ -117,8 +135,9 @@ struct StudyRunner::Impl {
     std::vector<std::vector<MeasureOverTime>> measured(variants.size(),
                                                        std::vector<MeasureOverTime>(study.measures.size()));
     for (std::size_t v = 0; v < variants.size(); ++v) results[v].variant = variants[v];
-    for (MeasureGroup& group : groups) {
-      const auto add = [&](std::size_t v, const CoverageMap& map) {
+    for (QuantityGroup& of_quantity : groups) {
+      const auto add = [&](std::size_t v, std::size_t threshold, const CoverageMap& map) {
+        const MeasureGroup& group = of_quantity.thresholds[threshold];
         if (files != nullptr) files->addMap(variants[v], *scenarios[v], grid, group.request, map);
         for (const std::size_t m : group.measures) {
           const StudyMeasure& measure = study.measures[m];
@@ -132,7 +151,8 @@ struct StudyRunner::Impl {
         }
       };
       try {
-        for (const std::vector<std::string>& of_variant : group.solver->compute(scenarios, terrain, add)) {
+        for (const std::vector<std::string>& of_variant :
+             of_quantity.solver->compute(scenarios, terrain, add)) {
           for (const std::string& warning : of_variant) warnings.insert(withoutCount(warning));
         }
       } catch (const Error& error) {

@@ -492,6 +492,7 @@ EMSCAPE_ON_BACKENDS(EditedEchoes);
 TEST_P(EditedEchoes, ThenPowerEqualANewSolver) {
   FieldOptions options;
   options.backend = GetParam();
+  options.also_unjammed = true;
   Random random(9);
   auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
   scenario->output.quantities = {"power_density_dbwm2", "detection_probability"};

@@ -164,6 +164,24 @@ TEST(JammerToSignal, OfSeveralJammersIsOfTheSumOfTheirPowers) {
   EXPECT_NEAR(east(scenario, "jammer_to_signal_db", 20e3), alone + ratioToDb(3), 1e-3);
 }
 
+TEST(Jamming, ChannelsWithoutItAreThoseOfSilentJammers) {
+  const auto jammed = duel(trackingRadar(), jammerOf(500), 0, 60e3);
+  jammed->output.quantities = {"snr_db", "detection_probability"};
+  FieldOptions options;
+  options.also_per_emitter = options.also_unjammed = true;
+  FieldSolver solver(jammed, nullptr, options);
+  solver.update(scenario::snapshotAt(jammed, nullptr, 0));
+  const auto silent = std::make_shared<scenario::Scenario>(*jammed);
+  silent->emitters[1].active_s = {{5, 10}};
+  FieldSolver without(silent, nullptr, {});
+  without.update(scenario::snapshotAt(silent, nullptr, 0));
+  const Channel& last = solver.channels().back();
+  EXPECT_EQ(last.name, "detection_probability without jamming");
+  EXPECT_EQ(solver.channels()[solver.channels().size() - 2].name, "detection_probability:radar");
+  EXPECT_EQ(solver.volumes().back().host()->values, without.volumes().back().host()->values);
+  EXPECT_NE(solver.volumes()[1].host()->values, without.volumes().back().host()->values);
+}
+
 TEST(BurnThrough, OfASelfScreeningJammerIsAtItsClosedFormRange) {
   scenario::Emitter radar = trackingRadar();
   radar.receiver.required_signal_to_jammer_db = 6;

@@ -1,9 +1,13 @@
 """Labelled arrays: coordinates, units, projection, laziness; maps."""
 
+import os
 import pickle
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
+from conftest import ROOT
 
 import emscape as em
 
@@ -73,13 +77,12 @@ def test_maps_are_those_of_profiles(jamming):
 def test_a_pixel_equals_the_profile_there(jamming):
     pyproj = pytest.importorskip("pyproj")
     value = em.coverage(jamming, "agl:150", "value", quantity="snr_db", threshold=10, times=40, cell_m=2000)
-    known = np.argwhere(np.isfinite(value.values))
-    y, x = known[len(known) // 2]
     to_geographic = pyproj.Transformer.from_crs(pyproj.CRS.from_wkt(value.spatial_ref.attrs["crs_wkt"]), "EPSG:4326", always_xy=True)
-    longitude, latitude = to_geographic.transform(float(value.x[x]), float(value.y[y]))
-    path = em.profile(jamming, "search radar", (latitude, longitude, 150), agl=True, time_s=40)
-    term = path["budget"]["snr_db"]
-    assert term == pytest.approx(float(value[y, x]), abs=0.1)
+    lit = np.argwhere(value.values > value.values[np.isfinite(value.values)].min())
+    for y, x in lit[::7]:
+        longitude, latitude = to_geographic.transform(float(value.x[x]), float(value.y[y]))
+        path = em.profile(jamming, "search radar", (latitude, longitude, 150), agl=True, time_s=40)
+        assert path["budget"]["snr_db"] == pytest.approx(float(value[y, x]), abs=0.01)
 
 
 def test_indices_say_what_they_mean(jamming):
@@ -100,15 +103,13 @@ def test_a_dataset_goes_to_netcdf_and_back(jamming, tmp_path):
 
 def test_a_file_passes_the_checker_of_the_cf_conventions(jamming, tmp_path):
     pytest.importorskip("netCDF4")
-    runner = pytest.importorskip("compliance_checker.runner")
+    checker = shutil.which("compliance-checker", path=os.pathsep.join([str(ROOT / ".cache/peers/bin"), os.environ["PATH"]]))
+    if not checker:
+        pytest.skip("compliance-checker is not installed; scripts/setup --peers does it with pip")
     series = em.open_series(jamming, "0:20:20", ["snr_db", "dominant_emitter"], chunks=None)
     maps = em.coverage(jamming, "agl:150,300", ["value", "covered", "best", "min_height"], times=0, cell_m=1000)
-    runner.CheckSuite.load_all_available_checkers()
-    for name, dataset in (("series", series), ("maps", maps)):
-        file = tmp_path / f"{name}.nc"
+    files = [tmp_path / "series.nc", tmp_path / "maps.nc"]
+    for file, dataset in zip(files, (series, maps)):
         dataset.to_netcdf(file)
-        report = tmp_path / f"{name}.txt"
-        passed, errors = runner.ComplianceChecker.run_checker(
-            str(file), ["cf:1.8"], 0, "strict", output_filename=str(report), output_format="text"
-        )
-        assert passed and not errors, report.read_text()
+    report = subprocess.run([checker, "--test=cf:1.8", "--criteria=strict", *files], capture_output=True, text=True)
+    assert report.returncode == 0 and report.stdout.count("All tests passed") == 2, report.stdout + report.stderr

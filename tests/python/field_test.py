@@ -1,7 +1,6 @@
 """Fields as arrays: values, lifetime, speed, threads."""
 
 import gc
-import json
 import multiprocessing
 import os
 import subprocess
@@ -13,6 +12,7 @@ import pytest
 from conftest import SCENARIOS
 
 import emscape as em
+from emscape import _emscape
 
 
 def test_an_array_is_a_read_only_view_with_the_field_as_owner(quick):
@@ -70,21 +70,33 @@ def test_an_edited_scenario_equals_a_new_solver(jamming):
     assert solver.scenario.edits == edited.edits
 
 
-@pytest.mark.parametrize("name", ["quick", "jamming"])
-def test_values_are_those_of_simulate_bit_by_bit(name, program, tmp_path):
-    dims = {"quick": "[30, 20, 10]", "jamming": "[40, 40, 20]"}[name]
-    quantities = {
-        "quick": "power_density_dbwm2,field_strength_dbuvm,snr_db,detection_probability,emitter_count,dominant_emitter",
-        "jamming": "snr_db,detection_probability,jammer_to_signal_db,burn_through_margin_db,power_density_dbwm2",
-    }[name]
-    file = SCENARIOS / f"{name}.yaml"
+# Scenario: quantities, edits.
+SERIES = {
+    "jamming": ("detection_probability,jammer_to_signal_db,burn_through_margin_db,power_density_dbwm2", {}),
+    "sinr": ("received_power_dbm,sinr_db,intercept_margin_db", {}),
+    "clutter": ("mean_power_density_dbwm2,sclnr_db", {}),
+    "interval": ("occupancy,power_density_dbwm2", {"output.interval.kind": "mean"}),
+    "jamming, cumulative": (
+        "detection_age_s,detection_probability",
+        {"output.quantities": ["detection_age_s"], "output.interval": {"kind": "cumulative", "seconds": 10}},
+    ),
+}
+OTHERS = {name for name, *_ in _emscape.quantity_table()} - {name for row in SERIES.values() for name in row[0].split(",")}
+SERIES["quick"] = (",".join(sorted(OTHERS | {"power_density_dbwm2", "detection_probability"})), {})
+
+
+@pytest.mark.parametrize("series", SERIES)
+def test_values_are_those_of_simulate_bit_by_bit(series, program, tmp_path):
+    quantities, edits = SERIES[series]
+    file = SCENARIOS / f"{series.partition(',')[0]}.yaml"
+    edits = {**edits, "region.dims": [30, 28, 12]}
+    words = [word for path, value in edits.items() for word in ("--set", f"{path}={value}")]
     subprocess.run(
         [program, "simulate", file, "-o", tmp_path, "--format", "raw", "--quantity", quantities, "--times", "2",
-         "--set", f"region.dims={dims}", "--backend", "cpu", "--quiet"],
+         *words, "--backend", "cpu", "--quiet"],
         check=True,
     )  # fmt: skip
-    scenario = em.load(file, {"region.dims": json.loads(dims)})
-    field = em.Solver(scenario, "cpu", quantities=quantities.split(",")).at(2)
+    field = em.Solver(em.load(file, edits), "cpu", quantities=quantities.split(",")).at(2)
     files = sorted(tmp_path.glob("*.raw"))
     assert len(files) == len(field.quantities)
     for quantity in field.quantities:

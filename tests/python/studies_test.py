@@ -114,6 +114,16 @@ def test_a_picture_has_ground_field_and_labels(jamming):
         em.render(field, camera={"azimuth_degrees": 3})
 
 
+def test_a_picture_is_that_of_the_command_line(jamming, program, tmp_path):
+    plt = pytest.importorskip("matplotlib.pyplot")
+    words = ["--quantity", "jammer_to_signal_db", "--range=-20:60", "--size", "240x150", "--times", "40", "--rays", "full"]
+    words += ["--set", "region.dims=[60,60,25]", "--backend", "cpu", "--quiet", "-o", tmp_path / "picture.png"]
+    subprocess.run([program, "render", SCENARIOS / "jamming.yaml", *words], check=True)
+    picture = em.render(em.Solver(jamming, "cpu").at(40), "jammer_to_signal_db", size=(240, 150), range=(-20, 60))
+    drawn = np.rint(plt.imread(tmp_path / "picture.png") * 255).astype(np.uint8)
+    assert np.array_equal(picture[:-20, :, :3], drawn[:-20, :, :3])  # all but the note at the bottom; emitters and tracks included
+
+
 def test_import_is_light(program):
     probe = (
         "import sys, time; t = time.process_time(); import emscape; t = time.process_time() - t;"

@@ -15,18 +15,19 @@ from emscape import _emscape
 PACKAGE = pathlib.Path(emscape.__file__).parent
 
 
-@pytest.fixture(scope="module")
-def environment():
-    """mypy finds the package where this process has found it."""
+@pytest.fixture
+def environment(tmp_path):
+    """mypy finds names in tmp_path: by itself, as it refuses a folder of installed packages among its arguments."""
     pytest.importorskip("mypy")
-    return {**os.environ, "MYPYPATH": str(PACKAGE.parent)} if "site-packages" not in str(PACKAGE) else dict(os.environ)
+    return {**os.environ, "MYPYPATH": str(tmp_path), "PYTHONPATH": str(tmp_path)}
 
 
 def test_package_and_examples_pass_mypy_strict(environment, tmp_path):
     examples = sorted((ROOT / "examples").glob("*.py"))
     assert examples
-    options = ["--strict", "--cache-dir", tmp_path, "--config-file", ROOT / "pyproject.toml"]
-    words = [sys.executable, "-m", "mypy", *options, PACKAGE, *examples]
+    package = shutil.copytree(PACKAGE, tmp_path / "emscape", ignore=shutil.ignore_patterns("*.so", "__pycache__"))
+    options = ["--strict", "--cache-dir", tmp_path / "cache", "--config-file", ROOT / "pyproject.toml"]
+    words = [sys.executable, "-m", "mypy", *options, package, *examples]
     result = subprocess.run(list(map(str, words)), capture_output=True, text=True, env=environment)
     assert result.returncode == 0, result.stdout
 
@@ -39,6 +40,5 @@ def test_the_stub_is_that_of_the_extension(environment, tmp_path):
     known = [name for name in dir(_emscape) if type(getattr(_emscape, name)).__module__ == "nanobind"]
     (tmp_path / "nanobind").write_text("\n".join([*(f"_emscape.{name}" for name in known), r"_emscape\.\w+\.__init__"]))
     words = [sys.executable, "-m", "mypy.stubtest", "--allowlist", "nanobind", "--ignore-unused-allowlist", "_emscape"]
-    environment = {**environment, "MYPYPATH": str(tmp_path), "PYTHONPATH": str(tmp_path)}
     result = subprocess.run(words, capture_output=True, text=True, env=environment, cwd=tmp_path)
     assert result.returncode == 0, result.stdout + result.stderr

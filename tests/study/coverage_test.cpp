@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <GeographicLib/UTMUPS.hpp>
 #include <cmath>
 #include <map>
 #include <random>
@@ -88,6 +89,34 @@ TEST(Coverage, APixelIsThePathOfProfileThere) {
     }
   }
   EXPECT_GT(compared, 80);
+}
+
+// Large pixels, on slopes that the beam passes over: two metres beside are 0.05 dB.
+TEST(Coverage, ALargePixelIsThePathToItsCentreInTheProjection) {
+  const CoverageOf coverage("jamming.yaml", 2000,
+                            {{kLow}, {Product::value}, scenario::Quantity::snr_db, 10, {40}});
+  auto at_targets = std::make_shared<scenario::Scenario>(*coverage.scenario);
+  at_targets->output.radar_look = scenario::RadarLook::target;
+  const scenario::Snapshot snapshot = scenario::snapshotAt(at_targets, coverage.terrain.get(), 40);
+  const MapGrid& grid = coverage.grid;
+  const std::vector<float>& values = coverage.find(Product::value, kLow, 40).values;
+  int compared = 0;
+  for (std::size_t p = 0; p < grid.pixels(); p += 2) {
+    if (std::isnan(values[p]) || static_cast<double>(values[p]) <= at_targets->output.floor) continue;
+    const auto width = static_cast<std::size_t>(grid.width);
+    const double x_m = grid.left_m + (static_cast<double>(p % width) + 0.5) * grid.cell_m,
+                 y_m = grid.top_m - (static_cast<double>(p / width) + 0.5) * grid.cell_m;
+    double latitude_deg = 0, longitude_deg = 0;
+    GeographicLib::UTMUPS::Reverse(16, true, x_m, y_m, latitude_deg, longitude_deg);
+    const double height_m = kLow.metres + coverage.terrain->heightMsl_m(latitude_deg, longitude_deg);
+    const emfield::PathEnd end{
+        {latitude_deg, longitude_deg, height_m + geoidUndulation_m(latitude_deg, longitude_deg)}, height_m};
+    const auto budget = emfield::pathBudget(snapshot, 0, end, at_targets->emitters[0].propagation.model,
+                                            coverage.terrain.get());
+    EXPECT_NEAR(static_cast<double>(values[p]), budget.find("snr_db")->value, 0.01) << "pixel " << p;
+    ++compared;
+  }
+  EXPECT_GT(compared, 40);
 }
 
 TEST(Coverage, ProductsFollowFromTheValues) {

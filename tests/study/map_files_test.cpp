@@ -360,6 +360,7 @@ TEST_F(MapFiles, AFileThatCannotBeWrittenIsNamedAndRemoved) {
 TEST_F(MapFiles, UnknownFormatsAndHeightsAreRefused) {
   EXPECT_THAT(test::errorOf([&] { MapFolder(folder.path() / "x", fixture.study(), {"shp"}); }),
               HasSubstr("unknown format 'shp'; one of cog, png, gpkg"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "x"));
   MapFolder maps(folder.path() / "y", fixture.study(), {"nc"});
   Map map = mapsOf(70)[0];
   map.height->metres = 77;

@@ -16,31 +16,41 @@ namespace {
 
 using ::testing::HasSubstr;
 
+struct GeographicPoint {
+  double latitude_deg, longitude_deg;
+};
+
+/// Compares every so many pixels with GeographicLib's projection. @return the number compared
+int expectPlacesOfUtm(const GeographicPoint& middle, double radius_m, double cell_m, int every) {
+  const auto [latitude_deg, longitude_deg] = middle;
+  const MapGrid grid = makeMapGrid(circularArea({latitude_deg, longitude_deg, radius_m}), cell_m, "utm");
+  const int zone = GeographicLib::UTMUPS::StandardZone(latitude_deg, longitude_deg);
+  EXPECT_EQ(grid.crs, "EPSG:" + std::to_string((latitude_deg < 0 ? 32700 : 32600) + zone));
+  EXPECT_EQ(std::fmod(grid.left_m, cell_m), 0);
+  EXPECT_EQ(std::fmod(grid.top_m, cell_m), 0);
+  int inside = 0;
+  for (int p = 0; p < static_cast<int>(grid.pixels()); p += every) {
+    const auto [lat, lon] = grid.places[p];
+    if (std::isnan(lat)) continue;
+    ++inside;
+    int found_zone = 0;
+    bool is_north = false;
+    double x = 0, y = 0;
+    GeographicLib::UTMUPS::Forward(lat, lon, found_zone, is_north, x, y, zone);
+    if (latitude_deg < 0 && is_north) y += 10e6;
+    if (latitude_deg > 0 && !is_north) y -= 10e6;
+    EXPECT_NEAR(x, grid.left_m + (p % grid.width + 0.5) * cell_m, 0.001);
+    EXPECT_NEAR(y, grid.top_m - (p / grid.width + 0.5) * cell_m, 0.001);
+  }
+  return inside;
+}
+
 TEST(MapGrid, PixelsOfUtmAreWhereTheProjectionPutsThem) {
-  for (const auto& [latitude_deg, longitude_deg] : {std::pair{44.3, -71.4}, {-33.9, 151.2}, {0.01, 2.99}}) {
-    const MapArea area = circularArea({latitude_deg, longitude_deg, 20e3});
-    const MapGrid grid = makeMapGrid(area, 90, "utm");
-    const int zone = GeographicLib::UTMUPS::StandardZone(latitude_deg, longitude_deg);
-    EXPECT_EQ(grid.crs, "EPSG:" + std::to_string((latitude_deg < 0 ? 32700 : 32600) + zone));
-    EXPECT_EQ(std::fmod(grid.left_m, 90), 0);
-    EXPECT_EQ(std::fmod(grid.top_m, 90), 0);
-    int inside = 0;
-    for (int j = 0; j < grid.height; j += 7) {
-      for (int i = 0; i < grid.width; i += 5) {
-        const auto [lat, lon] = grid.places[static_cast<std::size_t>(j) * grid.width + i];
-        if (std::isnan(lat)) continue;
-        ++inside;
-        int found_zone = 0;
-        bool is_north = false;
-        double x = 0, y = 0;
-        GeographicLib::UTMUPS::Forward(lat, lon, found_zone, is_north, x, y, zone);
-        if (latitude_deg < 0 && is_north) y += 10e6;
-        if (latitude_deg > 0 && !is_north) y -= 10e6;
-        EXPECT_NEAR(x, grid.left_m + (i + 0.5) * 90, 0.02);
-        EXPECT_NEAR(y, grid.top_m - (j + 0.5) * 90, 0.02);
-      }
-    }
-    EXPECT_GT(inside, 3000);
+  for (const GeographicPoint& middle :
+       {GeographicPoint{44.3, -71.4}, {-33.9, 151.2}, {0.01, 2.99}, {79.5, 17}}) {
+    EXPECT_GT(expectPlacesOfUtm(middle, 20e3, 90, 37), 3000);
+    EXPECT_GT(expectPlacesOfUtm(middle, 100e3, 700, 13), 3000);
+    EXPECT_GT(expectPlacesOfUtm(middle, 100e3, 2000, 1), 3000);
   }
 }
 

@@ -113,7 +113,7 @@ TEST(Study, ResultsDoNotDependOnWhatWasComputedBefore) {
   const Study study(R"(
 times: "60:90:15"
 sweep:
-  emitters.jammer.power_w: {values: [1, 1500]}
+  emitters.jammer.power_w: {values: [1, 20, 1500]}
   platforms.ridge site.position.height_agl_m: {values: [10, 30]}
   emitters.search radar.antenna.beamwidth_el_deg: {values: [3, 6]}
 )",
@@ -123,6 +123,7 @@ measures:
   - {name: gap, product: longest_gap, height: "agl:300"}
   - {name: lost, product: jam_loss, height: "msl:900", unit: percent}
   - {name: low, product: value, height: "agl:300", statistic: min, threshold: 0.9}
+  - {name: surely covered, height: "agl:100", threshold: 0.9}
   - {name: how low, product: min_height, statistic: mean}
 )");
   const std::vector<std::vector<double>> in_order = study.run(study.order());

@@ -39,6 +39,8 @@ struct FieldOptions {
   /// True: after the channels of the scenario's combination come those of each emitter, from the same
   /// geometry.
   bool also_per_emitter = false;
+  /// True: after those come the channels of quantities with jamming once more, as without jammers.
+  bool also_unjammed = false;
   bool allow_missing_terrain =
       false;  ///< true: columns over holes, and those that are seen only across one, are masked
   Backend backend = Backend::cpu;  ///< automatic: the GPU if there is one with the memory, else the CPU
@@ -61,7 +63,7 @@ struct FieldChanged {
   bool channels = false;  ///< channels() may have changed
   std::vector<int> moved;    ///< emitters whose geometry (columns and excess losses) was recomputed
   std::vector<int> turned;   ///< emitters of which only the beam, the power or the activity changed, or what
-                             ///< else the combine stage reads
+                             ///< else the combine stage reads; those in no channel also if they moved
   std::vector<int> volumes;  ///< channels whose volume was recomputed
 };
 

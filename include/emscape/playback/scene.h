@@ -24,6 +24,10 @@ render::MarkerKind markerKindOf(scenario::EmitterKind kind);
 std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
                                       const volume::Grid& grid);
 
+/// The ways of the scenario's moving platforms, in the grid's frame. Sources of frames compute them once for
+/// all frames.
+std::vector<render::Track> tracksOf(const LoadedScenario& scene, const volume::Grid& grid, double time_s);
+
 /// The categories of a volume of indices that can occur in its scenario, for legends.
 std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info,
                                            const scenario::Scenario& scenario);

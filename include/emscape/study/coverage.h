@@ -39,17 +39,19 @@ std::optional<double> defaultThreshold(scenario::Quantity quantity);
 /// Takes a finished map; called by the thread that computes.
 using MapSink = std::function<void(CoverageMap)>;
 
-/// The same for a map of one of several scenarios, by its index.
-using ScenarioMapSink = std::function<void(std::size_t scenario, CoverageMap)>;
+/// The same for a map of one of several scenarios and requests, by their indices.
+using ScenarioMapSink = std::function<void(std::size_t scenario, std::size_t request, CoverageMap)>;
 
 /// Computes maps of one scenario after another on the same pixels and keeps the field between them: of a
 /// scenario that differs from the one before, only what the difference invalidates is computed
 /// (FieldSolver::update). The maps are those of computeCoverage(). One thread calls it.
 class CoverageSolver {
  public:
-  /// @param grid     must outlive the solver
-  /// @param options  backend, memory and move_tolerance_m; the rest is set here
-  CoverageSolver(const MapGrid& grid, const CoverageRequest& request, const emfield::FieldOptions& options);
+  /// @param grid      must outlive the solver
+  /// @param requests  one or more, of one quantity and the same times: they share its field
+  /// @param options   backend, memory and move_tolerance_m; the rest is set here
+  CoverageSolver(const MapGrid& grid, std::vector<CoverageRequest> requests,
+                 const emfield::FieldOptions& options);
   ~CoverageSolver();
 
   /// Computes several scenarios together, all of them at the first time, then at the next: where platforms

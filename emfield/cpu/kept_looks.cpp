@@ -1,0 +1,98 @@
+#include "emfield/cpu/kept_looks.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "emfield/solver/field_inputs.h"
+#include "emfield/solver/kept_power.h"
+
+namespace emscape::emfield {
+namespace {
+
+/// Looks and jammers of a radar that are remembered.
+constexpr std::size_t kMaxEntries = 16;
+
+}  // namespace
+
+KeptLooks::KeptLooks(std::size_t slots, std::size_t voxels, std::size_t available_bytes)
+    : voxels_(voxels),
+      limit_(keptBytes(available_bytes) / (sizeof(float) * std::max<std::size_t>(voxels, 1))),
+      slots_(slots) {}
+
+LookWeights KeptLooks::choose(std::size_t slot, const scenario::AntennaPtr& antenna,
+                              const RadarShare& share) {
+  LookWeights weights;
+  if (slot >= slots_.size()) return weights;
+  ++pass_;
+  weights.echo = choose(slots_[slot], antenna, share, nullptr);
+  for (const JammerAtRadar& jammer : share.jammers) {
+    weights.jammers.push_back(choose(slots_[slot], antenna, share, &jammer));
+  }
+  return weights;
+}
+
+WeightArray KeptLooks::choose(std::vector<Entry>& entries, const scenario::AntennaPtr& antenna,
+                              const RadarShare& share, const JammerAtRadar* jammer) {
+  const auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& known) {
+    const bool is_jammer = known.jammer.has_value();
+    return is_jammer == (jammer != nullptr) && (!is_jammer || sameRays(*known.jammer, *jammer)) &&
+           sameLook(known.share, share) && samePattern(known.antenna, antenna);
+  });
+  if (entry != entries.end()) {
+    entry->last_pass = pass_;
+    const bool is_known = entry->is_known;
+    if (!is_known && !take(*entry)) return {};
+    entry->is_known = true;
+    return {entry->values.data(), is_known};
+  }
+  Entry fresh;
+  fresh.antenna = antenna;
+  fresh.share = share;
+  fresh.share.jammers.clear();
+  if (jammer != nullptr) fresh.jammer = *jammer;
+  fresh.last_pass = pass_;
+  if (entries.size() < kMaxEntries) {
+    entries.push_back(std::move(fresh));
+    return {};
+  }
+  const auto oldest = std::min_element(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return a.last_pass < b.last_pass;
+  });
+  if (oldest->last_pass == pass_) return {};  // its array is that of this pass
+  release(*oldest);
+  *oldest = std::move(fresh);
+  return {};
+}
+
+void KeptLooks::forget(std::size_t slot) {
+  if (slot >= slots_.size()) return;
+  for (Entry& entry : slots_[slot]) release(entry);
+  slots_[slot].clear();
+}
+
+void KeptLooks::release(Entry& entry) {
+  if (!entry.values.empty()) free_.push_back(std::move(entry.values));
+  entry.values.clear();
+  entry.is_known = false;
+}
+
+/// @return false if there is no memory for another array
+bool KeptLooks::take(Entry& entry) {
+  if (!free_.empty()) {
+    entry.values = std::move(free_.back());
+    free_.pop_back();
+    return true;
+  }
+  if (taken_ >= limit_) return false;
+  try {
+    entry.values.resize(voxels_);
+  } catch (const std::exception&) {  // the memory is not available any more
+    limit_ = taken_;
+    return false;
+  }
+  ++taken_;
+  return true;
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,53 @@
+/// Cache of what radars' looks weigh the voxels with, while powers change.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "emfield/look_weights.h"
+#include "emfield/radar_product.h"
+
+namespace emscape::emfield {
+
+/// A look that enters a second pass unchanged is computed once more and stored; after that it is read. The
+/// bits of the results do not depend on it.
+class KeptLooks {
+ public:
+  /// @param slots            emitters with geometry of their own
+  /// @param voxels           of the grid
+  /// @param available_bytes  keptBytes() of it are used
+  KeptLooks(std::size_t slots, std::size_t voxels, std::size_t available_bytes);
+
+  /// The arrays for the next pass, which must be run with them.
+  /// @param slot     of the radar; for others than those of the constructor there are none
+  /// @param antenna  of the radar
+  LookWeights choose(std::size_t slot, const scenario::AntennaPtr& antenna, const RadarShare& share);
+  /// The geometry of a slot has changed.
+  void forget(std::size_t slot);
+  std::size_t bytes() const { return taken_ * voxels_ * sizeof(float); }
+
+ private:
+  /// The echo of a look, or a jammer seen by it.
+  struct Entry {
+    scenario::AntennaPtr antenna;
+    RadarShare share;  ///< without jammers
+    std::optional<JammerAtRadar> jammer;
+    std::vector<float> values;  ///< empty: has entered one pass
+    bool is_known = false;
+    long long last_pass = 0;
+  };
+
+  WeightArray choose(std::vector<Entry>& entries, const scenario::AntennaPtr& antenna,
+                     const RadarShare& share, const JammerAtRadar* jammer);
+  void release(Entry& entry);
+  bool take(Entry& entry);
+
+  std::size_t voxels_;
+  std::size_t limit_;      // of taken_
+  std::size_t taken_ = 0;  // arrays
+  long long pass_ = 0;
+  std::vector<std::vector<Entry>> slots_;
+  std::vector<std::vector<float>> free_;
+};
+
+}  // namespace emscape::emfield
