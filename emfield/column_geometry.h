@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "emfield/excess_code.h"
 #include "emfield/foot_inverse.h"
@@ -35,6 +36,9 @@ struct ColumnGeometryView {
   ExcessView excess;
   /// Reflected ray of each voxel, dense order; null: the model has none.
   const ReflectedRayCode* reflected = nullptr;
+  /// Mechanism of each voxel (propagation::Mechanism), dense order; null: the model has one, or it is not
+  /// asked for.
+  const std::uint8_t* mechanisms = nullptr;
 };
 
 /// Numbers that columnGeometry() gives, in the order of ColumnGeometryView.
@@ -43,10 +47,11 @@ constexpr int kColumnNumbers = 9;
 /// @param numbers  kColumnNumbers x columns, as columnGeometry() fills them
 EMSCAPE_HD inline ColumnGeometryView columnGeometryView(const float* numbers, std::size_t columns,
                                                         const float* shadow_edge_m, const ExcessView& excess,
-                                                        const ReflectedRayCode* reflected) {
+                                                        const ReflectedRayCode* reflected,
+                                                        const std::uint8_t* mechanisms) {
   const auto array = [&](std::size_t n) { return numbers + n * columns; };
-  return {array(0), array(1), array(2), array(3),      array(4), array(5),
-          array(6), array(7), array(8), shadow_edge_m, excess,   reflected};
+  return {array(0), array(1), array(2),      array(3), array(4),  array(5),  array(6),
+          array(7), array(8), shadow_edge_m, excess,   reflected, mechanisms};
 }
 
 /// @param foot         footInverse() of the column's middle

@@ -118,20 +118,27 @@ EMSCAPE_HD inline float sideLobePowerDensity_wm2(const EmitterBeam& emitter, std
 
 /// Reduction of the emitters' power densities S to a channel's accumulator.
 enum class Reduction {
-  sum,       ///< sum of weight * S
-  maximum,   ///< largest weight * S
-  count,     ///< number of emitters with S > weight
-  dominant,  ///< index of the emitter with the largest S, -1 if all are 0
-  signal,    ///< sum of weight * S of the emitters with weight >= 0; second: of -weight * S of the others
+  sum,                 ///< sum of weight * S
+  maximum,             ///< largest weight * S
+  count,               ///< number of emitters with S > weight
+  dominant,            ///< weight of the emitter with the largest S, -1 if all are 0
+  dominant_mechanism,  ///< the same; of emitters with mechanisms per voxel that of the voxel
+  signal,  ///< sum of weight * S of the emitters with weight >= 0; second: of -weight * S of the others
 };
 
 /// True for reductions with a second accumulator.
 EMSCAPE_HD constexpr bool hasSecond(Reduction reduction) {
-  return reduction == Reduction::dominant || reduction == Reduction::signal;
+  return reduction == Reduction::dominant || reduction == Reduction::dominant_mechanism ||
+         reduction == Reduction::signal;
 }
 
-/// A channel's accumulator, dense order. `second` holds the largest S so far for Reduction::dominant, the
-/// signal for Reduction::signal, else null.
+/// Value of an accumulator before the first emitter.
+EMSCAPE_HD constexpr float initialValue(Reduction reduction) {
+  return reduction == Reduction::dominant || reduction == Reduction::dominant_mechanism ? -1.0f : 0.0f;
+}
+
+/// A channel's accumulator, dense order. `second` holds the largest S so far for Reduction::dominant and
+/// dominant_mechanism, the signal for Reduction::signal, else null.
 struct Accumulator {
   float* value = nullptr;
   float* second = nullptr;
@@ -154,16 +161,22 @@ EMSCAPE_HD inline void reduce(Reduction reduction, float weight, float power_den
 }
 
 /// The same with a second accumulator.
-EMSCAPE_HD inline void reduce(Reduction reduction, float weight, int emitter_index, float power_density_wm2,
-                              float& value, float& second) {
-  if (reduction == Reduction::dominant) {
-    value = power_density_wm2 > second ? float(emitter_index) : value;
+EMSCAPE_HD inline void reduce(Reduction reduction, float weight, float power_density_wm2, float& value,
+                              float& second) {
+  if (reduction != Reduction::signal) {
+    value = power_density_wm2 > second ? weight : value;
     second = power_density_wm2 > second ? power_density_wm2 : second;
   } else if (weight < 0) {
     second -= weight * power_density_wm2;
   } else {
     value += weight * power_density_wm2;
   }
+}
+
+/// An emitter's weight in Reduction::dominant_mechanism.
+/// @param weight  of the emitter
+EMSCAPE_HD inline float mechanismWeight(const ColumnGeometryView& geometry, float weight, std::size_t voxel) {
+  return geometry.mechanisms != nullptr ? static_cast<float>(geometry.mechanisms[voxel]) : weight;
 }
 
 /// An emitter's part in one channel.

@@ -26,7 +26,7 @@ bool isSameColumn(const ColumnsView& columns, int a, int b) {
 void EmitterGeometry::compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                               const scenario::Emitter& emitter, const GridColumns& columns,
                               const scenario::Terrain* terrain, Times& times, const TerrainBounds* bounds,
-                              bool has_clutter_map) {
+                              const GeometryNeeds& needs) {
   Stopwatch watch;
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
   const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
@@ -37,6 +37,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   excess_.clear();
   excess_db_.clear();
   reflected_.clear();
+  mechanisms_.clear();
   unknown_columns_ = 0;
   warnings_ = 0;
   times.columns_ms += watch.lap_ms();
@@ -53,15 +54,17 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
     excess_.resize(columns.every_height ? 0 : voxels);
     excess_db_.resize(columns.every_height ? voxels : 0);
     if (model.has_reflected_ray) reflected_.resize(voxels);
+    if (needs.mechanisms && hasMechanisms(model)) mechanisms_.resize(voxels);
     const ExcessStore store{excess_.empty() ? nullptr : excess_.data(),
                             excess_db_.empty() ? nullptr : excess_db_.data()};
     warnings_ = fillExcessCpu(excess, station, grid, ground, bounds,
-                              {store, reflected_.data(), shadow_edge_m_.data()});
+                              {store, reflected_.data(), mechanisms_.empty() ? nullptr : mechanisms_.data(),
+                               shadow_edge_m_.data()});
   }
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
   clutter_.clear();
-  if (has_clutter_map) mapClutter(scenario, emitter, station, extent, terrain);
+  if (needs.clutter_map) mapClutter(scenario, emitter, station, extent, terrain);
   times.excess_ms += watch.lap_ms();
 }
 
@@ -78,16 +81,20 @@ void EmitterGeometry::mapClutter(const scenario::Scenario& scenario, const scena
 }
 
 std::size_t EmitterGeometry::bytesPerVoxel(const scenario::Scenario& scenario,
-                                           const scenario::Emitter& emitter, bool on_surface) {
-  const bool has_reflected = propagation::modelInfo(emitter.propagation.model).has_reflected_ray;
+                                           const scenario::Emitter& emitter, bool on_surface,
+                                           const GeometryNeeds& needs) {
+  const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   const std::size_t of_excess = on_surface ? sizeof(float) : sizeof(ExcessCode);
-  return (hasExcess(scenario, emitter) ? of_excess : 0) + (has_reflected ? sizeof(ReflectedRayCode) : 0);
+  return (hasExcess(scenario, emitter) ? of_excess : 0) +
+         (model.has_reflected_ray ? sizeof(ReflectedRayCode) : 0) +
+         (needs.mechanisms && hasMechanisms(model) ? 1 : 0);
 }
 
 std::size_t EmitterGeometry::bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                                     std::size_t columns, int layers, bool on_surface) {
+                                     std::size_t columns, int layers, bool on_surface,
+                                     const GeometryNeeds& needs) {
   return columns * (kBytesPerColumn +
-                    static_cast<std::size_t>(layers) * bytesPerVoxel(scenario, emitter, on_surface)) +
+                    static_cast<std::size_t>(layers) * bytesPerVoxel(scenario, emitter, on_surface, needs)) +
          clutterMapBytes(emitter);
 }
 
@@ -116,7 +123,7 @@ ColumnGeometryView EmitterGeometry::view() const {
   return columnGeometryView(
       arrays_.data(), column_count_, shadow_edge_m_.data(),
       {excess_.empty() ? nullptr : excess_.data(), excess_db_.empty() ? nullptr : excess_db_.data()},
-      reflected_.empty() ? nullptr : reflected_.data());
+      reflected_.empty() ? nullptr : reflected_.data(), mechanisms_.empty() ? nullptr : mechanisms_.data());
 }
 
 bool EmitterGeometry::isUnknown(std::size_t column) const {

@@ -2,6 +2,7 @@
 /// an excess loss, until the emitter moves.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "base/unset_vector.h"
@@ -14,6 +15,12 @@
 
 namespace emscape::emfield {
 
+/// What an emitter's geometry is to hold for some channel, beside columns and excess.
+struct GeometryNeeds {
+  bool clutter_map = false;  ///< clutter of land and sea
+  bool mechanisms = false;   ///< per voxel, of a model with several
+};
+
 /// Stages 1 and 2 of one emitter.
 class EmitterGeometry {
  public:
@@ -25,10 +32,9 @@ class EmitterGeometry {
   /// @param emitter  of the scenario
   /// @param terrain  null: smooth earth
   /// @param bounds   of the terrain, for surfaces; null: none
-  /// @param has_clutter_map  FieldPlan::has_clutter_map
   void compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                const scenario::Emitter& emitter, const GridColumns& columns, const scenario::Terrain* terrain,
-               Times& times, const TerrainBounds* bounds = nullptr, bool has_clutter_map = false);
+               Times& times, const TerrainBounds* bounds = nullptr, const GeometryNeeds& needs = {});
 
   ColumnGeometryView view() const;
   /// Of a radar with clutter of the surface, if it was asked for; else without cells.
@@ -42,17 +48,18 @@ class EmitterGeometry {
   unsigned warnings() const { return warnings_; }
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
-  /// Bytes per voxel of an emitter: its excess and its reflected ray, if its model has them.
+  /// Bytes per voxel of an emitter: its excess, its reflected ray and its mechanism, if its model has them.
   /// @param on_surface  GridColumns::every_height
   static std::size_t bytesPerVoxel(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                                   bool on_surface = false);
+                                   bool on_surface = false, const GeometryNeeds& needs = {});
   /// Bytes per emitter for a grid of so many columns and layers.
   static std::size_t bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                             std::size_t columns, int layers, bool on_surface = false);
+                             std::size_t columns, int layers, bool on_surface = false,
+                             const GeometryNeeds& needs = {});
   std::size_t bytes() const {
     return (arrays_.size() + shadow_edge_m_.size() + excess_db_.size()) * sizeof(float) +
            excess_.size() * sizeof(ExcessCode) + reflected_.size() * sizeof(ReflectedRayCode) +
-           clutter_.size() * sizeof(ClutterCell);
+           mechanisms_.size() + clutter_.size() * sizeof(ClutterCell);
   }
 
  private:
@@ -68,6 +75,7 @@ class EmitterGeometry {
   std::vector<ExcessCode> excess_;           ///< columns x layers, or empty
   UnsetVector<float> excess_db_;             ///< the same over a surface, instead of codes
   std::vector<ReflectedRayCode> reflected_;  ///< the same
+  std::vector<std::uint8_t> mechanisms_;     ///< the same
   ClutterGrid clutter_grid_;
   std::vector<ClutterCell> clutter_;  ///< empty: no clutter of the surface
   long long unknown_columns_ = 0;

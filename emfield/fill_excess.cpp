@@ -54,7 +54,7 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
           setAll(NAN);
           of_column = kMissingTerrain;
         } else {
-          of_column = task.fillColumn(column, scratch, readPostsCpu, out.reflected);
+          of_column = task.fillColumn(column, scratch, readPostsCpu, out.reflected, out.mechanisms);
         }
         if (of_column & kMissingTerrain) out.markUnknown(column);
         warnings |= of_column;

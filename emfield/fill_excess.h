@@ -131,11 +131,12 @@ struct ExcessTask {
   }
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
-  /// @param reflected  dense order; receives the column's reflected rays if the model has any
+  /// @param reflected   dense order; receives the column's reflected rays if the model has any
+  /// @param mechanisms  dense order; receives its mechanisms if the model has several; null: not asked for
   /// @return warning bits of the model
   template <class Reader>
   EMSCAPE_HD unsigned fillColumn(std::size_t c, const ExcessScratch& scratch, const Reader& read,
-                                 ReflectedRayCode* reflected) const {
+                                 ReflectedRayCode* reflected, std::uint8_t* mechanisms) const {
     unsigned warnings = 0;
     for (int segment = 0; segment < grid.segments; ++segment) {
       const ExcessColumn part = readSegment(c, segment, scratch, read);
@@ -151,6 +152,11 @@ struct ExcessTask {
           reflected[static_cast<std::size_t>(first + k) * grid.column_count + c] =
               reflectedRayCode(model.reflectedRay(range_m, part.height_msl_m[k], excess_db[k]));
         }
+      } else if constexpr (propagation::HasMechanisms<Model>::value) {
+        std::uint8_t* const lowest =
+            mechanisms == nullptr ? nullptr
+                                  : mechanisms + static_cast<std::size_t>(first) * grid.column_count + c;
+        warnings |= model(part, scratch, excess_db, {lowest, grid.column_count});
       } else {
         warnings |= model(part, scratch, excess_db);
       }
@@ -164,6 +170,7 @@ struct ExcessTask {
 struct ExcessOutput {
   ExcessStore excess;
   ReflectedRayCode* reflected = nullptr;  ///< of models with a reflected ray
+  std::uint8_t* mechanisms = nullptr;     ///< of models with several; null: not asked for
   float* shadow_edge_m = nullptr;         ///< set to NaN where terrain is missing: the column is unknown
 
   EMSCAPE_HD void markUnknown(std::size_t column) const { shadow_edge_m[column] = NAN; }

@@ -10,6 +10,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/volume/dense_volume.h"
+#include "propagation/mechanism.h"
 #include "scenario/quantity_needs.h"
 #include "scenario/scan_sweep.h"
 
@@ -193,6 +194,16 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       plan.reduction = Reduction::dominant;
       plan.product.form = ProductForm::itself;
       plan.product.floor = -1;
+      for (std::size_t i = 0; i < plan.weights.size(); ++i)
+        plan.weights[i] = static_cast<float>(channel.emitters[i]);
+      break;
+    case Quantity::dominant_model:
+      plan.reduction = Reduction::dominant_mechanism;
+      plan.product.form = ProductForm::itself;
+      plan.product.floor = -1;
+      weigh([](const Emitter& emitter) {
+        return static_cast<int>(propagation::mechanismOf(emitter.propagation.model));
+      });
       break;
     case Quantity::occupancy:
       plan.product.form = ProductForm::itself;

@@ -67,9 +67,14 @@ void setHeights(const GridColumns& columns, const propagation::PathExtent& exten
     const double ground_m = columns.ground_msl_m.empty() ? 0 : static_cast<double>(columns.ground_msl_m[c]);
     if (!std::isfinite(ground_m)) continue;
     const GridColumn column = columns.view()[c];
-    const double low_m = heightMsl_m(column, static_cast<double>(t_m.front())) - ground_m;
-    const double high_m = heightMsl_m(column, static_cast<double>(t_m.back())) - ground_m;
-    if (low_m > 0) lowest_m = std::min(lowest_m, low_m);
+    const auto aboveGround_m = [&](float at_m) {
+      return heightMsl_m(column, static_cast<double>(at_m)) - ground_m;
+    };
+    // of those above the ground: the first may be on it, or below
+    const auto low =
+        std::partition_point(t_m.begin(), t_m.end(), [&](float at_m) { return !(aboveGround_m(at_m) > 0); });
+    if (low != t_m.end()) lowest_m = std::min(lowest_m, aboveGround_m(*low));
+    const double high_m = aboveGround_m(t_m.back());
     if (std::isfinite(high_m)) highest_m = std::max(highest_m, high_m);
   }
   lowest_m = std::clamp(lowest_m, 1.5 * kSmallestStep_m, 1.5 * kLargestStep_m);

@@ -201,7 +201,7 @@ void Painter::setLegend() {
   if (style_.settings.mode == render::CompositingMode::iso)
     annotations_.legend->iso_value = renderer_.isoValue();
   if (scene_ && frame_->volume.info().categorical) {
-    annotations_.legend->categories = categoriesOf(*scene_->scenario);
+    annotations_.legend->categories = categoriesOf(frame_->volume.info(), *scene_->scenario);
   }
   const double space = render::overlayMargins(style_.size, annotations_).right;
   if (std::exchange(legend_space_, space) != space) fitCamera();

@@ -7,6 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/snapshot.h"
+#include "emscape/volume/labels.h"
 
 namespace emscape::playback {
 namespace {
@@ -48,8 +49,7 @@ std::optional<float> interpolated(const DenseVolume& volume, const Vec3d& at) {
   return static_cast<float>(sum);
 }
 
-std::string textOf(const VolumeSample& sample, const DenseVolume& volume,
-                   const scenario::Scenario* scenario) {
+std::string textOf(const VolumeSample& sample, const DenseVolume& volume) {
   const volume::VolumeInfo& info = volume.info;
   const std::string unit = info.unit.empty() ? "" : " " + info.unit;
   switch (sample.kind) {
@@ -64,8 +64,8 @@ std::string textOf(const VolumeSample& sample, const DenseVolume& volume,
   }
   if (!info.categorical) return fmt::format("{:.4g}{}", sample.value, unit);
   const auto index = static_cast<std::size_t>(std::lround(sample.value));
-  const bool is_named = scenario != nullptr && index < scenario->emitters.size();
-  return is_named ? scenario->emitters[index].name : std::to_string(index);
+  const std::vector<std::string> labels = volume::labelsOf(info);
+  return index < labels.size() ? labels[index] : std::to_string(index);
 }
 
 std::vector<EmitterProbe> probeEmitters(const emfield::PathEnd& point, double time_s,
@@ -127,7 +127,7 @@ ProbeReading probe(const Vec3d& position_m, const DenseVolume& volume,
   ProbeReading reading;
   reading.position_m = position_m;
   reading.sample = sampleVolume(volume, position_m);
-  reading.text = textOf(reading.sample, volume, scenario.get());
+  reading.text = textOf(reading.sample, volume);
   if (!volume.grid.georeferenced) return reading;
   const GeoFrame frame(volume.grid.frame);
   const GeodeticPosition position = frame.toGeodetic(position_m);

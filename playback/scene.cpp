@@ -6,6 +6,7 @@
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/geoid.h"
 #include "emscape/base/parallel.h"
+#include "emscape/emfield/categories.h"
 
 namespace emscape::playback {
 namespace {
@@ -93,10 +94,15 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
   return markers;
 }
 
-std::vector<render::Category> categoriesOf(const scenario::Scenario& scenario) {
+std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info,
+                                           const scenario::Scenario& scenario) {
+  const std::string name = info.quantity.substr(0, info.quantity.find(':'));
   std::vector<render::Category> categories;
-  for (std::size_t e = 0; e < scenario.emitters.size(); ++e) {
-    categories.push_back({static_cast<int>(e), scenario.emitters[e].name});
+  for (const scenario::QuantityInfo& quantity : scenario::quantityTable()) {
+    if (name != quantity.name) continue;
+    const std::vector<std::string> names = emfield::categoryNames(scenario, quantity.quantity);
+    for (const int index : emfield::categoriesOf(scenario, quantity.quantity))
+      categories.push_back({index, names[static_cast<std::size_t>(index)]});
   }
   return categories;
 }

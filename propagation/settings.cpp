@@ -32,6 +32,10 @@ const char* toString(RoughnessModel model) {
   return nameOf(model, {"ament", "miller_brown"});
 }
 
+const char* toString(PeCells cells) {
+  return nameOf(cells, {"mean", "point"});
+}
+
 const char* toString(ItmForm form) {
   return nameOf(form, {"point_to_point", "area"});
 }

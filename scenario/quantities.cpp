@@ -36,6 +36,8 @@ const std::vector<QuantityInfo>& quantityTable() {
        "time since a radar last detected its target, at the end of the interval"},
       {Quantity::occupancy, "occupancy", "", QuantityKind::of_emitters,
        "share of the interval in which an emitter's power density is above the count threshold"},
+      {Quantity::dominant_model, "dominant_model", "", QuantityKind::of_emitters,
+       "model, or part of one, that determines the loss of the emitter with the largest power density", true},
   };
   return kTable;
 }

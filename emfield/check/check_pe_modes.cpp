@@ -5,6 +5,7 @@
 #include "emfield/check/datasets.h"
 #include "emfield/check/pe_figures.h"
 #include "emfield/check/reference_table.h"
+#include "emfield/check/residue_series.h"
 #include "emscape/base/device.h"
 
 namespace emscape::emfield {
@@ -114,6 +115,30 @@ void checkDucts(const ReferenceTable& cases, std::vector<FigureCheck>& figures) 
   }
 }
 
+/// Effective radius of the earth (m) in LFMF, for the refractivity at the ground.
+double lfmfEarth_m(double refractivity) {
+  return 6370e3 / (1 - 0.04665 * std::exp(0.005577 * refractivity));
+}
+
+/// LFMF's loss is that between antennas on the ground: 6.02 dB more.
+double lfmfLossDb(const ReferenceTable& cases, int row) {
+  return cases.number(row, "A_btl__db") - 20 * std::log10(2.0);
+}
+
+/// LFMF against a residue series of our own.
+FigureCheck checkLfmfSeries(const ReferenceTable& cases) {
+  FigureCheck loss{"loss, residue series", 0.01, "dB"};
+  for (int i = 0; i < cases.rows(); ++i) {
+    if (cases.number(i, "pol") != 1) continue;
+    const double frequency_hz = 1e6 * cases.number(i, "f__mhz"), range_m = 1000 * cases.number(i, "d__km");
+    const double field_db = groundWaveDb(frequency_hz, {cases.number(i, "epsilon"), cases.number(i, "sigma")},
+                                         lfmfEarth_m(cases.number(i, "N_s")), range_m);
+    loss.compare(20 * std::log10(4 * kPi * range_m / wavelength_m(frequency_hz)) - field_db,
+                 lfmfLossDb(cases, i), cases.location(i).line);
+  }
+  return loss;
+}
+
 /// @param compared  rows that were
 template <class Real>
 FigureCheck checkLfmf(const ReferenceTable& cases, int& compared) {
@@ -127,15 +152,13 @@ FigureCheck checkLfmf(const ReferenceTable& cases, int& compared) {
   for (const auto& [key, rows] : marches) {
     const auto& [permittivity, conductivity, refractivity] = key;
     RadialPath path;
-    const double earth_m = 6370e3 / (1 - 0.04665 * std::exp(0.005577 * refractivity));
-    path.air = linearRefractivity(1e6 / earth_m);
+    path.air = linearRefractivity(1e6 / lfmfEarth_m(refractivity));
     path.surface.perfect = false;
     path.surface.ground = {permittivity, conductivity};
     path.surface.polarization = LinearPolarization::vertical;
     PeMarch<Real> march(peGrid(30e6, 50, topOverEarth_m(30e6), 6, 200), {path});
     for (const auto& [range_m, i] : rows) {
-      // LFMF's loss is that between antennas on the ground: 6.02 dB more
-      const double expected = cases.number(i, "A_btl__db") - 20 * std::log10(2.0);
+      const double expected = lfmfLossDb(cases, i);
       const double free_space = 20 * std::log10(4 * kPi * range_m / wavelength_m(30e6));
       if (free_space - expected <= -80) continue;
       marchTo(march, range_m);
@@ -209,9 +232,10 @@ DatasetCheck checkPeDuctModes(const std::filesystem::path& file) {
 DatasetCheck checkPeLfmf(const std::filesystem::path& file) {
   const ReferenceTable cases(file, {"f__mhz", "N_s", "d__km", "epsilon", "sigma", "pol", "A_btl__db"});
   int in_double = 0, in_float = 0;
-  std::vector<FigureCheck> figures = {checkLfmf<double>(cases, in_double), checkLfmf<float>(cases, in_float)};
+  std::vector<FigureCheck> figures = {checkLfmfSeries(cases), checkLfmf<double>(cases, in_double),
+                                      checkLfmf<float>(cases, in_float)};
   if (findDevice().usable) figures.push_back(checkLfmf<OnGpu>(cases, in_float));
-  return {in_double, std::move(figures)};
+  return {cases.rows(), std::move(figures)};
 }
 
 }  // namespace emscape::emfield

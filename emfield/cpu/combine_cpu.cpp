@@ -82,8 +82,8 @@ void powerDensityRow(const EmitterBeam& emitter, const Row& row, std::size_t fir
   }
 }
 
-EMSCAPE_SIMD_CLONES void reduceRow(Reduction reduction, float weight, int emitter_index,
-                                   const float* power_density_wm2, int count, float* value, float* second) {
+EMSCAPE_SIMD_CLONES void reduceRow(Reduction reduction, float weight, const float* power_density_wm2,
+                                   int count, float* value, float* second) {
   switch (reduction) {
     case Reduction::sum:
 #pragma omp simd
@@ -100,14 +100,28 @@ EMSCAPE_SIMD_CLONES void reduceRow(Reduction reduction, float weight, int emitte
     case Reduction::dominant:
 #pragma omp simd
       for (int i = 0; i < count; ++i) {
-        reduce(Reduction::dominant, weight, emitter_index, power_density_wm2[i], value[i], second[i]);
+        reduce(Reduction::dominant, weight, power_density_wm2[i], value[i], second[i]);
       }
+      break;
+    case Reduction::dominant_mechanism:  // mechanismRow()
       break;
     case Reduction::signal:
 #pragma omp simd
       for (int i = 0; i < count; ++i)
-        reduce(Reduction::signal, weight, 0, power_density_wm2[i], value[i], second[i]);
+        reduce(Reduction::signal, weight, power_density_wm2[i], value[i], second[i]);
       break;
+  }
+}
+
+/// Reduction::dominant_mechanism.
+EMSCAPE_SIMD_CLONES void mechanismRow(const ColumnGeometryView& geometry, std::size_t first, float weight,
+                                      const float* power_density_wm2, int count, float* value,
+                                      float* second) {
+  const ColumnGeometryView local = geometry;
+#pragma omp simd
+  for (int i = 0; i < count; ++i) {
+    reduce(Reduction::dominant_mechanism, mechanismWeight(local, weight, first + i), power_density_wm2[i],
+           value[i], second[i]);
   }
 }
 
@@ -119,7 +133,7 @@ void startRow(const CombineTask& task, std::size_t channel, std::size_t first) {
     std::copy_n(from.value + first, count, out.value + first);
     if (out.second != nullptr) std::copy_n(from.second + first, count, out.second + first);
   } else {
-    std::fill_n(out.value + first, count, task.reductions[channel] == Reduction::dominant ? -1.0f : 0.0f);
+    std::fill_n(out.value + first, count, initialValue(task.reductions[channel]));
     if (out.second != nullptr) std::fill_n(out.second + first, count, 0.0f);
   }
 }
@@ -149,8 +163,13 @@ void combineRow(const CombineTask& task, int j, int k, float* buffer) {
     for (const ChannelWeight& share : emitter.shares) {
       const Accumulator& out = task.accumulators[share.channel];
       if (out.value == nullptr) continue;
-      reduceRow(task.reductions[share.channel], share.weight, emitter.emitter_index, power_wm2, count,
-                out.value + first, out.second == nullptr ? nullptr : out.second + first);
+      const Reduction reduction = task.reductions[share.channel];
+      float* const second = out.second == nullptr ? nullptr : out.second + first;
+      if (reduction == Reduction::dominant_mechanism) {
+        mechanismRow(emitter.beam.geometry, first, share.weight, power_wm2, count, out.value + first, second);
+      } else {
+        reduceRow(reduction, share.weight, power_wm2, count, out.value + first, second);
+      }
     }
   }
 }

@@ -74,7 +74,7 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     EmitterGeometry::Times spent;
     geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
                      setup_.columns, setup_.terrain.get(), spent, bounds_ ? &*bounds_ : nullptr,
-                     setup_.has_clutter_map[request.emitter]);
+                     setup_.needs[request.emitter]);
     times_.columns_ms += spent.columns_ms;
     times_.excess_ms += spent.excess_ms;
 

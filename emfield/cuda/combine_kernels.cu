@@ -22,7 +22,6 @@ struct Member {
   EmitterBeam beam;
   float* power_wm2;  ///< see CombineEmitter
   bool power_is_known;
-  int emitter_index;
   float weights[kChannels];
   bool takes_part[kChannels];
 };
@@ -115,7 +114,7 @@ __global__ void __launch_bounds__(kWarp* kWarps)
 #pragma unroll
     for (int c = 0; c < kChannels; ++c) {
       const float* from = launch.keep ? launch.accumulators[c].value : launch.initial[c].value;
-      value[c][l] = from != nullptr ? from[voxel] : kReduction == Reduction::dominant ? -1.0F : 0.0F;
+      value[c][l] = from != nullptr ? from[voxel] : initialValue(kReduction);
     }
     if (kSecond) {
       const float* from = launch.keep ? launch.accumulators[0].second : launch.initial[0].second;
@@ -178,8 +177,13 @@ __global__ void __launch_bounds__(kWarp* kWarps)
 #pragma unroll
       for (int l = 0; l < kLayers; ++l) {
         if constexpr (kSecond) {
-          reduce(kReduction, member.weights[c], member.emitter_index, power_density_wm2[l], value[c][l],
-                 second[l]);
+          float weight = member.weights[c];
+          if constexpr (kReduction == Reduction::dominant_mechanism) {
+            if (begin + l < launch.dims.z)
+              weight =
+                  mechanismWeight(member.beam.geometry, weight, first + static_cast<long long>(l) * columns);
+          }
+          reduce(kReduction, weight, power_density_wm2[l], value[c][l], second[l]);
         } else {
           reduce(launch.reductions[c], member.weights[c], power_density_wm2[l], value[c][l]);
         }
@@ -227,8 +231,7 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
     has_reflected = false;
   };
   for (const CombineEmitter& emitter : task.emitters) {
-    Member<kChannels> member{
-        emitter.beam, emitter.power_wm2, emitter.power_is_known, emitter.emitter_index, {}, {}};
+    Member<kChannels> member{emitter.beam, emitter.power_wm2, emitter.power_is_known, {}, {}};
     bool takes_part = false;
     for (const ChannelWeight& share : emitter.shares) {
       for (int c = 0; c < kChannels; ++c) {
@@ -299,6 +302,8 @@ void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaSt
     if (task.accumulators[c].value == nullptr) continue;
     if (task.reductions[c] == Reduction::dominant) {
       combineChannels<1, 2, Reduction::dominant>(task, first_valid_k, &c, stream);
+    } else if (task.reductions[c] == Reduction::dominant_mechanism) {
+      combineChannels<1, 2, Reduction::dominant_mechanism>(task, first_valid_k, &c, stream);
     } else if (task.reductions[c] == Reduction::signal) {
       combineChannels<1, 2, Reduction::signal>(task, first_valid_k, &c, stream);
     } else {

@@ -66,7 +66,8 @@ ColumnGeometryView DeviceGeometry::view(int slot) const {
                             slots_[slot].has_excess
                                 ? ExcessView{slots_[slot].excess.data(), slots_[slot].excess_db.data()}
                                 : ExcessView{},
-                            slots_[slot].has_reflected ? slots_[slot].reflected.data() : nullptr);
+                            slots_[slot].has_reflected ? slots_[slot].reflected.data() : nullptr,
+                            slots_[slot].has_mechanisms ? slots_[slot].mechanisms.data() : nullptr);
 }
 
 ClutterMapView DeviceGeometry::clutterMap(int slot) const {
@@ -91,7 +92,8 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   work.ground.is_smooth = setup_.terrain == nullptr;
   work.ground.terrain = terrain_.view();
   work.ground.range_count = static_cast<int>(work.ranges_m.size());
-  if (setup_.has_clutter_map[request.emitter])
+  work.has_mechanisms = setup_.needs[request.emitter].mechanisms && hasMechanisms(model);
+  if (setup_.needs[request.emitter].clutter_map)
     work.clutter = clutterMapTask(scenario, emitter, station, &extent);
   if (work.clutter) {
     std::vector<double> farther_m =
@@ -152,6 +154,7 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     task.shadow_edge_m = task.numbers + kColumnNumbers * columns;
     slot.has_excess = works[r].model.has_value();
     slot.has_reflected = works[r].has_reflected_ray;
+    slot.has_mechanisms = works[r].has_mechanisms;
     slot.has_clutter = works[r].clutter.has_value();
     if (slot.has_clutter) {
       slot.clutter_grid = works[r].clutter->grid;
@@ -163,6 +166,7 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     works[r].excess.out = {
         {in_db ? nullptr : atLeast(slot.excess, voxels), in_db ? atLeast(slot.excess_db, voxels) : nullptr},
         slot.has_reflected ? atLeast(slot.reflected, voxels) : nullptr,
+        slot.has_mechanisms ? atLeast(slot.mechanisms, voxels) : nullptr,
         task.shadow_edge_m};
   }
   clock.begin(stream);
@@ -250,7 +254,7 @@ std::size_t DeviceGeometry::bytes() const {
                       bytesOf(model_tables_);
   for (const Slot& slot : slots_) {
     bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.excess_db) +
-             bytesOf(slot.reflected) + bytesOf(slot.clutter);
+             bytesOf(slot.reflected) + bytesOf(slot.mechanisms) + bytesOf(slot.clutter);
   }
   return bytes + (setup_.terrain == nullptr ? 0 : postBytes(setup_.terrain->view()));
 }

@@ -42,7 +42,7 @@ class DeviceGeometry {
     std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on
     ExcessOutputs excess;
     std::optional<ClutterMapTask> clutter;  ///< its ground on the device, from place() on
-    bool has_shadow = false, has_reflected_ray = false;
+    bool has_shadow = false, has_reflected_ray = false, has_mechanisms = false;
   };
 
   Work prepare(const GeometryRequest& request) const;
@@ -65,9 +65,10 @@ class DeviceGeometry {
     emscape::cuda::Buffer<ExcessCode> excess;  ///< or, over a surface:
     emscape::cuda::Buffer<float> excess_db;
     emscape::cuda::Buffer<ReflectedRayCode> reflected;
+    emscape::cuda::Buffer<std::uint8_t> mechanisms;
     emscape::cuda::Buffer<ClutterCell> clutter;
     ClutterGrid clutter_grid;
-    bool has_excess = false, has_reflected = false, has_clutter = false;
+    bool has_excess = false, has_reflected = false, has_mechanisms = false, has_clutter = false;
   };
   std::vector<Slot> slots_;
 

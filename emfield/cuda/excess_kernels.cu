@@ -275,7 +275,7 @@ __global__ void __launch_bounds__(kThreads)
       for (int k = 0; k < grid.layers; ++k) to.out.excess.set(k * grid.column_count + c, 0);
       continue;
     }
-    const unsigned warnings = task.fillColumn(c, scratch, PostReader{}, to.out.reflected);
+    const unsigned warnings = task.fillColumn(c, scratch, PostReader{}, to.out.reflected, to.out.mechanisms);
     note(to, static_cast<int>(c), warnings);
     for (int k = 0; k < grid.layers; ++k) {
       to.out.excess.set(k * grid.column_count + c, scratch.excess_db[k]);

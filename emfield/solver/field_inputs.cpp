@@ -184,19 +184,22 @@ GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const sc
   inputs.far_field_m = plan.far_field_m[static_cast<std::size_t>(emitter_index)];
   inputs.propagation = {frequency_hz, polarization, propagation, plan.scenario->ground,
                         plan.scenario->atmosphere};
-  if (plan.has_clutter_map[static_cast<std::size_t>(emitter_index)]) {
+  const GeometryNeeds& needs = plan.needs[static_cast<std::size_t>(emitter_index)];
+  inputs.mechanisms = needs.mechanisms;
+  if (needs.clutter_map) {
     inputs.clutter = clutterMapInputs(plan.scenario->emitters[static_cast<std::size_t>(emitter_index)]);
   }
   return inputs;
 }
 
 bool haveSameSettings(const GeometryInputs& computed, const GeometryInputs& needed) {
-  const auto& [position, height_msl_m, far_field_m, propagation, clutter] = computed;
+  const auto& [position, height_msl_m, far_field_m, propagation, clutter, mechanisms] = computed;
   const auto& [frequency_hz, polarization, settings, ground, atmosphere] = propagation;
   return far_field_m == needed.far_field_m && frequency_hz == needed.propagation.frequency_hz &&
          polarization == needed.propagation.polarization && areSame(settings, needed.propagation.settings) &&
          same(ground, needed.propagation.ground) && same(atmosphere, needed.propagation.atmosphere) &&
          propagation::areSame(atmosphere.refractivity, needed.propagation.atmosphere.refractivity) &&
+         (mechanisms || !needed.mechanisms) &&
          (!needed.clutter || (clutter && same(*clutter, *needed.clutter)));
 }
 

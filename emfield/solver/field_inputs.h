@@ -20,12 +20,13 @@ struct GeometryInputs {
   double far_field_m = 0;
   propagation::EmitterInputs propagation;
   std::optional<ClutterMapInputs> clutter;  ///< none: no channel is against it, and there is no map of it
+  bool mechanisms = false;                  ///< GeometryNeeds::mechanisms
 };
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter, const scenario::EmitterState& state);
 
-/// True if a geometry serves other inputs: all except the position is equal, and it has the map of clutter if
-/// they need one. Source locations are ignored.
+/// True if a geometry serves other inputs: all except the position is equal, and it has the map of clutter
+/// and the mechanisms if they need them. Source locations are ignored.
 bool haveSameSettings(const GeometryInputs& computed, const GeometryInputs& needed);
 /// True if the position is also equal, to the last bit.
 bool areSame(const GeometryInputs& computed, const GeometryInputs& needed);

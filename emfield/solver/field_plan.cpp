@@ -33,12 +33,14 @@ FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario, const Fie
     const double dimension_m = emitter.antenna->apertureDimension_m(wavelength);
     plan.far_field_m.push_back(2 * dimension_m * dimension_m / wavelength);
   }
-  plan.has_clutter_map.resize(emitters.size());
+  plan.needs.resize(emitters.size());
   for (std::size_t c = 0; c < plan.channels.size(); ++c) {
     const std::vector<RadarTask>& radars = plan.channel_plans[c].radars;
     for (std::size_t n = 0; n < radars.size(); ++n) {
-      if (radars[n].clutter.surface > 0) plan.has_clutter_map[plan.channels[c].emitters[n]] = true;
+      if (radars[n].clutter.surface > 0) plan.needs[plan.channels[c].emitters[n]].clutter_map = true;
     }
+    if (plan.channel_plans[c].reduction != Reduction::dominant_mechanism) continue;
+    for (const int e : plan.channels[c].emitters) plan.needs[e].mechanisms = true;
   }
   return plan;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "emfield/emitter_geometry.h"
 #include "emfield/products.h"
 #include "emscape/emfield/field_solver.h"
 
@@ -15,9 +16,8 @@ struct FieldPlan {
   std::vector<Channel> channels;
   std::vector<ChannelPlan> channel_plans;  ///< one per channel
   std::vector<double> far_field_m;         ///< of each emitter: 2 D^2 / lambda
-  /// Of each emitter: some channel is against its clutter of land and sea.
-  std::vector<bool> has_clutter_map;
-  std::vector<std::string> warnings;  ///< of the models, on values of the scenario
+  std::vector<GeometryNeeds> needs;        ///< of each emitter, for all channels
+  std::vector<std::string> warnings;       ///< of the models, on values of the scenario
 };
 
 /// @param options  which channels

@@ -75,10 +75,10 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
 std::vector<bool> FieldSolver::Impl::chooseCached(const FieldPlan& plan, std::size_t* slot_bytes) const {
   std::vector<bool> cached;
   std::size_t cached_bytes = 0, largest_uncached = 0;
-  for (const scenario::Emitter& emitter : plan.scenario->emitters) {
-    const std::size_t bytes =
-        EmitterGeometry::bytesOf(*plan.scenario, emitter, setup.columns.count(),
-                                 static_cast<int>(setup.columns.t_m.size()), setup.columns.every_height);
+  for (std::size_t e = 0; e < plan.scenario->emitters.size(); ++e) {
+    const std::size_t bytes = EmitterGeometry::bytesOf(
+        *plan.scenario, plan.scenario->emitters[e], setup.columns.count(),
+        static_cast<int>(setup.columns.t_m.size()), setup.columns.every_height, plan.needs[e]);
     cached.push_back(options.cache_bytes == 0 || cached_bytes + bytes <= options.cache_bytes);
     if (cached.back()) {
       cached_bytes += bytes;
@@ -207,9 +207,10 @@ MemoryUse FieldSolver::memoryUse() const {
   for (std::size_t e = 0; e < impl.emitters.size(); ++e) {
     use.uncached_emitters += impl.emitters[e].is_cached ? 0 : 1;
     const scenario::Scenario& scenario = *impl.setup.scenario;
-    use.bytes_per_voxel_and_emitter += static_cast<double>(EmitterGeometry::bytesPerVoxel(
-                                           scenario, scenario.emitters[e], impl.setup.columns.every_height)) /
-                                       static_cast<double>(impl.emitters.size());
+    use.bytes_per_voxel_and_emitter +=
+        static_cast<double>(EmitterGeometry::bytesPerVoxel(
+            scenario, scenario.emitters[e], impl.setup.columns.every_height, impl.setup.needs[e])) /
+        static_cast<double>(impl.emitters.size());
   }
   impl.engine->addMemory(use);
   use.total_bytes += impl.setup.columns.bytes();

@@ -9,6 +9,8 @@
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "emscape/emfield/categories.h"
+#include "emscape/volume/labels.h"
 
 namespace emscape::emfield {
 
@@ -244,7 +246,7 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   }
   out.extra["scenario"] = setup.scenario->name;
   out.extra["scenario_hash"] = setup.scenario->hash;
-  std::string names, near_field;
+  std::string near_field;
   for (int e : channel.emitters) {
     if (!emitters[e].state.active) continue;
     const long long near_voxels = emitters[e].geometry_result.near_voxels;
@@ -255,9 +257,8 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   }
   if (!near_field.empty()) out.extra["near_field"] = near_field;
   if (quantity.categorical) {
-    for (const Emitter& emitter : setup.scenario->emitters)
-      names += (names.empty() ? "" : "\n") + emitter.name;
-    out.extra["labels"] = names;
+    const std::vector<std::string> names = categoryNames(*setup.scenario, channel.quantity);
+    out.extra[volume::kLabelsKey] = fmt::format("{}", fmt::join(names, "\n"));
   }
   return request;
 }

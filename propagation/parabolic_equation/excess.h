@@ -11,13 +11,18 @@
 namespace emscape::propagation {
 
 /// Warning bits. The bits from kPeStaircaseShift to 30 hold the number of steps of the staircase.
-enum PeWarning : unsigned { kPePointwiseAir = 1 };
+enum PeWarning : unsigned {
+  kPePointwiseAir = 1,
+  kPeDuctOverLand = 2,  ///< an evaporation duct, and land below it
+  kPeProfileEnds = 4    ///< the air was measured up to less than the antenna's or the field's height
+};
 constexpr int kPeStaircaseShift = 4;
 
 /// Interpolates in dB between azimuths, ranges and heights; other models speak outside the equation's limits.
 struct PeExcess {
   static constexpr bool kNeedsTerrain = true;
   static constexpr bool kInParts = false;
+  static constexpr bool kHasMechanisms = true;
 
   PeOthers others;
   /// Losses over free space (dB) of the cells, azimuth slowest, height fastest; NaN below the ground and
@@ -27,16 +32,16 @@ struct PeExcess {
   bool is_around = false;  ///< the last azimuth's neighbour is the first
   bool above_ground = false;
   double first_azimuth_rad = 0, azimuth_step_rad = 0;
-  /// A cell holds the mean of the march's steps in it, the last of which is at its end: the first cell's is
-  /// of first_range_m.
+  /// A cell holds the mean of the march's steps in it, the last of which is at its end, or that one: the
+  /// first cell's is of first_range_m.
   float first_range_m = 0, range_step_m = 0;
   float bottom_m = 0, height_step_m = 0;
   float top_m = 0;  ///< as the cells' heights; above: along the ray from there
   unsigned warnings = 0;
 
   /// @param excess_db  one per voxel; NaN over missing terrain
-  EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch,
-                                 float* excess_db) const {
+  EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db,
+                                 const MechanismStore& mechanisms = {}) const {
     const float horizon_rad = others.horizonOf(column.profile);
     if (!(horizon_rad == horizon_rad)) {
       for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
@@ -52,6 +57,7 @@ struct PeExcess {
       }
       others.addScatter(column, column.height_msl_m[k], loss);
       excess_db[k] = loss.loss_db();
+      mechanisms.set(k, loss.mechanism(others.over_terrain));
     }
     return warnings;
   }
@@ -69,12 +75,8 @@ struct PeExcess {
       at_m = others.crossing_m(range_m, height_msl_m, top_m + datum_msl_m);
       height_m = top_m;
     }
-    loss.equation_db = cells_db(column.azimuth_rad, at_m, height_m);
-    if (!(loss.equation_db == loss.equation_db)) {
-      loss.equation_part = 0;
-    } else if (loss.equation_db > others.largest_db) {
-      loss.equation_db = others.largest_db;
-    }
+    others.setEquation(cells_db(column.azimuth_rad, at_m, height_m), loss);
+    if (!(loss.equation_db == loss.equation_db)) loss.equation_part = 0;
     return loss;
   }
 

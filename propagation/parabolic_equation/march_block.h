@@ -147,6 +147,7 @@ struct MarchBlockTask {
   int cell_heights = 0, cell_ranges = 0;
   double cell_bottom_msl_m = 0, cell_height_m = 0;
   bool cells_above_ground = false;  ///< the bottom counts from the ground
+  bool cells_are_points = false;    ///< RadialCells::are_points
   const int* cell_end = nullptr;    ///< steps at the end of each range of cells
   float* excess_db = nullptr;       ///< azimuths x cell_ranges x cell_heights
 

@@ -118,6 +118,7 @@ MarchBlockTask taskOf(const AzimuthMarch& march, const BlockInput& input, int in
   task.cell_ranges = march.cells.ranges;
   task.cell_bottom_msl_m = march.cells.bottom_msl_m;
   task.cells_above_ground = march.cells.above_ground;
+  task.cells_are_points = march.cells.are_points;
   task.cell_height_m = march.cells.height_step_m;
   return task;
 }

@@ -1,6 +1,7 @@
 /// The steps of a block's march: march_block.h.
 #pragma once
 
+#include "propagation/parabolic_equation/cell_span.h"
 #include "propagation/parabolic_equation/march_block.h"
 
 namespace emscape::propagation {
@@ -417,6 +418,8 @@ class BlockMarch {
 
   /// F^2 of the step into the cells; losses where a range of cells ends.
   EMSCAPE_HD void addToCells() {
+    const bool ends = task_.cell_end[state_.cell] == state_.step;
+    if (task_.cells_are_points && !ends) return;
     const double range_m = task_.range_step_m * state_.step;
     const float spreading_m2 = float(task_.wavelength_m * range_m);
     const float dz = float(task_.height_step_m / range_m);
@@ -428,13 +431,12 @@ class BlockMarch {
             norm(u) * spreading_m2 * (task_.wide ? 1 + tangent * tangent : 1.0F);
       });
     });
-    const bool ends = task_.cell_end[state_.cell] == state_.step;
     const double ground_m = task_.cells_above_ground ? 0 : state_.ground_m;
     const double below_m = task_.cell_bottom_msl_m - ground_m, per_step = 1 / task_.height_step_m;
     team_.eachFree([&](int t, BlockThread&) {
       for (int h = t; h < task_.cell_heights; h += Shape::kThreads) {
-        const double z1_m = fmax(0.0, below_m + h * task_.cell_height_m);
-        const double z2_m = fmin(task_.usable_top_m, below_m + (h + 1) * task_.cell_height_m);
+        const auto [z1_m, z2_m] = cellSpan(below_m, task_.cell_height_m, h, task_.cells_are_points,
+                                           task_.height_step_m, task_.usable_top_m);
         float sum = memory_.sums[h];
         int count = memory_.counts[h];
         if (z2_m > z1_m) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "emscape/base/error.h"
+#include "propagation/parabolic_equation/cell_span.h"
 #include "propagation/parabolic_equation/lane_march.h"
 
 namespace emscape::propagation {
@@ -31,12 +32,13 @@ std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const
     const double last_m = (i + 1) * cells.range_step_m * (1 + 1e-12) - march.grid().range_step_m;
     while (march.range_m() <= last_m) {
       march.advance();
+      if (cells.are_points && march.range_m() <= last_m) continue;
       for (int l = 0; l < kLanes; ++l) {
         const double ground_m = cells.above_ground ? 0 : march.ground_m(l);
         const double below_m = cells.bottom_msl_m - ground_m, top_m = march.grid().usableTop_m();
+        const double step_m = march.grid().top_m / march.intervals();
         for (int j = 0; j < cells.heights; ++j) {
-          const double z1 = std::max(0.0, below_m + j * cells.height_step_m);
-          const double z2 = std::min(top_m, below_m + (j + 1) * cells.height_step_m);
+          const auto [z1, z2] = cellSpan(below_m, cells.height_step_m, j, cells.are_points, step_m, top_m);
           if (z2 <= z1) continue;
           sums[std::size_t(j) * kLanes + l] += march.meanSquaredFactor(l, z1, z2);
           ++counts[std::size_t(j) * kLanes + l];

@@ -16,6 +16,7 @@ struct RadialCells {
   double height_step_m = 0;
   int heights = 0;
   bool above_ground = false;  ///< heights count from the ground instead of mean sea level
+  bool are_points = false;  ///< the field at the middle height and the last range step, in place of the mean
 };
 
 /// Marches through all cells. Compiled for RadialMarch and LaneMarch.

@@ -9,6 +9,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "propagation/diffraction/model.h"
+#include "propagation/parabolic_equation/ducts.h"
 #include "propagation/parabolic_equation/path_air.h"
 #include "propagation/parabolic_equation/plan.h"
 #include "propagation/parabolic_equation/refractivity_field.h"
@@ -40,6 +41,30 @@ PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bo
   others.scatter.sea_level_refractivity =
       static_cast<float>(inputs.emitter.atmosphere.sea_level_refractivity);
   return others;
+}
+
+/// True if the air has an evaporation duct somewhere.
+bool hasEvaporationDuct(const RefractivityAlongPath& air) {
+  return std::any_of(air.profiles().begin(), air.profiles().end(), [](const RefractivityProfile& profile) {
+    const std::vector<Duct> ducts = ductsOf(profile);
+    return !ducts.empty() && ducts.front().kind == DuctKind::evaporation;
+  });
+}
+
+/// Warnings about the air.
+/// @param over_land      some of the ground is land
+/// @param highest_msl_m  of antenna and field
+unsigned airWarnings(const RefractivityAlongPath& air, bool over_land, double highest_msl_m) {
+  unsigned warnings = over_land && hasEvaporationDuct(air) ? kPeDuctOverLand : 0u;
+  if (std::any_of(air.profiles().begin(), air.profiles().end(),
+                  [&](const RefractivityProfile& profile) { return profile.known_to_m < highest_msl_m; }))
+    warnings |= kPeProfileEnds;
+  return warnings;
+}
+
+/// True if a surface without terrain is land.
+bool isLand(const Ground& ground) {
+  return ground.kind != GroundKind::sea && ground.kind != GroundKind::fresh_water;
 }
 
 /// Reads the ground along all azimuths; behind the first hole it is level.
@@ -183,6 +208,8 @@ std::vector<Setting> peSettings() {
       "roughness", RoughnessModel::miller_brown, "reduction of the reflection by roughness"));
   settings.push_back(numberSetting<kPe, &ParabolicEquationSettings::floor_db>(
       "floor_db", "dB", -120, -20, "lowest field of the equation over that in free space"));
+  settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::cells>(
+      "cells", PeCells::point, "mean power over a voxel's height and range, or the field at its middle"));
   return settings;
 }
 
@@ -200,6 +227,15 @@ std::vector<std::string> peWarningMessages(unsigned warnings) {
     messages.emplace_back(
         "profiles of the air with different numbers of levels are interpolated at each height: halfway "
         "between two ducts there are two faint ones");
+  }
+  if (warnings & kPeDuctOverLand) {
+    messages.emplace_back(
+        "an evaporation duct lies over land here: it needs a surface of water, and is taken as it is given");
+  }
+  if (warnings & kPeProfileEnds) {
+    messages.emplace_back(
+        "the profile of the air ends below the antenna or the top of the field: above it the air is "
+        "standard");
   }
   const unsigned staircases = (warnings & ~kMissingTerrain) >> kPeStaircaseShift;
   if (staircases > 0) {
@@ -253,8 +289,10 @@ PeExcess peExcess(const PathInputs& inputs, const RadialInputs& radials, std::ve
   excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m);
   excess.others.max_angle_rad = static_cast<float>(plan.max_angle_rad);
   excess.others.min_range_m = static_cast<float>(plan.min_range_m);
-  excess.others.cell_range_m = static_cast<float>(cells.range_step_m);
-  excess.others.cell_height_m = static_cast<float>(cells.height_step_m);
+  if (!cells.are_points) {
+    excess.others.cell_range_m = static_cast<float>(cells.range_step_m);
+    excess.others.cell_height_m = static_cast<float>(cells.height_step_m);
+  }
   excess.tables = tables.data();
   excess.azimuths = plan.azimuths;
   excess.ranges = cells.ranges;
@@ -263,13 +301,21 @@ PeExcess peExcess(const PathInputs& inputs, const RadialInputs& radials, std::ve
   excess.above_ground = cells.above_ground;
   excess.first_azimuth_rad = plan.first_azimuth_rad;
   excess.azimuth_step_rad = plan.azimuth_step_rad;
-  excess.first_range_m = static_cast<float>((cells.range_step_m + plan.grid.range_step_m) / 2);
+  excess.first_range_m = static_cast<float>(
+      cells.are_points ? cells.range_step_m : (cells.range_step_m + plan.grid.range_step_m) / 2);
   excess.range_step_m = static_cast<float>(cells.range_step_m);
   excess.bottom_m = static_cast<float>(cells.bottom_msl_m);
   excess.height_step_m = static_cast<float>(cells.height_step_m);
   excess.top_m = static_cast<float>(plan.top_m);
   const unsigned staircases = unsigned(std::min(notes.staircases, (1 << (31 - kPeStaircaseShift)) - 1));
   excess.warnings = (notes.pointwise_air ? kPePointwiseAir : 0u) | staircases << kPeStaircaseShift;
+  const bool over_land = radials.has_terrain
+                             ? std::any_of(march.ground_msl_m.begin(), march.ground_msl_m.end(),
+                                           [](float ground_msl_m) { return ground_msl_m > 0; })
+                             : isLand(inputs.emitter.ground);
+  const double field_msl_m = radials.highest_m + (radials.above_ground ? radials.highest_ground_msl_m : 0);
+  for (const RefractivityAlongPath& air : plan.air.front())
+    excess.warnings |= airWarnings(air, over_land, std::max(field_msl_m, inputs.site.height_msl_m));
   return excess;
 }
 
@@ -312,9 +358,11 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       march_text = march.text;
     }
     if (airs.size() > 1) march_text += fmt::format(", {} members of the air", airs.size());
-    loss.equation_db = std::min(ofMembers_db(losses_db, inputs.emitter.atmosphere), others.largest_db);
+    others.setEquation(ofMembers_db(losses_db, inputs.emitter.atmosphere), loss);
   }
   others.addScatter(column, end_msl_m, loss);
+  const bool over_land = has_terrain ? *highest > 0 : isLand(inputs.emitter.ground);
+  path.addWarnings(airWarnings(air, over_land, std::max(double(end_msl_m), inputs.site.height_msl_m)));
   if (loss.equation_part > 0)
     explanation.add("parabolic_equation", "parabolic equation",
                     double(loss.equation_part * loss.equation_db));
@@ -325,7 +373,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
   if (loss.scatter_db < HUGE_VALF)
     explanation.add("troposcatter", "troposcatter beside it",
                     double(loss.loss_db() - loss.withoutScatter_db()));
-  const bool scatters = loss.scatter_db < loss.withoutScatter_db();
+  const bool scatters = loss.mechanism(has_terrain) == Mechanism::troposcatter;
   explanation.why = fmt::format(
       "{} speaks; launch angle {:.2f} of {:.3g} degrees, {}",
       scatters                  ? "troposcatter"

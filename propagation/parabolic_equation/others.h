@@ -7,6 +7,7 @@
 
 #include "emscape/base/host_device.h"
 #include "propagation/diffraction/excess.h"
+#include "propagation/mechanism.h"
 #include "propagation/p1812/p1812.h"
 #include "propagation/two_ray/excess.h"
 
@@ -22,6 +23,7 @@ struct PeLoss {
   float other_db = 0;            ///< of the other model
   float scatter_db = HUGE_VALF;  ///< by troposcatter; infinite in sight
   bool is_extended = false;      ///< from the top of the equation's domain along the ray
+  bool is_floor = false;         ///< the equation's field is no larger than its floor
 
   /// Without troposcatter.
   EMSCAPE_HD float withoutScatter_db() const {
@@ -33,6 +35,13 @@ struct PeLoss {
     const float without_db = withoutScatter_db();
     if (!(scatter_db < HUGE_VALF)) return without_db;
     return -10 * std::log10(std::pow(10.0f, -without_db / 10) + std::pow(10.0f, -scatter_db / 10));
+  }
+  /// The larger part of the field, or of the blend in dB.
+  EMSCAPE_HD Mechanism mechanism(bool over_terrain) const {
+    if (scatter_db < withoutScatter_db()) return Mechanism::troposcatter;
+    if (equation_part < 0.5f) return over_terrain ? Mechanism::diffraction : Mechanism::two_ray;
+    if (is_floor) return Mechanism::floor;
+    return is_extended ? Mechanism::extended_optics : Mechanism::parabolic_equation;
   }
 };
 
@@ -82,6 +91,12 @@ struct PeOthers {
     const float by_range = (range_m / min_range_m - 1) / kPeBlendPart;
     const float part = by_angle < by_range ? by_angle : by_range;
     return part < 0 ? 0 : part > 1 ? 1 : part;
+  }
+
+  /// Sets the equation's loss, no larger than that of its floor.
+  EMSCAPE_HD void setEquation(float equation_db, PeLoss& loss) const {
+    loss.is_floor = equation_db > largest_db;
+    loss.equation_db = loss.is_floor ? largest_db : equation_db;
   }
 
   /// Range (m) at which the ray to a place above a height passes that height, which is above the antenna.

@@ -86,9 +86,10 @@ void planAzimuths(const PathInputs& inputs, const RadialInputs& radials, PePlan&
   plan.choices.push_back({"azimuths", fmt::format("{}: {}", plan.azimuths, why)});
 }
 
-void planCells(const RadialInputs& radials, PePlan& plan) {
+void planCells(const RadialInputs& radials, PeCells kept, PePlan& plan) {
   RadialCells& cells = plan.cells;
   cells.above_ground = radials.above_ground;
+  cells.are_points = kept == PeCells::point;
   const double spacing_m = std::max(radials.spacing_m, radials.farthest_m / kMaxRanges);
   cells.range_step_m = plan.grid.range_step_m * std::max(1.0, std::round(spacing_m / plan.grid.range_step_m));
   cells.ranges = int(std::ceil(radials.farthest_m / cells.range_step_m)) + 1;
@@ -218,7 +219,7 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   plan.grid = automatic.grid;
   plan.choices = std::move(automatic.choices);
   plan.surfaces = planSurfaces(inputs.emitter, air);
-  planCells(radials, plan);
+  planCells(radials, inputs.emitter.settings.parabolic_equation.cells, plan);
   planAzimuths(inputs, radials, plan);
   plan.min_range_m = std::max({2 * plan.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz),
                                2 * plan.cells.range_step_m});

@@ -114,12 +114,14 @@ RefractivityProfile withEvaporationDuct(const RefractivityProfile& profile, doub
   for (const RefractivityLevel& level : profile.levels) heights_m.insert(level.height_msl_m);
   RefractivityProfile sum;
   sum.top_gradient_m = profile.top_gradient_m;
+  sum.known_to_m = profile.known_to_m;
   for (const double z : heights_m) sum.levels.push_back({z, profile.at(z) + departure(z, duct_height_m)});
   return sum;
 }
 
 RefractivityProfile withUpperAir(RefractivityProfile profile) {
   RefractivityLevel top = profile.levels.back();
+  profile.known_to_m = top.height_msl_m;
   if (top.height_msl_m < kStandardTop_m) {
     top = {kStandardTop_m, profile.at(kStandardTop_m)};
     profile.levels.push_back(top);
@@ -144,6 +146,7 @@ RefractivityProfile meanProfile(const std::vector<RefractivityProfile>& profiles
   };
   RefractivityProfile result;
   result.top_gradient_m = mean([](const RefractivityProfile& p) { return p.top_gradient_m; });
+  for (const RefractivityProfile& p : profiles) result.known_to_m = std::min(result.known_to_m, p.known_to_m);
   if (haveSameCounts(profiles)) {
     for (std::size_t i = 0; i < profiles.front().levels.size(); ++i) {
       result.levels.push_back({mean([i](const RefractivityProfile& p) { return p.levels[i].height_msl_m; }),

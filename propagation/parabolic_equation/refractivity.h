@@ -4,6 +4,7 @@
 /// is a list of levels; M is linear between them.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -31,12 +32,14 @@ struct RefractivityLevel {
 struct RefractivityProfile {
   std::vector<RefractivityLevel> levels;        ///< 1 or more, heights strictly ascending
   double top_gradient_m = kStandardGradient_m;  ///< M-units per metre
+  /// Height (m above mean sea level) up to which the air was measured; infinite: by a formula.
+  double known_to_m = HUGE_VAL;
 
   double at(double height_msl_m) const;
   /// M falls with height somewhere: a layer that traps.
   bool traps() const;
   bool operator==(const RefractivityProfile& other) const {
-    return levels == other.levels && top_gradient_m == other.top_gradient_m;
+    return levels == other.levels && top_gradient_m == other.top_gradient_m && known_to_m == other.known_to_m;
   }
 };
 

@@ -27,8 +27,8 @@ bool same(const std::vector<Item>& a, const std::vector<Item>& b) {
 }
 
 bool same(const RefractivityProfile& a, const RefractivityProfile& b) {
-  const auto& [levels, top_gradient_m] = a;
-  return same(levels, b.levels) && top_gradient_m == b.top_gradient_m;
+  const auto& [levels, top_gradient_m, known_to_m] = a;
+  return same(levels, b.levels) && top_gradient_m == b.top_gradient_m && known_to_m == b.known_to_m;
 }
 
 bool same(const RefractivityField& a, const RefractivityField& b) {

@@ -15,6 +15,9 @@
 /// for one voxel, which gives the ray and the excess between isotropic antennas.
 /// A model whose row says on_effective_earth has
 ///     static constexpr bool kOnEffectiveEarth = true;
+/// A model whose row names several mechanisms has
+///     static constexpr bool kHasMechanisms = true;
+/// and a last parameter (const MechanismStore&), which takes the mechanism of each height.
 #pragma once
 
 #include <type_traits>
@@ -46,5 +49,11 @@ template <class Model, class = void>
 struct OnEffectiveEarth : std::false_type {};
 template <class Model>
 struct OnEffectiveEarth<Model, std::void_t<decltype(Model::kOnEffectiveEarth)>> : std::true_type {};
+
+/// True for models with several mechanisms.
+template <class Model, class = void>
+struct HasMechanisms : std::false_type {};
+template <class Model>
+struct HasMechanisms<Model, std::void_t<decltype(Model::kHasMechanisms)>> : std::true_type {};
 
 }  // namespace emscape::propagation

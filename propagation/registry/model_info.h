@@ -10,6 +10,7 @@
 #include "propagation/choice.h"
 #include "propagation/inputs.h"
 #include "propagation/limits.h"
+#include "propagation/mechanism.h"
 #include "propagation/path_column.h"
 #include "propagation/radial.h"
 #include "propagation/registry/excess_model.h"
@@ -35,6 +36,8 @@ struct ModelInfo {
   std::vector<PropagationModel> also_uses;  ///< other models whose settings are read
   std::vector<const ModelLimit*> limits;
   std::vector<std::string> reference_datasets;  ///< of `emscape check` that test the model
+
+  std::vector<Mechanism> mechanisms;  ///< those that may determine its loss; of most models itself
 
   GasRole gases = GasRole::added;
   bool casts_shadow = false;        ///< no field behind terrain
@@ -69,6 +72,11 @@ const std::vector<ModelInfo>& models();
 const ModelInfo& modelInfo(PropagationModel model);
 /// Null if no model has the name.
 const ModelInfo* modelNamed(const std::string& name);
+
+/// True if a model has several mechanisms: HasMechanisms in excess_model.h.
+inline bool hasMechanisms(const ModelInfo& model) {
+  return model.mechanisms.size() > 1;
+}
 
 /// True if a model reads the settings of another model, or its own.
 bool settingsEnter(const ModelInfo& settings_of, const ModelInfo& chosen);

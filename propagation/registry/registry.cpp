@@ -27,6 +27,7 @@ ModelInfo rowOf(PropagationModel model, const char* reference) {
   row.model = model;
   row.name = toString(model);
   row.reference = reference;
+  row.mechanisms = {mechanismOf(model)};
   return row;
 }
 
@@ -176,6 +177,8 @@ ModelInfo parabolicEquationRow() {
                             "pe/sloped_plane_pec_h.csv", "pe/duct_fields.csv",
                             "pe/duct_modes.csv",         "pe/lobe_cell_mean.csv",
                             "pe/roughness.csv"};
+  row.mechanisms = {Mechanism::parabolic_equation, Mechanism::diffraction,  Mechanism::two_ray,
+                    Mechanism::extended_optics,    Mechanism::troposcatter, Mechanism::floor};
   row.check = checkPe;
   row.warningMessages = peWarningMessages;
   row.explain = explainPe;

@@ -127,7 +127,7 @@ def _space(grid: dict[str, Any]) -> dict[Hashable, Any]:
     return coordinates
 
 
-def _attributes(channel: str, grid: dict[str, Any], emitters: Sequence[str]) -> dict[str, Any]:
+def _attributes(channel: str, grid: dict[str, Any], scenario: Scenario | None) -> dict[str, Any]:
     """Attributes of a quantity's variable."""
     quantity, _, part = channel.partition(":")
     for name, unit, description, categorical in native.quantity_table():
@@ -135,7 +135,7 @@ def _attributes(channel: str, grid: dict[str, Any], emitters: Sequence[str]) -> 
             continue
         attributes: dict[str, Any] = {"long_name": description + (f" ({part})" if part else "")}
         if categorical:
-            attributes |= flags(emitters, none=True)
+            attributes |= flags(scenario._handle.category_names(quantity) if scenario is not None else [], none=True)
         else:
             attributes["units"] = udunit_of(unit)
             if unit and unit != udunit_of(unit):
@@ -167,7 +167,6 @@ def _global_attributes(title: str, grid: dict[str, Any]) -> dict[str, Any]:
 def dataset_of(field: Field, quantities: Sequence[str] = ()) -> xarray.Dataset:
     """A field as a dataset (``Field.to_xarray``)."""
     grid, scenario = field.grid, field.scenario
-    emitters = scenario.emitters if scenario is not None else []
     coordinates = _space(grid)
     coordinates["time"] = time_coordinate([field.time_s], scenario.epoch if scenario is not None else None, ())
     ground = field.ground_msl_m()
@@ -176,7 +175,7 @@ def dataset_of(field: Field, quantities: Sequence[str] = ()) -> xarray.Dataset:
             ("y", "x"), ground, {"standard_name": "surface_altitude", "long_name": "height of the ground", "units": "m"}
         )
     variables = {
-        name: xarray.Variable(("z", "y", "x"), _masked(field, name), _attributes(name, grid, emitters))
+        name: xarray.Variable(("z", "y", "x"), _masked(field, name), _attributes(name, grid, scenario))
         for name in quantities or field.quantities
     }
     title = f"Field of {scenario.name}" if scenario is not None else "Field"
@@ -259,7 +258,7 @@ def open_series(
         name: xarray.Variable(
             ("time", "z", "y", "x"),
             indexing.LazilyIndexedArray(_SeriesArray(frames, name, shape)),
-            _attributes(name, grid, scenario.emitters),
+            _attributes(name, grid, scenario),
         )
         for name in scenario._handle.channels(list(quantities))
     }

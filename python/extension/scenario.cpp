@@ -1,4 +1,5 @@
 /// Scenarios: reading, editing, and what they hold.
+#include "emscape/emfield/categories.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/quantities.h"
 #include "emscape/scenario/scenario_file.h"
@@ -84,6 +85,12 @@ void bindScenario(nb::module_& module) {
             return names;
           },
           nb::arg("quantities"))
+      .def(
+          "category_names",
+          [](const ScenarioHandle& of, const std::string& quantity) {
+            return emfield::categoryNames(*of.scenario, scenario::quantityFromName(quantity));
+          },
+          nb::arg("quantity"), "Names of the indices 0, 1 ... of a categorical quantity.")
       .def(
           "edit",
           [](const ScenarioHandle& of, const Edits& edits) {

@@ -9,7 +9,9 @@
 
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/emfield/categories.h"
 #include "emscape/scenario/scenario_file.h"
+#include "emscape/volume/labels.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
 
@@ -183,6 +185,26 @@ TEST(FieldSolver, TheDominantEmitterIsTheNearestOfEqualOnes) {
   }
   EXPECT_TRUE(volume->info.categorical);
   EXPECT_EQ(volume->info.extra.at("labels"), "west\neast");
+}
+
+TEST(FieldSolver, TheDominantModelIsThatOfTheDominantEmitter) {
+  auto scenario = emptyScenario(FrameKind::altitude, 0, 0, {20e3, 20e3, 2000}, {20, 20, 4});
+  addEmitter(*scenario, {0, -0.05, 500}, plainEmitter("west", 0));
+  addEmitter(*scenario, {0, 0.05, 500}, plainEmitter("east", 0));
+  scenario->emitters[1].propagation.model = propagation::PropagationModel::diffraction;
+  scenario->output.quantities = {"dominant_model"};
+  const auto volume = solve(scenario);
+  const std::vector<std::string> labels = volume::labelsOf(volume->info);
+  const auto nameAt = [&](int i) {
+    return labels.at(static_cast<std::size_t>(std::lround(valueAt(*volume, i, 9, 1))));
+  };
+  EXPECT_EQ(nameAt(3), "free_space");
+  EXPECT_EQ(nameAt(16), "diffraction");
+  EXPECT_TRUE(volume->info.categorical);
+  std::vector<std::string> possible;
+  for (const int index : categoriesOf(*scenario, scenario::Quantity::dominant_model))
+    possible.push_back(labels.at(static_cast<std::size_t>(index)));
+  EXPECT_THAT(possible, ::testing::ElementsAre("diffraction", "free_space"));
 }
 
 TEST(FieldSolver, ReceivedPowerKnowsPolarisationAndBandwidth) {

@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <random>
 
 #include "emfield/emitter_excess.h"
 #include "emfield/foot_inverse.h"
 #include "emfield/radials.h"
 #include "emscape/emfield/path_budget.h"
+#include "emscape/scenario/terrain.h"
+#include "emscape/volume/labels.h"
 #include "propagation/parabolic_equation/model.h"
 #include "propagation/parabolic_equation/path_air.h"
 #include "propagation/parabolic_equation/plan.h"
@@ -18,6 +21,7 @@
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
+#include "tests/support/files.h"
 
 namespace emscape::emfield {
 namespace {
@@ -87,6 +91,26 @@ double excessIn(const volume::DenseVolume& volume, const Made& made, int i, int 
   const double distance_m = length(place - made.station.ecef_m);
   return 10 * std::log10(1000 / (4 * kPi * distance_m * distance_m)) -
          static_cast<double>(testing::valueAt(volume, i, j, k));
+}
+
+std::shared_ptr<propagation::Refractivity> duct(std::vector<double> heights_m) {
+  auto refractivity = std::make_shared<propagation::Refractivity>();
+  const auto airOf = [](double height_m) {
+    propagation::RefractivityField field;
+    field.profiles = {propagation::evaporationDuct(height_m)};
+    return field;
+  };
+  refractivity->air = airOf(heights_m.front());
+  if (heights_m.size() > 1)
+    for (const double height_m : heights_m) refractivity->members.push_back(airOf(height_m));
+  return refractivity;
+}
+
+/// A radar 10 m above the sea at 10 GHz.
+std::shared_ptr<scenario::Scenario> overTheSea(double highest_m, int layers) {
+  const auto scenario = around(10e9, 10, {160e3, 300, highest_m}, {160, 3, layers});
+  scenario->ground.kind = propagation::GroundKind::sea;
+  return scenario;
 }
 
 double quantileOf(std::vector<double> values, double part) {
@@ -237,20 +261,45 @@ TEST(ParabolicField, IsReciprocalOverASmoothEarth) {
   }
 }
 
-TEST(ParabolicField, IsThatOfDiffractionWithinSomeDecibelsOverHills) {
-  const scenario::TerrainPtr terrain = gentleHills();
-  const auto scenario = around(3e8, 180, {24e3, 24e3, 400}, {40, 40, 20}, 80);
+/// Power over that of diffraction (dB), by voxel.
+std::vector<double> overDiffractionDb(const std::shared_ptr<scenario::Scenario>& scenario,
+                                      const scenario::TerrainPtr& terrain) {
   const auto volume = solve(scenario, terrain);
   scenario->emitters[0].propagation.model = PropagationModel::diffraction;
   const auto other = solve(scenario, terrain);
-  std::vector<double> differences;
+  std::vector<double> differences_db;
   for (std::size_t v = 0; v < volume->values.size(); ++v) {
     if (volume->values[v] > -290 && other->values[v] > -290)
-      differences.push_back(static_cast<double>(volume->values[v] - other->values[v]));
+      differences_db.push_back(static_cast<double>(volume->values[v] - other->values[v]));
   }
-  const double median_db = quantileOf(differences, 0.5);
+  return differences_db;
+}
+
+TEST(ParabolicField, IsThatOfDiffractionWithinSomeDecibelsOverHills) {
+  const auto scenario = around(3e8, 180, {24e3, 24e3, 400}, {40, 40, 20}, 80);
+  const double median_db = quantileOf(overDiffractionDb(scenario, gentleHills()), 0.5);
   RecordProperty("median_db", std::to_string(median_db));
   EXPECT_LT(std::abs(median_db), 6);
+}
+
+// Steep mountains of the SRTM; the two models differ in what they know: report, and no more.
+TEST(ParabolicField, IsThatOfDiffractionWithinSomeDecibelsOverMountains) {
+  constexpr double kValley_deg[] = {44.26, -71.25};
+  const auto scenario = around(3e8, 0, {16e3, 16e3, 1600}, {24, 24, 16}, 500);
+  scenario->region.origin.latitude_deg = kValley_deg[0];
+  scenario->region.origin.longitude_deg = kValley_deg[1];
+  scenario::TerrainSpec spec;
+  spec.files = {test::sourceFile("tests/data/dem/N44W072.tif")};
+  spec.locations = {{spec.files[0]}};
+  const auto terrain = scenario::Terrain::load(spec, scenario::terrainBox(*scenario));
+  scenario::SitePosition& site = scenario->platforms[0].track[0].position;
+  site.latitude_deg = kValley_deg[0];
+  site.longitude_deg = kValley_deg[1];
+  site.height_msl_m = terrain->heightMsl_m(kValley_deg[0], kValley_deg[1]) + 30;
+  const std::vector<double> differences_db = overDiffractionDb(scenario, terrain);
+  for (const double part : {0.1, 0.5, 0.9})
+    RecordProperty("quantile_" + std::to_string(part), std::to_string(quantileOf(differences_db, part)));
+  EXPECT_LT(std::abs(quantileOf(differences_db, 0.5)), 6);
 }
 
 // A ridge at 4 degrees of elevation: a band of 3 degrees does not hold the rays over it.
@@ -355,6 +404,58 @@ TEST(ParabolicField, ATurnedBeamIsCombinedAloneAndSettingsMarchAnew) {
   EXPECT_THAT(editedBy([](auto& s) { s.atmosphere.k_factor = 1.5; }).moved, ::testing::ElementsAre(0));
 }
 
+TEST(ParabolicField, SaysWhichModelSpeaksWhere) {
+  const auto scenario = overTheSea(6000, 30);
+  const auto power = solve(scenario);
+  scenario->output.quantities = {"dominant_model"};
+  const auto model = solve(scenario);
+  const Made made(*scenario, nullptr);
+  std::vector<float> tables;
+  const propagation::PeExcess excess = peExcess(made.inputs, made.radials, tables);
+  const std::vector<std::string> labels = volume::labelsOf(model->info);
+  std::map<std::string, int> seen;
+  for (int i = 0; i < 160; ++i) {
+    const GridColumn column = made.columns.view()[static_cast<std::size_t>(160 + i)];
+    const auto range_m = static_cast<float>(footInverse(made.station, column, 0).distance_m);
+    for (int k = 0; k < 30; ++k) {
+      const auto height_m =
+          static_cast<float>(heightMsl_m(column, static_cast<double>(made.columns.t_m[std::size_t(k)])));
+      const bool is_equation = excess.others.equationPart(range_m, height_m, 0, 0) >= 0.5F;
+      const std::string& name =
+          labels.at(static_cast<std::size_t>(std::lround(testing::valueAt(*model, i, 1, k))));
+      ++seen[name];
+      const bool is_high = height_m > excess.top_m;
+      EXPECT_TRUE(name != "two_ray" || !is_equation) << i << ", " << k;
+      EXPECT_TRUE(name != "parabolic_equation" || (is_equation && !is_high)) << i << ", " << k;
+      EXPECT_TRUE(name != "extended_optics" || (is_equation && is_high)) << i << ", " << k;
+      EXPECT_TRUE(name != "troposcatter" || excessIn(*power, made, i, 1, k) > 30) << i << ", " << k;
+    }
+  }
+  for (const char* name : {"two_ray", "parabolic_equation", "extended_optics"})
+    EXPECT_GT(seen[name], 10) << name;
+}
+
+TEST(ParabolicField, SaysWhereScatterOrTheFloorSpeaks) {
+  const auto scenario = overTheSea(20, 5);
+  scenario->output.quantities = {"dominant_model"};
+  EXPECT_EQ(testing::valueAt(*solve(scenario), 0, 1, 2),
+            static_cast<float>(propagation::Mechanism::troposcatter));
+  scenario->output.quantities = {"power_density_dbwm2"};
+  scenario->emitters[0].propagation.parabolic_equation.floor_db = -30;
+  const auto power = solve(scenario);
+  FieldSolver solver(scenario, nullptr, {});
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  const auto asked = std::make_shared<scenario::Scenario>(*scenario);
+  asked->output.quantities = {"dominant_model"};
+  EXPECT_THAT(solver.update(scenario::snapshotAt(asked, nullptr, 0)).moved, ::testing::ElementsAre(0));
+  const auto model = solver.volumes()[0].host();
+  const Made made(*scenario, nullptr);
+  EXPECT_EQ(testing::valueAt(*model, 20, 1, 2), static_cast<float>(propagation::Mechanism::floor));
+  EXPECT_NEAR(excessIn(*power, made, 20, 1, 2), 30, 0.1);
+  EXPECT_EQ(testing::valueAt(*model, 70, 1, 2),
+            static_cast<float>(propagation::Mechanism::parabolic_equation));
+}
+
 TEST(ParabolicField, SlantedWavesAreHalfOfEach) {
   const auto scenario = around(3e8, 30, {20e3, 300, 200}, {40, 3, 20});
   const auto powerOf = [&](Polarization polarization) {
@@ -374,26 +475,6 @@ TEST(ParabolicField, ReportsWhatItChooses) {
   for (const char* name :
        {"largest angle 3 degrees", "height step", "range step", "absorber", "azimuths 1:", "cells", "cost"})
     EXPECT_THAT(all, ::testing::HasSubstr(name));
-}
-
-std::shared_ptr<propagation::Refractivity> duct(std::vector<double> heights_m) {
-  auto refractivity = std::make_shared<propagation::Refractivity>();
-  const auto airOf = [](double height_m) {
-    propagation::RefractivityField field;
-    field.profiles = {propagation::evaporationDuct(height_m)};
-    return field;
-  };
-  refractivity->air = airOf(heights_m.front());
-  if (heights_m.size() > 1)
-    for (const double height_m : heights_m) refractivity->members.push_back(airOf(height_m));
-  return refractivity;
-}
-
-/// A radar 10 m above the sea at 10 GHz.
-std::shared_ptr<scenario::Scenario> overTheSea(double highest_m, int layers) {
-  const auto scenario = around(10e9, 10, {160e3, 300, highest_m}, {160, 3, layers});
-  scenario->ground.kind = propagation::GroundKind::sea;
-  return scenario;
 }
 
 // The figure of duct_fields.csv: 10 to 10 m at 60 km 6.84 dB over free space in a duct of 14 m; without, deep
@@ -493,6 +574,25 @@ TEST(ParabolicField, WarnsBeyondWhatWasMeasured) {
     return all;
   };
   EXPECT_EQ(warningsOf([](auto&) {}), "");
+  const auto ductOver = [](propagation::GroundKind kind) {
+    return [kind](auto& s) {
+      s.ground.kind = kind;
+      s.atmosphere.refractivity = duct({14});
+    };
+  };
+  EXPECT_EQ(warningsOf(ductOver(propagation::GroundKind::sea)), "");
+  EXPECT_THAT(warningsOf(ductOver(propagation::GroundKind::dry_ground)),
+              ::testing::HasSubstr("an evaporation duct lies over land"));
+  const auto measuredTo = [](double height_m) {
+    return [height_m](auto& s) {
+      const auto air = std::make_shared<propagation::Refractivity>();
+      air->air.profiles = {propagation::withUpperAir(
+          propagation::profileOfLevels({{0, 330}, {height_m, 330 + 0.118 * height_m}}))};
+      s.atmosphere.refractivity = air;
+    };
+  };
+  EXPECT_EQ(warningsOf(measuredTo(200)), "");
+  EXPECT_THAT(warningsOf(measuredTo(150)), ::testing::HasSubstr("the profile of the air ends below"));
   EXPECT_THAT(warningsOf([](auto& s) { s.emitters[0].frequency_hz = 25e9; }),
               ::testing::HasSubstr("frequency, of measurements 25000 MHz is outside 30..20000"));
   EXPECT_THAT(warningsOf([](auto& s) { s.ground.roughness_m = 3; }),

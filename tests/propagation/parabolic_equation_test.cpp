@@ -434,6 +434,10 @@ TEST(MarchCells, HoldMeansOverHeightsAndRangeSteps) {
   EXPECT_TRUE(std::isnan(excess_db[19 * 30 + 1]));   // below the ground
   EXPECT_TRUE(std::isnan(excess_db[19 * 30 + 29]));  // in the absorber
   EXPECT_FALSE(std::isnan(excess_db[19 * 30 + 2]));
+  RadialCells points = cells;
+  points.are_points = true;
+  RadialMarch<float, 1> once_more(grid, {pathOf(20)});
+  EXPECT_NEAR(marchCells(once_more, points)[0][19 * 30 + 4], -again.factorDb(0, 62.5), 0.05);
   EXPECT_THAT(test::errorOf([&] {
                 marchCells(march, RadialCells{50, 1, 0, 25, 4});
               }),

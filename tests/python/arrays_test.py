@@ -85,6 +85,14 @@ def test_a_pixel_equals_the_profile_there(jamming):
         assert path["budget"]["snr_db"] == pytest.approx(float(value[y, x]), abs=0.01)
 
 
+def test_indices_say_what_they_mean(jamming):
+    series = em.open_series(jamming, "0:20:20", ["dominant_emitter", "dominant_model"], chunks=None)
+    emitters, models = (series[name].attrs["flag_meanings"].split() for name in ("dominant_emitter", "dominant_model"))
+    assert len(emitters) == 1 + len(jamming.emitters)
+    assert models[:4] == ["none", "parabolic_equation", "diffraction", "two_ray"]
+    assert len(series.dominant_model.attrs["flag_values"]) == len(models)
+
+
 def test_a_dataset_goes_to_netcdf_and_back(jamming, tmp_path):
     pytest.importorskip("netCDF4")
     series = em.open_series(jamming, "0:20:20", chunks=None)

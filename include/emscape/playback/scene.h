@@ -9,6 +9,7 @@
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/height_field.h"
 #include "emscape/scenario/snapshot.h"
+#include "emscape/volume/dense_volume.h"
 #include "emscape/volume/grid.h"
 
 namespace emscape::playback {
@@ -27,7 +28,8 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
 /// all frames.
 std::vector<render::Track> tracksOf(const LoadedScenario& scene, const volume::Grid& grid, double time_s);
 
-/// The emitters' names by index, for legends of indices.
-std::vector<render::Category> categoriesOf(const scenario::Scenario& scenario);
+/// The categories of a volume of indices that can occur in its scenario, for legends.
+std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info,
+                                           const scenario::Scenario& scenario);
 
 }  // namespace emscape::playback

@@ -109,6 +109,13 @@ struct P452Settings : ClearAirSettings {
 };
 
 /// Numbers that are 0 are chosen by the model.
+/// What parabolic_equation keeps of a cell of range and height.
+enum class PeCells {
+  mean,  ///< the mean power
+  point  ///< the field at one point: lobes smaller than cells alias
+};
+const char* toString(PeCells cells);
+
 struct ParabolicEquationSettings {
   double max_angle_deg = 0;  ///< from the horizontal, up to which the equation is solved
   double top_m = 0;          ///< above the ground, up to which the equation is solved
@@ -116,6 +123,7 @@ struct ParabolicEquationSettings {
   double azimuths = 0;  ///< around the emitter
   RoughnessModel roughness = RoughnessModel::miller_brown;
   double floor_db = -80;  ///< of the propagation factor; the equation's field is not read below it
+  PeCells cells = PeCells::mean;
 };
 
 /// The model of an emitter, and the settings of all models; settings of models that are not used have no

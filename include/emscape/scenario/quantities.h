@@ -24,6 +24,7 @@ enum class Quantity {
   intercept_margin_db,
   detection_age_s,
   occupancy,
+  dominant_model,
 };
 
 /// The signals that a quantity depends on.
