@@ -228,9 +228,18 @@ struct CellRasterizer::Impl {
   }
 };
 
-CellRasterizer::CellRasterizer() : impl_(std::make_unique<Impl>()) {}
+CellRasterizer::CellRasterizer() : impl_(std::make_unique<Impl>()) {
+  impl_->context.release();
+}
 CellRasterizer::~CellRasterizer() {
   impl_->context.makeCurrent();
+}
+
+CellRasterizer::Use::Use(CellRasterizer& rasterizer) : rasterizer_(rasterizer) {
+  rasterizer_.impl_->context.makeCurrent();
+}
+CellRasterizer::Use::~Use() {
+  rasterizer_.impl_->context.release();
 }
 
 const std::string& CellRasterizer::device() const {
@@ -241,7 +250,6 @@ std::size_t CellRasterizer::sentFloats() const {
 }
 
 void CellRasterizer::setTransfer(const LinearTransfer& transfer) {
-  impl_->context.makeCurrent();
   std::vector<float> texels;
   const auto put = [&](double value) {
     constexpr double kMost = std::numeric_limits<float>::max();
@@ -264,7 +272,6 @@ void CellRasterizer::setTransfer(const LinearTransfer& transfer) {
 
 void CellRasterizer::begin(const CellView& view) {
   Impl& impl = *impl_;
-  impl.context.makeCurrent();
   impl.setSize(view.camera.size);
   impl.sent = 0;
   impl.projection = view.projection;
