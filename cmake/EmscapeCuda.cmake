@@ -52,7 +52,7 @@ endif()
 
 if(EMSCAPE_WITH_CUDA)
   # Machine code for A100, for Ada and for Hopper; what is newer compiles the last one's PTX when it starts.
-  if(NOT CMAKE_CUDA_ARCHITECTURES)
+  if(NOT CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})
     set(CMAKE_CUDA_ARCHITECTURES 80-real 89-real 90)
   endif()
   if(EMSCAPE_CCACHE AND NOT CMAKE_CUDA_COMPILER_LAUNCHER)

@@ -44,8 +44,13 @@ endfunction()
 function(emscape_test_program target label)
   target_link_libraries(${target} PRIVATE emscape_test_support)
   emscape_precompile(${target} <gmock/gmock.h> <gtest/gtest.h>)
-  # Half the time of compilation; the libraries that the tests call are optimised as ever.
-  target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
+  # Half the time of compilation; the libraries that the tests call are optimised, and checked for undefined behaviour, as
+  # ever.
+  if(EMSCAPE_SANITIZE)
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-O0 -fno-sanitize=undefined>)
+  else()
+    target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
+  endif()
   emscape_warnings(${target})
   gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} ${ARGN})
 endfunction()

@@ -37,15 +37,14 @@ struct PeExcess {
   /// @param excess_db  one per voxel; NaN over missing terrain
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch,
                                  float* excess_db) const {
-    float unknown = 0;  // or NaN
-    for (int i = 0; i < column.profile.count; ++i) unknown += 0 * column.profile.height_msl_m[i];
-    if (!(unknown == 0)) {
+    const float horizon_rad = others.horizonOf(column.profile);
+    if (!(horizon_rad == horizon_rad)) {
       for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
       return kMissingTerrain;
     }
     bool has_others = false;
     for (int k = 0; k < column.count; ++k) {
-      PeLoss loss = equationAt(column, column.height_msl_m[k]);
+      PeLoss loss = equationAt(column, column.height_msl_m[k], horizon_rad);
       if (loss.equation_part < 1) {
         if (!has_others) others.fill(column, scratch, scratch.other_db);
         has_others = true;
@@ -58,11 +57,11 @@ struct PeExcess {
   }
 
   /// The equation's part alone.
-  EMSCAPE_HD PeLoss equationAt(const ExcessColumn& column, float height_msl_m) const {
+  EMSCAPE_HD PeLoss equationAt(const ExcessColumn& column, float height_msl_m, float horizon_rad) const {
     const auto range_m = static_cast<float>(column.range_m);
     const float datum_msl_m = above_ground ? column.ground_msl_m : 0;
     PeLoss loss;
-    loss.equation_part = others.equationPart(range_m, height_msl_m, column.ground_msl_m);
+    loss.equation_part = others.equationPart(range_m, height_msl_m, column.ground_msl_m, horizon_rad);
     if (loss.equation_part <= 0) return loss;
     float at_m = range_m, height_m = height_msl_m - datum_msl_m;
     if (height_m > top_m) {

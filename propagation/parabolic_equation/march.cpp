@@ -97,10 +97,10 @@ template <class Real, int kLanes>
 double RadialMarch<Real, kLanes>::bend(int l) {
   Lane& lane = lanes_[l];
   const double rise_m = groundAt(lane.path, steps_ + 1) - lane.ground_m;
-  const GroundStep step = groundStep(rise_m, grid_.range_step_m, lane.sine, steps_ == 0, maxSine());
-  const double staircase_m = step.staircase ? rise_m : 0;
-  if (step.staircase) ++staircases_;
-  if (step.sine == lane.sine) return staircase_m;
+  const GroundStep step =
+      groundStep(rise_m, grid_.range_step_m, lane.sine, steps_ == 0, maxSine(), grid_.slope_part);
+  if (step.is_steep) ++staircases_;
+  if (step.sine == lane.sine) return step.stair_m;
   const double phase = grid_.wavenumber() * heightStep_m() * step.turn;
   for (int j = 0; j < intervals(); ++j) {
     const double angle = std::remainder(phase * j, 2 * kPi), c = std::cos(angle), s = std::sin(angle);
@@ -111,7 +111,7 @@ double RadialMarch<Real, kLanes>::bend(int l) {
   lane.sine = step.sine;
   lane.cosine = step.cosine;
   setPropagator(l);
-  return staircase_m;
+  return step.stair_m;
 }
 
 /// u -> v[j] = u[j] - r u[j-1], v[0] = 0; keeps the surface wave's amplitude A.

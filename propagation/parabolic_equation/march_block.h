@@ -113,6 +113,7 @@ struct MarchState {
 /// A march for one N. Pointers are to memory of the processor that runs it.
 struct MarchBlockTask {
   int azimuths = 0, end_step = 0;
+  double slope_part = 1;  ///< MarchGrid::slope_part
   bool wide = true, mixed = false, halve = false;
   double range_step_m = 0, height_step_m = 0, wavelength_m = 0, usable_top_m = 0;
   double absorber_m = 0, absorber_per_m = 0;

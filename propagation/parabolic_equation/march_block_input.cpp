@@ -76,6 +76,7 @@ MarchBlockTask taskOf(const AzimuthMarch& march, const BlockInput& input, int in
   task.azimuths = march.azimuths;
   task.end_step = end_step;
   task.wide = grid.form == PeForm::wide;
+  task.slope_part = grid.slope_part;
   task.range_step_m = grid.range_step_m;
   task.height_step_m = grid.top_m / intervals;
   task.wavelength_m = wavelength_m(grid.frequency_hz);

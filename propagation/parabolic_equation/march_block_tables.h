@@ -118,7 +118,7 @@ EMSCAPE_HD void planSteps(const MarchBlockTask& task, PlannedStep* planned, int 
   for (int s = state.step; s < task.end_step; ++s) {
     const std::size_t next = std::size_t(s) + 1;
     const double rise_m = double(ground_m[next < task.ground_steps ? next : task.ground_steps - 1]) - here_m;
-    const GroundStep step = groundStep(rise_m, task.range_step_m, sine, s == 0, max_sine);
+    const GroundStep step = groundStep(rise_m, task.range_step_m, sine, s == 0, max_sine, task.slope_part);
     const double tangent = step.sine / step.cosine;
     PlannedStep plan;
     const double turns = task.height_step_m * step.turn / task.wavelength_m,
@@ -131,8 +131,8 @@ EMSCAPE_HD void planSteps(const MarchBlockTask& task, PlannedStep* planned, int 
     plan.square = float(tangent * tangent);
     plan.cube = float(square / step.cosine - 1);
     if (task.mixed) plan.wave = surfaceWave(task, step.cosine);
-    plan.staircases = step.staircase ? 1 : 0;
-    if (step.staircase) plan.shift = int(std::lround(rise_m / task.height_step_m));
+    plan.staircases = step.is_steep ? 1 : 0;
+    plan.shift = int(std::lround(step.stair_m / task.height_step_m));
     here_m += task.range_step_m * tangent + plan.shift * task.height_step_m;
     plan.ground_m = here_m;
     plan.sine = sine = step.sine;

@@ -34,6 +34,9 @@ struct MarchGrid {
   /// Its rate at the top: the field decays as exp(-rate t^3 x), t = 0..1 in the layer.
   double absorber_per_m = 0;
   PeForm form = PeForm::wide;
+  /// Part of the band that slopes may turn the rays by, at most 1. What is steeper is a staircase for the
+  /// rest.
+  double slope_part = 1;
   bool halving = false;  ///< halves N where the upper half of the spectrum has left the domain
 
   double wavenumber() const { return 2 * kPi / wavelength_m(frequency_hz); }

@@ -46,24 +46,34 @@ struct GroundStep {
   double sine = 0, cosine = 1;  ///< of the slope
   /// Sine of the slope before less that of this one: the field turns by exp(i k z turn) at the break.
   double turn = 0;
-  bool staircase = false;  ///< taken as a level piece with its rise as a step at the end
+  double stair_m = 0;  ///< rise of the step of a staircase at the end: what the slope leaves
+  bool is_steep =
+      false;  ///< steeper or more sharply bent than the equation allows: all rise is the staircase's
 };
 
 /// @param rise_m       over the step
 /// @param sine_before  of the slope of the step before
 /// @param first        the march's first step: the source's band lies about its slope
 /// @param max_sine     of the band
+/// @param slope_part   MarchGrid::slope_part
 EMSCAPE_HD inline GroundStep groundStep(double rise_m, double range_step_m, double sine_before, bool first,
-                                        double max_sine) {
+                                        double max_sine, double slope_part) {
   GroundStep step;
   const double length_m = std::sqrt(range_step_m * range_step_m + rise_m * rise_m);
   step.sine = rise_m / length_m;
   step.cosine = range_step_m / length_m;
-  step.turn = first ? 0 : sine_before - step.sine;
+  const double turn = first ? 0 : sine_before - step.sine;
   const double largest = max_sine < kMaxBreakSine ? max_sine : kMaxBreakSine;
-  if (std::fabs(step.sine) > kMaxSlopeSine || std::fabs(step.turn) > largest) {
-    step = {0, 1, first ? 0 : sine_before, true};
+  if (std::fabs(step.sine) > kMaxSlopeSine || std::fabs(turn) > largest) {
+    return {0, 1, first ? 0 : sine_before, rise_m, true};
   }
+  const double held = slope_part * max_sine;
+  if (std::fabs(step.sine) > held) {
+    step.sine = step.sine > 0 ? held : -held;
+    step.cosine = std::sqrt(1 - held * held);
+    step.stair_m = rise_m - range_step_m * step.sine / step.cosine;
+  }
+  step.turn = first ? 0 : sine_before - step.sine;
   return step;
 }
 

@@ -298,8 +298,9 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       std::max(2 * automatic.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz)));
   const char* const other_name = has_terrain ? "diffraction" : "two_ray";
   PeLoss loss;
+  const float horizon_rad = others.horizonOf(profile);
   loss.equation_part = others.equationPart(static_cast<float>(column.range_m), end_msl_m,
-                                           profile.height_msl_m[profile.count - 1]);
+                                           profile.height_msl_m[profile.count - 1], horizon_rad);
   if (loss.equation_part < 1) loss.other_db = static_cast<float>(path.excess_db(OtherColumn{others}));
   Explanation explanation;
   std::string march_text = "no march";
@@ -332,7 +333,8 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       : loss.equation_part <= 0 ? other_name
                                 : fmt::format("the parabolic equation by {:.0f} %, {} for the rest,",
                                               double(100 * loss.equation_part), other_name),
-      radToDeg(double(others.launchAngle(static_cast<float>(column.range_m), end_msl_m))),
+      radToDeg(
+          double(std::max(horizon_rad, others.launchAngle(static_cast<float>(column.range_m), end_msl_m)))),
       radToDeg(max_angle_rad), march_text);
   return explanation;
 }

@@ -54,13 +54,30 @@ struct PeOthers {
     return (height_msl_m - tx_msl_m) / range_m - curvature_per_m * range_m / 2;
   }
 
+  /// Largest angle (rad) above the horizontal at which the antenna sees the ground, at least 0; NaN over
+  /// missing terrain. Nearer than 500 m the slopes of its own hill would speak.
+  EMSCAPE_HD float horizonOf(const TerrainProfile& profile) const {
+    constexpr float kNearGround_m = 500;
+    float horizon_rad = 0, unknown = 0;  // or NaN
+    for (int i = 0; i < profile.count; ++i) {
+      const auto range_m = static_cast<float>(profile.range_m[i]);
+      const float angle_rad = launchAngle(range_m, profile.height_msl_m[i]);
+      if (range_m >= kNearGround_m && angle_rad > horizon_rad) horizon_rad = angle_rad;
+      unknown += 0 * profile.height_msl_m[i];
+    }
+    return horizon_rad + unknown;
+  }
+
   /// Weight of the equation.
-  EMSCAPE_HD float equationPart(float range_m, float height_msl_m, float ground_msl_m) const {
+  /// @param horizon_rad  horizonOf() the ground on the way: over a ridge the field comes at that angle
+  EMSCAPE_HD float equationPart(float range_m, float height_msl_m, float ground_msl_m,
+                                float horizon_rad) const {
     if (!(range_m > min_range_m)) return 0;
     const float above_m = height_msl_m > ground_msl_m ? height_msl_m - ground_msl_m : 0;
     const float direct = std::fabs(launchAngle(range_m, height_msl_m));
     const float reflected = (tx_agl_m + above_m) / range_m - curvature_per_m * range_m / 2;
-    const float angle = direct > reflected ? direct : reflected;
+    const float seen = direct > reflected ? direct : reflected;
+    const float angle = seen > horizon_rad ? seen : horizon_rad;
     const float by_angle = (1 - angle / max_angle_rad) / kPeBlendPart;
     const float by_range = (range_m / min_range_m - 1) / kPeBlendPart;
     const float part = by_angle < by_range ? by_angle : by_range;

@@ -115,7 +115,7 @@ std::vector<double> differencesFromSingleMarches(const scenario::TerrainPtr& ter
     const FastInverse foot = footInverse(made.station, made.columns.view()[c], 0);
     const auto part =
         excess.others.equationPart(static_cast<float>(foot.distance_m), static_cast<float>(voxel_msl_m),
-                                   terrain ? made.columns.ground_msl_m[c] : 0.0F);
+                                   terrain ? made.columns.ground_msl_m[c] : 0.0F, 0);
     if (part < 1 || voxel_msl_m > plan.top_m) continue;  // other models speak
 
     propagation::RadialPath path;
@@ -159,7 +159,7 @@ TEST(ParabolicField, IsThatOfSingleMarchesAtRandomPointsOverASmoothEarth) {
 TEST(ParabolicField, IsThatOfSingleMarchesAtRandomPointsOverHills) {
   const std::vector<double> differences = differencesFromSingleMarches(gentleHills(), 180, 80);
   EXPECT_LT(quantileOf(differences, 0.5), 0.4);
-  EXPECT_LT(quantileOf(differences, 0.9), 1.0);
+  EXPECT_LT(quantileOf(differences, 0.9), 1.2);
 }
 
 // Lobes that the voxels resolve.
@@ -192,7 +192,7 @@ TEST(ParabolicField, HasNoSeamOverASmoothEarth) {
     propagation::ExcessColumn column;
     column.range_m = range_m;
     for (float height_m = 22.5F; height_m < 700; height_m += 5) {
-      const propagation::PeLoss loss = excess.equationAt(column, height_m);
+      const propagation::PeLoss loss = excess.equationAt(column, height_m, 0);
       if (loss.equation_part <= 0 || loss.equation_part >= 1) continue;
       column.height_msl_m = &height_m;
       column.count = 1;
@@ -253,6 +253,46 @@ TEST(ParabolicField, IsThatOfDiffractionWithinSomeDecibelsOverHills) {
   EXPECT_LT(std::abs(median_db), 6);
 }
 
+// A ridge at 4 degrees of elevation: a band of 3 degrees does not hold the rays over it.
+TEST(ParabolicField, BehindARidgeAboveTheLargestAngleDiffractionSpeaks) {
+  constexpr double kMetresPerDegree = 70e3;  // eastwards; degrees count from the western side
+  const auto terrain =
+      std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, [](double east, double) {
+        return std::max(0.0, 450 - std::abs((east - 0.5) * kMetresPerDegree - 6000) * 0.18);
+      });
+  const auto scenario = around(3e8, 30, {24e3, 4e3, 500}, {80, 8, 10});
+  scenario->emitters[0].propagation.model = PropagationModel::diffraction;
+  const auto diffraction = solve(scenario, terrain);
+  scenario->emitters[0].propagation.model = PropagationModel::parabolic_equation;
+  const auto volume = solve(scenario, terrain);
+  for (int i = 66; i < 80; ++i) {  // from 8 km to 12 km, in the shadow
+    for (int j = 0; j < 8; ++j)
+      EXPECT_NEAR(testing::valueAt(*volume, i, j, 1), testing::valueAt(*diffraction, i, j, 1), 0.02);
+  }
+  scenario->emitters[0].propagation.parabolic_equation.max_angle_deg = 10;
+  EXPECT_GT(std::abs(testing::valueAt(*solve(scenario, terrain), 70, 4, 1) -
+                     testing::valueAt(*diffraction, 70, 4, 1)),
+            1);  // the equation
+}
+
+// In rugged country rays must stay in the band whatever the slopes below them, else the field in sight is
+// lost.
+TEST(ParabolicField, IsThatOfFreeSpaceHighAboveRuggedGround) {
+  const auto terrain =
+      std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, [](double east, double north) {
+        return 150 + 120 * std::sin(250 * east + 1) * std::cos(200 * north);  // slopes to 24 degrees
+      });
+  const auto scenario = around(3e8, 500, {24e3, 24e3, 800}, {40, 40, 10});
+  const auto volume = solve(scenario, terrain);
+  const Made made(*scenario, terrain.get());
+  std::vector<double> excess_db;
+  for (int i = 0; i < 40; ++i) {
+    for (int j = 0; j < 40; ++j) excess_db.push_back(excessIn(*volume, made, i, j, 5));  // 440 m high
+  }
+  EXPECT_NEAR(quantileOf(excess_db, 0.5), 0, 2);
+  EXPECT_LT(quantileOf(excess_db, 0.95), 8);
+}
+
 TEST(ParabolicField, PathsAcrossAHoleAreUnknownAndOthersAreNot) {
   const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 0.6, 0.05);
   const auto scenario = around(3e8, 1200, {36e3, 36e3, 1000}, {24, 24, 4}, 1100);
@@ -296,7 +336,7 @@ TEST(ParabolicField, SurfacesNearTheGroundAreThatOfThePaths) {
                                      static_cast<double>(testing::valueAt(*volume, n % 30, n / 30, k))));
     }
   }
-  EXPECT_LT(quantileOf(differences, 0.5), 0.5);
+  EXPECT_LT(quantileOf(differences, 0.5), 0.8);
   EXPECT_LT(quantileOf(differences, 0.9), 4);  // nulls between hills
 }
 
