@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <thread>
 #include <utility>
 
 #include "emscape/base/error.h"
@@ -232,7 +233,15 @@ CellRasterizer::CellRasterizer() : impl_(std::make_unique<Impl>()) {
   impl_->context.release();
 }
 CellRasterizer::~CellRasterizer() {
-  impl_->context.makeCurrent();
+  // On a thread without a context: the caller's may have that of a window, which EGL does not replace.
+  std::thread([this] {
+    try {
+      impl_->context.makeCurrent();
+      impl_.reset();
+    } catch (const Error&) {
+      impl_.release();  // its names cannot be deleted
+    }
+  }).join();
 }
 
 CellRasterizer::Use::Use(CellRasterizer& rasterizer) : rasterizer_(rasterizer) {
