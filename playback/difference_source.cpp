@@ -43,7 +43,11 @@ DifferenceSource::DifferenceSource(std::unique_ptr<FrameSource> source, Open ope
 Frame DifferenceSource::frame(int index) {
   Frame frame = source_->frame(index);
   if (!compares_) return frame;
-  const volume::VolumeInfo& info = frame.volume.info();
+  const volume::VolumeInfo& info = frame.info();
+  if (frame.cells) {
+    throw Error(ErrorCode::usage,
+                info.quantity + ": fields on tetrahedra are not compared; their volumes are");
+  }
   volume::requireDifference(info.quantity, info.categorical);
   frame.volume = differenceOf(frame.volume, referenceVolume(time_s(index)), name_);
   frame.changed = true;

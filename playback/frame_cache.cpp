@@ -6,8 +6,9 @@ namespace emscape::playback {
 namespace {
 
 std::size_t bytesOf(const Frame& frame) {
-  constexpr std::size_t kVoxelBytes = 4;
-  return static_cast<std::size_t>(frame.volume.grid().dims.count()) * kVoxelBytes;
+  constexpr std::size_t kValueBytes = 4;
+  if (frame.cells) return frame.cells->field.values.size() * kValueBytes;  // the mesh is shared
+  return static_cast<std::size_t>(frame.grid().dims.count()) * kValueBytes;
 }
 
 }  // namespace

@@ -7,10 +7,12 @@
 #include <filesystem>
 
 #include "emscape/base/error.h"
+#include "emscape/emfield/terrain_mesh.h"
 #include "emscape/playback/scene.h"
 #include "emscape/playback/stop.h"
 #include "emscape/playback/volume_input.h"
 #include "emscape/volume/file.h"
+#include "emscape/volume/mesh_file.h"
 #include "playback/difference_source.h"
 #include "playback/platform_tracks.h"
 
@@ -47,14 +49,39 @@ std::size_t channelOf(const std::vector<emfield::Channel>& channels, const std::
               fmt::format("quantity '{}': there is no such channel; there are {}", name, names));
 }
 
+/// True if a mesh over one region fits the other.
+bool sameGround(const LoadedScenario& a, const LoadedScenario& b) {
+  return a.terrain == b.terrain && emfield::gridOf(a.scenario->region) == emfield::gridOf(b.scenario->region);
+}
+
+/// The mesh of a computed field.
+struct ComputedMesh {
+  std::shared_ptr<const emfield::TerrainMesh> mesh;  ///< null: a grid
+  std::shared_ptr<const volume::MeshFaces> faces;
+
+  ComputedMesh(const std::string& text, const LoadedScenario& input) {
+    if (text.empty()) return;
+    mesh = std::make_shared<const emfield::TerrainMesh>(*input.scenario, input.terrain.get(),
+                                                        emfield::parseTerrainMesh(text));
+    faces = std::make_shared<const volume::MeshFaces>(volume::facesOf(*mesh->mesh(), {input.scenario->file}));
+  }
+
+  std::shared_ptr<const emfield::Surface> surface() const { return mesh ? mesh->surface() : nullptr; }
+  ShownField shown(const volume::Volume& volume) const {
+    if (!mesh) return {volume, nullptr};
+    return {{}, makeCellField(mesh->field(*volume.host()), faces)};
+  }
+};
+
 /// A scenario's frames, computed as they are asked for.
 class ComputedFrames : public FrameSource {
  public:
   ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const ComputeTarget& target,
                  const ProgressSink& progress, const StopFlag* stop)
-      : selection_(selection),
-        series_(std::make_unique<FieldSeries>(input, timesOf(selection, input.scenario->clock),
-                                              fieldOptionsOf(selection, target, *input.scenario), stop)) {
+      : selection_(selection), mesh_(selection.mesh, input) {
+    emfield::FieldOptions options = fieldOptionsOf(selection, target, *input.scenario);
+    options.surface = mesh_.surface();
+    series_ = std::make_unique<FieldSeries>(input, timesOf(selection, input.scenario->clock), options, stop);
     range_ = rangeOf(*series_, selection.quantity, progress);
   }
 
@@ -64,10 +91,11 @@ class ComputedFrames : public FrameSource {
     std::vector<volume::Volume> volumes = series_->compute(index);
     std::vector<volume::Volume> chosen{volumes[channelOf(series_->channels(), selection_.quantity)]};
     if (range_) setRanges(chosen, {*range_});
-    const volume::Volume& volume = chosen.front();
+    Frame frame{mesh_.shown(chosen.front()), {}, {}, series_->changed()};
     const LoadedScenario& input = series_->input();
-    return {volume, markersOf(series_->snapshot(index), input.terrain.get(), volume.grid()),
-            tracks_.at(series_->time_s(index), input, volume.grid()), series_->changed()};
+    frame.markers = markersOf(series_->snapshot(index), input.terrain.get(), frame.grid());
+    frame.tracks = tracks_.at(series_->time_s(index), input, frame.grid());
+    return frame;
   }
   std::string name() const override { return series_->input().scenario->name; }
   const LoadedScenario* scene() const override { return &series_->input(); }
@@ -75,7 +103,17 @@ class ComputedFrames : public FrameSource {
 
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
     std::vector<double> times_s = timesOf(selection_, scenario->clock);
-    series_->setScenario(withScenario(series_->input(), std::move(scenario)), std::move(times_s));
+    LoadedScenario edited = withScenario(series_->input(), std::move(scenario));
+    if (mesh_.mesh && !sameGround(series_->input(), edited)) {
+      const ComputedMesh mesh(selection_.mesh, edited);
+      emfield::FieldOptions options = series_->options();
+      options.surface = mesh.surface();
+      series_ =
+          std::make_unique<FieldSeries>(std::move(edited), std::move(times_s), options, series_->stopFlag());
+      mesh_ = mesh;
+      return;
+    }
+    series_->setScenario(std::move(edited), std::move(times_s));
   }
   void setQuantity(const std::string& quantity) override {
     emfield::FieldOptions options = series_->options();
@@ -97,16 +135,25 @@ class ComputedFrames : public FrameSource {
   }
 
   FrameSelection selection_;
+  ComputedMesh mesh_;
   std::unique_ptr<FieldSeries> series_;
   std::optional<ValueRange> range_;
   PlatformTracks tracks_;
 };
 
-/// Volumes from files.
+bool sameMesh(const volume::TetrahedralMesh& a, const volume::TetrahedralMesh& b) {
+  return a.points_m == b.points_m && a.cells == b.cells;
+}
+
+/// Volumes or fields on tetrahedra from files.
 class StoredFrames : public FrameSource {
  public:
   StoredFrames(const FrameSelection& selection, const StopFlag* stop)
-      : stop_(stop), quantity_(selection.quantity), selection_(selection), files_(filesOf(quantity_)) {
+      : stop_(stop),
+        quantity_(selection.quantity),
+        selection_(selection),
+        holds_meshes_(holdsMeshes(selection.input)),
+        files_(filesOf(quantity_)) {
     if (!selection.scenario.empty()) {
       scene_ = loadScenarioWithTerrain(selection.scenario, selection.edits);
     } else if (!selection.edits.empty()) {
@@ -122,19 +169,14 @@ class StoredFrames : public FrameSource {
   double time_s(int index) const override { return files_[static_cast<std::size_t>(index)].time_s; }
   Frame frame(int index) override {
     throwIfStopped(stop_);
-    auto volume = std::make_shared<const volume::DenseVolume>(
-        volume::readVolume(files_[static_cast<std::size_t>(index)].file, quantity_));
-    volume::VolumeInfo info = volume->info;
-    if (selection_.range) {
-      info.range_min = selection_.range->min;
-      info.range_max = selection_.range->max;
-    }
-    Frame frame{{volume, info}, {}, {}, true};
-    if (scene_ && volume->grid.georeferenced) {
+    const std::filesystem::path& file = files_[static_cast<std::size_t>(index)].file;
+    Frame frame{holds_meshes_ ? readCells(file) : readVoxels(file), {}, {}, true};
+    if (scene_ && frame.grid().georeferenced) {
+      const double time_s = frame.info().time_s;
       const scenario::Snapshot snapshot =
-          scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), volume->info.time_s);
-      frame.markers = markersOf(snapshot, scene_->terrain.get(), volume->grid);
-      frame.tracks = tracks_.at(volume->info.time_s, *scene_, volume->grid);
+          scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), time_s);
+      frame.markers = markersOf(snapshot, scene_->terrain.get(), frame.grid());
+      frame.tracks = tracks_.at(time_s, *scene_, frame.grid());
     }
     return frame;
   }
@@ -156,16 +198,44 @@ class StoredFrames : public FrameSource {
  private:
   /// The files to be shown. @param quantity  as for volumeFilesOf()
   std::vector<VolumeFile> filesOf(std::string& quantity) const {
-    return chosenFiles(volumeFilesOf(selection_.input, quantity), selection_.times, selection_.first_only);
+    const auto list = holds_meshes_ ? meshFilesOf : volumeFilesOf;
+    return chosenFiles(list(selection_.input, quantity), selection_.times, selection_.first_only);
+  }
+
+  void setRange(volume::VolumeInfo& info) const {
+    if (!selection_.range) return;
+    info.range_min = selection_.range->min;
+    info.range_max = selection_.range->max;
+  }
+  ShownField readVoxels(const std::filesystem::path& file) const {
+    auto volume = std::make_shared<const volume::DenseVolume>(volume::readVolume(file, quantity_));
+    volume::VolumeInfo info = volume->info;
+    setRange(info);
+    return {{volume, info}, nullptr};
+  }
+  ShownField readCells(const std::filesystem::path& file) {
+    volume::MeshFile read = volume::readMesh(file, quantity_);
+    volume::MeshField& field = read.fields.front();
+    setRange(field.info);
+    if (mesh_ && sameMesh(*mesh_, *read.mesh)) {
+      field.mesh = mesh_;
+    } else {
+      mesh_ = read.mesh;
+      faces_ = read.faces;
+    }
+    return {{}, makeCellField(std::move(field), faces_)};
   }
 
   const StopFlag* const stop_;
   std::string quantity_;
   const FrameSelection selection_;
+  const bool holds_meshes_;
   std::vector<VolumeFile> files_;
   std::optional<LoadedScenario> scene_;
   std::string name_;
   PlatformTracks tracks_;
+  std::shared_ptr<const volume::TetrahedralMesh> mesh_;  ///< of the last file
+  std::shared_ptr<const volume::MeshFaces> faces_;
 };
 
 }  // namespace
@@ -195,16 +265,18 @@ namespace {
 
 std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const ComputeTarget& target,
                                        const ProgressSink& progress, const StopFlag* stop) {
-  switch (inputKindOf(selection.input)) {
+  const InputKind kind = inputKindOf(selection.input);
+  if (!selection.mesh.empty() && kind != InputKind::scenario) {
+    throw Error(ErrorCode::usage,
+                selection.input + " is no scenario: a mesh is that of a field to be computed");
+  }
+  switch (kind) {
     case InputKind::scenario:
       return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input, selection.edits),
                                               selection, target, progress, stop);
     case InputKind::volume:
-      return std::make_unique<StoredFrames>(selection, stop);
     case InputKind::mesh:
-      throw Error(
-          ErrorCode::usage,
-          selection.input + " holds fields on tetrahedra; pictures of them are drawn by emscape render");
+      return std::make_unique<StoredFrames>(selection, stop);
     default:
       throw Error(ErrorCode::usage, selection.input + " is neither a scenario nor a volume");
   }

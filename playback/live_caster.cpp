@@ -23,10 +23,6 @@ double between_ms(SteadyClock::time_point begin, SteadyClock::time_point end) {
   return std::chrono::duration<double, std::milli>(end - begin).count();
 }
 
-bool sameValues(const volume::Volume& a, const volume::Volume& b) {
-  return a.dense() == b.dense() && a.device() == b.device();
-}
-
 /// A size of 0 draws nothing, but a camera needs one.
 PictureStyle drawableStyle(PictureStyle style) {
   if (style.size.count() == 0) style.size = {1, 1};
@@ -88,7 +84,7 @@ void LiveCaster::run() {
       act(canDraw() ? controller_.next(now_ms())
                     : ControllerAction{ControllerAction::Kind::wait, {}, INFINITY});
     } catch (const std::exception& error) {
-      controller_ = render::FrameController(controller_options_);
+      controller_ = render::FrameController(controllerOptions());
       is_drawing_ = false;
       has_image_ = false;
       fail(failureLine(error));
@@ -174,25 +170,23 @@ void LiveCaster::applyView(const ViewRequest& request) {
   if (request.on_device.version != before.on_device.version) changeLabels();
   if (request.pattern.version != before.pattern.version) {
     controller_options_.pattern = request.pattern.value;
-    controller_.setOptions(controller_options_, now_ms());
+    controller_.setOptions(controllerOptions(), now_ms());
     raise(SceneEvent::mode);
   }
 }
 
 void LiveCaster::applyField(const FieldDelivery& delivery) {
   const bool is_first = !field_;
-  const auto nameOf = [](const FieldDelivery& of) { return of.frame.volume.info().quantity; };
+  const auto nameOf = [](const FieldDelivery& of) { return of.frame.info().quantity; };
   const bool is_other_quantity =
       field_ && (field_->quantity != delivery.quantity || nameOf(*field_) != nameOf(delivery));
-  const bool is_other_grid = field_ && field_->frame.volume.grid() != delivery.frame.volume.grid();
+  const bool is_other_grid = field_ && field_->frame.grid() != delivery.frame.grid();
   const scenario::TerrainPtr ground = field_ && field_->scene ? field_->scene->terrain : nullptr;
   const bool is_other_ground = ground != (delivery.scene ? delivery.scene->terrain : nullptr);
-  const bool is_same_field =
-      !is_first && !is_other_ground && sameValues(field_->frame.volume, delivery.frame.volume);
+  const bool is_same_field = !is_first && !is_other_ground && sameValues(field_->frame, delivery.frame);
   painter_.setScene(delivery.title, delivery.scene ? &*delivery.scene : nullptr);
   field_ = delivery;
   changeLabels();
-  if (!is_same_field) raise(is_other_grid ? SceneEvent::resized : SceneEvent::field);
   std::exception_ptr refused;
   try {
     painter_.setFrame(delivery.frame);
@@ -203,6 +197,8 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
       painter_.setFrame(delivery.frame);
     }
   }
+  if (is_first && delivery.frame.cells) controller_.setOptions(controllerOptions(), now_ms());
+  if (!is_same_field) raise(is_other_grid ? SceneEvent::resized : SceneEvent::field);
   if (is_other_quantity) {
     painter_.fitColors();
     range_.reset();
@@ -269,7 +265,14 @@ void LiveCaster::noteInput(Time since) {
 }
 
 bool LiveCaster::canDraw() const {
-  return field_ && view_.size.value.count() > 0;
+  return painter_.hasFrame() && view_.size.value.count() > 0;
+}
+
+render::ControllerOptions LiveCaster::controllerOptions() const {
+  render::ControllerOptions options = controller_options_;
+  if (field_ && field_->frame.cells && !options.pattern)
+    options.pattern = painter_.projectsCells() ? render::Pattern::columns : render::Pattern::full;
+  return options;
 }
 
 void LiveCaster::act(const ControllerAction& action) {
@@ -338,10 +341,10 @@ void LiveCaster::publish() {
   LivePicture picture;
   arena_.run([&] {
     const render::Pattern pattern = progress_.complete ? render::Pattern::full : drawn_.pattern;
-    const std::string note = pictureNote(painter_.renderer().settings(), pattern);
+    const std::string note = painter_.note(pattern);
     // The picture as it was cast takes a GPU longer to send: while it is busy the quantised one will do.
     finished_is_exact_ = progress_.complete && (controller_.state() != render::ControllerState::busy ||
-                                                painter_.renderer().backend() == Backend::cpu);
+                                                painter_.backend() == Backend::cpu);
     if (finished_is_exact_) {
       picture.finished = painter_.picture(note);
       painter_.fetch(picture.image);
@@ -354,14 +357,13 @@ void LiveCaster::publish() {
   });
   picture.size = painter_.size();
   const double labels_ms = watch.lap_ms();
-  const render::Renderer& renderer = painter_.renderer();
-  picture.camera = renderer.camera();
-  picture.box = renderer.sceneBox();
+  picture.camera = painter_.camera();
+  picture.box = painter_.sceneBox();
   picture.annotations = painter_.annotations();
-  picture.transfer = renderer.transferFunction();
-  picture.settings = renderer.settings();
+  picture.transfer = painter_.transferFunction();
+  picture.settings = painter_.settings();
   picture.range = range_;
-  picture.volume = field_->frame.volume;
+  static_cast<ShownField&>(picture) = field_->frame;
   if (field_->scene) {
     picture.scenario = field_->scene->scenario;
     picture.terrain = field_->scene->terrain;
@@ -371,8 +373,9 @@ void LiveCaster::publish() {
   status.pattern = drawn_.pattern;
   status.rays_fraction = static_cast<double>(drawn_.rays) / static_cast<double>(picture.size.count());
   status.cast_ms = drawn_.total_ms();
+  if (painter_.cellPicture()) status.cells = painter_.cellPicture()->text();
   status.labels_ms = labels_ms;
-  status.shown_s = picture.volume.info().time_s;
+  status.shown_s = picture.info().time_s;
   if (shown_input_) {
     status.input_to_picture_ms = between_ms(*shown_input_, SteadyClock::now());
     status.input_to_frame_ms = input_to_frame_ms_;

@@ -125,6 +125,9 @@ class LiveCaster {
   void noteInput(Time since);
   // Requests of the controller
   bool canDraw() const;
+  /// Tetrahedra have no patterns to choose from: pictures that are not complete are projected, or there are
+  /// none.
+  render::ControllerOptions controllerOptions() const;
   void act(const render::ControllerAction& action);
   void drawFrame(const render::FramePlan& plan);
   void restore();

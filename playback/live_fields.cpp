@@ -229,7 +229,7 @@ void LiveFields::doIdleWork(int index) {
     const Frame* cached = cache_.find(index);
     const Frame frame = cached ? *cached : compute(index);
     if (!search_left_.empty() && index == search_left_.back()) {
-      search_range_.add({frame.volume.info().range_min, frame.volume.info().range_max});
+      search_range_.add({frame.info().range_min, frame.info().range_max});
       search_left_.pop_back();
       if (search_left_.empty()) endSearch(search_range_);
     }

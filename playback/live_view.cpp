@@ -49,6 +49,7 @@ FrameSelection selectionOf(const std::string& input, const std::string& scenario
   FrameSelection selection;
   selection.input = input;
   selection.scenario = scenario;
+  selection.mesh = options.mesh;
   selection.quantity = options.quantity;
   selection.edits = options.edits;
   selection.compare = options.compare;

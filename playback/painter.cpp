@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
 #include "emscape/playback/scene.h"
 #include "playback/difference_source.h"
 
@@ -16,7 +18,21 @@ std::string subtitleOf(const volume::VolumeInfo& info) {
   return reference == info.extra.end() ? "" : "difference to " + reference->second;
 }
 
+constexpr std::pair<const char*, CellMethod> kCellMethods[] = {
+    {"auto", CellMethod::automatic}, {"march", CellMethod::march}, {"project", CellMethod::project}};
+
 }  // namespace
+
+CellMethod parseCellMethod(const std::string& name) {
+  for (const auto& [known, method] : kCellMethods) {
+    if (name == known) return method;
+  }
+  throw Error(ErrorCode::usage, "unknown way of drawing cells '" + name + "': expected auto, march, project");
+}
+
+std::string CellPicture::text() const {
+  return projected ? std::string("projected by ") + render::toString(sorting) : "marched";
+}
 
 Painter::Painter(const PictureStyle& style, const FrameSource& source, const ComputeTarget& target)
     : Painter(style, target) {
@@ -34,19 +50,41 @@ void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
   scene_ = scene ? std::optional(*scene) : std::nullopt;
 }
 
-void Painter::setFrame(const Frame& frame) {
-  const bool is_first_of_colors = !has_colors_;
-  if (is_first_of_colors) {
-    renderer_.setTransferFunction(functionFor(frame.volume));
-    has_colors_ = true;
+void Painter::prepareCells(const Frame& frame) {
+  if (!frame.cells || cells_) return;
+  auto cells = std::make_unique<render::CellRenderer>(renderer_.backend());
+  cells->setSettings(style_.settings);
+  if (has_colors_) cells->setTransferFunction(renderer_.transferFunction());
+  projects_ = style_.cells.method == CellMethod::project;
+  if (style_.cells.method == CellMethod::automatic && renderer_.backend() == Backend::cpu) {
+    try {
+      cells->prepareProjection();
+      projects_ = true;
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::device) throw;
+      logInfo(std::string("tetrahedra are marched, not projected: ") + error.what());
+    }
   }
-  const bool is_other_grid = !frame_ || frame_->volume.grid() != frame.volume.grid();
-  renderer_.setVolume(frame.volume);
+  cells_ = std::move(cells);
+}
+
+void Painter::setFrame(const Frame& frame) {
+  prepareCells(frame);
+  const bool is_first_of_colors = !has_colors_;
+  if (is_first_of_colors) onRenderer([&](auto& to) { to.setTransferFunction(functionFor(frame)); });
+  has_colors_ = true;
+  const bool is_other_grid = !frame_ || frame_->grid() != frame.grid();
+  if (frame.cells) {
+    cells_->setField(frame.cells->field, frame.cells->faces);
+  } else {
+    renderer_.setVolume(frame.volume);
+  }
   frame_ = frame;
-  annotations_.time = fmt::format("t = {:g} s", frame.volume.info().time_s);
-  annotations_.time_utc = frame.volume.info().time_utc;
-  annotations_.subtitle = subtitleOf(frame.volume.info());
-  annotations_.georeferenced = frame.volume.grid().georeferenced;
+  const volume::VolumeInfo& info = frame.info();
+  annotations_.time = fmt::format("t = {:g} s", info.time_s);
+  annotations_.time_utc = info.time_utc;
+  annotations_.subtitle = subtitleOf(info);
+  annotations_.georeferenced = frame.grid().georeferenced;
   setMarkers();
   setLegend();
   if (is_other_grid) setGround(nullptr);
@@ -60,11 +98,11 @@ void Painter::setFrame(const Frame& frame) {
 void Painter::setAzimuth(double azimuth_deg) {
   render::CameraSpec spec = style_.camera;
   spec.azimuth_deg = azimuth_deg;
-  renderer_.setCamera(cameraOf(spec));
+  onRenderer([&](auto& to) { to.setCamera(cameraOf(spec)); });
 }
 
 void Painter::setCamera(const render::CameraSpec& spec) {
-  if (frame_) renderer_.setCamera(cameraOf(spec));
+  if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(spec)); });
   style_.camera = spec;
 }
 
@@ -74,14 +112,16 @@ void Painter::setSize(render::ImageSize size) {
 }
 
 void Painter::setSettings(const render::RenderSettings& settings) {
+  if (cells_) render::checkCellSettings(settings);
   renderer_.setSettings(settings);
+  if (cells_) cells_->setSettings(settings);
   style_.settings = settings;
   setLegend();
   fitCamera();  // heights may be stretched otherwise
 }
 
 void Painter::setTransferFunction(const render::TransferFunction& function) {
-  renderer_.setTransferFunction(function);
+  onRenderer([&](auto& to) { to.setTransferFunction(function); });
   has_colors_ = true;
   setLegend();
 }
@@ -90,11 +130,11 @@ void Painter::fitColors() {
   style_.transfer.clear();
   style_.colors_span_range = false;
   has_colors_ = false;
-  if (frame_) setTransferFunction(functionFor(frame_->volume));
+  if (frame_) setTransferFunction(functionFor(*frame_));
 }
 
 void Painter::fitColors(const volume::ValueRange& range) {
-  volume::VolumeInfo info = frame_->volume.info();
+  volume::VolumeInfo info = frame_->info();
   info.range_min = range.min;
   info.range_max = range.max;
   setTransferFunction(render::defaultTransferFunction(info));
@@ -110,13 +150,42 @@ void Painter::showEmitters(bool show) {
   setMarkers();
 }
 
+render::FrameReport Painter::drawCells(bool is_complete, const StopFlag* stop) {
+  render::FrameReport frame;
+  CellPicture picture;
+  fetched_ = true;
+  if (projects_ && (!is_complete || style_.cells.method == CellMethod::project)) {
+    render::ProjectionOptions options = style_.cells.projection;
+    if (!is_complete) options.sorting = render::CellSorting::centroids;
+    render::ProjectionReport report;
+    image_ = cells_->project(style_.size, options, &report);
+    picture = {true, options.sorting, report.device, report.cells, report.cycles, report.sent_bytes};
+    frame.rays = style_.size.count();
+    frame.cast_ms = report.order_ms + report.draw_ms;
+  } else {
+    render::CellReport report;
+    image_ = cells_->render(style_.size, stop, &report);
+    frame.rays = style_.size.count();
+    frame.cast_ms = report.cast_ms;
+    frame.complete = report.complete;
+  }
+  cell_picture_ = picture;
+  return frame;
+}
+
 render::FrameReport Painter::draw(const render::FramePlan& plan, const StopFlag* stop) {
+  if (cells_) {
+    render::FrameReport report = drawCells(plan.pattern == render::Pattern::full, stop);
+    report.pattern = plan.pattern;
+    return report;
+  }
   // A picture in host memory need not be fetched.
   fetched_ = renderer_.backend() == Backend::cpu;
   return fetched_ ? renderer_.draw(plan, style_.size, image_, stop) : renderer_.draw(plan, style_.size, stop);
 }
 
 render::FrameReport Painter::restore(const StopFlag* stop) {
+  if (cells_) return drawCells(true, stop);
   fetched_ = renderer_.backend() == Backend::cpu;
   return fetched_ ? renderer_.restore(image_, stop) : renderer_.restore(stop);
 }
@@ -136,46 +205,73 @@ void Painter::fetch(render::Image8& picture) {
 }
 
 render::Image Painter::fullCast() {
+  if (cells_) {
+    render::Image kept = std::move(image_);
+    drawCells(true, nullptr);
+    return std::exchange(image_, std::move(kept));
+  }
   return renderer_.render(style_.size);
 }
 
 render::Image8 Painter::picture(const std::string& note) {
   annotations_.note = note;
-  return render::compose(image(), renderer_.camera(), renderer_.sceneBox(), annotations_,
-                         [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
+  return render::compose(image(), camera(), sceneBox(), annotations_,
+                         [this](const Vec3d& position_m) { return isHidden(position_m); });
 }
 
 render::Image8 Painter::annotated(const render::Image8& fetched, const std::string& note) {
   annotations_.note = note;
-  return render::compose(fetched, renderer_.camera(), renderer_.sceneBox(), annotations_,
-                         [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
+  return render::compose(fetched, camera(), sceneBox(), annotations_,
+                         [this](const Vec3d& position_m) { return isHidden(position_m); });
 }
 
 std::shared_ptr<const render::DevicePicture> Painter::annotatedOnDevice(const std::string& note) {
-  if (renderer_.backend() == Backend::cpu) return nullptr;
+  if (cells_ || renderer_.backend() == Backend::cpu) return nullptr;
   annotations_.note = note;
   render::drawLayers(layers_, style_.size, renderer_.camera(), renderer_.sceneBox(), annotations_,
                      [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
   return renderer_.compose(layers_);
 }
 
-render::TransferFunction Painter::functionFor(const volume::Volume& volume) const {
-  if (!style_.transfer.empty()) return render::readTransferFunction(style_.transfer, volume.info());
-  if (style_.function && !volume.info().categorical) {
-    render::requireUnitOf(*style_.function, volume.info());
+render::TransferFunction Painter::functionFor(const ShownField& field) const {
+  const volume::VolumeInfo& info = field.info();
+  if (!style_.transfer.empty()) return render::readTransferFunction(style_.transfer, info);
+  if (style_.function && !info.categorical) {
+    render::requireUnitOf(*style_.function, info);
     return *style_.function;
   }
-  return style_.colors_span_range ? render::defaultTransferFunction(volume.info())
-                                  : render::defaultTransferFunction(*volume.host());
+  return style_.colors_span_range ? render::defaultTransferFunction(info) : field.defaultColors();
+}
+
+const render::TransferFunction& Painter::transferFunction() const {
+  return cells_ ? cells_->transferFunction() : renderer_.transferFunction();
+}
+const render::Camera& Painter::camera() const {
+  return cells_ ? cells_->camera() : renderer_.camera();
+}
+render::SceneBox Painter::sceneBox() const {
+  return cells_ ? cells_->sceneBox() : renderer_.sceneBox();
+}
+bool Painter::isHidden(const Vec3d& frame_m) const {
+  return cells_ ? cells_->isHidden(frame_m) : renderer_.isHidden(frame_m);
+}
+
+std::string Painter::note(render::Pattern pattern) const {
+  const char* const mode = render::toString(style_.settings.mode);
+  if (frame_ && frame_->cells) {
+    return fmt::format("{}, {} tetrahedra{}", mode, frame_->cells->field.mesh->cells.size(),
+                       cell_picture_ ? ", " + cell_picture_->text() : "");
+  }
+  return fmt::format("{}, {} rays, step {:g} voxel", mode, render::toString(pattern),
+                     style_.settings.step_voxels);
 }
 
 render::Camera Painter::cameraOf(const render::CameraSpec& spec) const {
-  return render::makeCamera(spec, renderer_.sceneBox(), style_.size,
-                            render::overlayMargins(style_.size, annotations_));
+  return render::makeCamera(spec, sceneBox(), style_.size, render::overlayMargins(style_.size, annotations_));
 }
 
 void Painter::fitCamera() {
-  if (frame_) renderer_.setCamera(cameraOf(style_.camera));
+  if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(style_.camera)); });
 }
 
 void Painter::setGround() {
@@ -184,8 +280,8 @@ void Painter::setGround() {
 
 void Painter::setGround(const scenario::TerrainPtr& ground) {
   if (ground == ground_) return;
-  height_field_ = ground ? heightFieldOf(*ground, frame_->volume.grid()) : nullptr;
-  renderer_.setHeightField(height_field_);
+  height_field_ = ground ? heightFieldOf(*ground, frame_->grid()) : nullptr;
+  onRenderer([&](auto& to) { to.setHeightField(height_field_); });
   ground_ = ground;
 }
 
@@ -197,11 +293,11 @@ void Painter::setMarkers() {
 
 void Painter::setLegend() {
   if (!frame_) return;
-  annotations_.legend = render::legendOf(frame_->volume.info(), renderer_.transferFunction());
+  annotations_.legend = render::legendOf(frame_->info(), transferFunction());
   if (style_.settings.mode == render::CompositingMode::iso)
     annotations_.legend->iso_value = renderer_.isoValue();
-  if (scene_ && frame_->volume.info().categorical) {
-    annotations_.legend->categories = categoriesOf(frame_->volume.info(), *scene_->scenario);
+  if (scene_ && frame_->info().categorical) {
+    annotations_.legend->categories = categoriesOf(frame_->info(), *scene_->scenario);
   }
   const double space = render::overlayMargins(style_.size, annotations_).right;
   if (std::exchange(legend_space_, space) != space) fitCamera();

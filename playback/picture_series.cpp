@@ -1,19 +1,12 @@
 #include "emscape/playback/picture_series.h"
 
-#include <fmt/core.h>
-
 #include "emscape/playback/stop.h"
 #include "playback/background_writer.h"
 
 namespace emscape::playback {
 
-std::string pictureNote(const render::RenderSettings& settings, render::Pattern pattern) {
-  return fmt::format("{}, {} rays, step {:g} voxel", render::toString(settings.mode),
-                     render::toString(pattern), settings.step_voxels);
-}
-
 double drawPictures(FrameSource& source, Painter& painter, const render::FramePlan& plan,
-                    const std::string& note, const std::vector<std::unique_ptr<PictureSink>>& sinks,
+                    const std::vector<std::unique_ptr<PictureSink>>& sinks,
                     const std::function<void(int)>& done, const StopFlag* stop) {
   double cast_ms = 0;
   BackgroundWriter writer(2);  // PNG and video are packed while the next picture is cast
@@ -22,7 +15,7 @@ double drawPictures(FrameSource& source, Painter& painter, const render::FramePl
     if (index > 0) painter.setFrame(source.frame(index));
     cast_ms += painter.draw(plan, stop).total_ms();
     throwIfStopped(stop);
-    writer.push([&sinks, index, picture = painter.picture(note)] {
+    writer.push([&sinks, index, picture = painter.picture(painter.note(plan.pattern))] {
       for (const auto& sink : sinks) sink->add(index + 1, picture, 1);
     });
     if (done) done(index + 1);

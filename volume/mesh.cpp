@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string>
 
@@ -294,6 +295,15 @@ void setRangeFromValues(MeshField& field) {
   }
   field.info.range_min = min <= max ? min : field.info.floor;
   field.info.range_max = min <= max ? max : field.info.floor;
+}
+
+DenseVolume valuesOf(const MeshField& field) {
+  DenseVolume volume;
+  volume.info = field.info;
+  std::copy_if(field.values.begin(), field.values.end(), std::back_inserter(volume.values),
+               [](float value) { return !std::isnan(value); });
+  volume.grid.dims = {static_cast<int>(volume.values.size()), 1, 1};
+  return volume;
 }
 
 }  // namespace emscape::volume

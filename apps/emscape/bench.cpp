@@ -7,6 +7,7 @@ void addBench(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* bench = app.add_subcommand("bench", "Measure speed, and the error of interpolated pixels");
   bench->fallthrough();
   bench->require_subcommand(1);
+  addBenchCells(*bench, global, action);
   addBenchCoverage(*bench, global, action);
   addBenchField(*bench, global, action);
   addBenchMarch(*bench, global, action);

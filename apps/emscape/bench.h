@@ -5,6 +5,7 @@
 
 namespace emscape::app {
 
+void addBenchCells(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchCoverage(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action);
 void addBenchMarch(CLI::App& bench, const GlobalOptions& global, Action& action);

@@ -21,13 +21,6 @@ struct BenchRenderOptions {
   int frames = 20;
 };
 
-/// Composited on black.
-render::Image8 onBlack(const render::Image& image) {
-  render::Image8 picture = render::quantize(image);
-  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
-  return picture;
-}
-
 int benchRender(const BenchRenderOptions& options, const GlobalOptions& global) {
   const render::FramePlan plan{render::parsePattern(options.rays),
                                render::parseInterpolation(options.interpolate), options.tolerance_levels};
@@ -44,7 +37,7 @@ int benchRender(const BenchRenderOptions& options, const GlobalOptions& global) 
     wall_ms.push_back(duration.wall_ms);
     cpu_ms.push_back(duration.cpu_ms);
   }
-  if (!options.picture.empty()) render::writePng(options.picture, onBlack(scene.image()));
+  if (!options.picture.empty()) writeOnBlack(options.picture, scene.image());
 
   const render::RayLoad load = scene.loadOf(render::sourceLattices(render::Pattern::full, scene.size()));
   const double gsamples_per_s = static_cast<double>(load.samples) / medianOf(times_ms) / 1e6;

@@ -26,15 +26,26 @@ render::RenderSettings settingsOf(const BenchSceneOptions& options) {
   return settings;
 }
 
-/// One function for all volumes, so that measurements can be compared.
-render::TransferFunction functionFor(const volume::VolumeInfo& info, const std::string& file) {
+/// @param work  -> render::FrameReport
+template <class Work>
+Duration durationOf(const ComputeTarget& target, const Work& work) {
+  const std::clock_t cpu_begin = std::clock();
+  Stopwatch watch;
+  const render::FrameReport report = work();
+  const double wall_ms = watch.lap_ms();
+  return {target.onGpu() ? report.total_ms() : wall_ms, wall_ms,
+          1000.0 * static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC};
+}
+
+}  // namespace
+
+render::TransferFunction benchFunction(const volume::VolumeInfo& info, const std::string& file) {
   if (!file.empty()) return render::readTransferFunction(file, info);
   const bool has_range = info.range_max > info.range_min;
   if (info.categorical || !has_range) return render::defaultTransferFunction(info);
   return render::parseTransferFunction(kPaperTransfer, "scenarios/transfer/paper.json", info);
 }
 
-/// A camera rotated clockwise, as seen from above, about the vertical through its target.
 render::CameraSpec turned(render::CameraSpec spec, double angle_deg) {
   if (spec.kind == render::CameraSpec::Kind::orbit) {
     spec.azimuth_deg = std::remainder(spec.azimuth_deg + angle_deg, 360.0);
@@ -48,22 +59,16 @@ render::CameraSpec turned(render::CameraSpec spec, double angle_deg) {
   return spec;
 }
 
-/// @param work  -> render::FrameReport
-template <class Work>
-Duration durationOf(const ComputeTarget& target, const Work& work) {
-  const std::clock_t cpu_begin = std::clock();
-  Stopwatch watch;
-  const render::FrameReport report = work();
-  const double wall_ms = watch.lap_ms();
-  return {target.onGpu() ? report.total_ms() : wall_ms, wall_ms,
-          1000.0 * static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC};
+void writeOnBlack(const std::string& file, const render::Image& image) {
+  render::Image8 picture = render::quantize(image);
+  for (std::size_t i = 3; i < picture.rgba.size(); i += 4) picture.rgba[i] = 255;
+  render::writePng(file, picture);
 }
 
 Json triple(const Vec3d& v) {
   return {v.x, v.y, v.z};
 }
 
-/// In drawn coordinates, as in render::Camera.
 Json cameraJson(const render::Camera& camera) {
   return {
       {"projection", camera.projection == render::Projection::perspective ? "perspective" : "orthographic"},
@@ -83,8 +88,6 @@ Json transferJson(const render::TransferFunction& function) {
   return {{"name", function.name}, {"colors", colors}, {"opacities", opacities}};
 }
 
-}  // namespace
-
 BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& global,
                        const ComputeTarget& target)
     : target_(target),
@@ -102,7 +105,7 @@ BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& gl
   volume_ = source->frame(0).volume;
   logWarnings(source->warnings());
   renderer_.setVolume(volume_);
-  renderer_.setTransferFunction(functionFor(volume_.info(), options.transfer));
+  renderer_.setTransferFunction(benchFunction(volume_.info(), options.transfer));
   turnTo(0);
 }
 

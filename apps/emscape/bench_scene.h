@@ -27,6 +27,18 @@ struct BenchSceneOptions {
   bool skip_empty = true;
 };
 
+/// scenarios/transfer/paper.json for all fields, so that measurements can be compared, or that of a file.
+render::TransferFunction benchFunction(const volume::VolumeInfo& info, const std::string& file);
+/// A camera rotated clockwise, as seen from above, about the vertical through its target.
+render::CameraSpec turned(render::CameraSpec spec, double angle_deg);
+/// With the picture on black.
+void writeOnBlack(const std::string& file, const render::Image& image);
+
+Json triple(const Vec3d& v);
+/// In drawn coordinates, as in render::Camera.
+Json cameraJson(const render::Camera& camera);
+Json transferJson(const render::TransferFunction& function);
+
 void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options);
 void addToleranceOption(CLI::App& command, double& tolerance_levels);
 

@@ -48,4 +48,27 @@ void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes) {
       ->allow_extra_args(false);
 }
 
+void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& cells) {
+  command.add_option(
+      "--mesh", mesh,
+      "terrain:LAYERS[,FIRST_M[,RATIO]]: a scenario's field on tetrahedra that follow the ground, "
+      "as simulate computes it");
+  const auto addChoice = [&command](const std::string& name, const std::string& help, const auto& take,
+                                    const std::vector<std::string>& names) {
+    command.add_option_function<std::string>(name, take, help)->check(CLI::IsMember(names));
+  };
+  addChoice("--cells",
+            "Tetrahedra are marched, or projected by OpenGL; auto: pictures that are complete are marched",
+            [&cells](const std::string& name) { cells.method = playback::parseCellMethod(name); },
+            {"auto", "march", "project"});
+  addChoice("--cell-order", "Of projected cells; default: visibility",
+            [&cells](const std::string& name) { cells.projection.sorting = render::parseCellSorting(name); },
+            {"centroids", "visibility"});
+  addChoice(
+      "--cell-perspective",
+      "How projection finds where a ray leaves a cell: exact, or as it was published; default: exact",
+      [&cells](const std::string& name) { cells.projection.projection = render::parseCellProjection(name); },
+      {"published", "exact"});
+}
+
 }  // namespace emscape::app

@@ -8,6 +8,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/progress.h"
+#include "emscape/playback/painter.h"
 #include "emscape/render/cut_plane.h"
 #include "emscape/scenario/edit.h"
 
@@ -42,6 +43,10 @@ void addCompareOption(CLI::App& command, std::string& compare, const std::string
 /// --plane, which may be given several times; replaces what `planes` holds. @throws Error (usage) when it is
 /// parsed, for a text that is not a plane and for too many
 void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes);
+
+/// --mesh, --cells, --cell-order and --cell-perspective, of pictures.
+/// @throws Error (usage) when they are parsed
+void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& cells);
 
 /// Runs the subcommand that was chosen; returns the exit status.
 using Action = std::function<int()>;

@@ -18,7 +18,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frame_source.h"
-#include "emscape/playback/mesh_pictures.h"
+#include "emscape/playback/inputs.h"
 #include "emscape/playback/painter.h"
 #include "emscape/playback/picture_series.h"
 #include "emscape/playback/picture_sink.h"
@@ -44,6 +44,7 @@ using playback::ViewState;
 struct RenderOptions {
   const CLI::App* command = nullptr;
   playback::FrameSelection selection;
+  playback::CellStyle cells;
   std::vector<std::string> outputs;
   std::string state;
   std::string save_state;
@@ -111,6 +112,7 @@ ViewState viewOf(const RenderOptions& options) {
 PictureStyle styleOf(const ViewState& view, const RenderOptions& options) {
   PictureStyle style = playback::pictureStyleOf(view);
   style.transfer = options.transfer;
+  style.cells = options.cells;
   return style;
 }
 
@@ -134,6 +136,35 @@ playback::FrameSelection selectionOf(const ViewState& view, const RenderOptions&
     }
   }
   return selection;
+}
+
+bool drawsTetrahedra(const RenderOptions& options) {
+  const std::string& input = options.selection.input;
+  return !options.selection.mesh.empty() ||
+         (std::filesystem::exists(input) && playback::inputKindOf(input) == playback::InputKind::mesh);
+}
+
+/// @throws Error (usage) for options without an effect on what is drawn
+void checkMeshOptions(const RenderOptions& options, const ViewState& view) {
+  const bool has_cells = drawsTetrahedra(options);
+  const auto refuseAll = [&](std::initializer_list<const char*> names, const std::string& why) {
+    for (const char* name : names) {
+      if (options.command->count(name) > 0) throw Error(ErrorCode::usage, name + why);
+    }
+  };
+  if (!has_cells) {
+    return refuseAll({"--cells", "--cell-order", "--cell-perspective"},
+                     ": has no effect on volumes; with --mesh a scenario is computed on tetrahedra");
+  }
+  render::checkCellSettings(view.settings);
+  refuseAll({"--realtime", "--interpolate", "--step", "--mida-gamma", "--iso-value", "--iso-opacity",
+             "--device-volume", "--compare"},
+            ": has no effect on a field on tetrahedra");
+  if (options.rays != "auto" && options.rays != "full") {
+    throw Error(ErrorCode::usage,
+                "--rays " + options.rays + ": has no effect on a field on tetrahedra, all pixels are cast");
+  }
+  if (!view.compare.empty()) throw Error(ErrorCode::usage, "comparison: has no effect on tetrahedra");
 }
 
 using Sinks = std::vector<std::unique_ptr<PictureSink>>;
@@ -164,7 +195,7 @@ Stage openStage(const playback::FrameSelection& selection, const RenderOptions& 
     stage.painter = std::make_unique<Painter>(style, *stage.source, target);
     const playback::Frame frame = stage.source->frame(0);
     stage.painter->setFrame(frame);
-    const volume::VolumeInfo& info = frame.volume.info();
+    const volume::VolumeInfo& info = frame.info();
     if (info.range_min < info.range_max) stage.range = {info.range_min, info.range_max};
     return stage;
   });
@@ -174,7 +205,7 @@ Stage openStage(const playback::FrameSelection& selection, const RenderOptions& 
 void saveState(const RenderOptions& options, ViewState view, const Stage& stage) {
   if (options.save_state.empty()) return;
   view.time_s = stage.source->time_s(0);
-  view.transfer = stage.painter->renderer().transferFunction();
+  view.transfer = stage.painter->transferFunction();
   view.range = stage.range;
   const playback::LoadedScenario* scene = stage.source->scene();
   view.edits = scene != nullptr ? scene->scenario->edits() : std::vector<scenario::Edit>{};
@@ -182,11 +213,24 @@ void saveState(const RenderOptions& options, ViewState view, const Stage& stage)
   logInfo("wrote " + options.save_state);
 }
 
+/// Of the last picture.
+Json cellsJson(const playback::CellPicture& picture) {
+  Json json{{"drawn", picture.text()}};
+  if (picture.projected) {
+    json.update({{"device", picture.device},
+                 {"tetrahedra", picture.cells},
+                 {"cycles", picture.cycles},
+                 {"sent_bytes", picture.sent_bytes}});
+  }
+  return json;
+}
+
 int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   if (options.outputs.empty() && options.save_state.empty()) {
     throw Error(ErrorCode::usage, "--output is required (but for --realtime and --save-state)");
   }
   const ViewState view = viewOf(options);
+  checkMeshOptions(options, view);
   const PictureStyle style = styleOf(view, options);
   const std::string mode = render::toString(view.settings.mode);
   // For files `auto` casts every pixel.
@@ -209,68 +253,25 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   {
     Progress progress(global, "drawing");
     cast_ms = playback::drawPictures(
-        *source, painter, plan, playback::pictureNote(view.settings, plan.pattern), sinks,
+        *source, painter, plan, sinks,
         [&](int pictures) { progress.show(static_cast<double>(pictures) / source->count()); }, &stopFlag());
   }
   logWarnings(source->warnings());
 
   const double seconds = watch.lap_ms() / 1000;
   if (global.json) {
-    printJson({{"device", stage.target.device()},
-               {"size", {style.size.width, style.size.height}},
-               {"mode", mode},
-               {"frames", source->count()},
-               {"outputs", options.outputs},
-               {"cast_ms", cast_ms},
-               {"seconds", seconds}});
+    Json json{{"device", stage.target.device()},
+              {"size", {style.size.width, style.size.height}},
+              {"mode", mode},
+              {"frames", source->count()},
+              {"outputs", options.outputs},
+              {"cast_ms", cast_ms},
+              {"seconds", seconds}};
+    if (painter.cellPicture()) json["cells"] = cellsJson(*painter.cellPicture());
+    printJson(json);
   } else {
     logInfo(fmt::format("{} picture{} in {:.1f} s: {}", source->count(), source->count() == 1 ? "" : "s",
                         seconds, fmt::format("{}", fmt::join(options.outputs, ", "))));
-  }
-  return 0;
-}
-
-/// @throws Error (usage) for options that have no effect on fields on tetrahedra
-void requireMeshOptions(const RenderOptions& options, const ViewState& view) {
-  const auto refuse = [&](const std::string& what) {
-    throw Error(ErrorCode::usage,
-                fmt::format("{}: has no effect on {}, a field on tetrahedra", what, options.selection.input));
-  };
-  for (const char* name : {"--realtime", "--save-state", "--interpolate", "--step", "--mida-gamma",
-                           "--iso-value", "--iso-opacity", "--device-volume", "--allow-missing-terrain"}) {
-    if (options.command->count(name) > 0) refuse(name);
-  }
-  if (options.rays != "auto" && options.rays != "full") refuse("--rays " + options.rays);
-  if (!view.compare.empty()) refuse("--compare");
-}
-
-int renderMeshes(const RenderOptions& options, const GlobalOptions& global) {
-  const ViewState view = viewOf(options);
-  requireMeshOptions(options, view);
-  if (options.outputs.empty()) throw Error(ErrorCode::usage, "--output is required");
-  const PictureStyle style = styleOf(view, options);
-  Stopwatch watch;
-  playback::MeshPictures pictures(selectionOf(view, options), style, parseBackend(global.backend),
-                                  &stopFlag());
-  const Sinks sinks =
-      openSinks(options, style, pictures.name(), pictures.count(), options.frames_per_s.value_or(10));
-  {
-    Progress progress(global, "drawing");
-    playback::drawPictures(pictures, sinks,
-                           [&](int drawn) { progress.show(static_cast<double>(drawn) / pictures.count()); });
-  }
-  const double seconds = watch.lap_ms() / 1000;
-  if (global.json) {
-    printJson({{"device", toString(pictures.backend())},
-               {"size", {style.size.width, style.size.height}},
-               {"mode", "dvr"},
-               {"frames", pictures.count()},
-               {"outputs", options.outputs},
-               {"cast_ms", pictures.cast_ms()},
-               {"seconds", seconds}});
-  } else {
-    logInfo(fmt::format("{} picture{} in {:.1f} s: {}", pictures.count(), pictures.count() == 1 ? "" : "s",
-                        seconds, fmt::join(options.outputs, ", ")));
   }
   return 0;
 }
@@ -292,6 +293,7 @@ RealTimeOptions realTimeOptionsOf(const RenderOptions& options) {
 
 int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   const ViewState view = viewOf(options);
+  checkMeshOptions(options, view);
   const PictureStyle style = styleOf(view, options);
   const RealTimeOptions loop_options = realTimeOptionsOf(options);
   if (loop_options.orbit_rate_deg_s != 0 && style.camera.kind != render::CameraSpec::Kind::orbit) {
@@ -381,7 +383,8 @@ Examples:
   emscape render scenarios/jacksboro.yaml -o cut.png --plane vertical:bearing_deg=60 --plane horizontal:altitude_m=3000
   emscape render out/jacksboro.pvd -o film.mp4 --scenario scenarios/jacksboro.yaml
   emscape render engine_256x256x110_uint8.raw -o engine.png --mode mida
-  emscape render out/jacksboro_0001.vtu -o mesh.png --scenario scenarios/jacksboro.yaml
+  emscape render scenarios/jacksboro.yaml -o mesh.png --mesh terrain:32,4
+  emscape render out/jacksboro_0001.vtu -o mesh.png --scenario scenarios/jacksboro.yaml --cells project
   emscape render scenarios/jacksboro.yaml --realtime --size 1200x900 --fps 25 --orbit-rate 10)");
   auto options = std::make_shared<RenderOptions>();
   options->command = command;
@@ -442,13 +445,11 @@ Examples:
   command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off");
   command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,
                     "Compute although elevation data is missing; the holes are drawn as such");
+  addMeshOptions(*command, options->selection.mesh, options->cells);
   addDeviceVolumeOption(*command, options->device_volume);
   addRealTimeOptions(*command, *options);
   command->callback([options, &global, &action] {
     action = [options, &global] {
-      const std::string& input = options->selection.input;
-      if (std::filesystem::exists(input) && playback::holdsMeshes(input))
-        return renderMeshes(*options, global);
       return options->realtime ? playInRealTime(*options, global) : renderPictures(*options, global);
     };
   });

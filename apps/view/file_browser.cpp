@@ -39,6 +39,7 @@ FileKind fileKindOf(const fs::path& file, bool is_folder) {
       case playback::InputKind::scenario:
         return FileKind::scenario;
       case playback::InputKind::volume:
+      case playback::InputKind::mesh:
         return FileKind::volume;
       default:
         return FileKind::other;

@@ -3,12 +3,15 @@
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <optional>
 
 #include "apps/view/app.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
+#include "emscape/emfield/terrain_mesh.h"
 #include "emscape/playback/inputs.h"
+#include "emscape/render/cell_renderer.h"
 #include "emscape/scenario/scenario_file.h"
 
 namespace emscape::view {
@@ -27,8 +30,15 @@ void show(const ViewOptions& options) {
   setThreadLimit(options.threads);
   std::signal(SIGPIPE, SIG_IGN);  // if ffmpeg has ended, the write fails
   // A wrong name, and all faults of a scenario, are reported before a window appears.
-  if (!options.input.empty() && playback::inputKindOf(options.input) == playback::InputKind::scenario &&
-      !scenario::parseScenario(options.input, options.view.edits).scenario) {
+  using playback::InputKind;
+  const std::optional<InputKind> kind =
+      options.input.empty() ? std::nullopt : std::optional(playback::inputKindOf(options.input));
+  if (!options.mesh.empty()) {
+    emfield::parseTerrainMesh(options.mesh);
+    if (kind != InputKind::scenario) throw Error(ErrorCode::usage, "--mesh: INPUT must be a scenario");
+  }
+  if (!options.mesh.empty() || kind == InputKind::mesh) render::checkCellSettings(options.view.settings);
+  if (kind == InputKind::scenario && !scenario::parseScenario(options.input, options.view.edits).scenario) {
     scenario::loadScenario(options.input, options.view.edits);
   }
   App(options).run();

@@ -59,8 +59,11 @@ void checkInput(const ViewOptions& options, Opening& opening) {
       }
       break;
     case playback::InputKind::mesh:
-      throw Error(ErrorCode::bad_input, {options.input, 0, 0},
-                  "holds fields on tetrahedra, which the window does not show; emscape render draws them");
+      render::checkCellSettings(options.view.settings);
+      if (!options.scenario.empty()) {
+        checkScenario(options.scenario, opening.options.view.edits, opening.left_out);
+      }
+      break;
     case playback::InputKind::elevation:
     case playback::InputKind::antenna:
       throw Error(ErrorCode::bad_input, {options.input, 0, 0},
@@ -94,6 +97,7 @@ Opening prepareOpening(const OpenRequest& request, const ViewOptions& present) {
       options.offers_kept_view = false;
       break;
     case Content::input:
+      if (request.file != present.input) options.mesh.clear();  // chosen for that scenario
       options.input = request.file;
       options.scenario = request.scenario;
       options.state.clear();

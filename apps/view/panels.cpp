@@ -64,10 +64,14 @@ bool isEnabled(const Session& session, const std::string& name) {
 std::string statusText(const Session& session, float room) {
   const playback::LiveStatus& status = session.status();
   std::vector<std::string> parts;
-  if (volume::isDifference(session.picture()->volume.info())) parts.emplace_back("DIFFERENCE");
+  if (volume::isDifference(session.picture()->info())) parts.emplace_back("DIFFERENCE");
   parts.emplace_back(session.exact() ? "exact" : "approximate");
-  parts.push_back(fmt::format("{}{}, {:.0f} % of rays", session.pattern() ? "" : "auto: ",
-                              render::toString(status.pattern), 100 * status.rays_fraction));
+  if (status.cells.empty()) {
+    parts.push_back(fmt::format("{}{}, {:.0f} % of rays", session.pattern() ? "" : "auto: ",
+                                render::toString(status.pattern), 100 * status.rays_fraction));
+  } else {
+    parts.push_back(status.cells);
+  }
   parts.push_back(fmt::format("cast {:.0f} ms", status.cast_ms));
   if (status.field_ms > 0) parts.push_back(fmt::format("field {:.0f} ms", status.field_ms));
   parts.push_back(status.device);

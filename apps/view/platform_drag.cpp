@@ -50,7 +50,7 @@ std::optional<std::vector<scenario::Edit>> PlatformDrag::moveTo(const playback::
                                  picture.settings.planes)
           : playback::pickLevel(picture.camera, picture.box, picture.size, at_x, at_y, grip_m_.z);
   if (!position_m || !picture.scenario) return std::nullopt;
-  const GeodeticPosition position = GeoFrame(picture.volume.grid().frame).toGeodetic(*position_m);
+  const GeodeticPosition position = GeoFrame(picture.grid().frame).toGeodetic(*position_m);
   return movesOf(*picture.scenario, platform_, position.latitude_deg, position.longitude_deg);
 }
 

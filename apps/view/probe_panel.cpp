@@ -165,7 +165,7 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
   ImGui::TextWrapped("%s", render::unitText(reading.text).c_str());
   ImGui::PopStyleColor();
   ImGui::SetWindowFontScale(1);
-  const std::string& unit = context.session.picture()->volume.info().unit;
+  const std::string& unit = context.session.picture()->info().unit;
   ImGui::TextDisabled("%s", render::quantityTitle(result.quantity, unit).c_str());
   drawPlace(result, theme, context.scale);
   if (reading.emitters.empty()) return;

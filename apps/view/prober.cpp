@@ -19,8 +19,7 @@ constexpr double kAboveGround_m = 10;  // where the cursor is on the ground
 
 /// True if a point that is held must be read again.
 bool isOtherField(const playback::LivePicture& a, const playback::LivePicture& b) {
-  return a.volume.dense() != b.volume.dense() || a.volume.device() != b.volume.device() ||
-         a.volume.info().time_s != b.volume.info().time_s || a.scenario != b.scenario;
+  return !sameValues(a, b) || a.info().time_s != b.info().time_s || a.scenario != b.scenario;
 }
 
 }  // namespace
@@ -34,8 +33,8 @@ class Prober::Reader {
     answer.lock = question.lock;
     ProbeResult& result = answer.result;
     result.scenario = picture.scenario;
-    result.quantity = picture.volume.info().quantity;
-    result.time_s = picture.volume.info().time_s;
+    result.quantity = picture.info().quantity;
+    result.time_s = picture.info().time_s;
     try {
       const volume::DenseVolume& volume = hostOf(question.picture);
       std::optional<Vec3d> position_m = question.position_m;
@@ -63,6 +62,7 @@ class Prober::Reader {
 
  private:
   const volume::DenseVolume& hostOf(const PicturePtr& picture) {
+    if (picture->cells) throw Error(ErrorCode::usage, "fields on tetrahedra are not probed");
     if (!picture_ || isOtherField(*picture_, *picture)) host_ = picture->volume.host();
     picture_ = picture;
     return *host_;

@@ -27,8 +27,7 @@ void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(i
   painter.setFrame(source->frame(0));
   const render::FramePlan plan{render::Pattern::full, {}};
   playback::drawPictures(
-      *source, painter, plan, playback::pictureNote(job.style.settings, plan.pattern), sinks,
-      [&](int pictures) { done(pictures, source->count()); }, &stop);
+      *source, painter, plan, sinks, [&](int pictures) { done(pictures, source->count()); }, &stop);
 }
 
 bool isVideo(const std::string& output) {

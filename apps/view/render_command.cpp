@@ -17,13 +17,15 @@ using playback::shellWord;
 std::string beginOf(const ViewOptions& options) {
   std::string text = "emscape render " + shellWord(options.input);
   if (!options.scenario.empty()) text += " --scenario " + shellWord(options.scenario);
+  if (!options.mesh.empty()) text += " --mesh " + options.mesh;
+  if (options.cells.method == playback::CellMethod::project) text += " --cells project";
   if (options.allow_missing_terrain) text += " --allow-missing-terrain";
   return text;
 }
 
 /// The colours that `render` fits without a transfer function.
-render::TransferFunction fittedColors(const playback::ViewState& view, const volume::Volume& shown) {
-  if (!view.range) return render::defaultTransferFunction(*shown.host());
+render::TransferFunction fittedColors(const playback::ViewState& view, const playback::ShownField& shown) {
+  if (!view.range) return shown.defaultColors();
   volume::VolumeInfo info = shown.info();
   info.range_min = view.range->min;
   info.range_max = view.range->max;
@@ -41,7 +43,7 @@ std::string writeColors(const render::TransferFunction& function, const std::str
   return file.string();
 }
 
-std::string colorOptions(const playback::ViewState& view, const volume::Volume& shown) {
+std::string colorOptions(const playback::ViewState& view, const playback::ShownField& shown) {
   const std::string range = view.range ? fmt::format(" --range={}:{}", view.range->min, view.range->max) : "";
   if (!view.transfer || view.transfer->categorical) return range;
   const std::string text = render::transferFunctionText(*view.transfer);
@@ -72,7 +74,7 @@ std::string renderCommand(const ViewOptions& options, const std::string& state_f
 }
 
 std::string renderCommand(const ViewOptions& options, const playback::ViewState& view,
-                          const volume::Volume& shown) {
+                          const playback::ShownField& shown) {
   std::string text = beginOf(options) + " --camera " + shellWord(render::toString(view.camera)) +
                      fmt::format(" --times {}", view.time_s) + settingOptions(view.settings);
   if (!view.quantity.empty()) text += " --quantity " + shellWord(view.quantity);

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/view/view_options.h"
-#include "emscape/volume/volume.h"
+#include "emscape/playback/shown_field.h"
 
 namespace emscape::view {
 
@@ -13,9 +13,9 @@ std::string renderCommand(const ViewOptions& options, const std::string& state_f
 
 /// The same with the options that describe the view, and --set for its edits. Colours that `render` would not
 /// fit itself are written to a file in stateFolder()/copied.
-/// @param shown  the volume on screen
+/// @param shown  the field on screen
 /// @throws Error (other) if that file cannot be written
 std::string renderCommand(const ViewOptions& options, const playback::ViewState& view,
-                          const volume::Volume& shown);
+                          const playback::ShownField& shown);
 
 }  // namespace emscape::view

@@ -6,6 +6,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/overlay.h"
+#include "emscape/render/cell_renderer.h"
 
 namespace emscape::view {
 namespace {
@@ -20,6 +21,7 @@ playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::
   live.allow_missing_terrain = options.allow_missing_terrain;
   live.quantity = options.view.quantity;
   live.edits = options.view.edits;
+  live.mesh = options.mesh;
   live.compare = options.view.compare;
   live.time_s = options.view.time_s;
   live.niceness = kNiceness;
@@ -30,6 +32,7 @@ playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::
 playback::PictureStyle styleOf(const ViewOptions& options) {
   playback::PictureStyle style = playback::pictureStyleOf(options.view);
   style.transfer = options.transfer;
+  style.cells = options.cells;
   style.size = {};
   return style;
 }
@@ -215,6 +218,13 @@ void Session::cameraMoved() {
 }
 
 void Session::setSettings(const render::RenderSettings& settings) {
+  if (picture_ && picture_->cells) {
+    try {
+      render::checkCellSettings(settings);
+    } catch (const Error& error) {
+      return tell(error.what(), true);
+    }
+  }
   settings_ = settings;
   if (settings.mode != render::CompositingMode::iso) fog_mode_ = settings.mode;
   live_.setSettings(settings);

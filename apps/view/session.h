@@ -124,6 +124,7 @@ class Session {
   void cameraMoved();
   const playback::Timeline& timeline() const { return timeline_; }
   const render::RenderSettings& settings() const { return settings_; }
+  /// Those that the field on screen does not have become a notice.
   void setSettings(const render::RenderSettings& settings);
   /// A plane through the middle of the box; a vertical one faces the viewer.
   render::CutPlane newPlane(render::CutPlane::Kind kind) const;

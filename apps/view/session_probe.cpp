@@ -12,7 +12,7 @@ namespace {
 
 /// The position in the picture's frame that a command names by latitude, longitude and a height.
 Vec3d positionOf(const Command& command, const playback::LivePicture& picture) {
-  if (!picture.volume.grid().georeferenced) {
+  if (!picture.grid().georeferenced) {
     throw Error(ErrorCode::bad_input, "probe: the volume has no position on the earth; give x and y");
   }
   const double latitude_deg = command.number("latitude_deg"), longitude_deg = command.number("longitude_deg");
@@ -31,7 +31,7 @@ Vec3d positionOf(const Command& command, const playback::LivePicture& picture) {
     }
     height_msl_m = ground_m + command.number("height_agl_m");
   }
-  return GeoFrame(picture.volume.grid().frame)
+  return GeoFrame(picture.grid().frame)
       .toLocal({latitude_deg, longitude_deg, height_msl_m + geoidUndulation_m(latitude_deg, longitude_deg)});
 }
 

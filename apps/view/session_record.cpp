@@ -15,6 +15,7 @@ void Session::record(const RecordRange& range, const std::string& output) {
   RecordJob job;
   job.selection.input = options_.input;
   job.selection.scenario = options_.scenario;
+  job.selection.mesh = options_.mesh;
   job.selection.quantity = view.quantity;
   job.selection.edits = view.edits;
   job.selection.range = view.range;
@@ -23,6 +24,7 @@ void Session::record(const RecordRange& range, const std::string& output) {
   job.selection.independent = true;  // each picture is that of the window at its time
   job.selection.times = recordTimes(range);
   job.style = playback::pictureStyleOf(view);
+  job.style.cells = options_.cells;
   job.target = target_;
   job.frames_per_s = range.frames_per_s;
   job.output = output;

@@ -19,6 +19,7 @@ Json Session::report() const {
               {"state", render::toString(status_.state)},
               {"pattern", render::toString(status_.pattern)},
               {"rays_fraction", rounded(status_.rays_fraction, 1e-4)},
+              {"cells", status_.cells},
               {"cast_ms", rounded(status_.cast_ms, 1e-2)},
               {"labels_ms", rounded(status_.labels_ms, 1e-2)},
               {"field_ms", rounded(status_.field_ms, 1e-2)},
@@ -66,7 +67,7 @@ Json Session::report() const {
               {"scale", window_.scale()}};
   if (picture_) {
     report["range_min"] = picture_->transfer.lowest();
-    report["quantity"] = picture_->volume.info().quantity;
+    report["quantity"] = picture_->info().quantity;
     report["range_max"] = picture_->transfer.highest();
   }
   report.update(probeReport());

@@ -129,7 +129,7 @@ void Session::copyCommand() {
     return copy(renderCommand(options_, saved_file_));
   }
   jobs_.run([copy, view, options = options_, picture = picture_]() -> BackgroundJobs::Finish {
-    const std::string text = renderCommand(options, view, picture->volume);
+    const std::string text = renderCommand(options, view, *picture);
     return [copy, text] { copy(text); };
   });
 }

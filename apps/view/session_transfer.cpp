@@ -91,12 +91,12 @@ void Session::dragTransfer(const std::function<void(playback::TransferEditor&)>&
 
 void Session::countValues() {
   const bool wanted = (fit_ && fit_ != Fit::series) || (panels.colors && !panels.hidden);
-  if (!wanted || counting_ || !picture_ || picture_->volume.info().categorical) return;
-  if (values_ && sameValues(values_->volume, picture_->volume)) return;
+  if (!wanted || counting_ || !picture_ || picture_->info().categorical) return;
+  if (values_ && sameValues(values_->field, *picture_)) return;
   counting_ = true;
-  jobs_.run([this, volume = picture_->volume]() -> BackgroundJobs::Finish {
+  jobs_.run([this, field = playback::ShownField(*picture_)]() -> BackgroundJobs::Finish {
     try {
-      auto values = std::make_shared<const ValueSummary>(summaryOf(volume));
+      auto values = std::make_shared<const ValueSummary>(summaryOf(field));
       return [this, values] {
         counting_ = false;
         values_ = values;
@@ -122,7 +122,7 @@ void Session::fitColors() {
     if (!status_.series_range) return tell("fit_series: no step of the series holds a value", true);
     changeTransfer([&](playback::TransferEditor& editor) { editor.fit(*status_.series_range); });
   } else {
-    if (!values_ || !sameValues(values_->volume, picture_->volume)) return;
+    if (!values_ || !sameValues(values_->field, *picture_)) return;
     const bool anew = *fit_ == Fit::anew;
     fit_.reset();
     changeTransfer([&](playback::TransferEditor& editor) {
@@ -140,7 +140,7 @@ void Session::fitColors() {
 
 void Session::readTransfer(const std::string& file) {
   requireTransfer();
-  jobs_.run([this, file, info = picture_->volume.info()]() -> BackgroundJobs::Finish {
+  jobs_.run([this, file, info = picture_->info()]() -> BackgroundJobs::Finish {
     const render::TransferFunction function = render::readTransferFunction(file, info);
     return [this, file, function] {
       changeTransfer([&](playback::TransferEditor& editor) { editor.setFunction(function); });

@@ -6,26 +6,21 @@
 
 namespace emscape::view {
 
-ValueSummary summaryOf(const volume::Volume& volume) {
-  constexpr long long kMaxBins = 2048, kVoxelsPerBin = 200;
+ValueSummary summaryOf(const playback::ShownField& field) {
+  constexpr long long kMaxBins = 2048, kValuesPerBin = 200;
   ValueSummary summary;
-  summary.volume = volume;
-  const auto host = volume.host();
+  summary.field = field;
+  const auto values = field.values();
   ThreadArena one_thread(1);  // the other threads cast
   one_thread.run([&] {
-    const volume::VolumeInfo& info = volume.info();
-    const auto bins =
-        static_cast<int>(std::clamp(volume.grid().dims.count() / kVoxelsPerBin, 32LL, kMaxBins));
+    const volume::VolumeInfo& info = field.info();
+    const auto bins = static_cast<int>(std::clamp(values->grid.dims.count() / kValuesPerBin, 32LL, kMaxBins));
     if (info.range_min < info.range_max) {
-      summary.histogram = volume::histogramOf(*host, bins, info.range_min, info.range_max);
+      summary.histogram = volume::histogramOf(*values, bins, info.range_min, info.range_max);
     }
-    summary.fitted = render::defaultTransferFunction(*host);
+    summary.fitted = field.defaultColors();
   });
   return summary;
-}
-
-bool sameValues(const volume::Volume& a, const volume::Volume& b) {
-  return !a.isEmpty() && !b.isEmpty() && a.dense() == b.dense() && a.device() == b.device();
 }
 
 }  // namespace emscape::view

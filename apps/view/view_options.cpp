@@ -20,6 +20,7 @@ Examples:
   emscape view scenarios/jacksboro.yaml
   emscape view scenarios/jacksboro.yaml --state jacksboro.view.json
   emscape view out/jacksboro.pvd --scenario scenarios/jacksboro.yaml --scale 2
+  emscape view scenarios/jacksboro.yaml --mesh terrain:32,4
   emscape view scenarios/jacksboro.yaml --set emitters.jammer.power_w=500 --script tour.jsonl --log tour.log
 
 Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectation of the script was not met.)";
@@ -37,9 +38,10 @@ struct Typed {
 void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_option(
       "INPUT", options.input,
-      "Scenario, volume (.vdb .nvdb .vti .raw .dat), .pvd or folder of volumes; without it the window "
-      "asks for one");
+      "Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd or folder of them; "
+      "without it the window asks for one");
   app.add_option("--scenario", options.scenario, "Scenario of the ground and emitters to draw with volumes");
+  app::addMeshOptions(app, options.mesh, options.cells);
   app.add_option("--state", typed.state,
                  "View file: camera, colours, time, edits and the rest; options that are given count more");
   app::addSetOption(app, typed.edits);
@@ -84,9 +86,9 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
 
 /// Without INPUT these have nothing to apply to.
 void refuseOptionsOfInput(const CLI::App& app) {
-  for (const char* name :
-       {"--scenario", "--state", "--set", "--compare", "--time", "--quantity", "--mode", "--camera",
-        "--range", "--transfer", "--exaggeration", "--plane", "--step", "--shading"}) {
+  for (const char* name : {"--scenario", "--mesh", "--cells", "--cell-order", "--cell-perspective", "--state",
+                           "--set", "--compare", "--time", "--quantity", "--mode", "--camera", "--range",
+                           "--transfer", "--exaggeration", "--plane", "--step", "--shading"}) {
     if (app.count(name) == 0) continue;
     throw Error(ErrorCode::usage, std::string(name) + " needs INPUT\nTry 'emscape view --help'.");
   }

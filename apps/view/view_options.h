@@ -4,14 +4,17 @@
 #include <optional>
 #include <string>
 
+#include "emscape/playback/painter.h"
 #include "emscape/playback/view_state.h"
 #include "emscape/render/frame_controller.h"
 
 namespace emscape::view {
 
 struct ViewOptions {
-  std::string input;             ///< empty: none yet, the window asks for one
-  std::string scenario;          ///< for volumes; may be empty
+  std::string input;     ///< empty: none yet, the window asks for one
+  std::string scenario;  ///< for volumes; may be empty
+  std::string mesh;      ///< of a scenario's field (FrameSelection::mesh); empty: a grid
+  playback::CellStyle cells;
   playback::ViewState view;      ///< shown first; its size is that of the picture
   std::string state;             ///< file that `view` was read from; empty: none, or options changed it
   std::string transfer;          ///< file of the transfer function; may be empty

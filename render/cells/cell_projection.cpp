@@ -9,9 +9,15 @@
 #include "render/cells/cell_order.h"
 #include "render/cells/cell_renderer_impl.h"
 #include "render/cells/projected_cells.h"
+#include "render/names.h"
 
 namespace emscape::render {
 namespace {
+
+constexpr Named<CellProjection> kProjections[] = {{CellProjection::published, "published"},
+                                                  {CellProjection::exact, "exact"}};
+constexpr Named<CellSorting> kSortings[] = {{CellSorting::centroids, "centroids"},
+                                            {CellSorting::visibility, "visibility"}};
 
 /// False if the cell holds no field.
 bool seenFrom(const Vec3d& eye, const CellMesh& mesh, std::int32_t cell, SeenCell& seen) {
@@ -79,16 +85,28 @@ std::vector<float> depthsOf(const std::vector<GroundHit>& hits, const CameraView
 }  // namespace
 
 const char* toString(CellProjection projection) {
-  return projection == CellProjection::published ? "published" : "exact";
+  return nameOf(kProjections, projection);
 }
 const char* toString(CellSorting sorting) {
-  return sorting == CellSorting::centroids ? "centroids" : "visibility";
+  return nameOf(kSortings, sorting);
+}
+
+CellProjection parseCellProjection(const std::string& name) {
+  return parseName(kProjections, "projection of cells", name);
+}
+CellSorting parseCellSorting(const std::string& name) {
+  return parseName(kSortings, "order of cells", name);
+}
+
+void CellRenderer::prepareProjection() {
+  if (!impl_->rasterizer) impl_->rasterizer = std::make_unique<gl::CellRasterizer>();
 }
 
 Image CellRenderer::project(ImageSize size, const ProjectionOptions& options, ProjectionReport* report) {
+  prepareProjection();
   Impl& impl = *impl_;
-  if (!impl.rasterizer) impl.rasterizer = std::make_unique<gl::CellRasterizer>();
   gl::CellRasterizer& rasterizer = *impl.rasterizer;
+  const gl::CellRasterizer::Use use(rasterizer);
   impl.scene.prepare();
   const RaycastTask task = impl.scene.task(size);
   const std::vector<GroundHit> ground = impl.ground(task);

@@ -21,13 +21,26 @@ struct CellView {
   std::vector<float> end_depth;
 };
 
-/// Draws batches of cells, the farthest first, into a picture of 32-bit floats. Not for several threads.
+/// Draws batches of cells, the farthest first, into a picture of 32-bit floats. One thread at a time uses it.
 class CellRasterizer {
  public:
   /// With an OpenGL context of its own, without a window.
   /// @throws Error (device)
   CellRasterizer();
   ~CellRasterizer();
+
+  /// While it lives, its thread calls the functions below; threads take turns.
+  class Use {
+   public:
+    /// @throws Error (device)
+    explicit Use(CellRasterizer& rasterizer);
+    ~Use();
+    Use(const Use&) = delete;
+    Use& operator=(const Use&) = delete;
+
+   private:
+    CellRasterizer& rasterizer_;
+  };
 
   /// Name of the device that draws.
   const std::string& device() const;

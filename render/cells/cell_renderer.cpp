@@ -12,10 +12,8 @@
 #include "render/cells/face_tiles.h"
 
 namespace emscape::render {
-namespace {
 
-/// @throws Error (usage)
-void requireDrawable(const RenderSettings& settings) {
+void checkCellSettings(const RenderSettings& settings) {
   const auto refuse = [](const std::string& what) {
     throw Error(ErrorCode::usage, what + ": a field on tetrahedra is drawn without it");
   };
@@ -27,8 +25,6 @@ void requireDrawable(const RenderSettings& settings) {
   if (std::any_of(settings.planes.begin(), settings.planes.end(), [](const CutPlane& p) { return p.on; }))
     refuse("plane");
 }
-
-}  // namespace
 
 volume::Grid referenceGridOf(const volume::TetrahedralMesh& mesh) {
   const volume::MeshBounds bounds = volume::boundsOf(mesh);
@@ -42,13 +38,8 @@ volume::Grid referenceGridOf(const volume::TetrahedralMesh& mesh) {
 }
 
 TransferFunction defaultTransferFunction(const volume::MeshField& field) {
-  volume::DenseVolume values;
-  values.info = field.info;
-  std::copy_if(field.values.begin(), field.values.end(), std::back_inserter(values.values),
-               [](float value) { return !std::isnan(value); });
-  if (values.values.empty()) return defaultTransferFunction(field.info);
-  values.grid.dims = {static_cast<int>(values.values.size()), 1, 1};
-  return defaultTransferFunction(values);
+  const volume::DenseVolume values = volume::valuesOf(field);
+  return values.values.empty() ? defaultTransferFunction(field.info) : defaultTransferFunction(values);
 }
 
 CellRenderer::CellRenderer(Backend backend) : impl_(std::make_unique<Impl>()) {
@@ -98,7 +89,7 @@ void CellRenderer::setCamera(const Camera& camera) {
   impl_->scene.setCamera(camera);
 }
 void CellRenderer::setSettings(const RenderSettings& settings) {
-  requireDrawable(settings);
+  checkCellSettings(settings);
   impl_->scene.setSettings(settings);
 }
 const TransferFunction& CellRenderer::transferFunction() const {

@@ -50,6 +50,22 @@ std::string deviceName() {
   return none ? "cpu" : version.substr(gpu, version.find(',', gpu) - gpu);
 }
 
+TEST(Bench, CellsAreProjectedInBothFormsAndOrdersAndMarched) {
+  if (run({"render", shippedScenario("quick.yaml"), "--mesh", "terrain:1", "--cells", "project", "--size",
+           "8x8", "-o", TemporaryFolder() / "a.png", "--quiet"})
+          .status == 4)
+    GTEST_SKIP() << "no OpenGL without a window";
+  const json found = bench({"cells", shippedScenario("quick.yaml"), "--mesh", "terrain:4", "--size", "80x60",
+                            "--set", "region.dims=[9, 8, 4]", "--frames", "1"});
+  EXPECT_EQ(found.at("tetrahedra"), 6 * 8 * 7 * 4);
+  ASSERT_EQ(found.at("projected").size(), 4);
+  for (const json& form : found["projected"]) {
+    EXPECT_GT(form.at("tetrahedra_per_s"), 0);
+    EXPECT_EQ(form.at("floats_per_tetrahedron"), form.at("perspective") == "exact" ? 21 : 24);
+  }
+  EXPECT_GT(found.at("marched").at("cells_passed"), 1000);
+}
+
 TEST(Bench, CoverageTimesTheFirstHeightAndEachFurtherOne) {
   const json found =
       bench({"coverage", shippedScenario("quick.yaml"), "--cell", "500", "--further", "2", "--repeats", "1"});

@@ -73,8 +73,43 @@ TEST(MeshSeries, IsComputedDescribedAndDrawnTheSameTwice) {
               HasSubstr("mode mida: a field on tetrahedra is drawn by dvr alone"));
   EXPECT_THAT(refusal({"--rays", "columns"}), HasSubstr("--rays columns: has no effect"));
   EXPECT_THAT(refusal({"--step", "0.5"}), HasSubstr("--step: has no effect"));
+  EXPECT_THAT(refusal({"--compare", "original"}), HasSubstr("--compare: has no effect"));
+  EXPECT_THAT(refusal({"--mesh", "terrain:9"}), HasSubstr("is no scenario"));
   EXPECT_THAT(refusal({"--plane", "horizontal:altitude_m=900"}), HasSubstr("plane"));
   EXPECT_FALSE(std::filesystem::exists(folder / "no.png"));
+}
+
+TEST(MeshSeries, AScenarioIsDrawnAsItsFilesAre) {
+  const TemporaryFolder folder;
+  const Arguments mesh{"--mesh", "terrain:9,4"}, picture{"--size", "320x240", "--quiet", "--json"};
+  ASSERT_EQ(run(simulate(folder / "a", mesh)).status, 0);
+  const auto draw = [&](Arguments arguments, const Arguments& more) {
+    arguments.insert(arguments.begin(), "render");
+    for (const Arguments& some : {picture, more}) arguments.insert(arguments.end(), some.begin(), some.end());
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return json::parse(result.out);
+  };
+  const std::string scenario = shippedScenario("jacksboro.yaml");
+  const Arguments computed{scenario,         "--mesh",  "terrain:9,4", "--set", "region.dims=[20, 18, 10]",
+                           "--range=-120:0", "--times", "10"};
+  const Arguments stored{folder / "a", "--scenario", scenario, "--range=-120:0", "--times", "10"};
+  const json marched = draw(computed, {"-o", folder / "computed.png"});
+  EXPECT_EQ(marched["cells"]["drawn"], "marched");
+  draw(stored, {"-o", folder / "stored.png"});
+  EXPECT_EQ(readFile(folder / "computed.png"), readFile(folder / "stored.png"));
+
+  EXPECT_THAT(run({"render", scenario, "-o", folder / "no.png", "--cells", "march"}).err,
+              HasSubstr("--cells: has no effect on volumes"));
+  if (run({"render", folder / "a", "-o", folder / "a.png", "--cells", "project", "--quiet"}).status == 4)
+    GTEST_SKIP() << "no OpenGL without a window";
+  for (const char* order : {"centroids", "visibility"}) {
+    const json projected =
+        draw(stored, {"-o", folder / "projected.png", "--cells", "project", "--cell-order", order});
+    EXPECT_EQ(projected["cells"]["drawn"], "projected by " + std::string(order));
+    EXPECT_EQ(projected["cells"]["tetrahedra"], 6 * 19 * 17 * 9);
+    EXPECT_EQ(projected["cells"]["sent_bytes"], 21 * 4 * 6 * 19 * 17 * 9);
+  }
 }
 
 TEST(MeshSeries, FormatsAndMeshesGoTogether) {

@@ -120,6 +120,7 @@ struct Expected {
   explicit Expected(std::string file) : input(std::move(file)) {}
 
   std::string input;
+  std::string mesh;
   double time_s = 0;
   std::string quantity;
   std::vector<scenario::Edit> edits;
@@ -129,6 +130,7 @@ struct Expected {
   render::Image8 picture() const {
     FrameSelection selection;
     selection.input = input;
+    selection.mesh = mesh;
     selection.quantity = quantity;
     selection.edits = edits;
     selection.independent = true;
@@ -158,6 +160,48 @@ std::shared_ptr<const scenario::Scenario> edited(const LiveView& view, const std
 }
 
 constexpr auto kBusyRestoreIdle = {ControllerState::busy, ControllerState::restore, ControllerState::idle};
+
+bool hasOpenGl() {
+  try {
+    render::CellRenderer().prepareProjection();
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+TEST(LiveView, TetrahedraAreProjectedWhileBusyAndMarchedWhenSettled) {
+  const TemporaryFolder folder;
+  Expected expected(quickScenario(folder));
+  expected.mesh = "terrain:4,50";
+  LiveOptions options;
+  options.mesh = expected.mesh;
+  options.controller.epsilon_ms = 1e6;
+  {
+    Live busy(expected.input, options);
+    busy.waitUntil([](const LiveStatus& status) { return status.frame > 0; });
+    EXPECT_EQ(busy.view->status().cells, hasOpenGl() ? "projected by centroids" : "marched");
+    EXPECT_EQ(busy.view->status().state, ControllerState::busy);
+  }
+  options.controller.epsilon_ms = 20;
+  Live live(expected.input, options);
+  expectSame(live.settled(), expected);
+  EXPECT_EQ(live.view->status().cells, "marched");
+  EXPECT_GT(live.view->picture()->cells->field.mesh->cells.size(), 1000);
+  live.view->setScenario(edited(*live.view, "region.dims", "[10, 12, 4]"));
+  expected.edits = {{"region.dims", "[10, 12, 4]"}};
+  expectSame(live.settled(), expected);
+}
+
+TEST(LiveView, ModesThatTetrahedraDoNotHaveAreAnError) {
+  const TemporaryFolder folder;
+  LiveOptions options;
+  options.mesh = "terrain:4,50";
+  PictureStyle style = smallStyle();
+  style.settings.mode = render::CompositingMode::mida;
+  Live live(quickScenario(folder), options, style);
+  EXPECT_THAT(live.error(), HasSubstr("mode mida: a field on tetrahedra is drawn by dvr alone"));
+}
 
 TEST(LiveView, ComparisonShowsWhatEditsChangeAndTheFieldAgain) {
   const TemporaryFolder folder;

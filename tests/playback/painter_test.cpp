@@ -20,8 +20,8 @@ TEST(Painter, LabelsAreDrawnOverWhatWasCastAndCanBeDrawnByOthers) {
   EXPECT_EQ(painter.annotations().time, "t = 1 s");
   EXPECT_EQ(painter.annotations().title, "made");
   const render::Image8 composed =
-      render::compose(cast, painter.renderer().camera(), painter.renderer().sceneBox(), painter.annotations(),
-                      [&](const Vec3d& position_m) { return painter.renderer().isHidden(position_m); });
+      render::compose(cast, painter.camera(), painter.sceneBox(), painter.annotations(),
+                      [&](const Vec3d& position_m) { return painter.isHidden(position_m); });
   EXPECT_TRUE(composed.rgba == picture.rgba);
   render::Image8 bare;
   painter.fetch(bare);

@@ -34,6 +34,29 @@ bool waitUntilOpened(SessionSample& shown, SessionOpener& opener) {
   });
 }
 
+// --- fields on tetrahedra ---
+
+TEST(SessionOfTetrahedra, ShowsEditsAndRefusesWhatTheyDoNotHave) {
+  const StateFolder folder;
+  ViewOptions options = optionsFor(shippedScenario("quick.yaml"), {160, 120});
+  options.mesh = "terrain:4,50";
+  SessionSample shown(options);
+  ASSERT_TRUE(shown.settle());
+  EXPECT_EQ(shown->report()["cells"], "marched");
+  const double before = shown->report()["range_max"];
+  EXPECT_THAT(shown.perform(R"({"do": "mode", "mode": "mip"})"), HasSubstr("drawn by dvr alone"));
+  EXPECT_EQ(shown->report()["mode"], "dvr");
+  EXPECT_EQ(shown.perform(R"({"do": "probe", "x": 80, "y": 60})"), "");
+  ASSERT_TRUE(shown->prober().result());
+  EXPECT_THAT(shown->prober().result()->error, HasSubstr("are not probed"));
+  EXPECT_EQ(shown.perform(R"({"do": "fit_step"})"), "");
+  ASSERT_TRUE(shown.settle());
+  EXPECT_EQ(shown->report()["range_max"], before);
+  shown.perform(R"({"do": "copy_command"})");
+  ASSERT_TRUE(shown.waitUntil([&] { return !shown.window.clipboard.empty(); }));
+  EXPECT_THAT(shown.window.clipboard, HasSubstr(" --mesh terrain:4,50 "));
+}
+
 // --- recent files ---
 
 TEST(RecentFiles, KeepTheNewestInFrontAndEachOnce) {

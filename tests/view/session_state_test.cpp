@@ -33,8 +33,7 @@ Rendered render(const std::string& input, const playback::ViewState& written) {
   playback::Painter painter(playback::pictureStyleOf(view), *source, cpu());
   painter.setFrame(source->frame(0));
   painter.draw({});
-  return {render::quantize(painter.image()),
-          painter.picture(playback::pictureNote(view.settings, render::Pattern::full))};
+  return {render::quantize(painter.image()), painter.picture(painter.note(render::Pattern::full))};
 }
 
 /// A view, and commands that change it by hand, both random.

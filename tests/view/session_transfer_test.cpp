@@ -147,14 +147,14 @@ TEST_F(SessionTransfer, TheHistogramIsThatOfTheVolumeOnScreen) {
   EXPECT_EQ(session->values(), before) << "counted once";
   perform(R"({"do":"seek","time_s":2})");
   settle();
-  EXPECT_TRUE(sameValues(session->values()->volume, session->picture()->volume));
+  EXPECT_TRUE(sameValues(session->values()->field, *session->picture()));
 }
 
 TEST_F(SessionTransfer, AnotherQuantityHasColoursOfItsOwn) {
   perform(R"({"do":"transfer","colors":"cividis"})");
   perform(R"({"do":"quantity","name":"field_strength_dbuvm"})");
   settle();
-  EXPECT_EQ(session->transfer()->function().unit, session->picture()->volume.info().unit);
+  EXPECT_EQ(session->transfer()->function().unit, session->picture()->info().unit);
   EXPECT_EQ(session->transfer()->colorMap(), "viridis");
   EXPECT_FALSE(session->canUndo());
   perform(R"({"do":"quantity","name":"dominant_emitter"})");

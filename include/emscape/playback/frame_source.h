@@ -1,4 +1,4 @@
-/// A sequence of instants to draw: a computed scenario, or volumes from files.
+/// A sequence of instants to draw: a computed scenario, or fields from files.
 #pragma once
 
 #include <memory>
@@ -9,22 +9,23 @@
 #include "emscape/base/progress.h"
 #include "emscape/playback/compute_target.h"
 #include "emscape/playback/field_series.h"
+#include "emscape/playback/shown_field.h"
 #include "emscape/render/annotate/overlay.h"
-#include "emscape/volume/volume.h"
 
 namespace emscape::playback {
 
 /// One instant.
-struct Frame {
-  volume::Volume volume;
+struct Frame : ShownField {
   std::vector<render::Marker> markers;
   std::vector<render::Track> tracks;  ///< of moving platforms
-  bool changed = true;                ///< false: the volume's values are those of the previous call
+  bool changed = true;                ///< false: the field's values are those of the previous call
 };
 
 /// The selection of an input to draw.
 struct FrameSelection {
-  std::string input;                ///< scenario or volume file, .pvd, folder of volumes
+  std::string input;  ///< scenario, volume, field on tetrahedra, .pvd, folder of them
+  /// For a scenario: the mesh on which its field is computed (emfield::parseTerrainMesh()); empty: the grid.
+  std::string mesh;
   std::string quantity;             ///< empty: the first
   std::string times;                ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
   bool first_only = false;          ///< without times: only the first
@@ -42,8 +43,8 @@ struct FrameSelection {
 
 constexpr const char* kOriginal = "original";
 
-/// Instants in order of time. One thread at a time calls frame(); the other functions except warnings() may
-/// be called at the same time.
+/// Instants in order of time, all of volumes or all of fields on tetrahedra. One thread at a time calls
+/// frame(); the other functions except warnings() may be called at the same time.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -51,7 +52,7 @@ class FrameSource {
   virtual int count() const = 0;
   /// Of the scenario, ascending.
   virtual double time_s(int index) const = 0;
-  /// The frame with index 0..count() - 1. @throws Error, Stopped
+  /// The frame with index 0..count() - 1; fields on one mesh share it. @throws Error, Stopped
   virtual Frame frame(int index) = 0;
 
   /// For titles and file names.

@@ -12,6 +12,7 @@
 #include "emscape/base/error.h"
 #include "emscape/playback/compute_target.h"
 #include "emscape/playback/painter.h"
+#include "emscape/playback/shown_field.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/camera.h"
 #include "emscape/render/device_picture.h"
@@ -24,7 +25,6 @@
 #include "emscape/scenario/scenario.h"
 #include "emscape/scenario/terrain.h"
 #include "emscape/volume/value_range.h"
-#include "emscape/volume/volume.h"
 
 namespace emscape::playback {
 
@@ -35,6 +35,7 @@ struct LiveOptions {
   bool allow_missing_terrain = false;
   std::string quantity;               ///< quantity or channel; empty: the first
   std::vector<scenario::Edit> edits;  ///< applied when the scenario is opened
+  std::string mesh;                   ///< as FrameSelection::mesh
   std::string compare;                ///< as FrameSelection::compare: the view starts with the comparison
   double time_s = 0;                  ///< the view starts with the nearest step
   /// Minimum interval (ms) between the starts of two fields that only a change of time requests.
@@ -52,6 +53,7 @@ struct LiveOptions {
 struct LiveStatus {
   render::ControllerState state = render::ControllerState::idle;
   render::Pattern pattern = render::Pattern::full;  ///< of the picture's busy frame
+  std::string cells;         ///< how the picture's tetrahedra were drawn (CellPicture::text()); empty: volume
   double rays_fraction = 0;  ///< of that frame: fraction of pixels that were cast, 0..1
   double cast_ms = 0;        ///< of that frame, interpolation included
   double labels_ms = 0;      ///< to fetch the picture and draw its labels
@@ -86,8 +88,8 @@ struct StateChange {
   std::chrono::steady_clock::time_point time;
 };
 
-/// A picture with what it shows. Does not change.
-struct LivePicture {
+/// A picture with the field that it shows, whose info().range_* are its own. Does not change.
+struct LivePicture : ShownField {
   render::ImageSize size;
   /// With background and labels. Of a settled picture: as `emscape render` writes it.
   render::Image8 finished;
@@ -102,7 +104,6 @@ struct LivePicture {
   render::RenderSettings settings;
   /// Range of colours of setRange(); none: they were fitted to the values of a step, or set.
   std::optional<volume::ValueRange> range;
-  volume::Volume volume;                               ///< info().range_* are its own
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null for volumes without one
   scenario::TerrainPtr terrain;                        ///< may be null
   std::shared_ptr<const render::HeightField> ground;   ///< as it is drawn; null if there is none

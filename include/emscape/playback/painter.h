@@ -9,11 +9,39 @@
 #include "emscape/playback/frame_source.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/camera.h"
+#include "emscape/render/cell_renderer.h"
 #include "emscape/render/height_field.h"
 #include "emscape/render/image.h"
 #include "emscape/render/renderer.h"
 
 namespace emscape::playback {
+
+/// How fields on tetrahedra are drawn.
+enum class CellMethod {
+  automatic,  ///< complete pictures are marched; others projected, where the CPU marches and OpenGL is there
+  march,      ///< CellRenderer::render()
+  project     ///< CellRenderer::project(); pictures that are not complete by centroids
+};
+/// "auto", "march" or "project". @throws Error (usage)
+CellMethod parseCellMethod(const std::string& name);
+
+struct CellStyle {
+  CellMethod method = CellMethod::automatic;
+  render::ProjectionOptions projection;
+};
+
+/// What the last picture of a field on tetrahedra took.
+struct CellPicture {
+  bool projected = false;
+  render::CellSorting sorting = render::CellSorting::visibility;  ///< if projected, as what follows
+  std::string device;
+  long long cells = 0;
+  long long cycles = 0;
+  std::size_t sent_bytes = 0;
+
+  /// "marched", "projected by centroids".
+  std::string text() const;
+};
 
 /// Style of pictures.
 struct PictureStyle {
@@ -26,11 +54,13 @@ struct PictureStyle {
   bool colors_span_range = false;  ///< fitted to the range of its values, not to their histogram
   bool show_terrain = true;
   bool show_emitters = true;
+  CellStyle cells;
 };
 
 /// Draws frames; colours are those fitted to the first, the camera is kept as long as frames have the same
-/// grid. Casting and labelling are separate: a program with its own labels uses image() or fetch(),
-/// annotations() and renderer(). One thread at a time uses it.
+/// grid. Of fields on tetrahedra there are two pictures: the complete one (Pattern::full, and restore()) and
+/// that of every other pattern, which is quick (CellMethod). Casting and labelling are separate: a program
+/// with its own labels uses image() or fetch(), annotations() and renderer(). One thread at a time uses it.
 class Painter {
  public:
   /// Draws frames of one source. @throws Error (device)
@@ -43,8 +73,10 @@ class Painter {
   void setScene(const std::string& title, const LoadedScenario* scene);
   /// Sets the frame of the next pictures.
   /// @throws Error (bad_input) for a transfer file, nothing is changed then; or for an isosurface that shows
-  /// nothing of the first frame, which is set anyway. Error (device)
+  /// nothing of the first frame, which is set anyway. Error (usage) for settings that tetrahedra do not have
+  /// (render::checkCellSettings()), nothing is changed then. Error (device)
   void setFrame(const Frame& frame);
+  bool hasFrame() const { return frame_.has_value(); }
   /// Turns an orbiting camera to another azimuth. A frame must be set.
   void setAzimuth(double azimuth_deg);
   /// Another camera, fitted to the box of the volume. A frame must be set.
@@ -55,8 +87,8 @@ class Painter {
   /// @param size  both sides at least 1
   void setSize(render::ImageSize size);
   render::ImageSize size() const { return style_.size; }
-  /// An isosurface is not checked against the volume. @throws Error (bad_input) for a value out of its range;
-  /// the settings are then unchanged
+  /// An isosurface is not checked against the volume. @throws Error (bad_input) for a value out of its range,
+  /// (usage) as setFrame(); the settings are then unchanged
   void setSettings(const render::RenderSettings& settings);
   /// Sets the function, in place of a file or a fitted one.
   void setTransferFunction(const render::TransferFunction& function);
@@ -84,9 +116,21 @@ class Painter {
   const std::shared_ptr<const render::HeightField>& heightField() const { return height_field_; }
   /// The annotations of a picture of the frame.
   const render::Annotations& annotations() const { return annotations_; }
-  /// Its camera, box and hidden positions are those of the picture. Colours and settings may be changed after
-  /// the first frame was set.
-  render::Renderer& renderer() { return renderer_; }
+  // Of the picture.
+  const render::RenderSettings& settings() const { return style_.settings; }
+  const render::TransferFunction& transferFunction() const;
+  const render::Camera& camera() const;
+  render::SceneBox sceneBox() const;
+  bool isHidden(const Vec3d& frame_m) const;
+  /// cpu or cuda.
+  Backend backend() const { return renderer_.backend(); }
+  /// None unless the last picture was of tetrahedra.
+  const std::optional<CellPicture>& cellPicture() const { return cell_picture_; }
+  /// True if pictures of the frame that are not complete are quicker ones, of tetrahedra.
+  bool projectsCells() const { return cells_ && projects_; }
+  /// The small text at the bottom of a picture: "dvr, full rays, step 1 voxel", of tetrahedra
+  /// "dvr, 1200 tetrahedra, marched".
+  std::string note(render::Pattern pattern) const;
 
   /// The last picture with background and labels. @param note  small, at the bottom
   render::Image8 picture(const std::string& note);
@@ -96,6 +140,19 @@ class Painter {
   std::shared_ptr<const render::DevicePicture> annotatedOnDevice(const std::string& note);
 
  private:
+  /// The renderer of tetrahedra, if the frame has some. @throws Error as setFrame()
+  void prepareCells(const Frame& frame);
+  /// Calls use() for the renderer of the frames.
+  template <class Use>
+  void onRenderer(const Use& use) {
+    if (cells_) {
+      use(*cells_);
+    } else {
+      use(renderer_);
+    }
+  }
+  /// Draws the tetrahedra into image_.
+  render::FrameReport drawCells(bool is_complete, const StopFlag* stop);
   /// The ground of the scene below the grid of the frame, if it is to be shown.
   void setGround();
   void setGround(const scenario::TerrainPtr& ground);
@@ -104,14 +161,17 @@ class Painter {
   void setLegend();
   render::Camera cameraOf(const render::CameraSpec& spec) const;
   void fitCamera();
-  render::TransferFunction functionFor(const volume::Volume& volume) const;
+  render::TransferFunction functionFor(const ShownField& field) const;
 
   PictureStyle style_;
   std::optional<LoadedScenario> scene_;
   std::optional<Frame> frame_;
   scenario::TerrainPtr ground_;  // whose height field the renderer has
   std::shared_ptr<const render::HeightField> height_field_;
-  render::Renderer renderer_;
+  render::Renderer renderer_;                    ///< of volumes
+  std::unique_ptr<render::CellRenderer> cells_;  ///< of tetrahedra; null if the frames are volumes
+  bool projects_ = false;                        ///< as projectsCells(), if there are tetrahedra
+  std::optional<CellPicture> cell_picture_;
   render::Annotations annotations_;
   render::OverlayLayers layers_;
   render::Image image_;

@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "emscape/base/progress.h"
@@ -14,9 +13,6 @@
 
 namespace emscape::playback {
 
-/// The small text at the bottom of a picture: "dvr, full rays, step 1 voxel".
-std::string pictureNote(const render::RenderSettings& settings, render::Pattern pattern);
-
 /// Draws every frame of a source. Files are written on a thread of their own while the next picture is cast.
 /// @param painter  with the first frame set
 /// @param sinks    each gets every picture; finished at the end
@@ -25,7 +21,7 @@ std::string pictureNote(const render::RenderSettings& settings, render::Pattern 
 /// @return casting time (ms)
 /// @throws Error, Stopped; the sinks are then not finished
 double drawPictures(FrameSource& source, Painter& painter, const render::FramePlan& plan,
-                    const std::string& note, const std::vector<std::unique_ptr<PictureSink>>& sinks,
+                    const std::vector<std::unique_ptr<PictureSink>>& sinks,
                     const std::function<void(int pictures)>& done = {}, const StopFlag* stop = nullptr);
 
 }  // namespace emscape::playback

@@ -49,6 +49,13 @@ enum class CellSorting {
 };
 const char* toString(CellProjection projection);
 const char* toString(CellSorting sorting);
+/// "published" or "exact". @throws Error (usage)
+CellProjection parseCellProjection(const std::string& name);
+/// "centroids" or "visibility". @throws Error (usage)
+CellSorting parseCellSorting(const std::string& name);
+
+/// @throws Error (usage) for settings without a meaning on tetrahedra: another mode than dvr, shading, planes
+void checkCellSettings(const RenderSettings& settings);
 
 struct ProjectionOptions {
   CellProjection projection = CellProjection::exact;
@@ -86,8 +93,7 @@ class CellRenderer {
   void setTransferFunction(const TransferFunction& function);
   void setCamera(const Camera& camera);
   /// Of the settings count `exact` (no early termination, and Psi in closed form) and the exaggeration.
-  /// @throws Error (usage) for another mode than dvr, shading and planes; (bad_input) for a value out of its
-  /// range
+  /// @throws Error (usage) as checkCellSettings(); (bad_input) for a value out of its range
   void setSettings(const RenderSettings& settings);
 
   const TransferFunction& transferFunction() const;
@@ -101,11 +107,14 @@ class CellRenderer {
   /// depend on the number of threads; pictures of a GPU differ by rounding (1e-5).
   /// @param stop  set from elsewhere: returns soon, incomplete; without effect on a GPU. May be null
   Image render(ImageSize size, const StopFlag* stop = nullptr, CellReport* report = nullptr);
-  /// The same by projection of the cells with OpenGL, without a window; to be called by one thread always.
+  /// Prepares project(), which otherwise does so at the first call.
+  /// @throws Error (device) without OpenGL 3.3, or in a build without libepoxy
+  void prepareProjection();
+  /// The same by projection of the cells with OpenGL, without a window.
   /// @accuracy exact, visibility: within 1e-5 of render() in 99 % of the pixels, 2e-6 in the mean; 2e-2 at
   /// most, where a face is seen on edge or a ray passes within 1/256 pixel of an edge: rasterisers round to
   /// that
-  /// @throws Error (device) without OpenGL 3.3, or in a build without libepoxy
+  /// @throws Error (device) as prepareProjection()
   Image project(ImageSize size, const ProjectionOptions& options = {}, ProjectionReport* report = nullptr);
 
  private:

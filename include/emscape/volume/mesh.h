@@ -85,4 +85,7 @@ Statistics statisticsOf(const MeshField& field);
 /// Sets info.range_min and range_max as for a DenseVolume.
 void setRangeFromValues(MeshField& field);
 
+/// The values at the points as a row of voxels, without NaN: for histograms.
+DenseVolume valuesOf(const MeshField& field);
+
 }  // namespace emscape::volume

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <thread>
 #include <utility>
 
 #include "emscape/base/error.h"
@@ -228,9 +229,26 @@ struct CellRasterizer::Impl {
   }
 };
 
-CellRasterizer::CellRasterizer() : impl_(std::make_unique<Impl>()) {}
+CellRasterizer::CellRasterizer() : impl_(std::make_unique<Impl>()) {
+  impl_->context.release();
+}
 CellRasterizer::~CellRasterizer() {
-  impl_->context.makeCurrent();
+  // On a thread without a context: the caller's may have that of a window, which EGL does not replace.
+  std::thread([this] {
+    try {
+      impl_->context.makeCurrent();
+      impl_.reset();
+    } catch (const Error&) {
+      impl_.release();  // its names cannot be deleted
+    }
+  }).join();
+}
+
+CellRasterizer::Use::Use(CellRasterizer& rasterizer) : rasterizer_(rasterizer) {
+  rasterizer_.impl_->context.makeCurrent();
+}
+CellRasterizer::Use::~Use() {
+  rasterizer_.impl_->context.release();
 }
 
 const std::string& CellRasterizer::device() const {
@@ -241,7 +259,6 @@ std::size_t CellRasterizer::sentFloats() const {
 }
 
 void CellRasterizer::setTransfer(const LinearTransfer& transfer) {
-  impl_->context.makeCurrent();
   std::vector<float> texels;
   const auto put = [&](double value) {
     constexpr double kMost = std::numeric_limits<float>::max();
@@ -264,7 +281,6 @@ void CellRasterizer::setTransfer(const LinearTransfer& transfer) {
 
 void CellRasterizer::begin(const CellView& view) {
   Impl& impl = *impl_;
-  impl.context.makeCurrent();
   impl.setSize(view.camera.size);
   impl.sent = 0;
   impl.projection = view.projection;

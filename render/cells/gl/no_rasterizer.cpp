@@ -10,6 +10,8 @@ CellRasterizer::CellRasterizer() {
   throw Error(ErrorCode::device, "projection of cells needs OpenGL: this build has no libepoxy");
 }
 CellRasterizer::~CellRasterizer() = default;
+CellRasterizer::Use::Use(CellRasterizer& rasterizer) : rasterizer_(rasterizer) {}
+CellRasterizer::Use::~Use() = default;
 const std::string& CellRasterizer::device() const {
   static const std::string none;
   return none;

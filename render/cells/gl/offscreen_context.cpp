@@ -102,9 +102,15 @@ OffscreenContext::OffscreenContext() : handles_(std::make_unique<Handles>()) {
 OffscreenContext::~OffscreenContext() = default;
 
 void OffscreenContext::makeCurrent() {
-  if (!eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles_->context)) {
+  // The current API is one per thread.
+  if (!eglBindAPI(EGL_OPENGL_API) ||
+      !eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles_->context)) {
     throw Error(ErrorCode::device, "cannot make the OpenGL context current");
   }
+}
+
+void OffscreenContext::release() {
+  eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
 }  // namespace emscape::render::gl

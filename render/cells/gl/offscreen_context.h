@@ -18,6 +18,8 @@ class OffscreenContext {
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
   void makeCurrent();
+  /// Another thread may make it current then.
+  void release();
   /// "VENDOR, RENDERER" as OpenGL names them.
   const std::string& name() const { return name_; }
 
