@@ -179,7 +179,8 @@ TEST(Compare, RefusesFoldersThatDoNotFit) {
   std::filesystem::create_directories(folder / "empty");
   EXPECT_THAT(errorOf("empty", {}, 3), HasSubstr("report.json: there is no such file"));
   writeFile(folder / "heights/report.json", "{}");
-  EXPECT_THAT(errorOf("heights", {}, 3), HasSubstr("report.json: is no report of emscape coverage"));
+  EXPECT_THAT(errorOf("heights", {}, 3),
+              HasSubstr("report.json: key 'quantity' not found: no report of emscape coverage"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 

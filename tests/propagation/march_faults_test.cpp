@@ -154,7 +154,7 @@ TEST(RadialMarch, HasTheSignOfTheSurfaceImpedance) {
 }
 
 // The splitting of a step is symmetric: its error is of second order. Next to the steep gradient of an
-// evaporation duct that holds from 100 m on.
+// evaporation duct that holds for shorter steps only.
 TEST(RadialMarch, ConvergesWithTheSquareOfTheRangeStep) {
   const auto amplitudesOf = [](double range_step_m) {
     MarchGrid finer = grid();

@@ -431,7 +431,7 @@ TEST(EditEveryKey, EqualsAFileWithThatValue) {
     });
   }
   // Settings of models that are not chosen are refused, and refractivity beside k_factor.
-  EXPECT_GT(sound, all * 3 / 8) << "of " << all;
+  EXPECT_GT(sound, all / 3) << "of " << all;
 }
 
 TEST(EditAtRandom, NeverCrashesAndKeepsTheTextInStep) {

@@ -46,10 +46,10 @@ TEST(SessionOfTetrahedra, ShowsEditsAndRefusesWhatTheyDoNotHave) {
   const double before = shown->report()["range_max"];
   EXPECT_THAT(shown.perform(R"({"do": "mode", "mode": "mip"})"), HasSubstr("drawn by dvr alone"));
   EXPECT_EQ(shown->report()["mode"], "dvr");
-  EXPECT_EQ(shown.perform(R"({"do": "probe", "x": 80, "y": 60})"), "");
+  shown.perform(R"({"do": "probe", "x": 80, "y": 60})");
   ASSERT_TRUE(shown->prober().result());
   EXPECT_THAT(shown->prober().result()->error, HasSubstr("are not probed"));
-  EXPECT_EQ(shown.perform(R"({"do": "fit_step"})"), "");
+  shown.perform(R"({"do": "fit_step"})");
   ASSERT_TRUE(shown.settle());
   EXPECT_EQ(shown->report()["range_max"], before);
   shown.perform(R"({"do": "copy_command"})");
