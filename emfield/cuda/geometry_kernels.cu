@@ -25,7 +25,7 @@ __global__ void locateKernel(const LocateTask* tasks, DeviceColumns columns) {
   task.shadow_edge_m[c] = -HUGE_VALF;
 
   const ColumnGeometryView numbers = columnGeometryView(task.numbers, static_cast<std::size_t>(columns.count),
-                                                        task.shadow_edge_m, {}, nullptr);
+                                                        task.shadow_edge_m, {}, nullptr, nullptr);
   const int near = nearVoxels(numbers, c, columns.t_m, columns.layers, task.near2_m2);
   if (near > 0) atomicAdd(&task.counts->near_voxels, static_cast<unsigned long long>(near));
 }
