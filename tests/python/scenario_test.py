@@ -82,7 +82,7 @@ def test_errors_have_the_class_and_the_status_of_their_kind(quick, tmp_path):
     with pytest.raises(em.UsageError, match="auto, cpu") as caught:
         em.Solver(quick, "gpu")
     assert caught.value.status == 2
-    with pytest.raises(em.InputError, match="power_density_dbwm2"):
+    with pytest.raises(em.UsageError, match="power_density_dbwm2"):
         em.Solver(quick, "cpu", quantities=["loudness"])
     field = em.Solver(quick, "cpu").at(0)
     with pytest.raises(em.UsageError, match="the field has no quantity 'loudness'; it has power_density_dbwm2"):

@@ -96,7 +96,7 @@ def test_unknown_options_are_usage_errors(jamming):
 
 
 def test_the_command_line_runs_in_the_process(program):
-    words = ["validate", str(SCENARIOS / "quick.yaml"), "--json"]
+    words = ["profile", str(SCENARIOS / "quick.yaml"), "--emitter", "radar", "--to", "52.02,5.02,900", "--json"]
     here = subprocess.run([sys.executable, "-m", "emscape", *words], capture_output=True, text=True)
     there = subprocess.run([program, *words], capture_output=True, text=True)
     assert (here.returncode, here.stdout, here.stderr) == (there.returncode, there.stdout, there.stderr)
