@@ -15,8 +15,9 @@
 
 namespace emscape::emfield {
 
-/// What an emitter's geometry is to hold for some channel, beside columns and excess.
+/// What some channel needs of an emitter's geometry.
 struct GeometryNeeds {
+  bool any = false;          ///< columns and excess, for its power or its echoes
   bool clutter_map = false;  ///< clutter of land and sea
   bool mechanisms = false;   ///< per voxel, of a model with several
 };

@@ -36,11 +36,14 @@ FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario, const Fie
   plan.needs.resize(emitters.size());
   for (std::size_t c = 0; c < plan.channels.size(); ++c) {
     const std::vector<RadarTask>& radars = plan.channel_plans[c].radars;
+    const bool has_mechanisms = plan.channel_plans[c].reduction == Reduction::dominant_mechanism;
+    for (const int e : plan.channels[c].emitters) {
+      plan.needs[e].any = true;
+      if (has_mechanisms) plan.needs[e].mechanisms = true;
+    }
     for (std::size_t n = 0; n < radars.size(); ++n) {
       if (radars[n].clutter.surface > 0) plan.needs[plan.channels[c].emitters[n]].clutter_map = true;
     }
-    if (plan.channel_plans[c].reduction != Reduction::dominant_mechanism) continue;
-    for (const int e : plan.channels[c].emitters) plan.needs[e].mechanisms = true;
   }
   return plan;
 }

@@ -76,7 +76,6 @@ struct FieldSolver::Impl {
   void setEnginePlan(bool channels_changed);
   void discardAll();
 
-  bool entersChannels(int e) const;
   void findMoved(const scenario::Snapshot& snapshot, Changes& changes);
   void findIntervals(const scenario::Snapshot& snapshot);
   void findJamming(const scenario::Snapshot& snapshot, const Changes& changes);

@@ -99,13 +99,6 @@ void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& cha
   makeVolumes(snapshot, changes);
 }
 
-/// True if some channel has the emitter's power or echoes, for which its geometry is computed.
-bool FieldSolver::Impl::entersChannels(int e) const {
-  return std::any_of(setup.channels.begin(), setup.channels.end(), [e](const Channel& channel) {
-    return std::count(channel.emitters.begin(), channel.emitters.end(), e) > 0;
-  });
-}
-
 /// Emitters whose geometry is to be computed, and those whose beam or activity changed.
 void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& changes) {
   for (std::size_t e = 0; e < emitters.size(); ++e) {
@@ -117,7 +110,7 @@ void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& c
       cache.geometry_result = {};
       cache.warnings.clear();
     }
-    const bool has_geometry = entersChannels(static_cast<int>(e));
+    const bool has_geometry = setup.needs[e].any;
     const bool has_moved =
         now.active && has_geometry &&
         (!cache.geometry || distance_m(now.position, cache.geometry->position) > options.move_tolerance_m);
