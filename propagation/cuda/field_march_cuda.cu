@@ -65,7 +65,7 @@ __global__ void ofMembers(const float* losses_db, std::size_t count, int members
   });
 }
 
-/// Cells behind missing terrain.
+/// NaN in cells that are not known.
 __global__ void forgetUnknown(float* losses_db, const int* known_ranges, int ranges, int heights,
                               std::size_t count) {
   each(count, [&](std::size_t i) {

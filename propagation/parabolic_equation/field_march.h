@@ -15,7 +15,8 @@ struct FieldMarch {
   std::vector<PeSurface> surfaces;                          ///< of the polarisations, 1 or 2
   std::vector<std::vector<RefractivityAlongPath>> members;  ///< AzimuthMarch::air of each, at least one
   std::optional<double> quantile;  ///< of the members' powers (0..1); none: their mean
-  std::vector<int> known_ranges;   ///< of each azimuth: cells in range before missing terrain; empty: all
+  /// Of each azimuth the cells in range that are marched and before missing terrain; empty: all.
+  std::vector<int> known_ranges;
 
   std::size_t cellCount() const { return march.cellCount(); }
   /// One of the marches.
@@ -32,7 +33,7 @@ constexpr float kPeNoField_db = 200;
 /// Marches on the CPU, in parallel.
 /// @param excess_db  field.cellCount() elements: losses over free space (dB) as of marchAzimuths(), of the
 /// mean power of the polarisations and, of the members, of their mean power or the power below which
-/// `quantile` of them lie; NaN behind missing terrain
+/// `quantile` of them lie; NaN in cells that are not known
 /// @return warning bits (PeWarning)
 /// @throws Error as marchAzimuths()
 unsigned marchField(FieldMarch& field, float* excess_db);

@@ -75,7 +75,7 @@ void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& fie
   AzimuthMarch& march = field.march;
   march.ground_steps = std::size_t(radials.farthest_m / plan.grid.range_step_m) + 2;
   march.ground_msl_m.resize(march.ground_steps * std::size_t(plan.azimuths));
-  field.known_ranges.assign(std::size_t(plan.azimuths), plan.cells.ranges);
+  if (field.known_ranges.empty()) field.known_ranges.assign(std::size_t(plan.azimuths), plan.cells.ranges);
   parallelFor(plan.azimuths, 8, [&](int begin, int end) {
     for (int a = begin; a < end; ++a) {
       float* const first = march.ground_msl_m.data() + std::size_t(a) * march.ground_steps;
@@ -85,8 +85,8 @@ void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& fie
       float* const hole = std::find_if(first, last, [](float height_m) { return std::isnan(height_m); });
       if (hole == last) continue;
       const double known_m = double(hole - first) * plan.grid.range_step_m;
-      field.known_ranges[std::size_t(a)] =
-          std::min(plan.cells.ranges, int(known_m / plan.cells.range_step_m));
+      int& known = field.known_ranges[std::size_t(a)];
+      known = std::min(known, int(known_m / plan.cells.range_step_m));
       std::fill(hole, last, hole[-1]);
     }
   });
@@ -225,6 +225,7 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   march.source.height_agl_m = inputs.site.height_msl_m - radials.site_ground_msl_m;
   march.cells = plan.cells;
   march.azimuths = plan.azimuths;
+  march.ranges = field.known_ranges = plan.ranges;
   field.surfaces = plan.surfaces;
   field.members = plan.air;
   if (inputs.emitter.atmosphere.refractivity)
