@@ -49,7 +49,7 @@ struct PeExcess {
   /// @param excess_db  one per voxel; NaN over missing terrain
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db,
                                  const MechanismStore& mechanisms = {}) const {
-    const PeSight sight = others.sightOf(column);
+    const PeSight sight = others.sightOf(column, scratch.even_ground_msl_m);
     if (!sight.isKnown()) return setUnknown(column, excess_db);
     bool has_others = false;
     const auto other_db = [&](int k) {
@@ -62,16 +62,18 @@ struct PeExcess {
   }
   EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
                             float* excess_db) const {
-    const PeSight sight = others.sightOf(column);
+    const PeSight sight = others.sightOf(column, scratch.even_ground_msl_m);
     if (!sight.isKnown()) return setUnknown(column, excess_db);
     scratch.post_numbers[0] = sight.horizon_rad;
     scratch.post_numbers[1] = sight.to_ground_rad;
+    scratch.post_numbers[2] = static_cast<float>(sight.horizon_count);
     return 0;
   }
   /// @param part  its memory holds the losses of `diffraction`, over terrain
   EMSCAPE_HD unsigned fill(const ExcessColumn& column, const ExcessScratch& scratch, const ColumnPart& part,
                            float* excess_db, const MechanismStore& mechanisms = {}) const {
-    const PeSight sight{scratch.post_numbers[0], scratch.post_numbers[1]};
+    const PeSight sight{scratch.post_numbers[0], scratch.post_numbers[1], scratch.even_ground_msl_m,
+                        static_cast<int>(scratch.post_numbers[2])};
     for (int k = part.begin; k < part.end; ++k) {
       const auto other_db = [&](int) {
         return others.over_terrain ? part.memory_db[k - part.begin]

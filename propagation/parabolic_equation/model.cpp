@@ -289,7 +289,8 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       std::max(2 * automatic.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz)));
   const char* const other_name = has_terrain ? "diffraction" : "two_ray";
   PeLoss loss;
-  const PeSight sight = others.sightOf(column);
+  std::vector<float> horizon_posts(static_cast<std::size_t>(profile.count));
+  const PeSight sight = others.sightOf(column, horizon_posts.data());
   loss.equation_part = others.equationPart(static_cast<float>(column.range_m), end_msl_m,
                                            profile.height_msl_m[profile.count - 1], sight.horizon_rad);
   if (loss.equation_part < 1) loss.other_db = static_cast<float>(path.excess_db(OtherColumn{others}));

@@ -52,6 +52,10 @@ struct PeSight {
   float horizon_rad = 0;
   /// Largest angle (rad) from the antenna to the ground before the column, over the effective earth.
   float to_ground_rad = -HUGE_VALF;
+  /// Posts before the column of which each is the horizon of some height there: the corners of the upper
+  /// convex hull of the ground, seen from the column. Numbers of posts, the nearest to the column first.
+  const float* horizon_posts = nullptr;
+  int horizon_count = 0;
 
   EMSCAPE_HD bool isKnown() const { return horizon_rad == horizon_rad; }
 };
@@ -74,7 +78,8 @@ struct PeOthers {
     return (height_msl_m - tx_msl_m) / range_m - curvature_per_m * range_m / 2;
   }
 
-  EMSCAPE_HD PeSight sightOf(const ExcessColumn& column) const {
+  /// @param memory  for the posts' numbers: one per post
+  EMSCAPE_HD PeSight sightOf(const ExcessColumn& column, float* memory) const {
     constexpr float kNearGround_m = 500;
     const float half_curvature = scatter.clear_air.median.half_curvature;
     const auto end_m = static_cast<float>(column.range_m);
@@ -91,6 +96,15 @@ struct PeOthers {
       sight.to_ground_rad = from_tx > sight.to_ground_rad ? from_tx : sight.to_ground_rad;
     }
     sight.horizon_rad += unknown;
+    sight.horizon_posts = memory;
+    for (int i = profile.count - 2; i > 0 && sight.isKnown(); --i) {
+      if (!(seenFrom(column, i).left_m > 0) || !(profile.range_m[i] > 0)) continue;
+      while (sight.horizon_count > 1 &&
+             isBelow(seenFrom(column, int(memory[sight.horizon_count - 1])),
+                     seenFrom(column, int(memory[sight.horizon_count - 2])), seenFrom(column, i)))
+        --sight.horizon_count;
+      memory[sight.horizon_count++] = static_cast<float>(i);
+    }
     return sight;
   }
 
@@ -161,6 +175,23 @@ struct PeOthers {
   }
 
  private:
+  /// A post as seen from a column: its distance, and its height without the curvature of the earth.
+  struct Seen {
+    float left_m, ground_m;
+  };
+  static EMSCAPE_HD Seen seenFrom(const ExcessColumn& column, int i) {
+    return {static_cast<float>(column.range_m) - static_cast<float>(column.profile.range_m[i]),
+            column.profile.height_msl_m[i]};
+  }
+  /// True if a post is not above the line from the one before it to the one behind, over the effective earth.
+  EMSCAPE_HD bool isBelow(const Seen& post, const Seen& before, const Seen& behind) const {
+    const float half_curvature = scatter.clear_air.median.half_curvature;
+    const auto slopeTo = [&](const Seen& to) {
+      return (to.ground_m - before.ground_m) / (to.left_m - before.left_m) -
+             half_curvature * (to.left_m + before.left_m);
+    };
+    return slopeTo(post) <= slopeTo(behind);
+  }
   static EMSCAPE_HD float sinc(float x) { return std::fabs(x) < 1e-3f ? 1 : std::sin(x) / x; }
 
   /// Angle (rad) between the horizons' rays of both ends, 0 where they see each other.
@@ -170,12 +201,11 @@ struct PeOthers {
     const float to_rx = (height_msl_m - tx_msl_m) / range_m - half_curvature * range_m;
     if (!(sight.to_ground_rad > to_rx)) return 0;
     float of_rx = -HUGE_VALF;
-    for (int i = 1; i < column.profile.count - 1; ++i) {
-      const auto at_m = static_cast<float>(column.profile.range_m[i]);
-      const float left_m = range_m - at_m, ground_m = column.profile.height_msl_m[i];
-      if (!(at_m > 0 && left_m > 0)) continue;
-      const float from_rx = (ground_m - height_msl_m) / left_m - half_curvature * left_m;
-      of_rx = from_rx > of_rx ? from_rx : of_rx;
+    for (int n = 0; n < sight.horizon_count; ++n) {
+      const Seen post = seenFrom(column, static_cast<int>(sight.horizon_posts[n]));
+      const float from_rx = (post.ground_m - height_msl_m) / post.left_m - half_curvature * post.left_m;
+      if (from_rx < of_rx) break;  // behind the horizon the angles fall
+      of_rx = from_rx;
     }
     return 2 * half_curvature * range_m + sight.to_ground_rad + of_rx;
   }
