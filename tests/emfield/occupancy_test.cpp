@@ -28,7 +28,7 @@ using scenario::Scenario;
 constexpr double kBegin_s = 1.7, kThreshold_dbwm2 = -62;
 
 /// testing::around() with the threshold of the counts.
-std::shared_ptr<Scenario> counted(const AntennaPtr& antenna, const ScanSpec& scan) {
+std::shared_ptr<Scenario> countedAround(const AntennaPtr& antenna, const ScanSpec& scan) {
   auto scenario = around(antenna, scan);
   scenario->output.count_threshold_dbwm2 = kThreshold_dbwm2;
   return scenario;
@@ -88,12 +88,12 @@ TEST_P(Occupancy, OfTurnsIsThatOfFineSteps) {
        {scenario::makeGaussian(30, 4, 12, -35), scenario::makeCosecant2(30, 4, 5, 40, -35),
         scenario::makeSinc(30, 4, 12, -40), scenario::makePhasedArray(25, 24, 16, 0.5, 1, -45)}) {
     SCOPED_TRACE(antenna->description);
-    expectAsCounted(counted(antenna, rotating(10, 4)), 6, 1800);
+    expectAsCounted(countedAround(antenna, rotating(10, 4)), 6, 1800);
   }
 }
 
 TEST_P(Occupancy, OfPartsOfATurnIsThatOfFineSteps) {
-  const auto scenario = counted(scenario::makeGaussian(30, 8, 12, -35), rotating(-10, 3));
+  const auto scenario = countedAround(scenario::makeGaussian(30, 8, 12, -35), rotating(-10, 3));
   expectAsCounted(scenario, 1.9, 1200);
   expectAsCounted(scenario, 8.3, 2400);
 }
@@ -102,30 +102,31 @@ TEST_P(Occupancy, OfSectorsRastersAndDwellsIsThatOfFineSteps) {
   const AntennaPtr antenna = scenario::makeGaussian(30, 8, 9, -35);
   for (const double seconds : {0.8, 3.7}) {
     SCOPED_TRACE(seconds);
-    expectAsCounted(counted(antenna, sweeping(ScanKind::sector, 70, 60)), seconds, 1500);
-    expectAsCounted(counted(antenna, sweeping(ScanKind::raster, 70, 60, 3)), seconds, 1500);
-    expectAsCounted(counted(scenario::makePhasedArray(30, 16, 12, 0.5, 1, -40), dwelling()), seconds, 1480);
-    expectAsCounted(counted(scenario::makeGaussian(30, 9, 9, -40), dwelling()), seconds, 1480);
+    expectAsCounted(countedAround(antenna, sweeping(ScanKind::sector, 70, 60)), seconds, 1500);
+    expectAsCounted(countedAround(antenna, sweeping(ScanKind::raster, 70, 60, 3)), seconds, 1500);
+    expectAsCounted(countedAround(scenario::makePhasedArray(30, 16, 12, 0.5, 1, -40), dwelling()), seconds,
+                    1480);
+    expectAsCounted(countedAround(scenario::makeGaussian(30, 9, 9, -40), dwelling()), seconds, 1480);
   }
 }
 
 TEST_P(Occupancy, CountsBothRaysAndTheTimesOfActivity) {
-  auto scenario = counted(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
+  auto scenario = countedAround(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
   scenario->emitters.front().propagation.model = propagation::PropagationModel::two_ray;
   scenario->emitters.front().active_s = {{0, 2.5}, {4, 4.5}};
   expectAsCounted(scenario, 6, 2400);
 }
 
 TEST_P(Occupancy, OfAStillBeamIsItsTimeOfActivity) {
-  auto scenario = counted(scenario::makeIsotropic(30), ScanSpec{});
+  auto scenario = countedAround(scenario::makeIsotropic(30), ScanSpec{});
   scenario->emitters.front().active_s = {{0, 2.5}, {4, 4.5}};
   const std::vector<float> found = over(scenario, 6);
   EXPECT_NEAR(*std::max_element(found.begin(), found.end()), (0.8 + 0.5) / 6, 1e-5);
 }
 
 TEST_P(Occupancy, OfSeveralEmittersIsThatOfAny) {
-  auto first = counted(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
-  auto second = counted(scenario::makeGaussian(30, 30, 12, -35), rotating(7, 3));
+  auto first = countedAround(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
+  auto second = countedAround(scenario::makeGaussian(30, 30, 12, -35), rotating(7, 3));
   auto both = std::make_shared<Scenario>(*first);
   both->emitters.push_back(second->emitters.front());
   both->emitters.back().name = "other";
@@ -134,7 +135,8 @@ TEST_P(Occupancy, OfSeveralEmittersIsThatOfAny) {
 }
 
 TEST_P(Occupancy, OfWholeTurnsDoesNotChangeWithTheTime) {
-  const auto scenario = occupancyOf(counted(scenario::makeGaussian(30, 4, 6, -35), rotating(10, 3)), 12);
+  const auto scenario =
+      occupancyOf(countedAround(scenario::makeGaussian(30, 4, 6, -35), rotating(10, 3)), 12);
   FieldSolver solver = solverOf(scenario);
   valuesOf(solver, scenario, 0);
   EXPECT_TRUE(solver.update(scenario::snapshotAt(scenario, nullptr, 1.3)).volumes.empty());
@@ -143,7 +145,7 @@ TEST_P(Occupancy, OfWholeTurnsDoesNotChangeWithTheTime) {
 EMSCAPE_ON_BACKENDS(Occupancy);
 
 TEST(OccupancyNeeds, AnInterval) {
-  const auto scenario = counted(scenario::makeIsotropic(30), ScanSpec{});
+  const auto scenario = countedAround(scenario::makeIsotropic(30), ScanSpec{});
   FieldOptions options;
   options.quantities = {"occupancy"};
   EXPECT_THAT(test::errorOf([&] { FieldSolver(scenario, nullptr, options); }),
