@@ -322,7 +322,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
                     double(loss.loss_db() - loss.withoutScatter_db()));
   const bool scatters = loss.mechanism(has_terrain) == Mechanism::troposcatter;
   explanation.why = fmt::format(
-      "{} speaks; launch angle {:.2f} of {:.3g} degrees, {}",
+      "{} applies; launch angle {:.2f} of {:.3g} degrees, {}",
       scatters                  ? "troposcatter"
       : loss.equation_part >= 1 ? "the parabolic equation"
       : loss.equation_part <= 0 ? other_name

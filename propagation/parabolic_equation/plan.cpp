@@ -255,7 +255,7 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   plan.choices.push_back(
       {"extent",
        fmt::format("from {:.4g} m, to {:.4g} m above {}: nearer, higher and above the largest angle "
-                   "other models speak",
+                   "other models apply",
                    plan.min_range_m, plan.top_m, plan.cells.above_ground ? "the ground" : "mean sea level")});
   const auto members = double(plan.air.size());
   const double lanes = kStepLanes * std::ceil(double(plan.azimuths) / kStepLanes);
