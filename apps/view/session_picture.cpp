@@ -29,8 +29,7 @@ std::vector<Verb> Session::pictureVerbs() {
        [](Session& session, const Command& command) {
          render::RenderSettings settings = session.settings_;
          const bool shown = settings.mode == render::CompositingMode::iso;
-         settings.mode =
-             shown && !command.has("value") ? session.fog_mode_ : render::CompositingMode::iso;
+         settings.mode = shown && !command.has("value") ? session.fog_mode_ : render::CompositingMode::iso;
          if (command.has("value")) settings.iso_value = command.number("value");
          session.setSettings(settings);
        }},
