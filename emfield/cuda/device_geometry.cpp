@@ -85,7 +85,8 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   work.has_shadow = model.casts_shadow;
   work.has_reflected_ray = model.has_reflected_ray;
   if (hasExcess(scenario, emitter)) {
-    work.model = makeExcess(scenario, emitter, station, setup_.terrain.get(), setup_.columns);
+    work.model =
+        makeExcess(scenario, emitter, request.state.beam, station, setup_.terrain.get(), setup_.columns);
   }
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);
   work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
