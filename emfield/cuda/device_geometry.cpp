@@ -86,7 +86,8 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   work.has_reflected_ray = model.has_reflected_ray;
   if (hasExcess(scenario, emitter)) {
     work.model =
-        makeExcess(scenario, emitter, request.state.beam, station, setup_.terrain.get(), setup_.columns);
+        planExcess(scenario, emitter, request.state.beam, station, setup_.terrain.get(), setup_.columns);
+    if (work.model->march != nullptr && !isForGpu(*work.model->march)) marchTables(emitter, *work.model);
   }
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);
   work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
@@ -178,13 +179,14 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   findShadows(works, stream);
   fillDiffractions(works, stream);
   for (const Work& work : works) {
-    if (!work.model || isDiffraction(work.model->model)) continue;
+    if (!work.model || work.model->march != nullptr || isDiffraction(work.model->model)) continue;
     fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
   }
   for (std::size_t r = 0; r < requests.size(); ++r) {
     if (works[r].clutter) fillClutterMap(*works[r].clutter, slots_[requests[r].slot].clutter.data(), stream);
   }
   clock.end(&StageTimes::excess_ms, stream);
+  fillMarched(works, stream, clock);
 
   std::vector<GeometryCounts> counts(works.size());
   check(cudaMemcpyAsync(counts.data(), counts_.data(), counts.size() * sizeof(GeometryCounts),
@@ -243,6 +245,20 @@ void DeviceGeometry::fillDiffractions(const std::vector<Work>& works, cudaStream
                   excess_grid_, columns_.row, scratch(), stream);
 }
 
+/// Marches the emitters' fields and reads them, one emitter after the other: each march has the whole device.
+void DeviceGeometry::fillMarched(std::vector<Work>& works, cudaStream_t stream, StageClock& clock) {
+  for (Work& work : works) {
+    if (!work.model || work.model->march == nullptr) continue;
+    clock.begin(stream);
+    const float* const losses_db = march_.start(*work.model->march, &work.task.counts->warnings, stream);
+    clock.end(&StageTimes::march_ms, stream);
+    clock.begin(stream);
+    fillExcess(work.model->withTablesAt(losses_db, work.model->air.gases), work.task.station, excess_grid_,
+               work.ground, work.excess, scratch(), stream);
+    clock.end(&StageTimes::excess_ms, stream);
+  }
+}
+
 ScratchMemory DeviceGeometry::scratch() {
   return {atLeast(scratch_, kDeviceScratchBytes / sizeof(double)), kDeviceScratchBytes};
 }
@@ -252,7 +268,7 @@ std::size_t DeviceGeometry::bytes() const {
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(place_columns_) + bytesOf(t_m_) +
                       bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(shadows_) +
                       bytesOf(terms_) + bytesOf(diffraction_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
-                      bytesOf(model_tables_);
+                      bytesOf(model_tables_) + march_.bytes();
   for (const Slot& slot : slots_) {
     bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.excess_db) +
              bytesOf(slot.reflected) + bytesOf(slot.mechanisms) + bytesOf(slot.clutter);

@@ -10,6 +10,7 @@
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/cuda/stage_clock.h"
 #include "emfield/solver/field_engine.h"
+#include "propagation/cuda/field_march_cuda.h"
 
 namespace emscape::emfield::cuda {
 
@@ -39,7 +40,7 @@ class DeviceGeometry {
     LocateTask task;
     std::vector<double> ranges_m;
     GroundPosts ground;                  ///< on the device, from place() on
-    std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on
+    std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on, or when marched
     ExcessOutputs excess;
     std::optional<ClutterMapTask> clutter;  ///< its ground on the device, from place() on
     bool has_shadow = false, has_reflected_ray = false, has_mechanisms = false;
@@ -49,6 +50,7 @@ class DeviceGeometry {
   void place(std::vector<Work>& works, cudaStream_t stream);
   void findShadows(const std::vector<Work>& works, cudaStream_t stream);
   void fillDiffractions(const std::vector<Work>& works, cudaStream_t stream);
+  void fillMarched(std::vector<Work>& works, cudaStream_t stream, StageClock& clock);
   ScratchMemory scratch();
 
   const FieldSetup& setup_;
@@ -79,6 +81,7 @@ class DeviceGeometry {
   emscape::cuda::Buffer<DeviceShadowTask> shadows_;
   emscape::cuda::Buffer<RangeTerms<float>> terms_;
   emscape::cuda::Buffer<DiffractionTask> diffraction_;
+  propagation::FieldMarchCuda march_;
   emscape::cuda::Buffer<double> scratch_;
   emscape::cuda::Buffer<GeometryCounts> counts_;
 };

@@ -1,4 +1,5 @@
 #include "propagation/cuda/march_cuda.h"
+#include "propagation/parabolic_equation/excess.h"
 #include "propagation/parabolic_equation/march_block_run.h"
 #include "propagation/parabolic_equation/march_block_tables.h"
 
@@ -63,6 +64,18 @@ template <class Shape>
 __global__ void planKernel(const __grid_constant__ MarchBlockTask task, PlannedStep* planned) {
   const int azimuth = int(blockIdx.x * blockDim.x + threadIdx.x);
   if (azimuth < task.azimuths) planSteps<Shape>(task, planned, azimuth);
+}
+
+/// By one block of kTableThreads threads.
+__global__ void addStaircases(const MarchState* states, int azimuths, unsigned* warnings) {
+  __shared__ int staircases;
+  if (threadIdx.x == 0) staircases = 0;
+  __syncthreads();
+  int own = 0;
+  for (int a = int(threadIdx.x); a < azimuths; a += kTableThreads) own += states[a].staircases;
+  atomicAdd(&staircases, own);
+  __syncthreads();
+  if (threadIdx.x == 0) atomicOr(warnings, staircaseWarning(staircases));
 }
 
 __global__ void copyStart(const StoredComplex* start, StoredComplex* fields, int count, std::size_t pitch) {
@@ -180,6 +193,19 @@ MarchNotes AzimuthMarchCuda::notes() {
   for (const MarchState& state : states) notes.staircases += state.staircases;
   notes.pointwise_air = input_.pointwise_air;
   return notes;
+}
+
+void AzimuthMarchCuda::addWarnings(unsigned* warnings) {
+  addStaircases<<<1, kTableThreads, 0, stream_>>>(states_.data(), azimuths_, warnings);
+  checkLaunch("addStaircases");
+}
+
+std::size_t AzimuthMarchCuda::bytes() const {
+  const auto bytesOf = [](const auto&... buffers) {
+    return (std::size_t(0) + ... + (buffers.size() * sizeof(*buffers.data())));
+  };
+  return bytesOf(segments_, levels_, first_segment_, cell_end_, counts_, column_steps_, column_intervals_,
+                 ground_, sums_, amplitudes_, column_ground_, start_, fields_, tables_, states_, planned_);
 }
 
 std::vector<FieldColumn> AzimuthMarchCuda::columns() {

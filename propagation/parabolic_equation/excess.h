@@ -18,6 +18,12 @@ enum PeWarning : unsigned {
 };
 constexpr int kPeStaircaseShift = 4;
 
+/// Warning bits of a number of pieces of the ground that are taken as steps of a staircase.
+EMSCAPE_HD inline unsigned staircaseWarning(int staircases) {
+  constexpr int kMost = (1 << (31 - kPeStaircaseShift)) - 1;
+  return static_cast<unsigned>(staircases < kMost ? staircases : kMost) << kPeStaircaseShift;
+}
+
 /// Interpolates in dB between azimuths, ranges and heights; other models speak outside the equation's limits.
 struct PeExcess {
   static constexpr bool kNeedsTerrain = true;
