@@ -377,7 +377,7 @@ TEST(RadialMarch, OfEqualProfilesAlongTheRangeIsThatOfOne) {
 }
 
 // Rays that a break of slope turns out of the band would come back mirrored, and fill the shadow.
-TEST(RadialMarch, BehindARoughMountainHasTheShadowOfAWiderBand) {
+TEST(RadialMarch, BehindARoughMountainIsNotLitByWhatLeavesTheBand) {
   const auto shadowDb = [](double max_angle_deg) {
     MarchNeeds needs;
     needs.frequency_hz = 3e8;
@@ -400,7 +400,9 @@ TEST(RadialMarch, BehindARoughMountainHasTheShadowOfAWiderBand) {
     }
     return sum_db / count;
   };
-  EXPECT_NEAR(shadowDb(9), shadowDb(14), 3);
+  const double shadow_db = shadowDb(9);
+  EXPECT_LT(shadow_db, -62);  // -51 without absorption in every step
+  EXPECT_NEAR(shadow_db, shadowDb(14), 9);
 }
 
 TEST(DuctOverLand, IsLeftOutBetweenTheShores) {
@@ -453,7 +455,8 @@ TEST(RadialMarch, OfAPatternIsTwoRaysWeighedByTheirAngles) {
       const Cx image = path.source.pattern(-std::atan2(z + kSource_m, kRange_m)) * direct_m / image_m *
                        std::polar(1.0, grid.wavenumber() * (image_m - direct_m));
       const double expected_db = 20 * std::log10(std::abs(direct - image));
-      if (expected_db > largest_db - 30) EXPECT_NEAR(march.factorDb(0, z), expected_db, 0.05) << z;
+      if (expected_db < largest_db - 30) continue;
+      EXPECT_NEAR(march.factorDb(0, z), expected_db, 0.1) << z;
     }
   }
 }
