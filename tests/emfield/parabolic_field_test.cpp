@@ -228,8 +228,7 @@ std::vector<double> differencesFromWeighedRays(const std::shared_ptr<scenario::S
   scenario->emitters[0].propagation.model = PropagationModel::parabolic_equation;
   const auto volume = solve(scenario);
   std::vector<double> differences;
-  for (int i = 0; i < 200; ++i) {
-    if (std::abs(i - 99.5) * 100 < 4000) continue;
+  for (int i = 140; i < 200; ++i) {  // 4 km and more to the east
     for (int k = 0; k < 80; ++k) {
       differences.push_back(std::abs(
           static_cast<double>(testing::valueAt(*volume, i, 1, k) - testing::valueAt(*expected, i, 1, k))));
@@ -243,7 +242,8 @@ TEST(ParabolicField, OfAPatternIsTwoRaysEachWeighedByItsOwnAngle) {
   scenario->ground.kind = propagation::GroundKind::sea;
   scenario::Emitter& emitter = scenario->emitters[0];
   const auto aim = [&](double width_deg, double tilt_deg, propagation::PeRadiator source) {
-    emitter.antenna = scenario::makeGaussian(20, 360, width_deg, -40);
+    emitter.antenna = scenario::makeGaussian(20, 30, width_deg, -40);
+    emitter.scan.azimuth_deg = 90;
     emitter.scan.elevation_deg = tilt_deg;
     emitter.propagation.parabolic_equation.source = source;
   };
@@ -687,6 +687,7 @@ TEST(ParabolicField, RefusesWhatIsOutsideItsLimits) {
        [](auto& s) {
          s.emitters[0].propagation.parabolic_equation.source = propagation::PeRadiator::pattern;
          s.emitters[0].kind = scenario::EmitterKind::radar;
+         s.output.radar_look = scenario::RadarLook::target;
          s.emitters[0].antenna = scenario::makePhasedArray(20, 8, 8, 0.5, 1);
        },
        "the radar's beam follows targets"},
