@@ -5,6 +5,7 @@
 /// model radiates the antenna's elevation cut.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -63,6 +64,11 @@ struct ExcessStore {
   ExcessCode* codes = nullptr;
   float* db = nullptr;
 
+  /// NaN: unknown.
+  EMSCAPE_HD float get(std::size_t voxel) const {
+    if (db != nullptr) return db[voxel];
+    return codes[voxel] == kUnknownExcess ? NAN : excessDb(codes[voxel]);
+  }
   /// @param excess_db  NaN: unknown
   EMSCAPE_HD void set(std::size_t voxel, float excess_db) const {
     if (db != nullptr) {

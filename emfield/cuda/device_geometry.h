@@ -1,6 +1,7 @@
 /// Stages 1 and 2 of the emitters on the device: the results in each slot, and the memory to compute them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -74,6 +75,16 @@ class DeviceGeometry {
   };
   std::vector<Slot> slots_;
 
+  /// Marches of one emitter after the other, on a stream of their own.
+  struct Marcher {
+    emscape::cuda::Stream stream;
+    propagation::FieldMarchCuda march;
+    emscape::cuda::Event marched;  ///< its losses are there
+    emscape::cuda::Event read;     ///< and were read
+  };
+  std::array<Marcher, 3> marchers_;
+  emscape::cuda::Event placed_;
+
   // for the emitters being computed; kept for the next update
   emscape::cuda::Buffer<LocateTask> tasks_;
   emscape::cuda::Buffer<double> ranges_m_;
@@ -81,7 +92,6 @@ class DeviceGeometry {
   emscape::cuda::Buffer<DeviceShadowTask> shadows_;
   emscape::cuda::Buffer<RangeTerms<float>> terms_;
   emscape::cuda::Buffer<DiffractionTask> diffraction_;
-  propagation::FieldMarchCuda march_;
   emscape::cuda::Buffer<double> scratch_;
   emscape::cuda::Buffer<GeometryCounts> counts_;
 };

@@ -81,8 +81,7 @@ const float* FieldMarchCuda::start(FieldMarch& field, unsigned* warnings, cudaSt
   const std::size_t count = field.cellCount(), members = field.members.size();
   const bool has_two = field.surfaces.size() > 1;
   const std::size_t needed = (members + (has_two || members > 1 ? 1 : 0)) * count;
-  if (losses_db_.size() < needed) losses_db_.resize(needed);
-  float* const last_db = losses_db_.data() + members * count;
+  float* const last_db = losses_db_.atLeast(needed) + members * count;
   for (std::size_t m = 0; m < members; ++m) {
     float* const member_db = losses_db_.data() + m * count;
     march_.start(field.set(field.members[m], field.surfaces.front()), member_db, stream);
@@ -99,7 +98,7 @@ const float* FieldMarchCuda::start(FieldMarch& field, unsigned* warnings, cudaSt
     checkLaunch("ofMembers");
   }
   if (!field.known_ranges.empty()) {
-    known_ranges_.upload(field.known_ranges, stream);
+    known_ranges_.send(field.known_ranges, stream);
     forgetUnknown<<<blocksFor(count), kThreads, 0, stream>>>(
         result_db, known_ranges_.data(), field.march.cells.ranges, field.march.cells.heights, count);
     checkLaunch("forgetUnknown");

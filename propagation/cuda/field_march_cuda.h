@@ -20,7 +20,7 @@ class FieldMarchCuda {
 
  private:
   AzimuthMarchCuda march_;
-  /// Of the members one after another, then of the second polarisation, or the ensemble's. It never shrinks.
+  /// Of the members one after another, then of the second polarisation, or the ensemble's.
   cuda::Buffer<float> losses_db_;
   cuda::Buffer<int> known_ranges_;
 };

@@ -316,9 +316,10 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       std::max(2 * automatic.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz)));
   const char* const other_name = has_terrain ? "diffraction" : "two_ray";
   PeLoss loss;
-  const float horizon_rad = others.horizonOf(profile);
+  std::vector<float> horizon_posts(static_cast<std::size_t>(profile.count));
+  const PeSight sight = others.sightOf(column, horizon_posts.data());
   loss.equation_part = others.equationPart(static_cast<float>(column.range_m), end_msl_m,
-                                           profile.height_msl_m[profile.count - 1], horizon_rad);
+                                           profile.height_msl_m[profile.count - 1], sight.horizon_rad);
   if (loss.equation_part < 1) loss.other_db = static_cast<float>(path.excess_db(OtherColumn{others}));
   Explanation explanation;
   std::string march_text = "no march";
@@ -334,7 +335,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
     others.setEquation(ofMembers_db(losses_db, refractivity ? refractivity->quantile : std::nullopt),
                        static_cast<float>(column.range_m), end_msl_m, loss);
   }
-  others.addScatter(column, end_msl_m, loss);
+  others.addScatter(column, sight, end_msl_m, loss);
   const bool over_land = has_terrain ? *highest > 0 : isLand(inputs.emitter.ground);
   path.addWarnings(airWarnings(air, over_land, std::max(double(end_msl_m), inputs.site.height_msl_m)));
   if (loss.equation_part > 0)
@@ -355,8 +356,8 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       : loss.equation_part <= 0 ? other_name
                                 : fmt::format("the parabolic equation by {:.0f} %, {} for the rest,",
                                               double(100 * loss.equation_part), other_name),
-      radToDeg(
-          double(std::max(horizon_rad, others.launchAngle(static_cast<float>(column.range_m), end_msl_m)))),
+      radToDeg(double(
+          std::max(sight.horizon_rad, others.launchAngle(static_cast<float>(column.range_m), end_msl_m)))),
       radToDeg(max_angle_rad), march_text);
   return explanation;
 }
