@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/elevation_cut.h"
 #include "emfield/foot_inverse.h"
 #include "emfield/ground_posts.h"
 #include "emfield/radials.h"
@@ -67,8 +68,8 @@ propagation::EmitterInputs emitterInputs(const Scenario& scenario, const Emitter
           scenario.atmosphere};
 }
 
-PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const Station& station,
-                      const scenario::Terrain* terrain, const PathExtent& extent) {
+PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const scenario::BeamPose& beam,
+                      const Station& station, const scenario::Terrain* terrain, const PathExtent& extent) {
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   PathInputs inputs;
   inputs.emitter = emitterInputs(scenario, emitter);
@@ -83,6 +84,7 @@ PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const St
   }
   inputs.extent = extent;
   inputs.post_spacing_m = postSpacing_m(terrain);
+  if (auto cut = elevationCut(emitter, beam)) inputs.elevation_pattern = std::move(*cut);
   return inputs;
 }
 
@@ -132,19 +134,20 @@ EmitterExcess planExcess(const PathInputs& inputs, const propagation::RadialInpu
   return excess;
 }
 
-EmitterExcess planExcess(const Scenario& scenario, const Emitter& emitter, const Station& station,
-                         const scenario::Terrain* terrain, const GridColumns& columns) {
+EmitterExcess planExcess(const Scenario& scenario, const Emitter& emitter, const scenario::BeamPose& beam,
+                         const Station& station, const scenario::Terrain* terrain,
+                         const GridColumns& columns) {
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   const bool needs_extent = propagation::needsExtent(emitterInputs(scenario, emitter));
   if (model.radial == nullptr) {
-    return planExcess(pathInputs(scenario, emitter, station, terrain,
+    return planExcess(pathInputs(scenario, emitter, beam, station, terrain,
                                  needs_extent ? pathExtent(station, columns) : PathExtent{}));
   }
   EmitterExcess excess;
   inModel(emitter, [&] {
     const PathExtent extent = pathExtent(station, columns);
     const propagation::RadialInputs radials = radialInputs(station, columns, terrain, extent);
-    excess = planExcess(pathInputs(scenario, emitter, station, terrain, extent), &radials);
+    excess = planExcess(pathInputs(scenario, emitter, beam, station, terrain, extent), &radials);
   });
   return excess;
 }

@@ -9,6 +9,7 @@
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
 #include "emscape/scenario/scenario.h"
+#include "emscape/scenario/snapshot.h"
 #include "propagation/air/air_loss.h"
 #include "propagation/inputs.h"
 #include "propagation/radial.h"
@@ -41,12 +42,13 @@ propagation::EmitterInputs emitterInputs(const scenario::Scenario& scenario,
                                          const scenario::Emitter& emitter);
 
 /// The models' inputs for the emitter's paths from its site.
+/// @param beam        of the emitter, from which the model takes what depends on the antenna
 /// @param terrain     null: none
 /// @param extent      read only where propagation::needsExtent()
 /// @throws Error (bad_input) for a model without terrain if the ground below the emitter is missing
 propagation::PathInputs pathInputs(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                                   const Station& station, const scenario::Terrain* terrain,
-                                   const propagation::PathExtent& extent);
+                                   const scenario::BeamPose& beam, const Station& station,
+                                   const scenario::Terrain* terrain, const propagation::PathExtent& extent);
 
 /// Calls a function; its Errors get the emitter's name, that of its model and the line of its settings.
 void inModel(const scenario::Emitter& emitter, const std::function<void()>& body);
@@ -65,8 +67,8 @@ EmitterExcess planExcess(const propagation::PathInputs& inputs,
 /// The same over the columns of a grid.
 /// @throws as pathInputs()
 EmitterExcess planExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                         const Station& station, const scenario::Terrain* terrain,
-                         const GridColumns& columns);
+                         const scenario::BeamPose& beam, const Station& station,
+                         const scenario::Terrain* terrain, const GridColumns& columns);
 /// Marches on the CPU, if the model does. @throws Error (bad_input) that names the emitter
 void marchTables(const scenario::Emitter& emitter, EmitterExcess& excess);
 

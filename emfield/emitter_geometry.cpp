@@ -49,7 +49,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   const GroundPosts ground = groundPosts(terrain, ranges_m);
   if (model.casts_shadow) findShadowEdgesCpu(station, ground, grid, shadow_edge_m_.data());
   if (hasExcess(scenario, emitter)) {
-    EmitterExcess excess = planExcess(scenario, emitter, station, terrain, columns);
+    EmitterExcess excess = planExcess(scenario, emitter, state.beam, station, terrain, columns);
     times.excess_ms += watch.lap_ms();
     marchTables(emitter, excess);
     times.march_ms += watch.lap_ms();

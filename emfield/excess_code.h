@@ -1,7 +1,8 @@
 /// A voxel's excess loss, for storage between updates: a 16-bit code, or over a surface the number itself.
 ///
 /// Excess is a path's loss less that of free space; negative where rays add up. It depends on the emitter's
-/// position, frequency and polarisation and on terrain and air, not on its power or antenna.
+/// position, frequency and polarisation and on terrain and air, not on its power or antenna; except where a
+/// model radiates the antenna's elevation cut.
 #pragma once
 
 #include <cmath>

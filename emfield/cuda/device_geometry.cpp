@@ -67,7 +67,8 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   work.has_shadow = model.casts_shadow;
   work.has_reflected_ray = model.has_reflected_ray;
   if (hasExcess(scenario, emitter)) {
-    work.model = planExcess(scenario, emitter, station, setup_.terrain.get(), setup_.columns);
+    work.model =
+        planExcess(scenario, emitter, request.state.beam, station, setup_.terrain.get(), setup_.columns);
     if (work.model->march != nullptr && !isForGpu(*work.model->march)) marchTables(emitter, *work.model);
   }
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);

@@ -13,7 +13,7 @@ namespace emscape::propagation {
 /// Warning bits. The bits from kPeStaircaseShift to 30 hold the number of steps of the staircase.
 enum PeWarning : unsigned {
   kPePointwiseAir = 1,
-  kPeDuctOverLand = 2,  ///< an evaporation duct, and land below it
+  kPeDuctOverLand = 2,  ///< an evaporation duct, and land, over which it is left out
   kPeProfileEnds = 4    ///< the air was measured up to less than the antenna's or the field's height
 };
 constexpr int kPeStaircaseShift = 4;
@@ -97,7 +97,7 @@ struct PeExcess {
       at_m = others.crossing_m(range_m, height_msl_m, top_m + datum_msl_m);
       height_m = top_m;
     }
-    others.setEquation(cells_db(column.azimuth_rad, at_m, height_m), loss);
+    others.setEquation(cells_db(column.azimuth_rad, at_m, height_m), range_m, height_msl_m, loss);
     if (!(loss.equation_db == loss.equation_db)) loss.equation_part = 0;
     return loss;
   }

@@ -35,11 +35,12 @@ EMSCAPE_HD inline double unitsAt(const MarchBlockTask& task, double height_m) {
 
 }  // namespace block_tables
 
-/// Logarithm of the propagator over flat ground at the wavenumber n of N; its phase is reduced.
+/// Logarithm of the propagator along level ground at the wavenumber n of N; its phase is reduced.
 EMSCAPE_HD inline Complex<double> propagatorExponent(const MarchBlockTask& task, int intervals, int n) {
   const double q = kPi * n / (task.height_step_m * intervals);
   const double loss = task.absorber_m > 0
-                          ? bandEdgeRate(double(n) / intervals, task.wavelength_m / (2 * task.height_step_m))
+                          ? bandEdgeRate(double(n) / intervals, task.wavelength_m / (2 * task.height_step_m),
+                                         task.range_step_m, task.ground_steps > 0)
                           : 0;
   const Complex<double> exponent =
       stepExponent(task.wide, 2 * kPi / task.wavelength_m, task.range_step_m, {q * q, 0});

@@ -21,12 +21,14 @@ namespace {
 constexpr auto kPe = &ModelSettings::parabolic_equation;
 
 PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bool has_terrain,
-                  double site_ground_msl_m) {
+                  double site_ground_msl_m, double max_angle_rad) {
   const ParabolicEquationSettings& settings = inputs.emitter.settings.parabolic_equation;
   PeOthers others;
   others.tx_msl_m = static_cast<float>(inputs.site.height_msl_m);
   others.tx_agl_m = static_cast<float>(inputs.site.height_msl_m - site_ground_msl_m);
   others.curvature_per_m = static_cast<float>(1e-6 * air.at(0).top_gradient_m);
+  others.max_angle_rad = static_cast<float>(max_angle_rad);
+  others.direct_ray = directRayPattern(inputs.elevation_pattern, max_angle_rad);
   others.largest_db = static_cast<float>(-settings.floor_db);
   others.over_terrain = has_terrain;
   others.diffraction = diffractionExcess(inputs);
@@ -46,8 +48,7 @@ PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bo
 /// True if the air has an evaporation duct somewhere.
 bool hasEvaporationDuct(const RefractivityAlongPath& air) {
   return std::any_of(air.profiles().begin(), air.profiles().end(), [](const RefractivityProfile& profile) {
-    const std::vector<Duct> ducts = ductsOf(profile);
-    return !ducts.empty() && ducts.front().kind == DuctKind::evaporation;
+    return evaporationDuctTop_msl_m(profile).has_value();
   });
 }
 
@@ -92,9 +93,27 @@ void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& fie
   });
 }
 
+/// The air of each azimuth over its ground, or one for all.
+std::vector<RefractivityAlongPath> airOverGround(const std::vector<RefractivityAlongPath>& air,
+                                                 const AzimuthMarch& march, const Ground& ground) {
+  std::vector<RefractivityAlongPath> over_ground;
+  if (march.ground_msl_m.empty()) {
+    for (const RefractivityAlongPath& of_azimuth : air)
+      over_ground.push_back(isLand(ground) ? withoutDuctOverLand(of_azimuth) : of_azimuth);
+    return over_ground;
+  }
+  if (std::none_of(air.begin(), air.end(), hasEvaporationDuct)) return air;
+  for (std::size_t a = 0; a < std::size_t(march.azimuths); ++a) {
+    over_ground.push_back(withoutDuctOverLand(air[air.size() == 1 ? 0 : a],
+                                              march.ground_msl_m.data() + a * march.ground_steps,
+                                              march.ground_steps, march.grid.range_step_m));
+  }
+  return over_ground;
+}
+
 /// Ground at even steps between the posts of a profile.
-std::vector<double> evenGround(const TerrainProfile& profile, double step_m, int steps) {
-  std::vector<double> ground_msl_m;
+std::vector<float> evenGround(const TerrainProfile& profile, double step_m, int steps) {
+  std::vector<float> ground_msl_m;
   int post = 0;
   for (int i = 0; i <= steps; ++i) {
     const double at_m = i * step_m;
@@ -102,8 +121,8 @@ std::vector<double> evenGround(const TerrainProfile& profile, double step_m, int
     const int next = std::min(post + 1, profile.count - 1);
     const double length_m = profile.range_m[next] - profile.range_m[post];
     const double part = length_m > 0 ? std::clamp((at_m - profile.range_m[post]) / length_m, 0.0, 1.0) : 0;
-    ground_msl_m.push_back(double(profile.height_msl_m[post]) +
-                           part * double(profile.height_msl_m[next] - profile.height_msl_m[post]));
+    ground_msl_m.push_back(float(double(profile.height_msl_m[post]) +
+                                 part * double(profile.height_msl_m[next] - profile.height_msl_m[post])));
   }
   return ground_msl_m;
 }
@@ -135,10 +154,14 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
   int staircases = 0, halvings = 0;
   for (const PeSurface& surface : surfaces) {
     RadialPath path;
-    path.air = air;
     path.surface = surface;
-    path.source.height_agl_m = inputs.site.height_msl_m - double(profile.height_msl_m[0]);
-    if (has_terrain) path.ground_msl_m = evenGround(profile, grid.range_step_m, steps);
+    path.source = {inputs.site.height_msl_m - double(profile.height_msl_m[0]), inputs.elevation_pattern};
+    path.air = isLand(inputs.emitter.ground) ? withoutDuctOverLand(air) : air;
+    if (has_terrain) {
+      const std::vector<float> ground_msl_m = evenGround(profile, grid.range_step_m, steps);
+      path.air = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), grid.range_step_m);
+      path.ground_msl_m.assign(ground_msl_m.begin(), ground_msl_m.end());
+    }
     RadialMarch<double, 1> march(grid, {std::move(path)});
     for (int i = 0; i < steps; ++i) march.advance();
     const double above_m = double(column.height_msl_m[0]) - march.ground_m(0);
@@ -169,6 +192,10 @@ std::vector<Setting> peSettings() {
       "range_step_m", "m", 1, 2000, "step of the march in range"));
   settings.push_back(automaticSetting<kPe, &ParabolicEquationSettings::azimuths>(
       "azimuths", "", 2, 7200, "directions that are marched; the field is interpolated between them"));
+  settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::source>(
+      "source", PeRadiator::pattern,
+      "what is marched: isotropic serves every beam; pattern, the antenna's elevation cut with its tilt, for "
+      "narrow or tilted beams that stay in elevation"));
   settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::roughness>(
       "roughness", RoughnessModel::miller_brown, "reduction of the reflection by roughness"));
   settings.push_back(numberSetting<kPe, &ParabolicEquationSettings::floor_db>(
@@ -195,7 +222,7 @@ std::vector<std::string> peWarningMessages(unsigned warnings) {
   }
   if (warnings & kPeDuctOverLand) {
     messages.emplace_back(
-        "an evaporation duct lies over land here: it needs a surface of water, and is taken as it is given");
+        "the evaporation duct is left out over land (above mean sea level, or a 'ground' that is not water)");
   }
   if (warnings & kPeProfileEnds) {
     messages.emplace_back(
@@ -222,20 +249,21 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   FieldMarch field;
   AzimuthMarch& march = field.march;
   march.grid = plan.grid;
-  march.source.height_agl_m = inputs.site.height_msl_m - radials.site_ground_msl_m;
+  march.source = {inputs.site.height_msl_m - radials.site_ground_msl_m, inputs.elevation_pattern};
   march.cells = plan.cells;
   march.azimuths = plan.azimuths;
   march.ranges = field.known_ranges = plan.ranges;
   field.surfaces = plan.surfaces;
-  field.members = plan.air;
   if (inputs.emitter.atmosphere.refractivity)
     field.quantile = inputs.emitter.atmosphere.refractivity->quantile;
   readGround(radials, plan, field);
+  for (const std::vector<RefractivityAlongPath>& member : plan.air)
+    field.members.push_back(airOverGround(member, march, inputs.emitter.ground));
 
   const RadialCells& cells = plan.cells;
   PeExcess excess;
-  excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m);
-  excess.others.max_angle_rad = static_cast<float>(plan.max_angle_rad);
+  excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m,
+                           plan.max_angle_rad);
   excess.others.min_range_m = static_cast<float>(plan.min_range_m);
   if (!cells.are_points) {
     excess.others.cell_range_m = static_cast<float>(cells.range_step_m);
@@ -283,8 +311,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
   double max_angle_rad = 0;
   const AutomaticGrid automatic = planGrid(inputs.emitter, air, needs, max_angle_rad);
 
-  PeOthers others = othersOf(inputs, air, has_terrain, double(profile.height_msl_m[0]));
-  others.max_angle_rad = static_cast<float>(max_angle_rad);
+  PeOthers others = othersOf(inputs, air, has_terrain, double(profile.height_msl_m[0]), max_angle_rad);
   others.min_range_m = static_cast<float>(
       std::max(2 * automatic.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz)));
   const char* const other_name = has_terrain ? "diffraction" : "two_ray";
@@ -305,7 +332,8 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
     }
     if (airs.size() > 1) march_text += fmt::format(", {} members of the air", airs.size());
     const auto& refractivity = inputs.emitter.atmosphere.refractivity;
-    others.setEquation(ofMembers_db(losses_db, refractivity ? refractivity->quantile : std::nullopt), loss);
+    others.setEquation(ofMembers_db(losses_db, refractivity ? refractivity->quantile : std::nullopt),
+                       static_cast<float>(column.range_m), end_msl_m, loss);
   }
   others.addScatter(column, sight, end_msl_m, loss);
   const bool over_land = has_terrain ? *highest > 0 : isLand(inputs.emitter.ground);

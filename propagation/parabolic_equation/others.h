@@ -9,6 +9,7 @@
 #include "propagation/diffraction/excess.h"
 #include "propagation/mechanism.h"
 #include "propagation/p1812/p1812.h"
+#include "propagation/parabolic_equation/direct_ray.h"
 #include "propagation/two_ray/excess.h"
 
 namespace emscape::propagation {
@@ -66,6 +67,7 @@ struct PeOthers {
   float curvature_per_m = 0;  ///< of rays over the flattened earth, upwards: 10^-6 dM/dz
   float max_angle_rad = 0, min_range_m = 0;
   float largest_db = 80;  ///< of the equation
+  DirectRayPattern direct_ray;
   bool over_terrain = false;
   DiffractionExcess diffraction;  ///< over terrain
   TwoRayExcess two_ray;           ///< over the smooth earth, at mean sea level
@@ -124,10 +126,12 @@ struct PeOthers {
     return part < 0 ? 0 : part > 1 ? 1 : part;
   }
 
-  /// Sets the equation's loss, no larger than that of its floor.
-  EMSCAPE_HD void setEquation(float equation_db, PeLoss& loss) const {
+  /// Sets the equation's loss, no larger than that of its floor, over the direct ray to a place.
+  EMSCAPE_HD void setEquation(float equation_db, float range_m, float height_msl_m, PeLoss& loss) const {
     loss.is_floor = equation_db > largest_db;
     loss.equation_db = loss.is_floor ? largest_db : equation_db;
+    if (direct_ray.is_weighed)
+      loss.equation_db += direct_ray.pattern_db(std::atan(launchAngle(range_m, height_msl_m)));
   }
 
   /// Range (m) at which the ray to a place above a height passes that height, which is above the antenna.

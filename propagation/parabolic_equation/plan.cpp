@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "emscape/base/error.h"
+#include "propagation/parabolic_equation/direct_ray.h"
 #include "propagation/parabolic_equation/march_lanes.h"
 #include "propagation/parabolic_equation/path_air.h"
 
@@ -53,6 +54,15 @@ double planAngle_rad(const EmitterInputs& emitter, double height_m, std::string&
 /// Time (s) on one core per azimuth, step and height, rounded up (docs/parabolic-equation.md, Speed).
 double secondsPerPoint(bool has_terrain) {
   return has_terrain ? 20e-9 : 14e-9;
+}
+
+/// What the equation's angles have of an elevation cut.
+std::string sourceText(const ElevationPattern& pattern, double max_angle_rad) {
+  if (!pattern) return "the antenna's elevation cut, which is isotropic";
+  const DirectRayPattern cut = directRayPattern(pattern, max_angle_rad);
+  const float* const largest = std::max_element(cut.db, cut.db + DirectRayPattern::kEntries);
+  return fmt::format("the antenna's elevation cut: at most {:.1f} dB, at {:.2f} degrees; {:.1f} dB at 0",
+                     *largest, radToDeg(cut.angle_rad(int(largest - cut.db))), cut.pattern_db(0));
 }
 
 bool areSameAir(const std::vector<RefractivityAlongPath>& air) {
@@ -247,6 +257,8 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   plan.grid = automatic.grid;
   plan.choices = std::move(automatic.choices);
   plan.surfaces = planSurfaces(inputs.emitter, air);
+  if (inputs.emitter.settings.parabolic_equation.source == PeRadiator::pattern)
+    plan.choices.push_back({"source", sourceText(inputs.elevation_pattern, plan.max_angle_rad)});
   planCells(radials, inputs.emitter.settings.parabolic_equation.cells, plan);
   planAzimuths(inputs, radials, plan);
   planRanges(radials, plan);
