@@ -26,6 +26,14 @@ enum class GasRole {
   included     ///< in the model's own loss
 };
 
+/// CPU time of an emitter's losses on one core, to an order of magnitude. Measured with the four emitters of
+/// scenarios/jacksboro.yaml, which is 30 km wide: the user time of `simulate` of one step, on 40 x 40 x 20
+/// and 100 x 100 x 50 voxels.
+struct ModelCost {
+  double voxel_ns = 0;   ///< at one voxel
+  double emitter_s = 0;  ///< of its tables and marches, on a grid of any size
+};
+
 /// The excess of a model that marches outwards, and the march that makes its tables.
 struct RadialExcess {
   ExcessModel model;  ///< without its tables, and without the warnings that the march returns
@@ -37,6 +45,7 @@ struct ModelInfo {
   std::string name;       ///< as in scenario files
   std::string reference;  ///< the publication that the model follows
   std::string accuracy;   ///< as measured, with the names of the tests; README's table quotes it
+  ModelCost cost;
   /// Keys of the model's own section in an emitter, and its description; none: no section.
   std::vector<Setting> settings;
   std::string settings_description;
