@@ -14,12 +14,18 @@
 #include "propagation/radial.h"
 #include "propagation/registry/excess_model.h"
 
+namespace emscape::propagation {
+struct FieldMarch;
+}
+
 namespace emscape::emfield {
 
 /// Excess loss of the paths from one emitter.
 struct EmitterExcess {
   propagation::ExcessModel model;
   propagation::AirLoss air;
+  /// What is still to be marched for the model's tables; null: they are complete, or there are none.
+  std::shared_ptr<propagation::FieldMarch> march;
 
   /// Tables of model and air, in host memory; empty if they need none.
   std::shared_ptr<const std::vector<float>> model_tables, air_tables;
@@ -54,12 +60,14 @@ bool hasExcess(const scenario::Scenario& scenario, const scenario::Emitter& emit
 
 /// The excess of an emitter that has one.
 /// @param radials  for models with ModelInfo::radial
-EmitterExcess makeExcess(const propagation::PathInputs& inputs,
+EmitterExcess planExcess(const propagation::PathInputs& inputs,
                          const propagation::RadialInputs* radials = nullptr);
 /// The same over the columns of a grid.
 /// @throws as pathInputs()
-EmitterExcess makeExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+EmitterExcess planExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                          const Station& station, const scenario::Terrain* terrain,
                          const GridColumns& columns);
+/// Marches on the CPU, if the model does. @throws Error (bad_input) that names the emitter
+void marchTables(const scenario::Emitter& emitter, EmitterExcess& excess);
 
 }  // namespace emscape::emfield

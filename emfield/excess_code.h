@@ -4,6 +4,7 @@
 /// position, frequency and polarisation and on terrain and air, not on its power or antenna.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -62,6 +63,11 @@ struct ExcessStore {
   ExcessCode* codes = nullptr;
   float* db = nullptr;
 
+  /// NaN: unknown.
+  EMSCAPE_HD float get(std::size_t voxel) const {
+    if (db != nullptr) return db[voxel];
+    return codes[voxel] == kUnknownExcess ? NAN : excessDb(codes[voxel]);
+  }
   /// @param excess_db  NaN: unknown
   EMSCAPE_HD void set(std::size_t voxel, float excess_db) const {
     if (db != nullptr) {

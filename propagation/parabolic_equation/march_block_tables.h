@@ -115,7 +115,7 @@ EMSCAPE_HD void planSteps(const MarchBlockTask& task, PlannedStep* planned, int 
   const float* const ground_m = task.ground_msl_m + std::size_t(azimuth) * task.ground_steps;
   const double max_sine = task.wavelength_m / (2 * task.height_step_m);
   double here_m = state.ground_m, sine = state.sine;
-  for (int s = state.step; s < task.end_step; ++s) {
+  for (int s = state.step; s < state.end_step; ++s) {
     const std::size_t next = std::size_t(s) + 1;
     const double rise_m = double(ground_m[next < task.ground_steps ? next : task.ground_steps - 1]) - here_m;
     const GroundStep step = groundStep(rise_m, task.range_step_m, sine, s == 0, max_sine, task.slope_part);

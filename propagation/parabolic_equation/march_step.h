@@ -47,8 +47,8 @@ struct GroundStep {
   /// Sine of the slope before less that of this one: the field turns by exp(i k z turn) at the break.
   double turn = 0;
   double stair_m = 0;  ///< rise of the step of a staircase at the end: what the slope leaves
-  bool is_steep =
-      false;  ///< steeper or more sharply bent than the equation allows: all rise is the staircase's
+  /// Steeper or more sharply bent than the equation allows: all rise is the staircase's.
+  bool is_steep = false;
 };
 
 /// @param rise_m       over the step

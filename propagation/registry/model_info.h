@@ -11,6 +11,7 @@
 #include "propagation/inputs.h"
 #include "propagation/limits.h"
 #include "propagation/mechanism.h"
+#include "propagation/parabolic_equation/field_march.h"
 #include "propagation/path_column.h"
 #include "propagation/radial.h"
 #include "propagation/registry/excess_model.h"
@@ -23,6 +24,12 @@ enum class GasRole {
   on_request,  ///< the model is a bound: added only if the atmosphere's `gases` is `always`
   added,       ///< added unless the atmosphere's `gases` is `never`
   included     ///< in the model's own loss
+};
+
+/// The excess of a model that marches outwards, and the march that makes its tables.
+struct RadialExcess {
+  ExcessModel model;  ///< without its tables, and without the warnings that the march returns
+  FieldMarch march;
 };
 
 struct ModelInfo {
@@ -60,9 +67,9 @@ struct ModelInfo {
   Explanation (*explain)(const PathInputs&, PathColumn&) = nullptr;
   /// Makes the excess model; null: there is none. `tables` receives the data that the result points to.
   ExcessModel (*excess)(const PathInputs&, std::vector<float>& tables) = nullptr;
-  /// The same of a model that marches outwards, in place of `excess`: marches all azimuths around the emitter
-  /// into the tables. @throws Error (bad_input) for what `choices` refuses
-  ExcessModel (*radial)(const PathInputs&, const RadialInputs&, std::vector<float>& tables) = nullptr;
+  /// The same of a model that marches outwards, in place of `excess`. @throws Error (bad_input) for what
+  /// `choices` refuses
+  RadialExcess (*radial)(const PathInputs&, const RadialInputs&) = nullptr;
   /// What such a model chooses by itself. @throws Error (bad_input) with the value and what is allowed
   std::vector<ModelChoice> (*choices)(const PathInputs&, const RadialInputs&) = nullptr;
 };

@@ -182,8 +182,10 @@ ModelInfo parabolicEquationRow() {
   row.check = checkPe;
   row.warningMessages = peWarningMessages;
   row.explain = explainPe;
-  row.radial = [](const PathInputs& inputs, const RadialInputs& radials,
-                  std::vector<float>& tables) -> ExcessModel { return peExcess(inputs, radials, tables); };
+  row.radial = [](const PathInputs& inputs, const RadialInputs& radials) -> RadialExcess {
+    PeField field = peField(inputs, radials);
+    return {field.excess, std::move(field.march)};
+  };
   row.choices = peChoices;
   return row;
 }

@@ -49,7 +49,7 @@ class Columns {
       : station_(makeStation({44.43, -71.47, 0}, tx_msl_m, scenario.atmosphere.k_factor)) {
     PathInputs inputs = pathInputs(scenario, scenario.emitters[0], station_, nullptr, extent);
     inputs.post_spacing_m = step_m;
-    excess_ = makeExcess(inputs);
+    excess_ = planExcess(inputs);
   }
 
   std::vector<float> fill(const ProfileData& profile, const std::vector<float>& heights_msl_m) const {

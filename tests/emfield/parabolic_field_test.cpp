@@ -83,6 +83,20 @@ struct Made {
   }
 };
 
+/// The excess, its march done.
+struct Marched {
+  std::vector<float> tables;
+  propagation::PeExcess excess;
+
+  explicit Marched(const Made& made) {
+    propagation::PeField field = peField(made.inputs, made.radials);
+    tables.resize(field.march.cellCount());
+    excess = field.excess;
+    excess.warnings |= marchField(field.march, tables.data());
+    excess.tables = tables.data();
+  }
+};
+
 /// Excess (dB) of the emitter's voxels: with an isotropic antenna the rest is free space.
 double excessIn(const volume::DenseVolume& volume, const Made& made, int i, int j, int k) {
   const GridColumn column = made.columns.view()[static_cast<std::size_t>(j * volume.grid.dims.x + i)];
@@ -125,8 +139,8 @@ std::vector<double> differencesFromSingleMarches(const scenario::TerrainPtr& ter
   const auto volume = solve(scenario, terrain);
   const Made made(*scenario, terrain.get());
   const PePlan& plan = made.plan;
-  std::vector<float> tables;
-  const propagation::PeExcess excess = peExcess(made.inputs, made.radials, tables);
+  const Marched marched(made);
+  const propagation::PeExcess& excess = marched.excess;
   std::mt19937 random(1);
   std::vector<double> differences;
   while (differences.size() < 200) {
@@ -209,8 +223,8 @@ TEST(ParabolicField, IsTwoRayInsideTheHorizonOverTheSea) {
 TEST(ParabolicField, HasNoSeamOverASmoothEarth) {
   const auto scenario = around(1e9, 30, {12e3, 300, 800}, {240, 3, 160});
   const Made made(*scenario, nullptr);
-  std::vector<float> tables;
-  const propagation::PeExcess excess = peExcess(made.inputs, made.radials, tables);
+  const Marched marched(made);
+  const propagation::PeExcess& excess = marched.excess;
   std::vector<double> steps;
   for (double range_m = 1.5 * made.plan.min_range_m; range_m < 6e3; range_m += 130) {
     propagation::ExcessColumn column;
@@ -410,8 +424,8 @@ TEST(ParabolicField, SaysWhichModelSpeaksWhere) {
   scenario->output.quantities = {"dominant_model"};
   const auto model = solve(scenario);
   const Made made(*scenario, nullptr);
-  std::vector<float> tables;
-  const propagation::PeExcess excess = peExcess(made.inputs, made.radials, tables);
+  const Marched marched(made);
+  const propagation::PeExcess& excess = marched.excess;
   const std::vector<std::string> labels = volume::labelsOf(model->info);
   std::map<std::string, int> seen;
   for (int i = 0; i < 160; ++i) {
