@@ -66,7 +66,8 @@ EMSCAPE_HD inline void columnGeometry(const Station& station, const GridColumn& 
   const Vec3d offset = base + column.axis * nearest_t_m;
   const auto liftAt = [&](double t_m) {
     const Vec3d point = base + column.axis * t_m;
-    const double level_m = std::hypot(dot(point, station.geodesy.east), dot(point, station.geodesy.north));
+    const double east_m = dot(point, station.geodesy.east), north_m = dot(point, station.geodesy.north);
+    const double level_m = std::sqrt(east_m * east_m + north_m * north_m);
     return refractionLift_m(station, foot.distance_m, level_m, heightMsl_m(column, t_m));
   };
   const double lift_m = liftAt(middle_m);

@@ -16,12 +16,13 @@ using propagation::DiffractionModel;
 
 constexpr int kBlock = SectorPosts::kBlock, kGroup = SectorPosts::kGroup;
 
-int groupsOf(int blocks) {
-  return (blocks + kGroup - 1) / kGroup;
+/// Number of groups of kGroup that hold so many blocks, or groups.
+int groupsOf(int count) {
+  return (count + kGroup - 1) / kGroup;
 }
 
 /// Bounds of the blocks of a sector's paths. Heights are relative to the ground below the emitter; "lowered"
-/// ones are less the earth's bulge r^2 / (2 a). Arrays are padded to whole groups.
+/// ones are less the earth's bulge r^2 / (2 a). Arrays, those of groups too, are padded to whole groups.
 struct SectorBounds {
   float base_msl_m = 0;
   float tx_m = 0;
@@ -87,39 +88,61 @@ class Search {
                 clipped(posts_.last_m[guess])) > most.value) {
       visit(guess, valueOf, most);
     }
-    for (int g = (path_.blocks - 1) / kGroup; g >= 0; --g) {
-      if (!(boundOf(bounds_.group_lowered_m[g], bounds_.group_tx_slope[g], posts_.group_first_m[g],
-                    clipped(posts_.group_last_m[g])) > most.value)) {
-        continue;
-      }
-      const int begin = g * kGroup;
-      const float* const lowered_m = bounds_.lowered_m.data() + begin;
-      const float* const tx_slope = bounds_.tx_slope.data() + begin;
-      const float* const first_m = posts_.first_m + begin;
-      const float* const last_m = posts_.last_m + begin;
-      float bound[kGroup];
-#pragma omp simd
-      for (int i = 0; i < kGroup; ++i) {
-        bound[i] = boundOf(lowered_m[i], tx_slope[i], first_m[i], clipped(last_m[i]));
-      }
-      for (int i = std::min(kGroup, path_.blocks - begin) - 1; i >= 0; --i) {
-        if (bound[i] > most.value && begin + i != guess) visit(begin + i, valueOf, most);
-      }
+    const auto visitBlock = [&](int block) {
+      if (block != guess) visit(block, valueOf, most);
+    };
+    const auto visitGroup = [&](int group) {
+      descend(group, path_.blocks, bounds_.lowered_m.data(), bounds_.tx_slope.data(), posts_.first_m,
+              posts_.last_m, clipped, boundOf, most, visitBlock);
+    };
+    const int groups = groupsOf(path_.blocks);
+    for (int of_groups = groupsOf(groups) - 1; of_groups >= 0; --of_groups) {
+      descend(of_groups, groups, bounds_.group_lowered_m.data(), bounds_.group_tx_slope.data(),
+              posts_.group_first_m, posts_.group_last_m, clipped, boundOf, most, visitGroup);
     }
   }
 
  private:
+  /// Visits those of kGroup blocks or groups whose bound exceeds the maximum, the farthest first.
+  /// @param count  of all blocks or groups
+  template <class Clipped, class BoundOf, class Visit>
+  static void descend(int group, int count, const float* lowered_m, const float* tx_slope,
+                      const float* first_m, const float* last_m, const Clipped& clipped,
+                      const BoundOf& boundOf, const Maximum& most, const Visit& visitOne) {
+    const int begin = group * kGroup;
+    const float least = most.value;
+    float bound[kGroup];
+    unsigned exceeds = 0;  // bit i: the bound of i does
+#pragma omp simd reduction(| : exceeds)
+    for (int i = 0; i < kGroup; ++i) {
+      bound[i] =
+          boundOf(lowered_m[begin + i], tx_slope[begin + i], first_m[begin + i], clipped(last_m[begin + i]));
+      exceeds |= (bound[i] > least ? 1u : 0u) << i;
+    }
+    if (count - begin < kGroup) exceeds &= (1u << (count - begin)) - 1;
+    while (exceeds != 0) {
+      const int i = 31 - __builtin_clz(exceeds);
+      exceeds &= ~(1u << i);
+      if (bound[i] > most.value) visitOne(begin + i);
+    }
+  }
+
   template <class ValueOf>
   void visit(int block, const ValueOf& valueOf, Maximum& most) const {
-    const int first = block * kBlock, end = std::min(first + kBlock, path_.before + 1);
+    const int first = block * kBlock, count = std::min(kBlock, path_.before + 1 - first);
     const float* const height_m = heightsOf(block);
     const float* const range_m = posts_.range_m + first;
-    float largest = -HUGE_VALF;
+    const auto largestOf = [&](int begin, int end) {
+      float largest = -HUGE_VALF;
 #pragma omp simd reduction(max : largest)
-    for (int i = first == 0 ? 1 : 0; i < end - first; ++i) {
-      const float value = valueOf(range_m[i], height_m[i]);
-      largest = value > largest ? value : largest;
-    }
+      for (int i = begin; i < end; ++i) {
+        const float value = valueOf(range_m[i], height_m[i]);
+        largest = value > largest ? value : largest;
+      }
+      return largest;
+    };
+    const bool is_whole = first > 0 && count == kBlock;  // vectors of a known size
+    const float largest = is_whole ? largestOf(0, kBlock) : largestOf(first == 0 ? 1 : 0, count);
     if (largest > most.value) most = {largest, block};
   }
 
@@ -141,9 +164,16 @@ class Search {
     const int row_posts = terrain_.rowPosts();
     const float base_msl_m = bounds_.base_msl_m;
     const int count = std::min(kBlock, path_.before + 1 - first);
+    const auto read = [&](int end) {
 #pragma omp simd
-    for (int i = 0; i < count; ++i) {
-      height_m[i] = bilinearHeight(corner, row_posts, column.at(parts[i]), row.at(parts[i])) - base_msl_m;
+      for (int i = 0; i < end; ++i) {
+        height_m[i] = bilinearHeight(corner, row_posts, column.at(parts[i]), row.at(parts[i])) - base_msl_m;
+      }
+    };
+    if (count == kBlock) {
+      read(kBlock);
+    } else {
+      read(count);
     }
     return height_m;
   }
@@ -346,6 +376,9 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
     group_first_m.push_back(first_m[g * kGroup]);
     group_last_m.push_back(last_m[(g + 1) * kGroup - 1]);
   }
+  const int padded_groups = groupsOf(groups) * kGroup;
+  group_first_m.resize(padded_groups, group_first_m.back());
+  group_last_m.resize(padded_groups, group_last_m.back());
   const Posts posts{task.model.model,    task.ground.ranges_m,    sector_posts.range_m(),
                     sector_posts.part(), task.ground.range_count, first_m.data(),
                     last_m.data(),       group_first_m.data(),    group_last_m.data()};
@@ -356,8 +389,8 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
                               &of_sector.least_tx_slope}) {
       array->resize(groups * kGroup);
     }
-    of_sector.group_lowered_m.resize(groups);
-    of_sector.group_tx_slope.resize(groups);
+    of_sector.group_lowered_m.resize(padded_groups);
+    of_sector.group_tx_slope.resize(padded_groups);
     PathMemory memory;
     memory.height_m.resize(blocks * kBlock);
     memory.height_msl_m.resize(task.grid.layers);

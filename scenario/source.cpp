@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "document/edit_path.h"
+#include "document/number_edit.h"
 #include "document/text_file.h"
 #include "scenario/schema.h"
 
@@ -78,6 +79,19 @@ void remember(std::vector<MadeEdit>& edits, MadeEdit made) {
   }
 }
 
+/// Reads a text that was changed in one span: nothing else may have changed.
+DocumentNodePtr readEdited(const document::EditedText& text, const DocumentNodePtr& before,
+                           const ResolvedPath& path, const DocumentNodePtr& value) {
+  document::ProblemList problems;
+  DocumentNodePtr root = document::readDocument(text.file(), text.text(), problems);
+  const DocumentNodePtr wanted = document::withValueAt(before, path.steps, value);
+  if (!root || problems.hasErrors() || !document::sameValue(*root, *wanted)) {
+    throw Error(ErrorCode::bad_input,
+                "the file is written in a way that cannot be edited here; edit the file");
+  }
+  return root;
+}
+
 void apply(ScenarioSource& source, const Edit& edit) {
   const ResolvedPath path = document::resolvePath(edit.path, source.root, scenarioSpec());
   const DocumentNodePtr value = valueOf(edit);
@@ -87,23 +101,19 @@ void apply(ScenarioSource& source, const Edit& edit) {
   }
   ScenarioSource edited;
   edited.text = source.text;
-  edited.root = source.root;
   if (value || path.exists) {
     const std::string& text = source.text.text();
-    edited.text.apply(document::spliceFor(text, source.root, path.steps, value), toString(made));
+    const document::Splice splice = document::spliceFor(text, source.root, path.steps, value);
+    edited.root = document::withNumberSpliced(text, source.root, path.steps, value, splice);
+    edited.text.apply(splice, toString(made));
     if (edited.text.text().size() > kMaxScenarioBytes) {
       throw Error(ErrorCode::bad_input,
                   fmt::format("the scenario would have {} bytes, more than the allowed {}",
                               edited.text.text().size(), kMaxScenarioBytes));
     }
-    document::ProblemList problems;
-    edited.root = document::readDocument(edited.text.file(), edited.text.text(), problems);
-    // The text is changed in one span and parsed again: nothing else may have changed.
-    const DocumentNodePtr wanted = document::withValueAt(source.root, path.steps, value);
-    if (!edited.root || problems.hasErrors() || !document::sameValue(*edited.root, *wanted)) {
-      throw Error(ErrorCode::bad_input,
-                  "the file is written in a way that cannot be edited here; edit the file");
-    }
+    if (!edited.root) edited.root = readEdited(edited.text, source.root, path, value);
+  } else {
+    edited.root = source.root;
   }
   const bool is_item = std::holds_alternative<std::size_t>(path.steps.back());
   const bool is_name = !is_item && std::get<std::string>(path.steps.back()) == "name";

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
+#include <optional>
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/snapshot.h"
@@ -97,7 +97,8 @@ struct CoverageSolver::Impl {
   const std::vector<CoverageRequest> requests;
   emfield::FieldOptions options;
   std::vector<OfReference> references;
-  std::deque<LeastHeights> least_heights;  ///< one per request
+  std::vector<std::size_t> with_least;  ///< requests of least heights
+  std::optional<LeastHeights> least_heights;
 
   /// @param of_maps  without quantities
   Impl(const MapGrid& map_grid, std::vector<CoverageRequest> of_maps_requests,
@@ -111,8 +112,14 @@ struct CoverageSolver::Impl {
       for (const CoverageRequest& request : requests)
         of_reference.maps.emplace_back(grid, request, reference, of_reference.field);
     }
-    for (const CoverageRequest& request : requests)
-      least_heights.emplace_back(grid, request.threshold, options);
+    std::vector<double> thresholds;
+    for (std::size_t r = 0; r < requests.size(); ++r) {
+      const std::vector<Product>& products = requests[r].products;
+      if (std::count(products.begin(), products.end(), Product::min_height) == 0) continue;
+      with_least.push_back(r);
+      thresholds.push_back(requests[r].threshold);
+    }
+    if (!thresholds.empty()) least_heights.emplace(grid, std::move(thresholds), options);
   }
 };
 
@@ -132,12 +139,8 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     for (const CoverageRequest& request : requests) checkRequest(request, *scenario);
     at_targets.push_back(atTargets(*scenario, requests.front().quantity));
   }
-  const auto hasLeast = [](const CoverageRequest& request) {
-    return std::count(request.products.begin(), request.products.end(), Product::min_height) > 0;
-  };
-  const auto with_least = static_cast<std::size_t>(std::count_if(requests.begin(), requests.end(), hasLeast));
-  const double steps =
-      static_cast<double>(times_s.size() * scenarios.size() * (impl_->references.size() + with_least));
+  const std::size_t fields = impl_->references.size() + (impl_->least_heights ? 1 : 0);
+  const auto steps = static_cast<double>(times_s.size() * scenarios.size() * fields);
   double done = 0;
   const auto step = [&] {
     if (progress) progress("maps", done++ / steps);
@@ -158,12 +161,14 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
         for (std::size_t r = 0; r < requests.size(); ++r)
           of.maps[r].addTime(s, at_targets[s], values, time_s, takeOf(r));
       }
-      for (std::size_t r = 0; r < requests.size(); ++r) {
-        if (!hasLeast(requests[r])) continue;
-        step();
+      if (!impl_->least_heights) continue;
+      step();
+      std::vector<std::vector<float>> least_m = impl_->least_heights->compute(at_targets[s], terrain, time_s);
+      for (std::size_t n = 0; n < least_m.size(); ++n) {
+        const std::size_t r = impl_->with_least[n];
         CoverageMap map = emptyMap(*at_targets[s], requests[r], Product::min_height, std::nullopt);
         map.time_s = time_s;
-        setValues(map, impl_->grid, impl_->least_heights[r].compute(at_targets[s], terrain, time_s));
+        setValues(map, impl_->grid, std::move(least_m[n]));
         takeOf(r)(std::move(map));
       }
     }

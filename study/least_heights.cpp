@@ -31,19 +31,23 @@ class Strip {
                        [](const auto& place) { return !std::isnan(place.latitude_deg); });
   }
 
-  /// Looks for the threshold above each place's offset, and sets the offset to the step below it. Places
-  /// without one, and those that have it at once, are left out from now on.
-  template <class Solve>
-  void search(double step_m, int steps, double threshold, const Solve& solve) {
+  /// The places with heights of so many steps above their offsets.
+  const emfield::Surface& surfaceOf(double step_m, int steps) {
     surface_.heights_m.clear();
     for (int k = 0; k <= steps; ++k) surface_.heights_m.push_back(k * step_m);
-    const std::shared_ptr<const volume::DenseVolume> volume = solve(surface_);
+    return surface_;
+  }
+
+  /// Looks for the threshold above each place's offset, and sets the offset to the step below it. Places
+  /// without one, and those that have it at once, are left out from now on.
+  /// @param volume  over surfaceOf(step_m, steps)
+  void search(double step_m, int steps, double threshold, const volume::DenseVolume& volume) {
     const std::size_t places = surface_.places.size();
     parallelFor(static_cast<int>(places), 4096, [&](int begin, int end) {
       for (int p = begin; p < end; ++p) {
         if (std::isnan(surface_.places[p].latitude_deg)) continue;
-        int k = volume->first_valid_k.empty() ? 0 : volume->first_valid_k[p];
-        while (k <= steps && !(static_cast<double>(volume->values[k * places + p]) >= threshold)) ++k;
+        int k = volume.first_valid_k.empty() ? 0 : volume.first_valid_k[p];
+        while (k <= steps && !(static_cast<double>(volume.values[k * places + p]) >= threshold)) ++k;
         const bool is_found = k <= steps;
         if (is_found) {
           found_m_[p] = surface_.offsets_m[p] + static_cast<float>(k * step_m);
@@ -63,13 +67,15 @@ class Strip {
 
 }  // namespace
 
-LeastHeights::LeastHeights(const MapGrid& grid, double threshold, const emfield::FieldOptions& options)
-    : grid_(grid), threshold_(threshold), options_(options) {
+LeastHeights::LeastHeights(const MapGrid& grid, std::vector<double> thresholds,
+                           const emfield::FieldOptions& options)
+    : grid_(grid), thresholds_(std::move(thresholds)), options_(options) {
   options_.allow_missing_terrain = true;
 }
 
-std::vector<float> LeastHeights::compute(const std::shared_ptr<const scenario::Scenario>& scenario,
-                                         const scenario::TerrainPtr& terrain, double time_s) {
+std::vector<std::vector<float>> LeastHeights::compute(
+    const std::shared_ptr<const scenario::Scenario>& scenario, const scenario::TerrainPtr& terrain,
+    double time_s) {
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), time_s);
   const int rows_at_once = std::max(1, kMostVoxels / (grid_.width * (kFirstSteps + 1)));
   const bool is_kept = rows_at_once >= grid_.height;
@@ -82,22 +88,26 @@ std::vector<float> LeastHeights::compute(const std::shared_ptr<const scenario::S
     solver->update(snapshot, terrain);
     return solver->volumes().front().host();
   };
-  std::vector<float> heights_m;
+  std::vector<std::vector<float>> heights_m(thresholds_.size());
   for (int row = 0; row < grid_.height; row += rows_at_once) {
-    Strip strip(grid_, row, std::min(rows_at_once, grid_.height - row));
-    double step_m = kHighestSearched_m / kFirstSteps;
-    int steps = kFirstSteps;
-    while (strip.hasPlaces()) {
-      const bool is_first = steps == kFirstSteps;
-      strip.search(step_m, steps, threshold_, [&](const emfield::Surface& surface) {
-        std::optional<emfield::FieldSolver> own;
-        return solve(surface, is_kept && is_first ? first_steps_ : own);
-      });
-      if (step_m <= kLeastHeightAccuracy_m) break;
-      steps = kLaterSteps;
-      step_m /= kLaterSteps;
+    Strip all(grid_, row, std::min(rows_at_once, grid_.height - row));
+    std::shared_ptr<const volume::DenseVolume> first;
+    constexpr double kFirstStep_m = kHighestSearched_m / kFirstSteps;
+    if (all.hasPlaces()) {
+      std::optional<emfield::FieldSolver> own;
+      first = solve(all.surfaceOf(kFirstStep_m, kFirstSteps), is_kept ? first_steps_ : own);
     }
-    heights_m.insert(heights_m.end(), strip.found_m().begin(), strip.found_m().end());
+    for (std::size_t t = 0; t < thresholds_.size(); ++t) {
+      Strip strip = all;
+      if (first) strip.search(kFirstStep_m, kFirstSteps, thresholds_[t], *first);
+      for (double step_m = kFirstStep_m; strip.hasPlaces() && step_m > kLeastHeightAccuracy_m;) {
+        step_m /= kLaterSteps;
+        std::optional<emfield::FieldSolver> own;
+        const auto volume = solve(strip.surfaceOf(step_m, kLaterSteps), own);
+        strip.search(step_m, kLaterSteps, thresholds_[t], *volume);
+      }
+      heights_m[t].insert(heights_m[t].end(), strip.found_m().begin(), strip.found_m().end());
+    }
   }
   return heights_m;
 }

@@ -1,4 +1,4 @@
-/// The least height above ground at which a quantity reaches a threshold, place by place.
+/// The least heights above ground at which a quantity reaches thresholds, place by place.
 #pragma once
 
 #include <memory>
@@ -10,30 +10,31 @@
 
 namespace emscape::study {
 
-/// Heights are searched from the ground to kHighestSearched_m in 64 steps, then below the first step that
-/// reaches the threshold in 16 steps, again and again down to kLeastHeightAccuracy_m. A lower height at which
-/// the threshold is reached over less than a first step (160 m) may be missed.
+/// Heights are searched from the ground to kHighestSearched_m in 64 steps, which all thresholds share, then
+/// below the first step that reaches a threshold in 16 steps, again and again down to kLeastHeightAccuracy_m.
+/// A lower height at which the threshold is reached over less than a first step (160 m) may be missed.
 constexpr double kHighestSearched_m = 10240;
 constexpr double kLeastHeightAccuracy_m = 0.625;
 
 /// Finds least heights on a map. One thread at a time.
 class LeastHeights {
  public:
-  /// @param grid     must outlive this object
-  /// @param options  the rest is set here
-  LeastHeights(const MapGrid& grid, double threshold, const emfield::FieldOptions& options);
+  /// @param grid        must outlive this object
+  /// @param thresholds  of one quantity
+  /// @param options     the rest is set here
+  LeastHeights(const MapGrid& grid, std::vector<double> thresholds, const emfield::FieldOptions& options);
 
   /// The field of the first steps is kept for the next scenario or time, of which only what has changed is
   /// computed, unless the map is larger than what is computed at once.
   /// @param scenario  with the quantity as its only output
-  /// @return heights (m) that reach the threshold, at most kLeastHeightAccuracy_m above the least; 0 on the
-  /// ground; NaN: none does, or the place has no value
-  std::vector<float> compute(const std::shared_ptr<const scenario::Scenario>& scenario,
-                             const scenario::TerrainPtr& terrain, double time_s);
+  /// @return for each threshold heights (m) that reach it, at most kLeastHeightAccuracy_m above the least; 0
+  /// on the ground; NaN: none does, or the place has no value
+  std::vector<std::vector<float>> compute(const std::shared_ptr<const scenario::Scenario>& scenario,
+                                          const scenario::TerrainPtr& terrain, double time_s);
 
  private:
   const MapGrid& grid_;
-  double threshold_;
+  std::vector<double> thresholds_;
   emfield::FieldOptions options_;
   std::optional<emfield::FieldSolver> first_steps_;
 };

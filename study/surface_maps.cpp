@@ -35,7 +35,7 @@ std::vector<int> classColors(Product product) {
 
 /// A value for each pixel.
 template <class Value>
-std::vector<float> valuesOf(const MapGrid& grid, const Value& valueAtPixel) {
+std::vector<float> valuesOfPixels(const MapGrid& grid, const Value& valueAtPixel) {
   std::vector<float> values(grid.pixels());
   parallelFor(static_cast<int>(grid.pixels()), 1 << 14, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) values[p] = valueAtPixel(static_cast<std::size_t>(p));
@@ -170,7 +170,7 @@ void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenari
       if (info(product).over_time || !info(product).at_heights) continue;
       CoverageMap map = emptyMap(*scenario, request_, product, layers_[n].height);
       map.time_s = time_s;
-      setValues(map, grid_, valuesOf(grid_, [&](std::size_t p) { return valueOf(product, values, k, p); }));
+      setValues(map, grid_, valuesOf(product, values, k));
       take(std::move(map));
     }
   }
@@ -182,7 +182,7 @@ void SurfaceMaps::finish(std::size_t index, const MapSink& take) {
     for (const Product product : request_.products) {
       if (!info(product).over_time) continue;
       CoverageMap map = emptyMap(*state.scenario, request_, product, layers_[n].height);
-      setValues(map, grid_, valuesOf(grid_, [&](std::size_t p) {
+      setValues(map, grid_, valuesOfPixels(grid_, [&](std::size_t p) {
                   return std::isnan(valueAt(*state.last, layers_[n].k, p))
                              ? NAN
                              : state.figures[n].figure(product, p);
@@ -192,25 +192,35 @@ void SurfaceMaps::finish(std::size_t index, const MapSink& take) {
   }
 }
 
-float SurfaceMaps::valueOf(Product product, const SurfaceValues& values, std::size_t k, std::size_t p) const {
-  const float value = valueAt(*values.all, k, p);
-  if (std::isnan(value)) return value;
+std::vector<float> SurfaceMaps::valuesOf(Product product, const SurfaceValues& values, std::size_t k) const {
+  /// @param ofKnown(value, p)  of a pixel with a value
+  const auto from = [&](const auto& ofKnown) {
+    return valuesOfPixels(grid_, [&](std::size_t p) {
+      const float value = valueAt(*values.all, k, p);
+      return std::isnan(value) ? value : ofKnown(value, p);
+    });
+  };
+  const auto isCoveredUnjammed = [&](std::size_t p) { return isCovered(valueAt(*values.unjammed, k, p)); };
   switch (product) {
     case Product::covered:
-      return isCovered(value) ? 1.0f : 0.0f;
+      return from([&](float value, std::size_t) { return isCovered(value) ? 1.0f : 0.0f; });
     case Product::margin:
-      return value - static_cast<float>(request_.threshold);
+      return from([&](float value, std::size_t) { return value - static_cast<float>(request_.threshold); });
     case Product::jam_loss:
-      return !isCovered(value) && isCovered(valueAt(*values.unjammed, k, p)) ? 1.0f : 0.0f;
+      return from([&](float value, std::size_t p) {
+        return !isCovered(value) && isCoveredUnjammed(p) ? 1.0f : 0.0f;
+      });
     case Product::burn_through:
-      return isCovered(value) ? 2.0f : isCovered(valueAt(*values.unjammed, k, p)) ? 1.0f : 0.0f;
+      return from([&](float value, std::size_t p) {
+        return isCovered(value) ? 2.0f : isCoveredUnjammed(p) ? 1.0f : 0.0f;
+      });
     case Product::count:
     case Product::redundancy:
     case Product::best:
     case Product::max_range:
-      return ofEmitters(product, values.each, k, p);
+      return from([&](float, std::size_t p) { return ofEmitters(product, values.each, k, p); });
     default:
-      return value;
+      return from([](float value, std::size_t) { return value; });
   }
 }
 

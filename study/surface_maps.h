@@ -101,7 +101,8 @@ class SurfaceMaps {
     return is_valid ? volume.values[k * grid_.pixels() + p] : NAN;
   }
 
-  float valueOf(Product product, const SurfaceValues& values, std::size_t k, std::size_t p) const;
+  /// Of a layer.
+  std::vector<float> valuesOf(Product product, const SurfaceValues& values, std::size_t k) const;
   float ofEmitters(Product product, const std::vector<SurfaceValues::OfOne>& each, std::size_t k,
                    std::size_t p) const;
 

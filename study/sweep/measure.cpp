@@ -58,7 +58,13 @@ void MeasureOverTime::add(const StudyMeasure& measure, const CoverageMap& map, c
   using Figure = StudyMeasure::Figure;
   const auto area_class = static_cast<float>(info(measure.product).area_class);
   double known_m2 = 0, of_class_m2 = 0, integral = 0, min = HUGE_VAL, max = -HUGE_VAL;
-  for (std::size_t p = 0; p < map.values.size(); ++p) {
+  const bool is_of_area = measure.figure == Figure::km2 || measure.figure == Figure::percent;
+  const bool is_told = is_of_area && pixels.empty();  // by the map
+  if (is_told) {
+    known_m2 = map.known_area_m2;
+    of_class_m2 = map.class_area_m2;
+  }
+  for (std::size_t p = 0; p < map.values.size() && !is_told; ++p) {
     const float value = map.values[p];
     if (std::isnan(value) || (!pixels.empty() && pixels[p] == 0)) continue;
     const auto area_m2 = static_cast<double>(grid.areas_m2[p]);

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <random>
+#include <tuple>
 
 #include "document/document.h"
 #include "document/text_edit.h"
@@ -398,6 +399,21 @@ std::vector<std::string> messagesOf(const std::vector<Problem>& problems) {
   return messages;
 }
 
+/// That two documents have their values at the same places of a text.
+void expectSamePlaces(const DocumentNode& a, const DocumentNode& b) {
+  const auto numbersOf = [](const document::TextPosition& at) {
+    return std::make_tuple(at.line, at.column, at.offset);
+  };
+  ASSERT_TRUE(document::sameValue(a, b));
+  EXPECT_EQ(numbersOf(a.position), numbersOf(b.position)) << a.text;
+  EXPECT_EQ(a.quoted, b.quoted) << a.text;
+  for (std::size_t i = 0; i < a.items.size(); ++i) expectSamePlaces(*a.items[i], *b.items[i]);
+  for (std::size_t i = 0; i < a.entries.size(); ++i) {
+    EXPECT_EQ(numbersOf(a.entries[i].position), numbersOf(b.entries[i].position)) << a.entries[i].key;
+    expectSamePlaces(*a.entries[i].value, *b.entries[i].value);
+  }
+}
+
 /// An edit and a file that is written anew with the value must mean the same, for every key of the table.
 TEST(EditEveryKey, EqualsAFileWithThatValue) {
   TemporaryFolder folder;
@@ -416,6 +432,8 @@ TEST(EditEveryKey, EqualsAFileWithThatValue) {
       const ParseResult edited = editScenario(*scenario, {{path, value}});
       ScenarioSource source{scenario->source->text, root, {}, {}};
       ASSERT_NO_THROW(applyEdit(source, {path, value}));
+      document::ProblemList problems;
+      expectSamePlaces(*source.root, *document::readDocument("", source.text.text(), problems));
       const std::string anew = folder.write("anew.json", document::flowText(*source.root, true));
       const ParseResult read = parseScenario(anew);
       ASSERT_EQ(edited.scenario != nullptr, read.scenario != nullptr) << test::readFile(anew);

@@ -88,7 +88,7 @@ TEST(MinHeight, OfTheHorizonIsThatOfTheLineOfSight) {
   scenario->platforms[0].track = {point};
   scenario->output.quantities = {"power_density_dbwm2"};
   scenario->output.floor = -200;
-  const std::vector<float> least_m = LeastHeights(grid, -150, {}).compute(scenario, terrain, 0);
+  const std::vector<float> least_m = LeastHeights(grid, {-150.0}, {}).compute(scenario, terrain, 0).front();
 
   const std::vector<double> seen_m = viewshedOf(grid, ground_msl_m, observer, kAntenna_agl_m);
   // The same by walking along the line of sight over the pixels, a quarter of one at a time.
