@@ -35,6 +35,7 @@ endforeach()
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME emscape)
 set(CPACK_PACKAGE_VERSION "${PROJECT_VERSION}")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "electromagnetic environment of a battlefield")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_OUTPUT_FILE_PREFIX "${PROJECT_BINARY_DIR}/packages")
 set(CPACK_STRIP_FILES ON)
@@ -55,8 +56,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "proj-data, fonts-dejavu-core")
 # Videos; OpenGL for the window, which loads it when it starts.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "ffmpeg, libgl1, libegl1, libgl1-mesa-dri")
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "electromagnetic environment of a battlefield, as a volume
-Computes the field of radars, transmitters and jammers on moving platforms over
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Computes the field of radars, transmitters and jammers on moving platforms over
 real terrain as a volume that changes with time, and draws it: pictures, videos,
 a window, maps of coverage, links, what-if studies.")
 
@@ -64,8 +64,7 @@ list(JOIN library_packages ", " library_packages)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libemscape-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_packages}")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "electromagnetic environment of a battlefield: libraries
-Static libraries and C++17 headers of Emscape, and what find_package(emscape) of
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries and C++17 headers of Emscape, and what find_package(emscape) of
 CMake reads.")
 include(CPack)
 

@@ -93,6 +93,11 @@ std::string footerText(const std::string& footer, const char* section) {
   return text;
 }
 
+/// The text with a paragraph of its own at its beginning, unless it begins with a section.
+std::string paragraphs(const std::string& text) {
+  return text.empty() || text.rfind(".S", 0) == 0 ? text : ".PP\n" + text;
+}
+
 std::string synopsis(const std::string& path, const CommandDescription& command) {
   std::string text = "\\fB" + roff(path) + "\\fR [\\fIOPTIONS\\fR]";
   for (const OptionDescription& positional : command.positionals) {
@@ -123,7 +128,7 @@ ManualPage programPage(const CommandDescription& program, const std::string& ver
                         roff(subcommand.summary));
   }
   text += ".SH OPTIONS\nThey may be before or after the subcommand.\n" + optionTexts(program);
-  return {program.name + ".1", text + footerText(program.footer, ".SH")};
+  return {program.name + ".1", text + paragraphs(footerText(program.footer, ".SH"))};
 }
 
 ManualPage subcommandPage(const CommandDescription& program, const CommandDescription& subcommand,
@@ -133,13 +138,12 @@ ManualPage subcommandPage(const CommandDescription& program, const CommandDescri
   std::string text = header(page, program.name, version, subcommand.summary) + synopsis(path, subcommand);
   text += ".SH OPTIONS\n" + optionTexts(subcommand);
   text += fmt::format(".PP\nThe options of \\fB{}\\fR(1) are taken, too.\n", roff(program.name));
-  text += footerText(subcommand.footer, ".SH");
+  text += paragraphs(footerText(subcommand.footer, ".SH"));
   for (const CommandDescription& inner : subcommand.subcommands) {
     text += fmt::format(".SH \"{}\"\n{}.PP\n{}.\n", roff(upper(subcommand.name + " " + inner.name)),
                         synopsis(path + " " + inner.name, inner), roff(inner.summary));
     text += optionTexts(inner);
-    const std::string footer = footerText(inner.footer, ".SS");
-    text += (footer.rfind(".S", 0) == 0 || footer.empty() ? "" : ".PP\n") + footer;
+    text += paragraphs(footerText(inner.footer, ".SS"));
   }
   text += fmt::format(".SH SEE ALSO\n\\fB{}\\fR(1)\n", roff(program.name));
   return {page + ".1", text};

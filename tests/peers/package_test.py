@@ -31,7 +31,8 @@ for tool in ("dpkg-deb", "dpkg-shlibdeps", "gzip"):
 
 shutil.rmtree(work, ignore_errors=True)
 work.mkdir(parents=True)
-said(cpack, "--config", build / "CPackConfig.cmake", "-B", work, "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")
+said(cpack, "--config", build / "CPackConfig.cmake", "-D", f"CPACK_OUTPUT_FILE_PREFIX={work}",
+     "-D", f"CPACK_PACKAGE_DIRECTORY={work}", "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=zstd")  # quick
 version = re.search(r"VERSION ([0-9.]+)", (source / "CMakeLists.txt").read_text().split("project(")[1])[1]
 program = next(work.glob(f"emscape_{version}-1_*.deb"))
 development = next(work.glob(f"libemscape-dev_{version}-1_*.deb"))
