@@ -10,16 +10,11 @@
 
 namespace emscape {
 
-/// What is wrong with a value: "type must be number, but is string", "key 'dims' not found". At most 200
-/// characters, without control characters.
+/// What is wrong with a value: "type must be number, but is string", "key 'dims' not found".
 inline std::string faultOf(const nlohmann::json::exception& error) {
-  constexpr std::size_t kLongest = 200;
   std::string text = error.what();  // "[json.exception.type_error.302] type must be ..."
   const std::size_t prefix = text.find("] ");
   if (text.front() == '[' && prefix != std::string::npos) text.erase(0, prefix + 2);
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c >= 0x7F; }, '?');
-  if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
   return text;
 }
 

@@ -1,5 +1,6 @@
 #include "base/memory.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -51,6 +52,19 @@ std::optional<std::size_t> availableMemory_bytes() {
     if (bytes) least = std::min(least.value_or(*bytes), *bytes);
   }
   return least;
+}
+
+std::string memoryShortage(const MemoryNeed& need, const char* whose, std::size_t free_bytes) {
+  constexpr double kMebibyte = 1 << 20;
+  return fmt::format("{} needs up to {:.0f} MiB of the {} memory, of which {:.0f} MiB are free; {}",
+                     need.what, static_cast<double>(need.needed_bytes) / kMebibyte, whose,
+                     static_cast<double>(free_bytes) / kMebibyte, need.remedy);
+}
+
+void requireMemory(const MemoryNeed& need, const SourceLocation& location) {
+  const std::optional<std::size_t> free_bytes = availableMemory_bytes();
+  if (!free_bytes || need.needed_bytes <= *free_bytes) return;
+  throw Error(ErrorCode::other, location, memoryShortage(need, "host's", *free_bytes));
 }
 
 }  // namespace emscape

@@ -61,6 +61,7 @@ VARIANTS = {
     "deygout": ("propagation: diffraction\n    diffraction: {method: deygout}", "altitude", False),
     "itm": ("propagation: itm", "altitude", False),
     "enu": ("propagation: diffraction", "enu", False),
+    "parabolic_equation": ("propagation: parabolic_equation", "altitude", False),
 }
 
 

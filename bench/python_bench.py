@@ -7,6 +7,8 @@ import time
 
 import emscape as em
 
+DLPACK_DEVICES = {1: "host", 2: "CUDA"}
+
 
 def microseconds(call, count):
     call()
@@ -14,6 +16,29 @@ def microseconds(call, count):
     for _ in range(count):
         call()
     return (time.perf_counter() - begin) / count * 1e6
+
+
+def tell_gpu(scenario):
+    """What an array of a field on a GPU costs, and where DLPack says that it is."""
+    try:
+        solver = em.Solver(scenario, "cuda")
+    except em.DeviceError as error:
+        print(f"fields on a GPU: {error}")
+        return
+    update_s, copy_s = [], []
+    for i in range(20):
+        begin = time.perf_counter()
+        field = solver.at(0.0, scenario.with_set({"emitters.radar.power_w": 1000 + i}))
+        updated = time.perf_counter()
+        values = field.numpy()
+        update_s.append(updated - begin)
+        copy_s.append(time.perf_counter() - updated)
+    megabytes = values.nbytes / 1e6
+    copy = min(copy_s)
+    print(f"Solver.at() on a GPU                 {min(update_s) * 1e3:8.2f} ms (is_on_gpu: {field.is_on_gpu})")
+    print(f"first Field.numpy(), from a GPU      {copy * 1e3:8.2f} ms: {megabytes:.1f} MB, {megabytes / copy / 1e3:.1f} GB/s")
+    device_type, number = field.__dlpack_device__()
+    print(f"device of Field.dlpack()             {DLPACK_DEVICES.get(device_type, device_type)} {number}")
 
 
 def main():
@@ -48,6 +73,8 @@ def main():
     for thread in threads:
         thread.join()
     print(f"two threads with a solver each       {one / (time.perf_counter() - begin):8.2f} times as fast as one after the other")
+
+    tell_gpu(larger)
 
     from emscape import datasets
 

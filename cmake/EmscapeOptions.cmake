@@ -31,11 +31,12 @@ if(EMSCAPE_CCACHE)
   endif()
 endif()
 
+# object-size: GCC 12 reports loads well inside constant arrays. null, alignment and pointer-overflow check every access,
+# for twice the time of compilation; what they are for, the address sanitizer sees.
+set(address_sanitizers -fsanitize=address,undefined -fno-sanitize=object-size,null,alignment,pointer-overflow
+    -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
 if(EMSCAPE_SANITIZE STREQUAL "address")
-  # object-size: GCC 12 reports loads well inside constant arrays. null, alignment and pointer-overflow check every access,
-  # for twice the time of compilation; what they are for, the address sanitizer sees.
-  add_compile_options(-fsanitize=address,undefined -fno-sanitize=object-size,null,alignment,pointer-overflow
-                      -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
+  add_compile_options(${address_sanitizers})
   add_link_options(-fsanitize=address,undefined)
 elseif(EMSCAPE_SANITIZE STREQUAL "thread")
   add_compile_options(-fsanitize=thread)
@@ -44,7 +45,7 @@ elseif(EMSCAPE_SANITIZE STREQUAL "fuzzer")
   if(NOT CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
     message(FATAL_ERROR "EMSCAPE_SANITIZE=fuzzer: needs clang (CMAKE_CXX_COMPILER=clang++), found ${CMAKE_CXX_COMPILER_ID}")
   endif()
-  add_compile_options(-fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined)
+  add_compile_options(${address_sanitizers} -fsanitize=fuzzer-no-link)
   add_link_options(-fsanitize=address,undefined)
 elseif(EMSCAPE_SANITIZE)
   message(FATAL_ERROR "EMSCAPE_SANITIZE=${EMSCAPE_SANITIZE}: must be address, thread, fuzzer or empty")

@@ -65,7 +65,7 @@ def draw(emscape, name):
     if name in DIAGRAMS:
         return draw_diagram(emscape, picture, *DIAGRAMS[name])
     colours = PICTURES[name]
-    size, elevation_deg, distance = ("480x420", 90, 2) if name in LEVEL else ("640x280", 0, 1.3)
+    size, elevation_deg, distance = ("560x420", 90, 2.6) if name in LEVEL else ("640x280", 0, 1.75)
     with tempfile.TemporaryDirectory() as folder:
         full = pathlib.Path(folder) / "full.png"
         subprocess.run(

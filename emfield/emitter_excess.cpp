@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/elevation_cut.h"
 #include "emfield/foot_inverse.h"
 #include "emfield/ground_posts.h"
 #include "emfield/radials.h"
@@ -67,8 +68,8 @@ propagation::EmitterInputs emitterInputs(const Scenario& scenario, const Emitter
           scenario.atmosphere};
 }
 
-PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const Station& station,
-                      const scenario::Terrain* terrain, const PathExtent& extent) {
+PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const scenario::BeamPose& beam,
+                      const Station& station, const scenario::Terrain* terrain, const PathExtent& extent) {
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   PathInputs inputs;
   inputs.emitter = emitterInputs(scenario, emitter);
@@ -83,6 +84,7 @@ PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const St
   }
   inputs.extent = extent;
   inputs.post_spacing_m = postSpacing_m(terrain);
+  if (auto cut = elevationCut(emitter, beam)) inputs.elevation_pattern = std::move(*cut);
   return inputs;
 }
 
@@ -113,13 +115,17 @@ bool hasExcess(const Scenario& scenario, const Emitter& emitter) {
   return propagation::hasExcess(emitterInputs(scenario, emitter));
 }
 
-EmitterExcess makeExcess(const PathInputs& inputs, const propagation::RadialInputs* radials) {
+EmitterExcess planExcess(const PathInputs& inputs, const propagation::RadialInputs* radials) {
   const ModelInfo& model = propagation::modelInfo(inputs.emitter.settings.model);
   const auto model_tables = std::make_shared<std::vector<float>>();
   const auto air_tables = std::make_shared<std::vector<float>>();
   EmitterExcess excess;
   if (model.excess != nullptr) excess.model = model.excess(inputs, *model_tables);
-  if (model.radial != nullptr) excess.model = model.radial(inputs, *radials, *model_tables);
+  if (model.radial != nullptr) {
+    propagation::RadialExcess planned = model.radial(inputs, *radials);
+    excess.model = planned.model;
+    excess.march = std::make_shared<propagation::FieldMarch>(std::move(planned.march));
+  }
   if (propagation::hasAirLoss(inputs.emitter)) {
     excess.air = propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), *air_tables);
   }
@@ -128,21 +134,32 @@ EmitterExcess makeExcess(const PathInputs& inputs, const propagation::RadialInpu
   return excess;
 }
 
-EmitterExcess makeExcess(const Scenario& scenario, const Emitter& emitter, const Station& station,
-                         const scenario::Terrain* terrain, const GridColumns& columns) {
+EmitterExcess planExcess(const Scenario& scenario, const Emitter& emitter, const scenario::BeamPose& beam,
+                         const Station& station, const scenario::Terrain* terrain,
+                         const GridColumns& columns) {
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   const bool needs_extent = propagation::needsExtent(emitterInputs(scenario, emitter));
   if (model.radial == nullptr) {
-    return makeExcess(pathInputs(scenario, emitter, station, terrain,
+    return planExcess(pathInputs(scenario, emitter, beam, station, terrain,
                                  needs_extent ? pathExtent(station, columns) : PathExtent{}));
   }
   EmitterExcess excess;
   inModel(emitter, [&] {
     const PathExtent extent = pathExtent(station, columns);
     const propagation::RadialInputs radials = radialInputs(station, columns, terrain, extent);
-    excess = makeExcess(pathInputs(scenario, emitter, station, terrain, extent), &radials);
+    excess = planExcess(pathInputs(scenario, emitter, beam, station, terrain, extent), &radials);
   });
   return excess;
+}
+
+void marchTables(const Emitter& emitter, EmitterExcess& excess) {
+  if (excess.march == nullptr) return;
+  const auto tables = std::make_shared<std::vector<float>>(excess.march->cellCount());
+  auto& model = std::get<propagation::PeExcess>(excess.model);
+  inModel(emitter, [&] { model.warnings |= propagation::marchField(*excess.march, tables->data()); });
+  model.tables = tables->data();
+  excess.model_tables = tables;
+  excess.march.reset();
 }
 
 }  // namespace emscape::emfield

@@ -9,10 +9,15 @@
 #include "emfield/grid_columns.h"
 #include "emfield/station.h"
 #include "emscape/scenario/scenario.h"
+#include "emscape/scenario/snapshot.h"
 #include "propagation/air/air_loss.h"
 #include "propagation/inputs.h"
 #include "propagation/radial.h"
 #include "propagation/registry/excess_model.h"
+
+namespace emscape::propagation {
+struct FieldMarch;
+}
 
 namespace emscape::emfield {
 
@@ -20,6 +25,8 @@ namespace emscape::emfield {
 struct EmitterExcess {
   propagation::ExcessModel model;
   propagation::AirLoss air;
+  /// What is still to be marched for the model's tables; null: they are complete, or there are none.
+  std::shared_ptr<propagation::FieldMarch> march;
 
   /// Tables of model and air, in host memory; empty if they need none.
   std::shared_ptr<const std::vector<float>> model_tables, air_tables;
@@ -35,12 +42,13 @@ propagation::EmitterInputs emitterInputs(const scenario::Scenario& scenario,
                                          const scenario::Emitter& emitter);
 
 /// The models' inputs for the emitter's paths from its site.
+/// @param beam        of the emitter, from which the model takes what depends on the antenna
 /// @param terrain     null: none
 /// @param extent      read only where propagation::needsExtent()
 /// @throws Error (bad_input) for a model without terrain if the ground below the emitter is missing
 propagation::PathInputs pathInputs(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                                   const Station& station, const scenario::Terrain* terrain,
-                                   const propagation::PathExtent& extent);
+                                   const scenario::BeamPose& beam, const Station& station,
+                                   const scenario::Terrain* terrain, const propagation::PathExtent& extent);
 
 /// Calls a function; its Errors get the emitter's name, that of its model and the line of its settings.
 void inModel(const scenario::Emitter& emitter, const std::function<void()>& body);
@@ -54,12 +62,14 @@ bool hasExcess(const scenario::Scenario& scenario, const scenario::Emitter& emit
 
 /// The excess of an emitter that has one.
 /// @param radials  for models with ModelInfo::radial
-EmitterExcess makeExcess(const propagation::PathInputs& inputs,
+EmitterExcess planExcess(const propagation::PathInputs& inputs,
                          const propagation::RadialInputs* radials = nullptr);
 /// The same over the columns of a grid.
 /// @throws as pathInputs()
-EmitterExcess makeExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                         const Station& station, const scenario::Terrain* terrain,
-                         const GridColumns& columns);
+EmitterExcess planExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                         const scenario::BeamPose& beam, const Station& station,
+                         const scenario::Terrain* terrain, const GridColumns& columns);
+/// Marches on the CPU, if the model does. @throws Error (bad_input) that names the emitter
+void marchTables(const scenario::Emitter& emitter, EmitterExcess& excess);
 
 }  // namespace emscape::emfield

@@ -49,7 +49,10 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   const GroundPosts ground = groundPosts(terrain, ranges_m);
   if (model.casts_shadow) findShadowEdgesCpu(station, ground, grid, shadow_edge_m_.data());
   if (hasExcess(scenario, emitter)) {
-    const EmitterExcess excess = makeExcess(scenario, emitter, station, terrain, columns);
+    EmitterExcess excess = planExcess(scenario, emitter, state.beam, station, terrain, columns);
+    times.excess_ms += watch.lap_ms();
+    marchTables(emitter, excess);
+    times.march_ms += watch.lap_ms();
     const std::size_t voxels = column_count_ * columns.t_m.size();
     excess_.resize(columns.every_height ? 0 : voxels);
     excess_db_.resize(columns.every_height ? voxels : 0);

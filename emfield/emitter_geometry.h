@@ -25,9 +25,9 @@ struct GeometryNeeds {
 /// Stages 1 and 2 of one emitter.
 class EmitterGeometry {
  public:
-  /// Times of the two stages (ms).
+  /// Times of the two stages (ms), the second without its marches.
   struct Times {
-    double columns_ms = 0, excess_ms = 0;
+    double columns_ms = 0, march_ms = 0, excess_ms = 0;
   };
 
   /// @param emitter  of the scenario

@@ -1,9 +1,11 @@
 /// A voxel's excess loss, for storage between updates: a 16-bit code, or over a surface the number itself.
 ///
 /// Excess is a path's loss less that of free space; negative where rays add up. It depends on the emitter's
-/// position, frequency and polarisation and on terrain and air, not on its power or antenna.
+/// position, frequency and polarisation and on terrain and air, not on its power or antenna; except where a
+/// model radiates the antenna's elevation cut.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -62,6 +64,11 @@ struct ExcessStore {
   ExcessCode* codes = nullptr;
   float* db = nullptr;
 
+  /// NaN: unknown.
+  EMSCAPE_HD float get(std::size_t voxel) const {
+    if (db != nullptr) return db[voxel];
+    return codes[voxel] == kUnknownExcess ? NAN : excessDb(codes[voxel]);
+  }
   /// @param excess_db  NaN: unknown
   EMSCAPE_HD void set(std::size_t voxel, float excess_db) const {
     if (db != nullptr) {

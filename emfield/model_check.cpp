@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "emfield/elevation_cut.h"
 #include "emfield/emitter_excess.h"
 #include "emscape/base/error.h"
 #include "propagation/air/rain.h"
@@ -35,6 +36,7 @@ const SourceLocation& locationOf(InputOrigin origin, const Scenario& scenario, c
 
 std::vector<std::string> checkModel(const Scenario& scenario, const Emitter& emitter) {
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+  checkElevationCut(scenario, emitter);
   std::vector<std::string> warnings;
   for (const propagation::InputFault& fault : model.check(emitterInputs(scenario, emitter))) {
     const std::string message = inModel(emitter, model.name, fault.message);

@@ -21,7 +21,7 @@ std::vector<EmitterChoice> modelChoices(const scenario::Snapshot& snapshot,
     const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
     const propagation::PathExtent extent = pathExtent(station, columns);
     inModel(emitter, [&] {
-      const auto inputs = pathInputs(scenario, emitter, station, terrain, extent);
+      const auto inputs = pathInputs(scenario, emitter, state.beam, station, terrain, extent);
       for (propagation::ModelChoice& choice :
            model.choices(inputs, radialInputs(station, columns, terrain, extent))) {
         all.push_back({emitter.name, model.name, std::move(choice.name), std::move(choice.text)});

@@ -13,22 +13,38 @@ namespace {
 
 using propagation::RadialInputs;
 
+constexpr int kArcs = 7200;
+constexpr double kArc_rad = 2 * kPi / kArcs;
+
+void setArcs(const Station& station, const GridColumns& columns, RadialInputs& radials) {
+  constexpr double kNoAzimuth_m = 1;
+  std::vector<float>& arcs_m = radials.farthest_of_arcs_m;
+  arcs_m.assign(kArcs, 0);
+  const ColumnsView view = columns.view();
+  const auto add = [&](const GridColumn& column, double t_m) {
+    const FastInverse foot = footInverse(station, column, t_m);
+    if (foot.distance_m < kNoAzimuth_m) return;
+    const double arc = std::atan2(foot.sin_azimuth, foot.cos_azimuth) / kArc_rad + kArcs;
+    float& farthest_m = arcs_m[static_cast<std::size_t>(arc) % kArcs];
+    farthest_m = std::max(farthest_m, static_cast<float>(foot.distance_m));
+  };
+  for (std::size_t c = 0; c < columns.count(); ++c) {
+    const GridColumn column = view[c];
+    if (columns.tilted) {
+      for (const float t_m : columns.t_m) add(column, static_cast<double>(t_m));
+    } else {
+      add(column, columns.middle_m());
+    }
+  }
+}
+
 /// Sets the sector that holds all columns: the circle without its widest empty arc, if that is more than
 /// half.
-void setSector(const Station& station, const GridColumns& columns, RadialInputs& radials) {
-  constexpr int kArcs = 7200;
-  constexpr double kArc_rad = 2 * kPi / kArcs, kNoAzimuth_m = 1;
-  std::vector<bool> filled(kArcs);
-  const ColumnsView view = columns.view();
-  for (std::size_t c = 0; c < columns.count(); ++c) {
-    const FastInverse foot = footInverse(station, view[c], columns.middle_m());
-    if (foot.distance_m < kNoAzimuth_m) continue;
-    const double arc = std::atan2(foot.sin_azimuth, foot.cos_azimuth) / kArc_rad + kArcs;
-    filled[static_cast<std::size_t>(arc) % kArcs] = true;
-  }
+void setSector(RadialInputs& radials) {
   int widest = 0, first = 0, empty = 0;
   for (int i = 0; i < 2 * kArcs; ++i) {
-    empty = filled[static_cast<std::size_t>(i % kArcs)] ? 0 : std::min(empty + 1, kArcs);
+    const bool filled = radials.farthest_of_arcs_m[static_cast<std::size_t>(i % kArcs)] > 0;
+    empty = filled ? 0 : std::min(empty + 1, kArcs);
     if (empty <= widest) continue;
     widest = empty;
     first = i + 1;
@@ -89,7 +105,8 @@ RadialInputs radialInputs(const Station& station, const GridColumns& columns,
                           const scenario::Terrain* terrain, const propagation::PathExtent& extent) {
   RadialInputs radials;
   radials.farthest_m = std::max(extent.farthest_m, 1.0);
-  setSector(station, columns, radials);
+  setArcs(station, columns, radials);
+  setSector(radials);
   radials.spacing_m = spacingOf(columns);
   setHeights(columns, extent, radials);
   radials.has_terrain = terrain != nullptr;

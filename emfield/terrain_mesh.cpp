@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/memory.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/geoid.h"
@@ -41,6 +42,11 @@ double totalOf(int layers, double first_m, double ratio) {
   for (int n = 0; n < layers; ++n, thickness *= ratio) total += thickness;
   return total;
 }
+
+/// Memory while the mesh is made, and written: vertices, and of a file their offset and type; coordinates,
+/// number in the lattice and number in the mesh.
+constexpr std::size_t kCellBytes = 4 * sizeof(std::int32_t) + sizeof(std::int64_t) + 1;
+constexpr std::size_t kPointBytes = sizeof(Vec3d) + sizeof(std::size_t) + sizeof(std::int32_t);
 
 /// A column of the region: where it is, and its foot in the frame.
 struct Foot {
@@ -147,6 +153,13 @@ TerrainMesh::TerrainMesh(const scenario::Scenario& scenario, const scenario::Ter
     fail(fmt::format("a mesh of {} tetrahedra ({} x {} columns, {} layers): at most {} can be used", cells,
                      lattice.x, lattice.y, spec.layers, volume::kMaxMeshCells));
   }
+  const auto count = [](long long number) { return static_cast<std::size_t>(number); };
+  requireMemory({fmt::format("the mesh of {} tetrahedra ({} x {} columns, {} layers)", cells, lattice.x,
+                             lattice.y, spec.layers),
+                 count(cells) * kCellBytes + count(lattice.count()) * kPointBytes +
+                     count(lattice.x) * count(lattice.y) * sizeof(Foot),
+                 "fewer columns (region.dims) or layers take less"},
+                {scenario.file});
   const std::vector<Foot> feet = feetOf(grid, terrain);
   double lowest_m = std::numeric_limits<double>::infinity();
   for (const Foot& foot : feet) {

@@ -55,24 +55,40 @@ class Video : public PictureSink {
   VideoFile video_;
 };
 
-}  // namespace
+enum class OutputKind { png, video, folder };
 
-std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::string& name, int pictures,
-                                             render::ImageSize size, double frames_per_s) {
+OutputKind kindOf(const fs::path& output) {
   const std::string ending = output.extension().string();
-  if (ending == ".png") {
-    if (pictures != 1) {
-      throw Error(ErrorCode::usage,
-                  fmt::format("{}: one .png for {} pictures; name one time, a folder or an .mp4",
-                              output.string(), pictures));
-    }
-    return std::make_unique<OnePng>(output);
-  }
-  if (ending == ".mp4") return std::make_unique<Video>(output, size, frames_per_s);
-  if (ending.empty() || fs::is_directory(output)) return std::make_unique<PngFolder>(output, name);
+  if (ending == ".png") return OutputKind::png;
+  if (ending == ".mp4") return OutputKind::video;
+  if (ending.empty() || fs::is_directory(output)) return OutputKind::folder;
   throw Error(
       ErrorCode::usage,
       fmt::format("{}: must end in .png or .mp4, or be a folder (without an ending)", output.string()));
+}
+
+}  // namespace
+
+void checkPictureOutput(const fs::path& output) {
+  kindOf(output);
+}
+
+std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::string& name, int pictures,
+                                             render::ImageSize size, double frames_per_s) {
+  switch (kindOf(output)) {
+    case OutputKind::video:
+      return std::make_unique<Video>(output, size, frames_per_s);
+    case OutputKind::folder:
+      return std::make_unique<PngFolder>(output, name);
+    case OutputKind::png:
+      break;
+  }
+  if (pictures != 1) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: one .png for {} pictures; name one time, a folder or an .mp4",
+                            output.string(), pictures));
+  }
+  return std::make_unique<OnePng>(output);
 }
 
 }  // namespace emscape::playback

@@ -275,7 +275,8 @@ void Timeline::setPlaySteps(int first, int last) {
 void Timeline::play() {
   playing_ = hasSpan();
   const TimeInterval range = playRange();
-  const bool is_before = time_s_<range.begin_s, is_after = time_s_> range.end_s;
+  const bool is_before = time_s_ < range.begin_s;
+  const bool is_after = time_s_ > range.end_s;
   if (rate_ > 0 && (is_before || time_s_ >= range.end_s)) time_s_ = range.begin_s;
   if (rate_ < 0 && (is_after || time_s_ <= range.begin_s)) time_s_ = range.end_s;
 }

@@ -79,7 +79,7 @@ class ViewFormat {
          spec::optional("shading", boolean, ""),
          spec::optional("iso_value", value, ""),
          spec::optional("iso_opacity", spec::number().from(0).to(1), ""),
-         spec::optional("vertical_exaggeration", spec::number().from(0).to(1000), ""),
+         spec::optional("vertical_exaggeration", spec::number().from(0).to(100), ""),
          spec::optional("planes", spec::listOf(text(1), 0, render::kMaxCutPlanes), ""),
          spec::optional("theme", spec::choice(kThemes), ""),
          spec::optional("show_terrain", boolean, ""),

@@ -1,6 +1,8 @@
 /// Inputs of a propagation model: the emitter, its site, and the extent of its paths.
 #pragma once
 
+#include <functional>
+
 #include "emscape/propagation/settings.h"
 
 namespace emscape::propagation {
@@ -29,6 +31,10 @@ struct PathExtent {
   double lowest_msl_m = 0, highest_msl_m = 0;
 };
 
+/// Amplitude of an antenna (relative voltage, with the field's sign) against the angle above the horizontal
+/// (rad), in the vertical plane of its beam; empty: the model has no use for it, or the antenna is isotropic.
+using ElevationPattern = std::function<double(double elevation_rad)>;
+
 /// All inputs that the paths from an emitter have in common.
 struct PathInputs {
   EmitterInputs emitter;
@@ -38,6 +44,7 @@ struct PathInputs {
   /// Set for models with ModelInfo::needs_extent, and if the air attenuates.
   PathExtent extent;
   double post_spacing_m = 0;  ///< of terrain profiles far from the emitter
+  ElevationPattern elevation_pattern;
 };
 
 /// True if the polarisation is horizontal or vertical.

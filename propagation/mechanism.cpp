@@ -27,18 +27,19 @@ Mechanism mechanismOf(PropagationModel model) {
 }
 
 std::vector<std::string> mechanismNames() {
-  return {"parabolic_equation",
-          "diffraction",
-          "two_ray",
+  using Model = PropagationModel;
+  return {toString(Model::parabolic_equation),
+          toString(Model::diffraction),
+          toString(Model::two_ray),
           "extended_optics",
           "troposcatter",
           "floor",
-          "free_space",
-          "horizon",
-          "itm",
-          "p528",
-          "p1812",
-          "p452"};
+          toString(Model::free_space),
+          toString(Model::horizon),
+          toString(Model::itm),
+          toString(Model::p528),
+          toString(Model::p1812),
+          toString(Model::p452)};
 }
 
 }  // namespace emscape::propagation

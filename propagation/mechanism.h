@@ -26,7 +26,6 @@ enum class Mechanism : std::uint8_t {
   p1812,
   p452
 };
-constexpr int kMechanisms = static_cast<int>(Mechanism::p452) + 1;
 
 /// That of a model as a whole.
 Mechanism mechanismOf(PropagationModel model);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "emscape/base/units.h"
 
@@ -13,6 +14,9 @@ struct RadialInputs {
   double first_azimuth_rad = 0;       ///< clockwise from north
   double azimuth_span_rad = 2 * kPi;  ///< from the first azimuth clockwise; 2 pi: all around
   double spacing_m = 0;               ///< of the places along the ground; 0: one place
+  /// Distance of the farthest place in equal arcs from north clockwise, all around; 0: there is none. Empty:
+  /// farthest_m everywhere.
+  std::vector<float> farthest_of_arcs_m;
 
   /// Heights of the places: above mean sea level, or above the ground.
   bool above_ground = false;

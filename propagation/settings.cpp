@@ -36,6 +36,10 @@ const char* toString(PeCells cells) {
   return nameOf(cells, {"mean", "point"});
 }
 
+const char* toString(PeRadiator radiator) {
+  return nameOf(radiator, {"isotropic", "pattern"});
+}
+
 const char* toString(ItmForm form) {
   return nameOf(form, {"point_to_point", "area"});
 }

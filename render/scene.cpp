@@ -113,7 +113,7 @@ void Scene::setCamera(const Camera& camera) {
 void Scene::setSettings(const RenderSettings& settings) {
   requireRange("step (voxels)", settings.step_voxels, 0.05, 10);
   requireRange("MIDA gamma", settings.mida_gamma, -1, 1);
-  requireRange("vertical exaggeration", settings.vertical_exaggeration, 0, 1000);
+  requireRange("vertical exaggeration", settings.vertical_exaggeration, 0, 100);
   requireRange("iso opacity", settings.iso_opacity, 0, 1);
   if (std::isinf(settings.iso_value)) throw Error(ErrorCode::bad_input, "iso value: must be finite");
   checkCutPlanes(settings.planes);

@@ -22,8 +22,9 @@ using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
 /// @throws Error (other) if GDAL was built without it
 GDALDriver* driverOf(const char* name);
 
-/// Opens a file of points or polygons: GeoPackage, GeoJSON, shapefile, FlatGeobuf, KML, GML or CSV. Nothing
-/// else, so that no file makes GDAL connect to a network or read others.
+/// Opens a file of points or polygons: GeoPackage, GeoJSON, shapefile, FlatGeobuf, KML, GML or CSV. No other
+/// format and none of GDAL's virtual file systems: they read further files, databases and network services.
+/// @param messages  in whose scope the data set is also read: it keeps GDAL from the network
 /// @throws Error (bad_input) that names the file and GDAL's reason
 Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file);
 

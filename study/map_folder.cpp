@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/quantity_text.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/snapshot.h"
@@ -140,9 +141,10 @@ struct MapFolder::State {
   void writeHtml(const std::vector<std::string>& files, const std::vector<std::string>& warnings,
                  const AddSections& addSections) const {
     const MapGrid& grid = *study.grid;
+    const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
     HtmlReport report(study.title, fmt::format("{} x {} pixels of {} m in {}; {} >= {}", grid.width,
-                                               grid.height, grid.cell_m, grid.crs,
-                                               scenario::info(study.quantity).name, study.threshold));
+                                               grid.height, grid.cell_m, grid.crs, quantity.name,
+                                               quantityText(study.threshold, quantity.unit)));
     report.section("Areas and ranges");
     report.table(tableOf(records));
     if (!warnings.empty()) report.section("Warnings");

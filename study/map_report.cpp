@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/fast_geodesy.h"
+#include "base/quantity_text.h"
 #include "base/whole_file.h"
 #include "emscape/scenario/snapshot.h"
 #include "propagation/registry/model_info.h"
@@ -236,10 +237,13 @@ void addModels(HtmlReport& report, const scenario::Scenario& scenario) {
 void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapRecord>& records) {
   report.section("Inputs");
   std::vector<std::pair<std::string, std::string>> facts;
-  for (const auto& scenario : study.scenarios) {
-    facts.emplace_back("scenario", fmt::format("{} ({})", scenario->name, scenario->file));
-    facts.emplace_back("hash of the scenario", scenario->hash);
-    for (const std::string& edit : editsOf(*scenario)) facts.emplace_back("changed by --set", edit);
+  for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
+    const scenario::Scenario& scenario = *study.scenarios[s];
+    const std::string letter =
+        study.scenarios.size() > 1 ? std::string(" ") + static_cast<char>('A' + s) : "";
+    facts.emplace_back("scenario" + letter, fmt::format("{} ({})", scenario.name, scenario.file));
+    facts.emplace_back("hash of the scenario" + letter, scenario.hash);
+    for (const std::string& edit : editsOf(scenario)) facts.emplace_back("changed by --set" + letter, edit);
   }
   for (const std::string& file : terrainFilesOf(study)) {
     facts.emplace_back("terrain", std::filesystem::path(file).filename().string());
@@ -247,9 +251,11 @@ void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapR
   const MapGrid& grid = *study.grid;
   const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
   facts.emplace_back("quantity", quantity.name);
-  facts.emplace_back("threshold", fmt::format("{} {}", study.threshold, quantity.unit));
-  facts.emplace_back("times", fmt::format("{}, from {} to {} s", study.times_s.size(), study.times_s.front(),
-                                          study.times_s.back()));
+  facts.emplace_back("threshold", quantityText(study.threshold, quantity.unit));
+  facts.emplace_back("times", study.times_s.size() == 1
+                                  ? fmt::format("{} s", study.times_s.front())
+                                  : fmt::format("{}, from {} to {} s", study.times_s.size(),
+                                                study.times_s.front(), study.times_s.back()));
   facts.emplace_back("epoch", study.scenarios.front()->clock.epoch_utc.empty()
                                   ? "none; files that need a date take 1970-01-01T00:00:00Z as time 0"
                                   : study.scenarios.front()->clock.epoch_utc);

@@ -6,6 +6,7 @@ namespace emscape::app {
 void addBench(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* bench = app.add_subcommand("bench", "Measure speed, and the error of interpolated pixels");
   bench->fallthrough();
+  bench->footer("\n'emscape bench SUBCOMMAND --help' describes each.");
   bench->require_subcommand(1);
   addBenchCells(*bench, global, action);
   addBenchCoverage(*bench, global, action);

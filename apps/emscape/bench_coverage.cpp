@@ -50,7 +50,7 @@ MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
   options.surface = surface;
   options.allow_missing_terrain = true;
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), 0);
-  std::vector<double> places, update, columns, excess, combine, product;
+  std::vector<double> places, update, columns, march, excess, combine, product;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     stopIfInterrupted();
     Stopwatch watch;
@@ -60,13 +60,14 @@ MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
     update.push_back(watch.lap_ms());
     const emfield::StageTimes stages = solver.stageTimes();
     columns.push_back(stages.columns_ms);
+    march.push_back(stages.march_ms);
     excess.push_back(stages.excess_ms);
     combine.push_back(stages.combine_ms);
     product.push_back(stages.product_ms);
   }
   return {medianOf(places),
           medianOf(update),
-          {medianOf(columns), medianOf(excess), medianOf(combine), medianOf(product)}};
+          {medianOf(columns), medianOf(march), medianOf(excess), medianOf(combine), medianOf(product)}};
 }
 
 int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& global) {
@@ -111,6 +112,7 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
                 {{"pixels", grid_ms},
                  {"places", first.places_ms},
                  {"columns", first.stages.columns_ms},
+                 {"march", first.stages.march_ms},
                  {"excess", first.stages.excess_ms},
                  {"combine", first.stages.combine_ms},
                  {"product", first.stages.product_ms}}}});
@@ -120,8 +122,8 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
         device, threadCount(), grid.width, grid.height, grid.cell_m, pixels, options.repeats);
   print("first height (ms)     {:10.2f}\n", first_ms);
   print("  pixels              {:10.2f}\n  places              {:10.2f}\n", grid_ms, first.places_ms);
-  print("  field: columns      {:10.2f}\n  field: excess       {:10.2f}\n", first.stages.columns_ms,
-        first.stages.excess_ms);
+  print("  field: columns      {:10.2f}\n  field: march        {:10.2f}\n  field: excess       {:10.2f}\n",
+        first.stages.columns_ms, first.stages.march_ms, first.stages.excess_ms);
   print("  field: combine      {:10.2f}\n  field: product      {:10.2f}\n", first.stages.combine_ms,
         first.stages.product_ms);
   print("each further height   {:10.2f}  ({:.0f} % of the first; of {})\n", further_ms,

@@ -64,6 +64,7 @@ Measured mediansOf(const std::vector<Measured>& runs) {
   };
   return {of([](const Measured& run) { return run.update_ms; }),
           {of([](const Measured& run) { return run.stages.columns_ms; }),
+           of([](const Measured& run) { return run.stages.march_ms; }),
            of([](const Measured& run) { return run.stages.excess_ms; }),
            of([](const Measured& run) { return run.stages.combine_ms; }),
            of([](const Measured& run) { return run.stages.product_ms; })}};
@@ -158,6 +159,7 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
                {"repeats", options.repeats},
                {"stages_ms",
                 {{"fan", moved.stages.columns_ms},
+                 {"march", moved.stages.march_ms},
                  {"plane", moved.stages.excess_ms},
                  {"combine", moved.stages.combine_ms},
                  {"product", moved.stages.product_ms}}},
@@ -176,8 +178,11 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
   print("device {} ({} threads), grid {} x {} x {}, {} emitters, medians of {}\n\n", device, threadCount(),
         dims.x, dims.y, dims.z, emitters, options.repeats);
   print("stages, all emitters moved (ms)\n");
-  print("  columns  {:10.2f}\n  excess   {:10.2f}\n  combine  {:10.2f}\n  product  {:10.2f}\n\n",
-        moved.stages.columns_ms, moved.stages.excess_ms, moved.stages.combine_ms, moved.stages.product_ms);
+  print(
+      "  columns  {:10.2f}\n  march    {:10.2f}\n  excess   {:10.2f}\n  combine  {:10.2f}\n  product  "
+      "{:10.2f}\n\n",
+      moved.stages.columns_ms, moved.stages.march_ms, moved.stages.excess_ms, moved.stages.combine_ms,
+      moved.stages.product_ms);
   print("update (ms)\n");
   print("  all moved     {:10.2f}\n  one moved     {:10.2f}\n  beams turned  {:10.2f}\n\n", moved.update_ms,
         one_moved.update_ms, turned.update_ms);

@@ -85,6 +85,17 @@ int run(const Action& action) {
   }
 }
 
+/// The parser's message. Where CLI11 asks for a subcommand, it names the word that is none.
+std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
+  if (last->get_require_subcommand_min() == 0) return error.what();
+  for (const std::string& word : app.remaining(true)) {
+    if (!word.empty() && word.front() != '-') return "there is no subcommand '" + word + "'";
+  }
+  return error.what();
+}
+
 /// Parses; returns an exit status if there is nothing to run.
 int parse(CLI::App& app, int argc, char** argv) {
   try {
@@ -93,7 +104,8 @@ int parse(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return run([&] { return app.exit(help); });
   } catch (const CLI::ParseError& error) {
-    printMessage("emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n", error.what());
+    printMessage("emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n",
+                 messageOf(app, error));
     return static_cast<int>(ErrorCode::usage);
   }
 }

@@ -15,6 +15,7 @@
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/map_options.h"
 #include "apps/emscape/target.h"
+#include "base/quantity_text.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
@@ -54,6 +55,13 @@ void writeVolume(const CompareCommand& command, const study::ComparedScenario& a
   const volume::DenseVolume difference = volume::difference(*of_b, *of_a);
   volume::writeVolumes(command.volume, {&difference});
   logInfo("wrote " + command.volume);
+}
+
+void printHeading(const std::string& a, const std::string& b, const study::MapGrid& grid,
+                  scenario::Quantity quantity, double threshold) {
+  const scenario::QuantityInfo& info = scenario::info(quantity);
+  print("B ({}) against A ({}): {} x {} pixels of {} m in {}, {} >= {}\n", b, a, grid.width, grid.height,
+        grid.cell_m, grid.crs, info.name, quantityText(threshold, info.unit));
 }
 
 /// Completes the folder of the differences, and prints them.
@@ -104,11 +112,7 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
                            of.times_s,
                            of.heights},
                           command.maps.formats);
-  if (!global.json) {
-    print("B ({}) against A ({}): {} x {} pixels of {} m in {}, {} >= {:g}\n", b.scenario->name,
-          a.scenario->name, grid->width, grid->height, grid->cell_m, grid->crs, command.maps.quantity,
-          of.threshold);
-  }
+  if (!global.json) printHeading(a.scenario->name, b.scenario->name, *grid, of.quantity, of.threshold);
   const ProgressSink show = progressSink(global);
   const study::Comparison comparison = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     study::Comparison result = study::computeComparison(
@@ -169,11 +173,7 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
                            {times_s.begin(), times_s.end()},
                            heights},
                           command.maps.formats);
-  const study::MapGrid& grid = *a.grid;
-  if (!global.json) {
-    print("B ({}) against A ({}): {} x {} pixels of {} m in {}, {} >= {:g}\n", command.b, command.a,
-          grid.width, grid.height, grid.cell_m, grid.crs, quantity, a.threshold);
-  }
+  if (!global.json) printHeading(command.a, command.b, *a.grid, a.quantity, a.threshold);
   const ProgressSink show = progressSink(global);
   const study::Comparison comparison = study::compareFolders(
       a, b, pairs, command.areas, [&](const study::Map& map) { folder.add(map); },

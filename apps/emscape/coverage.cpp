@@ -12,6 +12,7 @@
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/map_options.h"
 #include "apps/emscape/target.h"
+#include "base/quantity_text.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/study/map_folder.h"
@@ -59,7 +60,8 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
                           command.maps.formats);
   if (!global.json) {
     print("Coverage of {}: {} x {} pixels of {} m in {}, {} >= {}\n", scenario->name, grid->width,
-          grid->height, grid->cell_m, grid->crs, command.maps.quantity, request.threshold);
+          grid->height, grid->cell_m, grid->crs, command.maps.quantity,
+          quantityText(request.threshold, scenario::info(request.quantity).unit));
   }
   const auto take = [&](const study::CoverageMap& map) {
     stopIfInterrupted();

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 
 #include "apps/emscape/command.h"
@@ -14,10 +13,8 @@
 #include "apps/emscape/interrupt.h"
 #include "apps/emscape/study_options.h"
 #include "apps/emscape/target.h"
-#include "base/whole_file.h"
-#include "emscape/base/log.h"
+#include "emscape/render/image.h"
 #include "emscape/scenario/scenario_file.h"
-#include "render/annotate/plot.h"
 
 namespace emscape::app {
 namespace {
@@ -57,6 +54,7 @@ study::ExposureRequest requestOf(const ExposureCommand& command, const scenario:
 }
 
 int exposure(const ExposureCommand& command, const GlobalOptions& global) {
+  const render::ImageSize size = render::parseImageSize(command.size);
   const auto scenario = scenario::loadScenario(command.scenario, command.edits);
   const study::ExposureRequest request = requestOf(command, *scenario);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
@@ -69,16 +67,10 @@ int exposure(const ExposureCommand& command, const GlobalOptions& global) {
                                   });
   });
   logWarnings(result.warnings);
-  for (const std::string& file : command.outputs) {
-    if (render::isPlotFile(file)) {
-      study::plotExposure(result, render::parseImageSize(command.size), file);
-    } else if (std::filesystem::path(file).extension() == ".csv") {
-      writeExposureCsv(result, file);
-    } else {
-      writeWhole(file, [&](std::ostream& out) { out << exposureJson(result).dump(2) << "\n"; });
-    }
-    logInfo("wrote " + file);
-  }
+  writeStudyOutputs(command.outputs,
+                    {[&](const std::string& file) { study::plotExposure(result, size, file); },
+                     [&](const std::string& file) { writeExposureCsv(result, file); },
+                     [&] { return exposureJson(result).dump(2); }});
   if (global.json) {
     printJson(exposureJson(result));
   } else {

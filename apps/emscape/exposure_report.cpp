@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/quantity_text.h"
 #include "base/whole_file.h"
 
 namespace emscape::app {
@@ -62,9 +63,9 @@ Json exposureJson(const Exposure& exposure) {
 
 void printExposure(const Exposure& exposure) {
   const study::ExposureRequest& request = exposure.request;
-  print("Exposure of '{}' in {}, t = {:g} to {:g} s: {} >= {:g} {}\n", exposure.platform, exposure.scenario,
+  print("Exposure of '{}' in {}, t = {:g} to {:g} s: {} >= {}\n", exposure.platform, exposure.scenario,
         exposure.rows.front().time_s, exposure.rows.back().time_s, scenario::info(request.quantity).name,
-        request.threshold, exposure.unit);
+        quantityText(request.threshold, exposure.unit));
   if (!exposure.cross_section.empty()) {
     print("Radars look {}; cross section: {}\n",
           request.look == scenario::RadarLook::target ? "at the platform" : "as their scan points",

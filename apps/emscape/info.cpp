@@ -72,7 +72,8 @@ Json workOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
   emfield::FieldOptions options;
   options.allow_missing_terrain = true;
   try {
-    return workJson(workEstimateOf({scenario, scenario::loadTerrain(*scenario), options}, *scenario));
+    const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
+    return workJson(workEstimateOf({scenario, terrain, options}, *scenario, terrain.get()));
   } catch (const Error&) {
     return nullptr;
   }

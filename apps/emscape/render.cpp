@@ -189,6 +189,7 @@ struct Stage {
 
 Stage openStage(const playback::FrameSelection& selection, const RenderOptions& options,
                 const PictureStyle& style, const GlobalOptions& global) {
+  for (const std::string& output : options.outputs) playback::checkPictureOutput(output);
   return openOnTarget(global, options.device_volume, [&](const ComputeTarget& target) {
     Stage stage{
         target, playback::openFrameSource(selection, target, progressSink(global), &stopFlag()), nullptr, {}};

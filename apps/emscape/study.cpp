@@ -1,5 +1,5 @@
 /// emscape study: many variants of a scenario, measured.
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
@@ -60,22 +60,21 @@ PartNumber parsePart(const std::string& text) {
   return number;
 }
 
+void checkAllThere(const study::StudyFolder& folder, const std::vector<int>& missing) {
+  if (missing.empty()) return;
+  constexpr std::size_t kNamed = 12;
+  const auto named = missing.begin() + static_cast<std::ptrdiff_t>(std::min(missing.size(), kNamed));
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format("{}: {} of {} parts are missing: {}{}; --resume computes them, --partial merges the others",
+                  folder.path().string(), missing.size(), folder.parts(),
+                  fmt::join(missing.begin(), named, ", "), missing.size() > kNamed ? ", ..." : ""));
+}
+
 int mergeParts(const LoadedStudy& loaded, study::StudyFolder& folder, bool partial,
                const GlobalOptions& global) {
   const std::vector<int> missing = folder.missingParts();
-  if (!missing.empty() && !partial) {
-    constexpr std::size_t kNamed = 12;
-    std::string names;
-    for (std::size_t i = 0; i < std::min(missing.size(), kNamed); ++i) {
-      names += fmt::format("{}{}", i > 0 ? ", " : "", missing[i]);
-    }
-    if (missing.size() > kNamed) names += ", ...";
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format("{}: {} of {} parts are missing: {}; --resume computes them, --partial merges the "
-                    "others",
-                    folder.path().string(), missing.size(), folder.parts(), names));
-  }
+  if (!partial) checkAllThere(folder, missing);
   const study::StudyResults results = folder.read();
   std::vector<std::string> warnings(results.warnings.begin(), results.warnings.end());
   if (results.machines.size() > 1) {
@@ -199,27 +198,21 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
 
   const std::vector<int> missing = folder.missingParts();
   if (!command.resume && static_cast<int>(missing.size()) < parts) {
-    throw Error(ErrorCode::usage,
-                fmt::format("{} holds {} of {} parts of this study; --resume computes the others",
-                            command.folder, static_cast<std::size_t>(parts) - missing.size(), parts));
+    throw Error(ErrorCode::usage, fmt::format("{} holds {} of {} parts of this study; {}", command.folder,
+                                              static_cast<std::size_t>(parts) - missing.size(), parts,
+                                              missing.empty() ? "--merge writes their results again"
+                                                              : "--resume computes the others"));
   }
   logInfo(fmt::format("{} variants of {} in {} parts, {} of them to compute", variants,
                       loaded.spec.base->name, parts, missing.size()));
-  const ProgressSink show = progressSink(global);
   if (command.jobs > 1 && missing.size() > 1) {
     const int each = std::max(1, threads / command.jobs);
     computeInProcesses(
         missing, command.jobs, workerArguments(command, global, each),
-        [&](int part) { return folder.journalBytes(part); }, show);
+        [&](int part) { return folder.journalBytes(part); }, progressSink(global));
   } else if (!missing.empty()) {
     PartComputer computer(loaded, folder, global);
-    for (std::size_t i = 0; i < missing.size(); ++i) {
-      computer.compute(missing[i], [&](const std::string& step, double fraction) {
-        if (fraction < 1)
-          show(step, (static_cast<double>(i) + fraction) / static_cast<double>(missing.size()));
-      });
-    }
-    show("variants", 1);
+    computeParts(computer, missing, progressSink(global));
   }
   return mergeParts(loaded, folder, false, global);
 }

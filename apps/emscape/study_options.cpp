@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "base/whole_file.h"
+#include "emscape/base/log.h"
 #include "emscape/study/coverage.h"
 #include "render/annotate/plot.h"
 
@@ -18,6 +20,19 @@ void addStudyOutputs(CLI::App& command, std::vector<std::string>& files) {
         const bool is_known = render::isPlotFile(file) || extension == ".csv" || extension == ".json";
         return is_known ? "" : "'" + file + "': files are written as .png, .svg, .csv or .json";
       });
+}
+
+void writeStudyOutputs(const std::vector<std::string>& files, const StudyOutputs& outputs) {
+  for (const std::string& file : files) {
+    if (render::isPlotFile(file)) {
+      outputs.plot(file);
+    } else if (std::filesystem::path(file).extension() == ".csv") {
+      outputs.csv(file);
+    } else {
+      writeWhole(file, [&](std::ostream& out) { out << outputs.json() << "\n"; });
+    }
+    logInfo("wrote " + file);
+  }
 }
 
 void addThresholdOption(CLI::App& command, double& threshold) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,14 @@ int namedIndex(const std::vector<Item>& items, const std::string& name, const ch
 
 /// -o FILE.png|.svg|.csv|.json, which may be given several times.
 void addStudyOutputs(CLI::App& command, std::vector<std::string>& files);
+
+/// What is written into such files.
+struct StudyOutputs {
+  std::function<void(const std::string&file)> plot, csv;
+  std::function<std::string()> json;
+};
+/// Writes each file by its ending. @throws Error
+void writeStudyOutputs(const std::vector<std::string>& files, const StudyOutputs& outputs);
 
 /// --threshold. @param threshold  NAN: not given
 void addThresholdOption(CLI::App& command, double& threshold);

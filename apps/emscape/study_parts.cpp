@@ -85,6 +85,16 @@ void PartComputer::compute(int part, const ProgressSink& progress) {
   folder_.writePart(part, *journal);
 }
 
+void computeParts(PartComputer& computer, const std::vector<int>& parts, const ProgressSink& progress) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    computer.compute(parts[i], [&](const std::string& step, double fraction) {
+      if (fraction < 1)
+        progress(step, (static_cast<double>(i) + fraction) / static_cast<double>(parts.size()));
+    });
+  }
+  progress("variants", 1);
+}
+
 void computeAnyParts(PartComputer& computer, const study::StudyFolder& folder, const ProgressSink& progress) {
   std::vector<int> missing = folder.missingParts();
   const auto parts = static_cast<double>(folder.parts());

@@ -28,6 +28,9 @@ class PartComputer {
   std::string machine_;
 };
 
+/// Computes parts one after another. @param progress  of all of them
+void computeParts(PartComputer& computer, const std::vector<int>& parts, const ProgressSink& progress);
+
 /// Computes parts that no other process works on until all are there, and waits for those that others
 /// compute: a part whose process has ended is taken over.
 void computeAnyParts(PartComputer& computer, const study::StudyFolder& folder, const ProgressSink& progress);

@@ -84,7 +84,7 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std
     emfield::FieldOptions options;
     options.allow_missing_terrain = true;  // reported above
     const emfield::FieldSolver solver(scenario, terrain, options);
-    work = workEstimateOf(solver, *scenario);
+    work = workEstimateOf(solver, *scenario, terrain.get());
     for (const std::string& warning : solver.warnings()) {
       Problem problem;
       problem.location.file = scenario->file;
@@ -148,15 +148,16 @@ void addValidate(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->footer(R"(
 Reports all faults at once, each as file:line:column: error: message. Also checks that the elevation files cover the region and that
 no platform is below the ground at any step, and that the field fits into the memory. The last line but one says how much memory
-`simulate` takes at most, and how long and large a series is. What models choose by themselves (keys that are auto) is printed with its reason.
+`simulate` takes at most on the CPU, how long and large a series is, and the time that its field takes, to an order of magnitude.
+What models choose by themselves (keys that are auto) is printed with its reason.
 
 Examples:
   emscape validate scenarios/jacksboro.yaml
   emscape validate mine.yaml --set "emitters.search radar.power_w=500"
   emscape validate mine.yaml --json        {"ok", "problems": [{"file", "line", "column", "severity", "message"}],
                                             "choices": [{"emitter", "model", "name", "text"}],
-                                            "work": {"memory_mib", "volumes_mib", "emitters_mib", "available_mib",
-                                                     "steps", "step_mib"}}
+                                            "work": {"memory_mib", "volumes_mib", "emitters_mib", "terrain_mib",
+                                                     "available_mib", "steps", "step_mib", "time_s", "threads"}}
 
 Exit status: 0 without errors (warnings are ignored), 3 otherwise.)");
   auto file = std::make_shared<std::string>();

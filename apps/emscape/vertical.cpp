@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 
 #include "apps/emscape/command.h"
@@ -14,12 +13,10 @@
 #include "apps/emscape/study_options.h"
 #include "apps/emscape/target.h"
 #include "apps/emscape/vertical_report.h"
-#include "base/whole_file.h"
-#include "emscape/base/log.h"
+#include "emscape/render/image.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/study/area.h"
-#include "render/annotate/plot.h"
 
 namespace emscape::app {
 namespace {
@@ -63,6 +60,7 @@ study::VerticalRequest requestOf(const VerticalCommand& command, const scenario:
 }
 
 int vertical(const VerticalCommand& command, const GlobalOptions& global) {
+  const render::ImageSize size = render::parseImageSize(command.size);
   const auto scenario = scenario::loadScenario(command.scenario, command.edits);
   const study::VerticalRequest request = requestOf(command, *scenario);
   const scenario::Emitter& emitter = scenario->emitters[request.emitter];
@@ -76,16 +74,10 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
   });
   logWarnings(diagram.warnings);
   stopIfInterrupted();
-  for (const std::string& file : command.outputs) {
-    if (render::isPlotFile(file)) {
-      study::plotVertical(diagram, render::parseImageSize(command.size), file);
-    } else if (std::filesystem::path(file).extension() == ".csv") {
-      writeVerticalCsv(diagram, file);
-    } else {
-      writeWhole(file, [&](std::ostream& out) { out << verticalJson(diagram, true).dump() << "\n"; });
-    }
-    logInfo("wrote " + file);
-  }
+  writeStudyOutputs(command.outputs,
+                    {[&](const std::string& file) { study::plotVertical(diagram, size, file); },
+                     [&](const std::string& file) { writeVerticalCsv(diagram, file); },
+                     [&] { return verticalJson(diagram, true).dump(); }});
   if (global.json) {
     printJson(verticalJson(diagram, false));
   } else {

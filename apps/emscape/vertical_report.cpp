@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantity_text.h"
 #include "base/whole_file.h"
 
 namespace emscape::app {
@@ -98,8 +99,8 @@ Json verticalJson(const VerticalDiagram& diagram, bool with_grid) {
 
 void printVertical(const VerticalDiagram& diagram) {
   const study::VerticalRequest& request = diagram.request;
-  print("Vertical coverage of '{}' in {}, t = {:g} s: {} >= {:g} {}\n", diagram.emitter, diagram.scenario,
-        request.time_s, scenario::info(request.quantity).name, request.threshold, diagram.unit);
+  print("Vertical coverage of '{}' in {}, t = {:g} s: {} >= {}\n", diagram.emitter, diagram.scenario,
+        request.time_s, scenario::info(request.quantity).name, quantityText(request.threshold, diagram.unit));
   if (request.smooth_earth) {
     print("Smooth earth of {:.4g} times its radius; the antenna is {:.1f} m above it\n", diagram.k_factor,
           diagram.station_msl_m);

@@ -188,7 +188,7 @@ void drawProbe(PanelContext& context, const Area& picture) {
   if (ImGui::Begin("Probe", &session.panels.probe,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     const Prober& prober = session.prober();
-    if (ImGui::SmallButton(prober.isLocked() ? "let go (P)" : "hold (P)"))
+    if (ImGui::SmallButton(prober.isLocked() ? "release (P)" : "hold (P)"))
       perform(context, R"({"do":"lock_probe"})");
     ImGui::SameLine();
     ImGui::TextDisabled(prober.isLocked() ? "held; follows time and edits" : "under the cursor");

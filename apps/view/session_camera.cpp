@@ -12,6 +12,14 @@ namespace {
 
 constexpr double kFocus_diagonals = 0.45;  // distance of the target
 
+/// 1..9. @throws Error (bad_input)
+int bookmarkNumber(const Command& command) {
+  const double number = command.number("number");
+  if (!(number >= 1 && number <= 9))
+    throw Error(ErrorCode::bad_input, fmt::format("{}: number {:g}: expected 1..9", command.verb, number));
+  return static_cast<int>(number);
+}
+
 }  // namespace
 
 void Session::focusEmitter(const std::optional<std::string>& name) {
@@ -106,8 +114,7 @@ std::vector<Verb> Session::cameraVerbs() {
        {{"number"}},
        "Stores camera and time under a number, 1..9",
        [](Session& session, const Command& command) {
-         const int number = static_cast<int>(command.number("number"));
-         if (number < 1 || number > 9) throw Error(ErrorCode::bad_input, "bookmark: expected a number 1..9");
+         const int number = bookmarkNumber(command);
          session.bookmarks_[static_cast<std::size_t>(number - 1)] =
              playback::Bookmark{std::to_string(number), session.camera_.spec(), session.timeline_.step_s()};
          session.tell(fmt::format("bookmark {} stored", number));
@@ -116,8 +123,8 @@ std::vector<Verb> Session::cameraVerbs() {
        {{"number"}},
        "Shows a bookmark",
        [](Session& session, const Command& command) {
-         const int number = static_cast<int>(command.number("number"));
-         if (number < 1 || number > 9 || !session.bookmarks_[static_cast<std::size_t>(number - 1)]) {
+         const int number = bookmarkNumber(command);
+         if (!session.bookmarks_[static_cast<std::size_t>(number - 1)]) {
            throw Error(ErrorCode::bad_input,
                        fmt::format("bookmark {} is empty: Ctrl+{} stores it", number, number));
          }

@@ -25,7 +25,7 @@ std::vector<Verb> Session::pictureVerbs() {
        }},
       {"iso",
        {{"value", kNumber, false}},
-       "Value of the isosurface; without one: shows it, or the fog again",
+       "Value of the isosurface; without one: shows it, or returns to the mode before",
        [](Session& session, const Command& command) {
          render::RenderSettings settings = session.settings_;
          const bool shown = settings.mode == render::CompositingMode::iso;
@@ -35,7 +35,7 @@ std::vector<Verb> Session::pictureVerbs() {
        }},
       {"shading",
        {{"on", kBoolean, false}},
-       "Light on the fog",
+       "Shading of dvr and mida; iso is always shaded",
        [](Session& session, const Command& command) {
          render::RenderSettings settings = session.settings_;
          settings.shading = command.boolean("on", !settings.shading);
@@ -47,7 +47,8 @@ std::vector<Verb> Session::pictureVerbs() {
        [](Session& session, const Command& command) {
          const double factor = command.number("factor");
          if (!(factor >= 0 && factor <= 100))
-           throw Error(ErrorCode::bad_input, "exaggeration: expected a number 0..100");
+           throw Error(ErrorCode::bad_input,
+                       fmt::format("exaggeration {:g}: expected a number 0..100", factor));
          render::RenderSettings settings = session.settings_;
          settings.vertical_exaggeration = factor;
          session.setSettings(settings);
@@ -58,7 +59,8 @@ std::vector<Verb> Session::pictureVerbs() {
        [](Session& session, const Command& command) {
          const double value = command.number("value");
          if (!(value >= 0.05 && value <= 10))
-           throw Error(ErrorCode::bad_input, "step_voxels: expected a number 0.05..10");
+           throw Error(ErrorCode::bad_input,
+                       fmt::format("step_voxels {:g}: expected a number 0.05..10", value));
          render::RenderSettings settings = session.settings_;
          settings.step_voxels = value;
          session.setSettings(settings);

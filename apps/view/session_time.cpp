@@ -124,7 +124,9 @@ std::vector<Verb> Session::timeVerbs() {
          }
          if (command.has("zoom")) {
            const double factor = command.number("zoom");
-           if (!(factor > 0)) throw Error(ErrorCode::bad_input, "timeline: zoom: expected a number above 0");
+           if (!(factor > 0))
+             throw Error(ErrorCode::bad_input,
+                         fmt::format("timeline: zoom {:g}: expected a number above 0", factor));
            timeline.zoom(factor, command.number("about_s", timeline.step_s()));
          }
          if (command.has("pan_s")) timeline.pan(command.number("pan_s"));

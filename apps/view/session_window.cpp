@@ -61,8 +61,13 @@ std::vector<Verb> Session::windowVerbs() {
        {{"width"}, {"height"}},
        "Size of the window in pixels",
        [](Session& session, const Command& command) {
-         session.window_.resize(static_cast<int>(command.number("width")),
-                                static_cast<int>(command.number("height")));
+         const double width = command.number("width"), height = command.number("height");
+         const auto isSize = [](double size_px) { return size_px >= 1 && size_px <= 16384; };
+         if (!isSize(width) || !isSize(height)) {
+           throw Error(ErrorCode::bad_input,
+                       fmt::format("resize {:g} x {:g}: expected numbers 1..16384", width, height));
+         }
+         session.window_.resize(static_cast<int>(width), static_cast<int>(height));
        }},
       {"screenshot",
        {{"file", kText, false}},

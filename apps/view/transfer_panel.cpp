@@ -174,7 +174,7 @@ void drawMode(PanelContext& context) {
     drawIso(context);
   } else {
     bool shading = session.settings().shading;
-    if (ImGui::Checkbox("light on the fog", &shading)) session.perform({"shading", {{"on", shading}}});
+    if (ImGui::Checkbox("shading", &shading)) session.perform({"shading", {{"on", shading}}});
   }
 }
 

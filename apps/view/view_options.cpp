@@ -70,7 +70,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app::addPlaneOption(app, typed.planes);
   app.add_option("--step", typed.step_voxels, "Distance of samples, in voxels; default: 1")
       ->check(CLI::Range(0.05, 10.0));
-  app.add_flag("--shading", typed.shading, "Light on the fog");
+  app.add_flag("--shading", typed.shading, "Shading of dvr and mida; iso is always shaded");
   app.add_flag("--allow-missing-terrain", options.allow_missing_terrain,
                "Compute although elevation data is missing; the holes are drawn as such");
   app.add_option("--script", options.script, "Script: JSON lines (docs/viewer.md)");

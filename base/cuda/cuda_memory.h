@@ -58,6 +58,22 @@ class Buffer {
     count_ = count;
   }
 
+  /// Makes it at least so long; the contents are lost if it grows. For sizes that vary little: it grows by a
+  /// quarter and never shrinks, as to free memory makes every stream wait.
+  T* atLeast(std::size_t count) {
+    if (count_ < count) resize(count_ == 0 ? count : count + count / 4);
+    return data_;
+  }
+  /// Copies all of a vector into atLeast() its length.
+  T* send(const std::vector<T>& from, cudaStream_t stream) {
+    atLeast(from.size());
+    if (!from.empty()) {
+      check(cudaMemcpyAsync(data_, from.data(), from.size() * sizeof(T), cudaMemcpyHostToDevice, stream),
+            "cudaMemcpyAsync to the GPU");
+    }
+    return data_;
+  }
+
   /// Copies `count` elements from host memory. Without a stream the call returns when the copy is complete.
   void upload(const T* from, std::size_t count, cudaStream_t stream = nullptr) {
     resize(count);
@@ -71,9 +87,11 @@ class Buffer {
     upload(from.data(), from.size(), stream);
   }
   /// Copies everything to host memory and waits for it.
-  void download(T* to, cudaStream_t stream = nullptr) const {
-    if (count_ == 0) return;
-    check(cudaMemcpyAsync(to, data_, count_ * sizeof(T), cudaMemcpyDeviceToHost, stream),
+  void download(T* to, cudaStream_t stream = nullptr) const { download(to, count_, stream); }
+  /// Copies the first `count` elements.
+  void download(T* to, std::size_t count, cudaStream_t stream) const {
+    if (count == 0) return;
+    check(cudaMemcpyAsync(to, data_, count * sizeof(T), cudaMemcpyDeviceToHost, stream),
           "cudaMemcpyAsync from the GPU");
     check(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
   }

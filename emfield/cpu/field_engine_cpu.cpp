@@ -76,6 +76,7 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
                      setup_.columns, setup_.terrain.get(), spent, bounds_ ? &*bounds_ : nullptr,
                      setup_.needs[request.emitter]);
     times_.columns_ms += spent.columns_ms;
+    times_.march_ms += spent.march_ms;
     times_.excess_ms += spent.excess_ms;
 
     GeometryResult found;

@@ -10,25 +10,7 @@
 namespace emscape::emfield::cuda {
 namespace {
 
-using emscape::cuda::Buffer;
 using emscape::cuda::check;
-
-/// Makes an array at least so long; its contents are lost. It never shrinks: sizes vary little from one
-/// update to the next, and freeing memory would make every stream wait.
-template <class T>
-T* atLeast(Buffer<T>& buffer, std::size_t count) {
-  if (buffer.size() < count) buffer.resize(buffer.size() == 0 ? count : count + count / 4);
-  return buffer.data();
-}
-
-/// Copies into an array that is at least so long.
-template <class T>
-const T* sent(Buffer<T>& buffer, const std::vector<T>& from, cudaStream_t stream) {
-  T* const to = atLeast(buffer, from.size());
-  check(cudaMemcpyAsync(to, from.data(), from.size() * sizeof(T), cudaMemcpyHostToDevice, stream),
-        "cudaMemcpyAsync to the GPU");
-  return to;
-}
 
 bool isDiffraction(const propagation::ExcessModel& model) {
   return std::holds_alternative<DiffractionExcess>(model);
@@ -85,7 +67,9 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   work.has_shadow = model.casts_shadow;
   work.has_reflected_ray = model.has_reflected_ray;
   if (hasExcess(scenario, emitter)) {
-    work.model = makeExcess(scenario, emitter, station, setup_.terrain.get(), setup_.columns);
+    work.model =
+        planExcess(scenario, emitter, request.state.beam, station, setup_.terrain.get(), setup_.columns);
+    if (work.model->march != nullptr && !isForGpu(*work.model->march)) marchTables(emitter, *work.model);
   }
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);
   work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
@@ -114,8 +98,8 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   const auto longest = std::max_element(works.begin(), works.end(), [](const Work& a, const Work& b) {
     return a.ranges_m.size() < b.ranges_m.size();
   });
-  const double* const ranges_m = sent(ranges_m_, longest->ranges_m, stream);
-  GeometryCounts* counts = atLeast(counts_, works.size());
+  const double* const ranges_m = ranges_m_.send(longest->ranges_m, stream);
+  GeometryCounts* counts = counts_.atLeast(works.size());
   check(cudaMemsetAsync(counts, 0, works.size() * sizeof(GeometryCounts), stream), "cudaMemsetAsync");
   std::vector<LocateTask> tasks;
   std::vector<float> tables;
@@ -129,8 +113,8 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
       tables.insert(tables.end(), table->begin(), table->end());
     }
   }
-  sent(tasks_, tasks, stream);
-  const float* table = sent(model_tables_, tables, stream);
+  tasks_.send(tasks, stream);
+  const float* table = model_tables_.send(tables, stream);
   for (Work& work : works) {
     if (!work.model) continue;
     const float* const air = table + work.model->model_tables->size();
@@ -150,7 +134,7 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   for (std::size_t r = 0; r < requests.size(); ++r) {
     Slot& slot = slots_[requests[r].slot];
     LocateTask& task = works[r].task;
-    task.numbers = atLeast(slot.numbers, (kColumnNumbers + 1) * columns);
+    task.numbers = slot.numbers.atLeast((kColumnNumbers + 1) * columns);
     task.shadow_edge_m = task.numbers + kColumnNumbers * columns;
     slot.has_excess = works[r].model.has_value();
     slot.has_reflected = works[r].has_reflected_ray;
@@ -158,15 +142,15 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     slot.has_clutter = works[r].clutter.has_value();
     if (slot.has_clutter) {
       slot.clutter_grid = works[r].clutter->grid;
-      atLeast(slot.clutter, slot.clutter_grid.cells());
+      slot.clutter.atLeast(slot.clutter_grid.cells());
     }
     if (!slot.has_excess) continue;
     const std::size_t voxels = columns * static_cast<std::size_t>(columns_.layers);
     const bool in_db = setup_.columns.every_height;
     works[r].excess.out = {
-        {in_db ? nullptr : atLeast(slot.excess, voxels), in_db ? atLeast(slot.excess_db, voxels) : nullptr},
-        slot.has_reflected ? atLeast(slot.reflected, voxels) : nullptr,
-        slot.has_mechanisms ? atLeast(slot.mechanisms, voxels) : nullptr,
+        {in_db ? nullptr : slot.excess.atLeast(voxels), in_db ? slot.excess_db.atLeast(voxels) : nullptr},
+        slot.has_reflected ? slot.reflected.atLeast(voxels) : nullptr,
+        slot.has_mechanisms ? slot.mechanisms.atLeast(voxels) : nullptr,
         task.shadow_edge_m};
   }
   clock.begin(stream);
@@ -177,13 +161,14 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   findShadows(works, stream);
   fillDiffractions(works, stream);
   for (const Work& work : works) {
-    if (!work.model || isDiffraction(work.model->model)) continue;
+    if (!work.model || work.model->march != nullptr || isDiffraction(work.model->model)) continue;
     fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
   }
   for (std::size_t r = 0; r < requests.size(); ++r) {
     if (works[r].clutter) fillClutterMap(*works[r].clutter, slots_[requests[r].slot].clutter.data(), stream);
   }
   clock.end(&StageTimes::excess_ms, stream);
+  fillMarched(works, stream, clock);
 
   std::vector<GeometryCounts> counts(works.size());
   check(cudaMemcpyAsync(counts.data(), counts_.data(), counts.size() * sizeof(GeometryCounts),
@@ -219,31 +204,64 @@ void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t st
     most_ranges = std::max(most_ranges, work.ground.range_count);
   }
   if (shadows.empty()) return;
-  RangeTerms<float>* terms = atLeast(terms_, all_ranges);
+  RangeTerms<float>* terms = terms_.atLeast(all_ranges);
   for (DeviceShadowTask& shadow : shadows) {
     shadow.task.terms = shadow.terms = terms;
     terms += shadow.task.ground.range_count;
   }
-  findShadowEdges(sent(shadows_, shadows, stream), static_cast<int>(shadows.size()), most_ranges,
-                  excess_grid_, stream);
+  findShadowEdges(shadows_.send(shadows, stream), static_cast<int>(shadows.size()), most_ranges, excess_grid_,
+                  stream);
 }
 
 void DeviceGeometry::fillDiffractions(const std::vector<Work>& works, cudaStream_t stream) {
   std::vector<DiffractionTask> tasks;
   int most_ranges = 0;
   for (const Work& work : works) {
-    if (!work.model || !isDiffraction(work.model->model)) continue;
-    tasks.push_back({std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station,
-                     work.ground, work.excess});
+    if (!work.model) continue;
+    if (isDiffraction(work.model->model)) {
+      tasks.push_back({std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station,
+                       work.ground, work.excess});
+    } else if (needsDiffraction(*work.model)) {
+      Station straight = work.task.station;  // no bent rays: the model is not on the effective earth
+      straight.refraction.exponential = false;
+      tasks.push_back({std::get<propagation::PeExcess>(work.model->model).others.diffraction, AirLoss{},
+                       straight, work.ground, work.excess});
+    } else {
+      continue;
+    }
     most_ranges = std::max(most_ranges, work.ground.range_count);
   }
   if (tasks.empty()) return;
-  fillDiffraction(sent(diffraction_, tasks, stream), static_cast<int>(tasks.size()), most_ranges,
-                  excess_grid_, columns_.row, scratch(), stream);
+  fillDiffraction(diffraction_.send(tasks, stream), static_cast<int>(tasks.size()), most_ranges, excess_grid_,
+                  columns_.row, scratch(), stream);
+}
+
+/// Marches the emitters' fields, a few at a time, so that one's last azimuths do not leave the device idle,
+/// and reads them one after the other.
+void DeviceGeometry::fillMarched(std::vector<Work>& works, cudaStream_t stream, StageClock& clock) {
+  placed_.record(stream);
+  std::size_t marches = 0;
+  for (Work& work : works) {
+    if (!work.model || work.model->march == nullptr) continue;
+    Marcher& marcher = marchers_[marches++ % marchers_.size()];
+    placed_.holdBack(marcher.stream);
+    marcher.read.holdBack(marcher.stream);
+    const float* const losses_db =
+        marcher.march.start(*work.model->march, &work.task.counts->warnings, marcher.stream);
+    marcher.marched.record(marcher.stream);
+    clock.begin(stream);
+    marcher.marched.holdBack(stream);
+    clock.end(&StageTimes::march_ms, stream);
+    clock.begin(stream);
+    fillExcess(work.model->withTablesAt(losses_db, work.model->air.gases), work.task.station, excess_grid_,
+               work.ground, work.excess, scratch(), stream);
+    clock.end(&StageTimes::excess_ms, stream);
+    marcher.read.record(stream);
+  }
 }
 
 ScratchMemory DeviceGeometry::scratch() {
-  return {atLeast(scratch_, kDeviceScratchBytes / sizeof(double)), kDeviceScratchBytes};
+  return {scratch_.atLeast(kDeviceScratchBytes / sizeof(double)), kDeviceScratchBytes};
 }
 
 std::size_t DeviceGeometry::bytes() const {
@@ -252,6 +270,7 @@ std::size_t DeviceGeometry::bytes() const {
                       bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(shadows_) +
                       bytesOf(terms_) + bytesOf(diffraction_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
                       bytesOf(model_tables_);
+  for (const Marcher& marcher : marchers_) bytes += marcher.march.bytes();
   for (const Slot& slot : slots_) {
     bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.excess_db) +
              bytesOf(slot.reflected) + bytesOf(slot.mechanisms) + bytesOf(slot.clutter);

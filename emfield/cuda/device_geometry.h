@@ -1,6 +1,7 @@
 /// Stages 1 and 2 of the emitters on the device: the results in each slot, and the memory to compute them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "emfield/cuda/geometry_kernels.h"
 #include "emfield/cuda/stage_clock.h"
 #include "emfield/solver/field_engine.h"
+#include "propagation/cuda/field_march_cuda.h"
 
 namespace emscape::emfield::cuda {
 
@@ -39,7 +41,7 @@ class DeviceGeometry {
     LocateTask task;
     std::vector<double> ranges_m;
     GroundPosts ground;                  ///< on the device, from place() on
-    std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on
+    std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on, or when marched
     ExcessOutputs excess;
     std::optional<ClutterMapTask> clutter;  ///< its ground on the device, from place() on
     bool has_shadow = false, has_reflected_ray = false, has_mechanisms = false;
@@ -49,6 +51,7 @@ class DeviceGeometry {
   void place(std::vector<Work>& works, cudaStream_t stream);
   void findShadows(const std::vector<Work>& works, cudaStream_t stream);
   void fillDiffractions(const std::vector<Work>& works, cudaStream_t stream);
+  void fillMarched(std::vector<Work>& works, cudaStream_t stream, StageClock& clock);
   ScratchMemory scratch();
 
   const FieldSetup& setup_;
@@ -71,6 +74,16 @@ class DeviceGeometry {
     bool has_excess = false, has_reflected = false, has_mechanisms = false, has_clutter = false;
   };
   std::vector<Slot> slots_;
+
+  /// Marches of one emitter after the other, on a stream of their own.
+  struct Marcher {
+    emscape::cuda::Stream stream;
+    propagation::FieldMarchCuda march;
+    emscape::cuda::Event marched;  ///< its losses are there
+    emscape::cuda::Event read;     ///< and were read
+  };
+  std::array<Marcher, 3> marchers_;
+  emscape::cuda::Event placed_;
 
   // for the emitters being computed; kept for the next update
   emscape::cuda::Buffer<LocateTask> tasks_;

@@ -8,6 +8,7 @@ namespace emscape::emfield::cuda {
 namespace {
 
 using emscape::cuda::checkLaunch;
+using propagation::ColumnPart;
 using propagation::DiffractionColumn;
 using propagation::kBisectionStep;
 using propagation::kMissingTerrain;
@@ -329,13 +330,25 @@ __global__ void __launch_bounds__(kThreads)
   if (!begun.is_open || begin >= end) return;
   const ExcessScratch scratch = memory.scratch(n);
   const int first = task.grid.firstLayer(run.segment);
+  const auto c = static_cast<std::size_t>(run.first + n);
+  const auto voxel = [&](int k) { return (first + k) * task.grid.column_count + c; };
   float* const excess_db = scratch.excess_db + first;
   float other_db[kBisectionStep + 1];
-  note(to, run.first + n, task.model.fill(begun.column, scratch, {begin, end, other_db}, excess_db));
-  task.addAir(static_cast<std::size_t>(run.first + n), run.segment, begun.column, begin, end, excess_db);
-  for (int k = begin; k < end; ++k) {
-    to.out.excess.set((first + k) * task.grid.column_count + run.first + n, excess_db[k]);
+  const ColumnPart part{begin, end, other_db};
+  if constexpr (propagation::OverDiffraction<Model>::value) {
+    for (int k = begin; k < end && task.model.others.over_terrain; ++k)
+      other_db[k - begin] = to.out.excess.get(voxel(k));
   }
+  unsigned warnings = 0;
+  if constexpr (propagation::HasMechanisms<Model>::value) {
+    std::uint8_t* const lowest = to.out.mechanisms == nullptr ? nullptr : to.out.mechanisms + voxel(0);
+    warnings = task.model.fill(begun.column, scratch, part, excess_db, {lowest, task.grid.column_count});
+  } else {
+    warnings = task.model.fill(begun.column, scratch, part, excess_db);
+  }
+  note(to, run.first + n, warnings);
+  task.addAir(c, run.segment, begun.column, begin, end, excess_db);
+  for (int k = begin; k < end; ++k) to.out.excess.set(voxel(k), excess_db[k]);
 }
 
 template <class Model>
@@ -374,6 +387,16 @@ void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const 
   const int blocks = std::min(tiles.count, memory.threads() / kThreads);
   diffractionKernel<<<static_cast<unsigned>(blocks), kThreads, 0, stream>>>(tasks, grid, row, memory, tiles);
   checkLaunch("diffraction");
+}
+
+bool needsDiffraction(const EmitterExcess& excess) {
+  return std::visit(
+      [](const auto& m) {
+        if constexpr (propagation::OverDiffraction<std::decay_t<decltype(m)>>::value)
+          return m.others.over_terrain;
+        return false;
+      },
+      excess.model);
 }
 
 void fillExcess(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,

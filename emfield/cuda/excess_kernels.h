@@ -39,8 +39,12 @@ struct DiffractionTask {
 void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
                      const ScratchMemory& scratch, cudaStream_t stream);
 
+/// True for models with propagation::OverDiffraction, over terrain.
+bool needsDiffraction(const EmitterExcess& excess);
+
 /// Any model: one thread per column, with its own scratch memory.
-/// @param excess        its tables in device memory
+/// @param excess        its tables in device memory; with needsDiffraction(), the results hold those of
+/// fillDiffraction(), without the air
 /// @param grid, ground  of device memory
 void fillExcess(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
                 const GroundPosts& ground, const ExcessOutputs& to, const ScratchMemory& scratch,

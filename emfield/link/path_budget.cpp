@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/quantity_text.h"
+#include "emfield/elevation_cut.h"
 #include "emfield/link/path_radar.h"
 #include "emfield/link/path_verdict.h"
 #include "emfield/products.h"
@@ -335,7 +336,9 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   geometry.far_field_m = 2 * aperture_m * aperture_m / wavelength;
 
   budget.obstacles = is_still ? earlier->obstacles : pathObstacles(profile, wavelength);
-  budget.excess = is_still ? earlier->excess : pathExcess(scenario, by_model, profile, terrain);
+  const bool keeps_excess = is_still && !elevationCut(by_model, state.beam);
+  budget.excess =
+      keeps_excess ? earlier->excess : pathExcess(scenario, by_model, state.beam, profile, terrain);
   budget.pointing = pointingOf(emitter, state.beam, ray, budget.excess.reflection);
   budget.boresight_dbwm2 = boresightDensity_dbwm2(emitter, budget);
   budget.warnings = budget.excess.warnings;

@@ -28,7 +28,8 @@ void addAir(AirLoss air, const PathProfile& profile, PathExcess& excess) {
 }  // namespace
 
 PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                      const PathProfile& profile, const scenario::Terrain* terrain) {
+                      const scenario::BeamPose& beam, const PathProfile& profile,
+                      const scenario::Terrain* terrain) {
   PathExcess excess;
   excess.warnings = checkModel(scenario, emitter);
   const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
@@ -39,7 +40,7 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
   if (model.on_effective_earth) {
     end_msl_m = station.refraction.effectiveHeight_m(end_msl_m, station.height_msl_m, profile.range_m);
   }
-  const PathInputs inputs = pathInputs(scenario, emitter, station, terrain,
+  const PathInputs inputs = pathInputs(scenario, emitter, beam, station, terrain,
                                        {profile.range_m, profile.end.height_msl_m, profile.end.height_msl_m});
   propagation::PathColumn path({profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()},
                                profile.range_m, end_msl_m, profile.azimuth_rad);

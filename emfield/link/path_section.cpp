@@ -32,9 +32,11 @@ PathSection pathSection(const scenario::Snapshot& snapshot, int emitter, propaga
   const scenario::Scenario& scenario = *snapshot.scenario;
   scenario::Emitter by_model = scenario.emitters[static_cast<std::size_t>(emitter)];
   by_model.propagation.model = model;
+  // losses between isotropic antennas
+  by_model.propagation.parabolic_equation.source = propagation::PeRadiator::isotropic;
   const scenario::EmitterState& state = snapshot.emitters[static_cast<std::size_t>(emitter)];
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
-  const propagation::Site site = pathInputs(scenario, by_model, station, terrain, {}).site;
+  const propagation::Site site = pathInputs(scenario, by_model, state.beam, station, terrain, {}).site;
   const propagation::RefractivityAlongPath air =
       propagation::pathAir(scenario.atmosphere, site, profile.azimuth_rad);
   const auto [lowest, highest] =

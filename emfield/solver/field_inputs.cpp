@@ -159,6 +159,12 @@ bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b) {
   return a == b || samePattern(a->view(), b->view());
 }
 
+bool areSame(const std::optional<ElevationCut>& a, const std::optional<ElevationCut>& b) {
+  if (!a || !b) return a.has_value() == b.has_value();
+  const auto& [antenna, zenith, steer_v] = *a;
+  return samePattern(antenna, b->antenna) && zenith == b->zenith && steer_v == b->steer_v;
+}
+
 bool sameLook(const RadarShare& a, const RadarShare& b) {
   return same(a.task.look, b.task.look) && a.forward == b.forward && a.right == b.right && a.up == b.up;
 }
@@ -184,6 +190,8 @@ GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const sc
   inputs.far_field_m = plan.far_field_m[static_cast<std::size_t>(emitter_index)];
   inputs.propagation = {frequency_hz, polarization, propagation, plan.scenario->ground,
                         plan.scenario->atmosphere};
+  inputs.elevation_cut =
+      elevationCut(plan.scenario->emitters[static_cast<std::size_t>(emitter_index)], state.beam);
   const GeometryNeeds& needs = plan.needs[static_cast<std::size_t>(emitter_index)];
   inputs.mechanisms = needs.mechanisms;
   if (needs.clutter_map) {
@@ -193,13 +201,14 @@ GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const sc
 }
 
 bool haveSameSettings(const GeometryInputs& computed, const GeometryInputs& needed) {
-  const auto& [position, height_msl_m, far_field_m, propagation, clutter, mechanisms] = computed;
+  const auto& [position, height_msl_m, far_field_m, propagation, elevation_cut, clutter, mechanisms] =
+      computed;
   const auto& [frequency_hz, polarization, settings, ground, atmosphere] = propagation;
   return far_field_m == needed.far_field_m && frequency_hz == needed.propagation.frequency_hz &&
          polarization == needed.propagation.polarization && areSame(settings, needed.propagation.settings) &&
          same(ground, needed.propagation.ground) && same(atmosphere, needed.propagation.atmosphere) &&
          propagation::areSame(atmosphere.refractivity, needed.propagation.atmosphere.refractivity) &&
-         (mechanisms || !needed.mechanisms) &&
+         areSame(elevation_cut, needed.elevation_cut) && (mechanisms || !needed.mechanisms) &&
          (!needed.clutter || (clutter && same(*clutter, *needed.clutter)));
 }
 

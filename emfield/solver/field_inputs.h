@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "emfield/elevation_cut.h"
 #include "emfield/solver/field_engine.h"
 #include "propagation/inputs.h"
 
@@ -19,6 +20,7 @@ struct GeometryInputs {
   double height_msl_m = 0;
   double far_field_m = 0;
   propagation::EmitterInputs propagation;
+  std::optional<ElevationCut> elevation_cut;
   std::optional<ClutterMapInputs> clutter;  ///< none: no channel is against it, and there is no map of it
   bool mechanisms = false;                  ///< GeometryNeeds::mechanisms
 };
@@ -39,6 +41,8 @@ struct CombineInputs {
 
 /// True if two antennas, not null, have the same pattern; their gains may differ.
 bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b);
+/// True if two cuts, or none, are the same; the antennas' gains may differ.
+bool areSame(const std::optional<ElevationCut>& a, const std::optional<ElevationCut>& b);
 
 /// True if two radars' shares weigh voxels alike where the radars' patterns are the same: the same look in
 /// the same frame. Powers, jammers and channels may differ.

@@ -96,21 +96,20 @@ std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine() {
   const std::size_t needed = on_host ? cpuEngineBytes(setup, estimate.emitters)
                                      : cudaEngineBytes(setup, estimate.emitters, options.device_precision);
   estimate.volumes = needed - estimate.emitters;
-  const std::size_t free = on_host ? availableMemory_bytes().value_or(needed) : findDevice().free_bytes;
-  if (needed > free) {
-    constexpr double kMebibyte = 1 << 20;
-    const bool half = on_host || options.device_precision == volume::VoxelPrecision::float16;
-    throw Error(
-        on_host ? ErrorCode::other : ErrorCode::device, {setup.scenario->file},
-        fmt::format(
-            "the field of {} x {} x {} voxels, {} emitters and {} channels needs up to {:.0f} MiB of the "
-            "{} memory, of which {:.0f} MiB are free; fewer voxels (region.dims){} and a bound on what "
-            "emitters keep take less",
-            setup.grid.dims.x, setup.grid.dims.y, setup.grid.dims.z, emitters.size(), setup.channels.size(),
-            static_cast<double>(needed) / kMebibyte, on_host ? "host's" : "GPU's",
-            static_cast<double>(free) / kMebibyte, half ? "" : ", volumes of 16 bit"));
+  const bool has_half = !on_host && options.device_precision != volume::VoxelPrecision::float16;
+  const MemoryNeed need{
+      fmt::format("the field of {} x {} x {} voxels, {} emitters and {} channels", setup.grid.dims.x,
+                  setup.grid.dims.y, setup.grid.dims.z, emitters.size(), setup.channels.size()),
+      needed,
+      fmt::format("fewer voxels (region.dims){} and a bound on what emitters keep take less",
+                  has_half ? ", volumes of 16 bit" : "")};
+  if (on_host) {
+    requireMemory(need, {setup.scenario->file});
+    return makeCpuEngine(setup, slots);
   }
-  if (on_host) return makeCpuEngine(setup, slots);
+  const std::size_t free = findDevice().free_bytes;
+  if (needed > free)
+    throw Error(ErrorCode::device, {setup.scenario->file}, memoryShortage(need, "GPU's", free));
   return makeCudaEngine(setup, slots, options.device_precision);
 }
 

@@ -58,8 +58,8 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   }
   const Station station =
       makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere);
-  const propagation::PathInputs inputs =
-      pathInputs(*setup.scenario, emitter, station, setup.terrain.get(), pathExtent(station, setup.columns));
+  const propagation::PathInputs inputs = pathInputs(*setup.scenario, emitter, cache.state.beam, station,
+                                                    setup.terrain.get(), pathExtent(station, setup.columns));
   for (const std::string& warning : pathWarnings(emitter, inputs, geometry_result.warnings)) {
     ++cache.warnings[warning];
   }

@@ -1,4 +1,5 @@
 #include "propagation/cuda/march_cuda.h"
+#include "propagation/parabolic_equation/excess.h"
 #include "propagation/parabolic_equation/march_block_run.h"
 #include "propagation/parabolic_equation/march_block_tables.h"
 
@@ -65,6 +66,18 @@ __global__ void planKernel(const __grid_constant__ MarchBlockTask task, PlannedS
   if (azimuth < task.azimuths) planSteps<Shape>(task, planned, azimuth);
 }
 
+/// By one block of kTableThreads threads.
+__global__ void addStaircases(const MarchState* states, int azimuths, unsigned* warnings) {
+  __shared__ int staircases;
+  if (threadIdx.x == 0) staircases = 0;
+  __syncthreads();
+  int own = 0;
+  for (int a = int(threadIdx.x); a < azimuths; a += kTableThreads) own += states[a].staircases;
+  atomicAdd(&staircases, own);
+  __syncthreads();
+  if (threadIdx.x == 0) atomicOr(warnings, staircaseWarning(staircases));
+}
+
 __global__ void copyStart(const StoredComplex* start, StoredComplex* fields, int count, std::size_t pitch) {
   const int j = int(blockIdx.x * blockDim.x + threadIdx.x);
   if (j < count) fields[blockIdx.y * pitch + j] = start[j];
@@ -126,25 +139,27 @@ void AzimuthMarchCuda::start(const AzimuthMarch& march, float* excess_db, cudaSt
   columns_at_ = columns_at;
   stream_ = stream;
   const std::size_t pitch = std::size_t(march.grid.intervals), azimuths = std::size_t(azimuths_);
-  segments_.upload(input_.segments, stream);
-  levels_.upload(input_.levels, stream);
-  first_segment_.upload(input_.first_segment, stream);
-  cell_end_.upload(input_.cell_end, stream);
-  ground_.upload(march.ground_msl_m, stream);
-  start_.upload(input_.start, stream);
-  states_.upload(input_.states, stream);
-  column_steps_.upload(columns_at_, stream);
-  fields_.resize(azimuths * pitch);
-  tables_.resize(16 * 9 * (pitch / 128 + 1) + 5 * pitch + 8);
-  sums_.resize(azimuths * std::size_t(march.cells.heights));
-  counts_.resize(sums_.size());
-  if (!input_.flat) planned_.resize(azimuths * std::size_t(input_.tasks.front().end_step));
-  amplitudes_.resize(azimuths * columns_at.size() * pitch);
-  column_intervals_.resize(azimuths * columns_at.size());
-  column_ground_.resize(column_intervals_.size());
-  if (sums_.size() > 0) {
-    check(cudaMemsetAsync(sums_.data(), 0, sums_.size() * sizeof(float), stream), "cudaMemsetAsync");
-    check(cudaMemsetAsync(counts_.data(), 0, counts_.size() * sizeof(int), stream), "cudaMemsetAsync");
+  segments_.send(input_.segments, stream);
+  levels_.send(input_.levels, stream);
+  first_segment_.send(input_.first_segment, stream);
+  cell_end_.send(input_.cell_end, stream);
+  ground_.send(march.ground_msl_m, stream);
+  start_.send(input_.start, stream);
+  states_.send(input_.states, stream);
+  column_steps_.send(columns_at_, stream);
+  const std::size_t cells = azimuths * std::size_t(march.cells.heights);
+  const std::size_t columns = azimuths * columns_at.size();
+  fields_.atLeast(azimuths * pitch);
+  tables_.atLeast(16 * 9 * (pitch / 128 + 1) + 5 * pitch + 8);
+  sums_.atLeast(cells);
+  counts_.atLeast(cells);
+  if (!input_.flat) planned_.atLeast(azimuths * std::size_t(input_.tasks.front().end_step));
+  amplitudes_.atLeast(columns * pitch);
+  column_intervals_.atLeast(columns);
+  column_ground_.atLeast(columns);
+  if (cells > 0) {
+    check(cudaMemsetAsync(sums_.data(), 0, cells * sizeof(float), stream), "cudaMemsetAsync");
+    check(cudaMemsetAsync(counts_.data(), 0, cells * sizeof(int), stream), "cudaMemsetAsync");
   }
   const auto count = unsigned(pitch);
   copyStart<<<dim3((count + kTableThreads - 1) / kTableThreads, unsigned(azimuths)), kTableThreads, 0,
@@ -174,22 +189,35 @@ void AzimuthMarchCuda::start(const AzimuthMarch& march, float* excess_db, cudaSt
 }
 
 MarchNotes AzimuthMarchCuda::notes() {
-  std::vector<MarchState> states(states_.size());
-  states_.download(states.data(), stream_);
+  std::vector<MarchState> states(static_cast<std::size_t>(azimuths_));
+  states_.download(states.data(), states.size(), stream_);
   MarchNotes notes;
   for (const MarchState& state : states) notes.staircases += state.staircases;
   notes.pointwise_air = input_.pointwise_air;
   return notes;
 }
 
+void AzimuthMarchCuda::addWarnings(unsigned* warnings) {
+  addStaircases<<<1, kTableThreads, 0, stream_>>>(states_.data(), azimuths_, warnings);
+  checkLaunch("addStaircases");
+}
+
+std::size_t AzimuthMarchCuda::bytes() const {
+  const auto bytesOf = [](const auto&... buffers) {
+    return (std::size_t(0) + ... + (buffers.size() * sizeof(*buffers.data())));
+  };
+  return bytesOf(segments_, levels_, first_segment_, cell_end_, counts_, column_steps_, column_intervals_,
+                 ground_, sums_, amplitudes_, column_ground_, start_, fields_, tables_, states_, planned_);
+}
+
 std::vector<FieldColumn> AzimuthMarchCuda::columns() {
-  const std::size_t count = column_intervals_.size(), pitch = std::size_t(grid_.intervals);
+  const std::size_t count = std::size_t(azimuths_) * columns_at_.size(), pitch = std::size_t(grid_.intervals);
   std::vector<int> intervals(count);
   std::vector<double> ground_m(count);
   std::vector<float> amplitudes(count * pitch);
-  column_intervals_.download(intervals.data(), stream_);
-  column_ground_.download(ground_m.data(), stream_);
-  amplitudes_.download(amplitudes.data(), stream_);
+  column_intervals_.download(intervals.data(), count, stream_);
+  column_ground_.download(ground_m.data(), count, stream_);
+  amplitudes_.download(amplitudes.data(), count * pitch, stream_);
   std::vector<FieldColumn> columns(count);
   for (std::size_t i = 0; i < count; ++i) {
     columns[i].range_m = columns_at_[i % columns_at_.size()] * grid_.range_step_m;

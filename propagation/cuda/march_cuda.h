@@ -21,7 +21,10 @@ class AzimuthMarchCuda {
              const std::vector<int>& columns_at = {});
   /// Waits for the march.
   MarchNotes notes();
+  /// Adds staircaseWarning() of the march to bits in device memory, behind it on its stream.
+  void addWarnings(unsigned* warnings);
   std::vector<FieldColumn> columns();
+  std::size_t bytes() const;
 
  private:
   template <class Shape>

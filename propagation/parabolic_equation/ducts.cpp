@@ -87,4 +87,21 @@ std::vector<Duct> ductsOf(const RefractivityProfile& profile) {
   return ducts;
 }
 
+std::optional<double> evaporationDuctTop_msl_m(const RefractivityProfile& profile) {
+  const std::vector<Duct> ducts = ductsOf(profile);
+  if (ducts.empty() || ducts.front().kind != DuctKind::evaporation) return std::nullopt;
+  return ducts.front().top_msl_m;
+}
+
+RefractivityProfile withoutEvaporationDuct(RefractivityProfile profile) {
+  const std::optional<double> top_msl_m = evaporationDuctTop_msl_m(profile);
+  if (!top_msl_m) return profile;
+  const double top_m_units = profile.at(*top_msl_m);
+  for (RefractivityLevel& level : profile.levels) {
+    if (level.height_msl_m < *top_msl_m)
+      level.m_units = top_m_units - kStandardGradient_m * (*top_msl_m - level.height_msl_m);
+  }
+  return profile;
+}
+
 }  // namespace emscape::propagation

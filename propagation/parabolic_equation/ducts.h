@@ -1,6 +1,7 @@
 /// Ducts of a profile of refractivity: layers, strength, and the waves that they trap.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "propagation/parabolic_equation/refractivity.h"
@@ -36,5 +37,10 @@ struct Duct {
 /// The ducts, from the lowest top to the highest. The surface is the profile's first level. A layer whose M
 /// falls without end has its top at the last level. A layer below 0.1 M-units is none.
 std::vector<Duct> ductsOf(const RefractivityProfile& profile);
+
+/// Top (m above mean sea level) of the evaporation duct; none: the lowest duct is of another kind.
+std::optional<double> evaporationDuctTop_msl_m(const RefractivityProfile& profile);
+/// The profile with standard air below the top of its evaporation duct, if it has one; as many levels.
+RefractivityProfile withoutEvaporationDuct(RefractivityProfile profile);
 
 }  // namespace emscape::propagation

@@ -13,16 +13,23 @@ namespace emscape::propagation {
 /// Warning bits. The bits from kPeStaircaseShift to 30 hold the number of steps of the staircase.
 enum PeWarning : unsigned {
   kPePointwiseAir = 1,
-  kPeDuctOverLand = 2,  ///< an evaporation duct, and land below it
+  kPeDuctOverLand = 2,  ///< an evaporation duct, and land, over which it is left out
   kPeProfileEnds = 4    ///< the air was measured up to less than the antenna's or the field's height
 };
 constexpr int kPeStaircaseShift = 4;
 
+/// Warning bits of a number of pieces of the ground that are taken as steps of a staircase.
+EMSCAPE_HD inline unsigned staircaseWarning(int staircases) {
+  constexpr int kMost = (1 << (31 - kPeStaircaseShift)) - 1;
+  return static_cast<unsigned>(staircases < kMost ? staircases : kMost) << kPeStaircaseShift;
+}
+
 /// Interpolates in dB between azimuths, ranges and heights; other models speak outside the equation's limits.
 struct PeExcess {
   static constexpr bool kNeedsTerrain = true;
-  static constexpr bool kInParts = false;
+  static constexpr bool kInParts = true;
   static constexpr bool kHasMechanisms = true;
+  static constexpr bool kOverDiffraction = true;
 
   PeOthers others;
   /// Losses over free space (dB) of the cells, azimuth slowest, height fastest; NaN below the ground and
@@ -42,22 +49,37 @@ struct PeExcess {
   /// @param excess_db  one per voxel; NaN over missing terrain
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db,
                                  const MechanismStore& mechanisms = {}) const {
-    const float horizon_rad = others.horizonOf(column.profile);
-    if (!(horizon_rad == horizon_rad)) {
-      for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
-      return kMissingTerrain;
-    }
+    const PeSight sight = others.sightOf(column, scratch.even_ground_msl_m);
+    if (!sight.isKnown()) return setUnknown(column, excess_db);
     bool has_others = false;
-    for (int k = 0; k < column.count; ++k) {
-      PeLoss loss = equationAt(column, column.height_msl_m[k], horizon_rad);
-      if (loss.equation_part < 1) {
-        if (!has_others) others.fill(column, scratch, scratch.other_db);
-        has_others = true;
-        loss.other_db = scratch.other_db[k];
-      }
-      others.addScatter(column, column.height_msl_m[k], loss);
-      excess_db[k] = loss.loss_db();
-      mechanisms.set(k, loss.mechanism(others.over_terrain));
+    const auto other_db = [&](int k) {
+      if (!has_others) others.fill(column, scratch, scratch.other_db);
+      has_others = true;
+      return scratch.other_db[k];
+    };
+    for (int k = 0; k < column.count; ++k) excess_db[k] = lossAt(column, sight, k, other_db, mechanisms);
+    return warnings;
+  }
+  EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
+                            float* excess_db) const {
+    const PeSight sight = others.sightOf(column, scratch.even_ground_msl_m);
+    if (!sight.isKnown()) return setUnknown(column, excess_db);
+    scratch.post_numbers[0] = sight.horizon_rad;
+    scratch.post_numbers[1] = sight.to_ground_rad;
+    scratch.post_numbers[2] = static_cast<float>(sight.horizon_count);
+    return 0;
+  }
+  /// @param part  its memory holds the losses of `diffraction`, over terrain
+  EMSCAPE_HD unsigned fill(const ExcessColumn& column, const ExcessScratch& scratch, const ColumnPart& part,
+                           float* excess_db, const MechanismStore& mechanisms = {}) const {
+    const PeSight sight{scratch.post_numbers[0], scratch.post_numbers[1], scratch.even_ground_msl_m,
+                        static_cast<int>(scratch.post_numbers[2])};
+    for (int k = part.begin; k < part.end; ++k) {
+      const auto other_db = [&](int) {
+        return others.over_terrain ? part.memory_db[k - part.begin]
+                                   : others.twoRays_db(column.range_m, column.height_msl_m[k]);
+      };
+      excess_db[k] = lossAt(column, sight, k, other_db, mechanisms);
     }
     return warnings;
   }
@@ -75,12 +97,26 @@ struct PeExcess {
       at_m = others.crossing_m(range_m, height_msl_m, top_m + datum_msl_m);
       height_m = top_m;
     }
-    others.setEquation(cells_db(column.azimuth_rad, at_m, height_m), loss);
+    others.setEquation(cells_db(column.azimuth_rad, at_m, height_m), range_m, height_msl_m, loss);
     if (!(loss.equation_db == loss.equation_db)) loss.equation_part = 0;
     return loss;
   }
 
  private:
+  static EMSCAPE_HD unsigned setUnknown(const ExcessColumn& column, float* excess_db) {
+    for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
+    return kMissingTerrain;
+  }
+  template <class Other>
+  EMSCAPE_HD float lossAt(const ExcessColumn& column, const PeSight& sight, int k, const Other& other_db,
+                          const MechanismStore& mechanisms) const {
+    const float height_msl_m = column.height_msl_m[k];
+    PeLoss loss = equationAt(column, height_msl_m, sight.horizon_rad);
+    if (loss.equation_part < 1) loss.other_db = other_db(k);
+    others.addScatter(column, sight, height_msl_m, loss);
+    mechanisms.set(k, loss.mechanism(others.over_terrain));
+    return loss.loss_db();
+  }
   struct Neighbours {
     int first, second;
     float part;  ///< of the second

@@ -84,9 +84,12 @@ template <class Real, int kLanes>
 void RadialMarch<Real, kLanes>::setPropagator(int l) {
   const double cosine = lanes_[l].cosine;
   const double distance_m = grid_.range_step_m / cosine;
+  const bool over_terrain = !lanes_[l].path.ground_msl_m.empty();
   for (int i = 0; i < intervals(); ++i) {
     const double q = kPi * i / grid_.top_m / cosine;
-    const double loss = grid_.absorber_m > 0 ? bandEdgeRate(double(i) / intervals(), maxSine()) : 0;
+    const double loss = grid_.absorber_m > 0 ? bandEdgeRate(double(i) / intervals(), maxSine(),
+                                                            grid_.range_step_m, over_terrain)
+                                             : 0;
     const Cx factor = propagated(grid_, distance_m, q * q, loss * distance_m) * (2.0 / intervals());
     propagator_[i].re[l] = Real(factor.real());
     propagator_[i].im[l] = Real(factor.imag());

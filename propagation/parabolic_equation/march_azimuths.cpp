@@ -36,6 +36,9 @@ void checkMarch(const AzimuthMarch& march) {
       march.ground_msl_m.size() != march.ground_steps * std::size_t(march.azimuths)) {
     throw Error(ErrorCode::bad_input, "parabolic_equation: expected terrain for every azimuth");
   }
+  if (!march.ranges.empty() && march.ranges.size() != std::size_t(march.azimuths)) {
+    throw Error(ErrorCode::bad_input, "parabolic_equation: expected a number of cells for every azimuth");
+  }
   if (march.cells.ranges > 0 && !(march.cells.range_step_m >= march.grid.range_step_m)) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("parabolic_equation: cells of {} m in range; expected at least the "
@@ -49,16 +52,18 @@ MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db) {
   MarchNotes notes;
   notes.pointwise_air =
       std::any_of(march.air.begin(), march.air.end(), [](const auto& air) { return air.pointwise(); });
+  const std::size_t of_azimuth = std::size_t(march.cells.ranges) * std::size_t(march.cells.heights);
   std::mutex of_notes;
   const auto marchGroups = [&](const auto& groupMarch) {
     parallelFor((march.azimuths + kStepLanes - 1) / kStepLanes, 1, [&](int begin, int end) {
       for (int group = begin; group < end; ++group) {
         const int first = group * kStepLanes, count = std::min(kStepLanes, march.azimuths - first);
         auto of_group = groupMarch(first, count);
-        const auto cells = marchCells(of_group, march.cells);
-        for (int l = 0; l < count; ++l) {
-          std::copy(cells[l].begin(), cells[l].end(), excess_db + std::size_t(first + l) * cells[l].size());
-        }
+        RadialCells marched = march.cells;
+        marched.ranges = march.rangesOf(first);
+        const auto cells = marchCells(of_group, marched);
+        for (int l = 0; l < count; ++l)
+          std::copy(cells[l].begin(), cells[l].end(), excess_db + std::size_t(first + l) * of_azimuth);
         const std::lock_guard lock(of_notes);
         notes.staircases += of_group.staircases();
       }

@@ -15,6 +15,8 @@ struct AzimuthMarch {
   PeSurface surface;
   RadialCells cells;
   int azimuths = 0;
+  /// Of each azimuth the cells in range that are marched, in groups of kStepLanes the same; empty: all.
+  std::vector<int> ranges;
   /// One for all azimuths, or one each.
   std::vector<RefractivityAlongPath> air;
   /// Heights above mean sea level at 0, 1, 2, ... range steps, `ground_steps` of them per azimuth; behind the
@@ -25,6 +27,7 @@ struct AzimuthMarch {
   const RefractivityAlongPath& airOf(int azimuth) const {
     return air.size() == 1 ? air.front() : air[std::size_t(azimuth)];
   }
+  int rangesOf(int azimuth) const { return ranges.empty() ? cells.ranges : ranges[std::size_t(azimuth)]; }
   /// Losses of all azimuths.
   std::size_t cellCount() const { return std::size_t(azimuths) * cells.ranges * cells.heights; }
 };
@@ -41,7 +44,7 @@ struct MarchNotes {
 
 /// Marches all azimuths in float, in parallel.
 /// @param excess_db  cellCount() elements: losses over free space (dB) as of marchCells(), azimuth slowest,
-/// then range, then height
+/// then range, then height; those beyond rangesOf() an azimuth are not written
 /// @throws Error (bad_input) as RadialMarch() and marchCells(), or if the sizes do not fit
 MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db);
 

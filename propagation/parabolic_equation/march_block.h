@@ -106,13 +106,15 @@ struct AirLevel {
 struct MarchState {
   int intervals = 0;  ///< N; less after halving
   int step = 0, cell = 0;
+  int end_step = 0;  ///< at which it ends
   int staircases = 0;
   double ground_m = 0, sine = 0;
 };
 
 /// A march for one N. Pointers are to memory of the processor that runs it.
 struct MarchBlockTask {
-  int azimuths = 0, end_step = 0;
+  int azimuths = 0;
+  int end_step = 0;       ///< the largest of all azimuths
   double slope_part = 1;  ///< MarchGrid::slope_part
   bool wide = true, mixed = false, halve = false;
   double range_step_m = 0, height_step_m = 0, wavelength_m = 0, usable_top_m = 0;
@@ -127,7 +129,7 @@ struct MarchBlockTask {
   const float* ground_msl_m = nullptr;  ///< null: 0 m throughout
   std::size_t ground_steps = 0;
   PlannedStep flat;                           ///< of every step, where there is no terrain
-  const PlannedStep* planned = nullptr;       ///< end_step of each azimuth; null: flat
+  const PlannedStep* planned = nullptr;       ///< `end_step` of each azimuth; null: flat
   const StoredComplex* propagator = nullptr;  ///< flat: 16 x kSpectral, with 1 / 2N
   const StoredComplex* exponents =
       nullptr;  ///< terrain: the same in turns and log2 of the magnitude, without 1 / 2N

@@ -145,7 +145,8 @@ BlockInput blockInput(const AzimuthMarch& march, int max_intervals, const std::v
   input.first_segment.push_back(int(input.segments.size()));
   input.cell_end = cellEnds(march);
   const int cells_end = input.cell_end.empty() ? 0 : input.cell_end.back();
-  const int end_step = std::max(cells_end, columns_at.empty() ? 0 : columns_at.back());
+  const int columns_end = columns_at.empty() ? 0 : columns_at.back();
+  const int end_step = std::max(cells_end, columns_end);
   for (int n = grid.intervals; n >= kMinBlockIntervals; n /= 2) {
     input.intervals.push_back(n);
     input.tasks.push_back(taskOf(march, input, n, end_step));
@@ -158,7 +159,10 @@ BlockInput blockInput(const AzimuthMarch& march, int max_intervals, const std::v
   }
   input.states.resize(std::size_t(march.azimuths));
   for (std::size_t a = 0; a < input.states.size(); ++a) {
+    const int ranges = march.rangesOf(int(a));
+    const int own_end = ranges > 0 ? input.cell_end[std::size_t(ranges) - 1] : 0;
     input.states[a].intervals = grid.intervals;
+    input.states[a].end_step = std::max(own_end, columns_end);
     input.states[a].ground_m = input.flat ? 0 : double(march.ground_msl_m[a * march.ground_steps]);
   }
   return input;

@@ -14,7 +14,7 @@ enum class BlockKind {
   mixed     ///< all with the mixed transform
 };
 
-/// The march of an azimuth from its state to task.end_step, or to the step at which N is halved.
+/// The march of an azimuth from its state to state.end_step, or to the step at which N is halved.
 /// @param Team  runs the threads of a block: each(f) calls f(thread, its registers) for all and then is a
 /// barrier of the block; eachInRows(f) is a barrier of the threads of a row alone; eachFree(f) is none
 template <class Shape, BlockKind kKind, class Team>
@@ -24,12 +24,12 @@ class BlockMarch {
       : task_(task), azimuth_(azimuth), team_(team), memory_(memory), state_(task.states[azimuth]) {}
 
   EMSCAPE_HD void run() {
-    if (state_.intervals != N || state_.step >= task_.end_step) return;
+    if (state_.intervals != N || state_.step >= state_.end_step) return;
     load();
     bool halve = false;
     int column = 0;
     while (column < task_.columns && task_.column_steps[column] <= state_.step) ++column;
-    while (state_.step < task_.end_step && !halve) {
+    while (state_.step < state_.end_step && !halve) {
       step_ = flat() ? task_.flat : task_.planned[std::size_t(azimuth_) * task_.end_step + state_.step];
       prepareAir();
       if (kMixed) {

@@ -35,11 +35,12 @@ EMSCAPE_HD inline double unitsAt(const MarchBlockTask& task, double height_m) {
 
 }  // namespace block_tables
 
-/// Logarithm of the propagator over flat ground at the wavenumber n of N; its phase is reduced.
+/// Logarithm of the propagator along level ground at the wavenumber n of N; its phase is reduced.
 EMSCAPE_HD inline Complex<double> propagatorExponent(const MarchBlockTask& task, int intervals, int n) {
   const double q = kPi * n / (task.height_step_m * intervals);
   const double loss = task.absorber_m > 0
-                          ? bandEdgeRate(double(n) / intervals, task.wavelength_m / (2 * task.height_step_m))
+                          ? bandEdgeRate(double(n) / intervals, task.wavelength_m / (2 * task.height_step_m),
+                                         task.range_step_m, task.ground_steps > 0)
                           : 0;
   const Complex<double> exponent =
       stepExponent(task.wide, 2 * kPi / task.wavelength_m, task.range_step_m, {q * q, 0});
@@ -115,7 +116,7 @@ EMSCAPE_HD void planSteps(const MarchBlockTask& task, PlannedStep* planned, int 
   const float* const ground_m = task.ground_msl_m + std::size_t(azimuth) * task.ground_steps;
   const double max_sine = task.wavelength_m / (2 * task.height_step_m);
   double here_m = state.ground_m, sine = state.sine;
-  for (int s = state.step; s < task.end_step; ++s) {
+  for (int s = state.step; s < state.end_step; ++s) {
     const std::size_t next = std::size_t(s) + 1;
     const double rise_m = double(ground_m[next < task.ground_steps ? next : task.ground_steps - 1]) - here_m;
     const GroundStep step = groundStep(rise_m, task.range_step_m, sine, s == 0, max_sine, task.slope_part);

@@ -21,14 +21,17 @@ EMSCAPE_HD inline Complex<double> exponential(Complex<double> a) {
   return {magnitude * std::cos(a.im), magnitude * std::sin(a.im)};
 }
 
-/// Rate (1/m) at which the last tenth of the band is absorbed, where standard air turns rays out of it: they
-/// would come back downwards. 90 dB over the range in which it turns a ray through that tenth.
-EMSCAPE_HD inline double bandEdgeRate(double part_of_band, double max_sine) {
-  constexpr double kBegin = 0.9;
+/// Rate (1/m) at which the last tenth of the band is absorbed. Rays that leave the band come back mirrored at
+/// its edge, downwards. Standard air turns rays out of it slowly: 90 dB over the range in which it turns a
+/// ray through that tenth. Over terrain a break of slope does so at once: 90 dB in a step, which removes what
+/// a break by up to a fifth of the band mirrors.
+EMSCAPE_HD inline double bandEdgeRate(double part_of_band, double max_sine, double range_step_m,
+                                      bool over_terrain) {
+  constexpr double kBegin = 0.9, kLoss = 90 / kDbPerNeper<double>;
   const double t = (part_of_band - kBegin) / (1 - kBegin);
   if (t <= 0) return 0;
   const double turning_m = (1 - kBegin) * max_sine / (1e-6 * kStandardGradient_m);
-  return 4 * 90 / kDbPerNeper<double> / turning_m * t * t * t;
+  return (over_terrain ? kLoss / range_step_m : 4 * kLoss / turning_m) * t * t * t;
 }
 
 /// i distance (sqrt(k^2 - q^2) - k) without cancellation; its real part is negative where q > k. The narrow
@@ -47,8 +50,8 @@ struct GroundStep {
   /// Sine of the slope before less that of this one: the field turns by exp(i k z turn) at the break.
   double turn = 0;
   double stair_m = 0;  ///< rise of the step of a staircase at the end: what the slope leaves
-  bool is_steep =
-      false;  ///< steeper or more sharply bent than the equation allows: all rise is the staircase's
+  /// Steeper or more sharply bent than the equation allows: all rise is the staircase's.
+  bool is_steep = false;
 };
 
 /// @param rise_m       over the step

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
@@ -21,12 +21,14 @@ namespace {
 constexpr auto kPe = &ModelSettings::parabolic_equation;
 
 PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bool has_terrain,
-                  double site_ground_msl_m) {
+                  double site_ground_msl_m, double max_angle_rad) {
   const ParabolicEquationSettings& settings = inputs.emitter.settings.parabolic_equation;
   PeOthers others;
   others.tx_msl_m = static_cast<float>(inputs.site.height_msl_m);
   others.tx_agl_m = static_cast<float>(inputs.site.height_msl_m - site_ground_msl_m);
   others.curvature_per_m = static_cast<float>(1e-6 * air.at(0).top_gradient_m);
+  others.max_angle_rad = static_cast<float>(max_angle_rad);
+  others.direct_ray = directRayPattern(inputs.elevation_pattern, max_angle_rad);
   others.largest_db = static_cast<float>(-settings.floor_db);
   others.over_terrain = has_terrain;
   others.diffraction = diffractionExcess(inputs);
@@ -46,8 +48,7 @@ PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bo
 /// True if the air has an evaporation duct somewhere.
 bool hasEvaporationDuct(const RefractivityAlongPath& air) {
   return std::any_of(air.profiles().begin(), air.profiles().end(), [](const RefractivityProfile& profile) {
-    const std::vector<Duct> ducts = ductsOf(profile);
-    return !ducts.empty() && ducts.front().kind == DuctKind::evaporation;
+    return evaporationDuctTop_msl_m(profile).has_value();
   });
 }
 
@@ -56,6 +57,7 @@ bool hasEvaporationDuct(const RefractivityAlongPath& air) {
 /// @param highest_msl_m  of antenna and field
 unsigned airWarnings(const RefractivityAlongPath& air, bool over_land, double highest_msl_m) {
   unsigned warnings = over_land && hasEvaporationDuct(air) ? kPeDuctOverLand : 0u;
+  if (air.pointwise()) warnings |= kPePointwiseAir;
   if (std::any_of(air.profiles().begin(), air.profiles().end(),
                   [&](const RefractivityProfile& profile) { return profile.known_to_m < highest_msl_m; }))
     warnings |= kPeProfileEnds;
@@ -67,14 +69,14 @@ bool isLand(const Ground& ground) {
   return ground.kind != GroundKind::sea && ground.kind != GroundKind::fresh_water;
 }
 
-/// Reads the ground along all azimuths; behind the first hole it is level.
-/// @param ends_m  receives for each azimuth the range of its first hole, or infinity
-void readGround(const RadialInputs& radials, const PePlan& plan, AzimuthMarch& march,
-                std::vector<double>& ends_m) {
-  ends_m.assign(std::size_t(plan.azimuths), std::numeric_limits<double>::infinity());
+/// Reads the ground along all azimuths; behind the first hole it is level, and cells that reach there are
+/// unknown.
+void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& field) {
   if (!radials.has_terrain) return;
+  AzimuthMarch& march = field.march;
   march.ground_steps = std::size_t(radials.farthest_m / plan.grid.range_step_m) + 2;
   march.ground_msl_m.resize(march.ground_steps * std::size_t(plan.azimuths));
+  if (field.known_ranges.empty()) field.known_ranges.assign(std::size_t(plan.azimuths), plan.cells.ranges);
   parallelFor(plan.azimuths, 8, [&](int begin, int end) {
     for (int a = begin; a < end; ++a) {
       float* const first = march.ground_msl_m.data() + std::size_t(a) * march.ground_steps;
@@ -83,53 +85,35 @@ void readGround(const RadialInputs& radials, const PePlan& plan, AzimuthMarch& m
       first[0] = static_cast<float>(radials.site_ground_msl_m);
       float* const hole = std::find_if(first, last, [](float height_m) { return std::isnan(height_m); });
       if (hole == last) continue;
-      ends_m[std::size_t(a)] = double(hole - first) * plan.grid.range_step_m;
+      const double known_m = double(hole - first) * plan.grid.range_step_m;
+      int& known = field.known_ranges[std::size_t(a)];
+      known = std::min(known, int(known_m / plan.cells.range_step_m));
       std::fill(hole, last, hole[-1]);
     }
   });
 }
 
-/// The mean of two fields' powers, in dB.
-float meanPower_db(float a_db, float b_db) {
-  return -10 * std::log10((std::pow(10.0f, -a_db / 10) + std::pow(10.0f, -b_db / 10)) / 2);
-}
-
-/// The loss of an ensemble: that of the members' mean power, or of the power below which a share of them
-/// lies.
-/// @param losses_db  of the members, none NaN; reordered
-float ofMembers_db(std::vector<float>& losses_db, const Atmosphere& atmosphere) {
-  if (losses_db.size() == 1) return losses_db.front();
-  if (const auto quantile = atmosphere.refractivity->quantile) {
-    const auto at = std::ptrdiff_t(std::lround((1 - *quantile) * double(losses_db.size() - 1)));
-    std::nth_element(losses_db.begin(), losses_db.begin() + at, losses_db.end());
-    return losses_db[std::size_t(at)];
+/// The air of each azimuth over its ground, or one for all.
+std::vector<RefractivityAlongPath> airOverGround(const std::vector<RefractivityAlongPath>& air,
+                                                 const AzimuthMarch& march, const Ground& ground) {
+  std::vector<RefractivityAlongPath> over_ground;
+  if (march.ground_msl_m.empty()) {
+    for (const RefractivityAlongPath& of_azimuth : air)
+      over_ground.push_back(isLand(ground) ? withoutDuctOverLand(of_azimuth) : of_azimuth);
+    return over_ground;
   }
-  double power = 0;
-  for (const float loss_db : losses_db) power += std::pow(10.0, double(-loss_db) / 10);
-  return static_cast<float>(-10 * std::log10(power / double(losses_db.size())));
-}
-
-/// Losses of all cells, of the mean power of the polarisations.
-std::vector<float> marchSurfaces(AzimuthMarch& march, const std::vector<PeSurface>& surfaces,
-                                 MarchNotes& notes) {
-  constexpr float kNoField_db = 200;  // finite, so that it can be interpolated
-  std::vector<float> cells_db(march.cellCount()), other_db;
-  for (const PeSurface& surface : surfaces) {
-    const bool is_first = &surface == &surfaces.front();
-    march.surface = surface;
-    if (!is_first) other_db.resize(cells_db.size());
-    notes = marchAzimuths(march, is_first ? cells_db.data() : other_db.data());
+  if (std::none_of(air.begin(), air.end(), hasEvaporationDuct)) return air;
+  for (std::size_t a = 0; a < std::size_t(march.azimuths); ++a) {
+    over_ground.push_back(withoutDuctOverLand(air[air.size() == 1 ? 0 : a],
+                                              march.ground_msl_m.data() + a * march.ground_steps,
+                                              march.ground_steps, march.grid.range_step_m));
   }
-  for (std::size_t i = 0; i < other_db.size(); ++i) cells_db[i] = meanPower_db(cells_db[i], other_db[i]);
-  for (float& cell_db : cells_db) {
-    if (cell_db > kNoField_db) cell_db = kNoField_db;
-  }
-  return cells_db;
+  return over_ground;
 }
 
 /// Ground at even steps between the posts of a profile.
-std::vector<double> evenGround(const TerrainProfile& profile, double step_m, int steps) {
-  std::vector<double> ground_msl_m;
+std::vector<float> evenGround(const TerrainProfile& profile, double step_m, int steps) {
+  std::vector<float> ground_msl_m;
   int post = 0;
   for (int i = 0; i <= steps; ++i) {
     const double at_m = i * step_m;
@@ -137,8 +121,8 @@ std::vector<double> evenGround(const TerrainProfile& profile, double step_m, int
     const int next = std::min(post + 1, profile.count - 1);
     const double length_m = profile.range_m[next] - profile.range_m[post];
     const double part = length_m > 0 ? std::clamp((at_m - profile.range_m[post]) / length_m, 0.0, 1.0) : 0;
-    ground_msl_m.push_back(double(profile.height_msl_m[post]) +
-                           part * double(profile.height_msl_m[next] - profile.height_msl_m[post]));
+    ground_msl_m.push_back(float(double(profile.height_msl_m[post]) +
+                                 part * double(profile.height_msl_m[next] - profile.height_msl_m[post])));
   }
   return ground_msl_m;
 }
@@ -170,10 +154,14 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
   int staircases = 0, halvings = 0;
   for (const PeSurface& surface : surfaces) {
     RadialPath path;
-    path.air = air;
     path.surface = surface;
-    path.source.height_agl_m = inputs.site.height_msl_m - double(profile.height_msl_m[0]);
-    if (has_terrain) path.ground_msl_m = evenGround(profile, grid.range_step_m, steps);
+    path.source = {inputs.site.height_msl_m - double(profile.height_msl_m[0]), inputs.elevation_pattern};
+    path.air = isLand(inputs.emitter.ground) ? withoutDuctOverLand(air) : air;
+    if (has_terrain) {
+      const std::vector<float> ground_msl_m = evenGround(profile, grid.range_step_m, steps);
+      path.air = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), grid.range_step_m);
+      path.ground_msl_m.assign(ground_msl_m.begin(), ground_msl_m.end());
+    }
     RadialMarch<double, 1> march(grid, {std::move(path)});
     for (int i = 0; i < steps; ++i) march.advance();
     const double above_m = double(column.height_msl_m[0]) - march.ground_m(0);
@@ -204,6 +192,10 @@ std::vector<Setting> peSettings() {
       "range_step_m", "m", 1, 2000, "step of the march in range"));
   settings.push_back(automaticSetting<kPe, &ParabolicEquationSettings::azimuths>(
       "azimuths", "", 2, 7200, "directions that are marched; the field is interpolated between them"));
+  settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::source>(
+      "source", PeRadiator::pattern,
+      "what is marched: isotropic serves every beam; pattern, the antenna's elevation cut with its tilt, for "
+      "narrow or tilted beams that stay in elevation"));
   settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::roughness>(
       "roughness", RoughnessModel::miller_brown, "reduction of the reflection by roughness"));
   settings.push_back(numberSetting<kPe, &ParabolicEquationSettings::floor_db>(
@@ -230,7 +222,7 @@ std::vector<std::string> peWarningMessages(unsigned warnings) {
   }
   if (warnings & kPeDuctOverLand) {
     messages.emplace_back(
-        "an evaporation duct lies over land here: it needs a surface of water, and is taken as it is given");
+        "the evaporation duct is left out over land (above mean sea level, or a 'ground' that is not water)");
   }
   if (warnings & kPeProfileEnds) {
     messages.emplace_back(
@@ -252,48 +244,31 @@ std::vector<ModelChoice> peChoices(const PathInputs& inputs, const RadialInputs&
   return planMarch(inputs, radials).choices;
 }
 
-PeExcess peExcess(const PathInputs& inputs, const RadialInputs& radials, std::vector<float>& tables) {
+PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   const PePlan plan = planMarch(inputs, radials);
-  AzimuthMarch march;
+  FieldMarch field;
+  AzimuthMarch& march = field.march;
   march.grid = plan.grid;
-  march.source.height_agl_m = inputs.site.height_msl_m - radials.site_ground_msl_m;
+  march.source = {inputs.site.height_msl_m - radials.site_ground_msl_m, inputs.elevation_pattern};
   march.cells = plan.cells;
   march.azimuths = plan.azimuths;
-  std::vector<double> ends_m;
-  readGround(radials, plan, march, ends_m);
-  MarchNotes notes;
-  std::vector<std::vector<float>> members;
-  for (const std::vector<RefractivityAlongPath>& air : plan.air) {
-    march.air = air;
-    members.push_back(marchSurfaces(march, plan.surfaces, notes));
-  }
-  tables = std::move(members.front());
-  if (members.size() > 1) {
-    std::vector<float> losses_db(members.size());
-    for (std::size_t i = 0; i < tables.size(); ++i) {
-      losses_db[0] = tables[i];
-      for (std::size_t m = 1; m < members.size(); ++m) losses_db[m] = members[m][i];
-      if (!std::isnan(tables[i])) tables[i] = ofMembers_db(losses_db, inputs.emitter.atmosphere);
-    }
-  }
-  const RadialCells& cells = plan.cells;
-  for (int a = 0; a < plan.azimuths; ++a) {  // cells that reach behind a hole are unknown
-    if (!(ends_m[std::size_t(a)] < HUGE_VAL)) continue;
-    const int first = std::min(cells.ranges, int(ends_m[std::size_t(a)] / cells.range_step_m));
-    const std::size_t begin = std::size_t(a) * cells.ranges;
-    std::fill(tables.begin() + std::ptrdiff_t((begin + first) * cells.heights),
-              tables.begin() + std::ptrdiff_t((begin + cells.ranges) * cells.heights), NAN);
-  }
+  march.ranges = field.known_ranges = plan.ranges;
+  field.surfaces = plan.surfaces;
+  if (inputs.emitter.atmosphere.refractivity)
+    field.quantile = inputs.emitter.atmosphere.refractivity->quantile;
+  readGround(radials, plan, field);
+  for (const std::vector<RefractivityAlongPath>& member : plan.air)
+    field.members.push_back(airOverGround(member, march, inputs.emitter.ground));
 
+  const RadialCells& cells = plan.cells;
   PeExcess excess;
-  excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m);
-  excess.others.max_angle_rad = static_cast<float>(plan.max_angle_rad);
+  excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m,
+                           plan.max_angle_rad);
   excess.others.min_range_m = static_cast<float>(plan.min_range_m);
   if (!cells.are_points) {
     excess.others.cell_range_m = static_cast<float>(cells.range_step_m);
     excess.others.cell_height_m = static_cast<float>(cells.height_step_m);
   }
-  excess.tables = tables.data();
   excess.azimuths = plan.azimuths;
   excess.ranges = cells.ranges;
   excess.heights = cells.heights;
@@ -307,8 +282,6 @@ PeExcess peExcess(const PathInputs& inputs, const RadialInputs& radials, std::ve
   excess.bottom_m = static_cast<float>(cells.bottom_msl_m);
   excess.height_step_m = static_cast<float>(cells.height_step_m);
   excess.top_m = static_cast<float>(plan.top_m);
-  const unsigned staircases = unsigned(std::min(notes.staircases, (1 << (31 - kPeStaircaseShift)) - 1));
-  excess.warnings = (notes.pointwise_air ? kPePointwiseAir : 0u) | staircases << kPeStaircaseShift;
   const bool over_land = radials.has_terrain
                              ? std::any_of(march.ground_msl_m.begin(), march.ground_msl_m.end(),
                                            [](float ground_msl_m) { return ground_msl_m > 0; })
@@ -316,7 +289,7 @@ PeExcess peExcess(const PathInputs& inputs, const RadialInputs& radials, std::ve
   const double field_msl_m = radials.highest_m + (radials.above_ground ? radials.highest_ground_msl_m : 0);
   for (const RefractivityAlongPath& air : plan.air.front())
     excess.warnings |= airWarnings(air, over_land, std::max(field_msl_m, inputs.site.height_msl_m));
-  return excess;
+  return {excess, std::move(field)};
 }
 
 Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
@@ -338,15 +311,15 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
   double max_angle_rad = 0;
   const AutomaticGrid automatic = planGrid(inputs.emitter, air, needs, max_angle_rad);
 
-  PeOthers others = othersOf(inputs, air, has_terrain, double(profile.height_msl_m[0]));
-  others.max_angle_rad = static_cast<float>(max_angle_rad);
+  PeOthers others = othersOf(inputs, air, has_terrain, double(profile.height_msl_m[0]), max_angle_rad);
   others.min_range_m = static_cast<float>(
       std::max(2 * automatic.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz)));
   const char* const other_name = has_terrain ? "diffraction" : "two_ray";
   PeLoss loss;
-  const float horizon_rad = others.horizonOf(profile);
+  std::vector<float> horizon_posts(static_cast<std::size_t>(profile.count));
+  const PeSight sight = others.sightOf(column, horizon_posts.data());
   loss.equation_part = others.equationPart(static_cast<float>(column.range_m), end_msl_m,
-                                           profile.height_msl_m[profile.count - 1], horizon_rad);
+                                           profile.height_msl_m[profile.count - 1], sight.horizon_rad);
   if (loss.equation_part < 1) loss.other_db = static_cast<float>(path.excess_db(OtherColumn{others}));
   Explanation explanation;
   std::string march_text = "no march";
@@ -358,9 +331,11 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       march_text = march.text;
     }
     if (airs.size() > 1) march_text += fmt::format(", {} members of the air", airs.size());
-    others.setEquation(ofMembers_db(losses_db, inputs.emitter.atmosphere), loss);
+    const auto& refractivity = inputs.emitter.atmosphere.refractivity;
+    others.setEquation(ofMembers_db(losses_db, refractivity ? refractivity->quantile : std::nullopt),
+                       static_cast<float>(column.range_m), end_msl_m, loss);
   }
-  others.addScatter(column, end_msl_m, loss);
+  others.addScatter(column, sight, end_msl_m, loss);
   const bool over_land = has_terrain ? *highest > 0 : isLand(inputs.emitter.ground);
   path.addWarnings(airWarnings(air, over_land, std::max(double(end_msl_m), inputs.site.height_msl_m)));
   if (loss.equation_part > 0)
@@ -375,14 +350,14 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
                     double(loss.loss_db() - loss.withoutScatter_db()));
   const bool scatters = loss.mechanism(has_terrain) == Mechanism::troposcatter;
   explanation.why = fmt::format(
-      "{} speaks; launch angle {:.2f} of {:.3g} degrees, {}",
+      "{} applies; launch angle {:.2f} of {:.3g} degrees, {}",
       scatters                  ? "troposcatter"
       : loss.equation_part >= 1 ? "the parabolic equation"
       : loss.equation_part <= 0 ? other_name
                                 : fmt::format("the parabolic equation by {:.0f} %, {} for the rest,",
                                               double(100 * loss.equation_part), other_name),
-      radToDeg(
-          double(std::max(horizon_rad, others.launchAngle(static_cast<float>(column.range_m), end_msl_m)))),
+      radToDeg(double(
+          std::max(sight.horizon_rad, others.launchAngle(static_cast<float>(column.range_m), end_msl_m)))),
       radToDeg(max_angle_rad), march_text);
   return explanation;
 }

@@ -5,6 +5,7 @@
 #include "propagation/checks.h"
 #include "propagation/choice.h"
 #include "propagation/parabolic_equation/excess.h"
+#include "propagation/parabolic_equation/field_march.h"
 #include "propagation/path_column.h"
 #include "propagation/radial.h"
 #include "propagation/setting.h"
@@ -15,8 +16,13 @@ std::vector<Setting> peSettings();
 InputFaults checkPe(const EmitterInputs& inputs);
 std::vector<std::string> peWarningMessages(unsigned warnings);
 std::vector<ModelChoice> peChoices(const PathInputs& inputs, const RadialInputs& radials);
-/// Marches around the emitter. @throws Error (bad_input) as planMarch(), marchAzimuths()
-PeExcess peExcess(const PathInputs& inputs, const RadialInputs& radials, std::vector<float>& tables);
+/// The excess of an emitter's field, without its tables, and the marches that make them.
+struct PeField {
+  PeExcess excess;
+  FieldMarch march;
+};
+/// @throws Error (bad_input) as planMarch()
+PeField peField(const PathInputs& inputs, const RadialInputs& radials);
 /// Marches along the path in double precision; the field at its end, not averaged.
 Explanation explainPe(const PathInputs& inputs, PathColumn& path);
 

@@ -9,6 +9,7 @@
 #include "propagation/diffraction/excess.h"
 #include "propagation/mechanism.h"
 #include "propagation/p1812/p1812.h"
+#include "propagation/parabolic_equation/direct_ray.h"
 #include "propagation/two_ray/excess.h"
 
 namespace emscape::propagation {
@@ -45,12 +46,28 @@ struct PeLoss {
   }
 };
 
+/// What the other models ask of the ground on the way to a column.
+struct PeSight {
+  /// Largest angle (rad) above the horizontal at which the antenna sees the ground, at least 0; NaN over
+  /// missing terrain. Nearer than 500 m the slopes of its own hill would speak.
+  float horizon_rad = 0;
+  /// Largest angle (rad) from the antenna to the ground before the column, over the effective earth.
+  float to_ground_rad = -HUGE_VALF;
+  /// Posts before the column of which each is the horizon of some height there: the corners of the upper
+  /// convex hull of the ground, seen from the column. Numbers of posts, the nearest to the column first.
+  const float* horizon_posts = nullptr;
+  int horizon_count = 0;
+
+  EMSCAPE_HD bool isKnown() const { return horizon_rad == horizon_rad; }
+};
+
 /// Plain data, for one emitter. Heights are above mean sea level unless named otherwise.
 struct PeOthers {
   float tx_msl_m = 0, tx_agl_m = 0;
   float curvature_per_m = 0;  ///< of rays over the flattened earth, upwards: 10^-6 dM/dz
   float max_angle_rad = 0, min_range_m = 0;
   float largest_db = 80;  ///< of the equation
+  DirectRayPattern direct_ray;
   bool over_terrain = false;
   DiffractionExcess diffraction;  ///< over terrain
   TwoRayExcess two_ray;           ///< over the smooth earth, at mean sea level
@@ -63,22 +80,38 @@ struct PeOthers {
     return (height_msl_m - tx_msl_m) / range_m - curvature_per_m * range_m / 2;
   }
 
-  /// Largest angle (rad) above the horizontal at which the antenna sees the ground, at least 0; NaN over
-  /// missing terrain. Nearer than 500 m the slopes of its own hill would speak.
-  EMSCAPE_HD float horizonOf(const TerrainProfile& profile) const {
+  /// @param memory  for the posts' numbers: one per post
+  EMSCAPE_HD PeSight sightOf(const ExcessColumn& column, float* memory) const {
     constexpr float kNearGround_m = 500;
-    float horizon_rad = 0, unknown = 0;  // or NaN
+    const float half_curvature = scatter.clear_air.median.half_curvature;
+    const auto end_m = static_cast<float>(column.range_m);
+    const TerrainProfile& profile = column.profile;
+    PeSight sight;
+    float unknown = 0;  // or NaN
     for (int i = 0; i < profile.count; ++i) {
       const auto range_m = static_cast<float>(profile.range_m[i]);
-      const float angle_rad = launchAngle(range_m, profile.height_msl_m[i]);
-      if (range_m >= kNearGround_m && angle_rad > horizon_rad) horizon_rad = angle_rad;
-      unknown += 0 * profile.height_msl_m[i];
+      const float ground_m = profile.height_msl_m[i], angle_rad = launchAngle(range_m, ground_m);
+      if (range_m >= kNearGround_m && angle_rad > sight.horizon_rad) sight.horizon_rad = angle_rad;
+      unknown += 0 * ground_m;
+      if (i == 0 || i == profile.count - 1 || !(range_m > 0 && end_m > range_m)) continue;
+      const float from_tx = (ground_m - tx_msl_m) / range_m - half_curvature * range_m;
+      sight.to_ground_rad = from_tx > sight.to_ground_rad ? from_tx : sight.to_ground_rad;
     }
-    return horizon_rad + unknown;
+    sight.horizon_rad += unknown;
+    sight.horizon_posts = memory;
+    for (int i = profile.count - 2; i > 0 && sight.isKnown(); --i) {
+      if (!(seenFrom(column, i).left_m > 0) || !(profile.range_m[i] > 0)) continue;
+      while (sight.horizon_count > 1 &&
+             isBelow(seenFrom(column, int(memory[sight.horizon_count - 1])),
+                     seenFrom(column, int(memory[sight.horizon_count - 2])), seenFrom(column, i)))
+        --sight.horizon_count;
+      memory[sight.horizon_count++] = static_cast<float>(i);
+    }
+    return sight;
   }
 
   /// Weight of the equation.
-  /// @param horizon_rad  horizonOf() the ground on the way: over a ridge the field comes at that angle
+  /// @param horizon_rad  PeSight: over a ridge the field comes at that angle
   EMSCAPE_HD float equationPart(float range_m, float height_msl_m, float ground_msl_m,
                                 float horizon_rad) const {
     if (!(range_m > min_range_m)) return 0;
@@ -93,10 +126,12 @@ struct PeOthers {
     return part < 0 ? 0 : part > 1 ? 1 : part;
   }
 
-  /// Sets the equation's loss, no larger than that of its floor.
-  EMSCAPE_HD void setEquation(float equation_db, PeLoss& loss) const {
+  /// Sets the equation's loss, no larger than that of its floor, over the direct ray to a place.
+  EMSCAPE_HD void setEquation(float equation_db, float range_m, float height_msl_m, PeLoss& loss) const {
     loss.is_floor = equation_db > largest_db;
     loss.equation_db = loss.is_floor ? largest_db : equation_db;
+    if (direct_ray.is_weighed)
+      loss.equation_db += direct_ray.pattern_db(std::atan(launchAngle(range_m, height_msl_m)));
   }
 
   /// Range (m) at which the ray to a place above a height passes that height, which is above the antenna.
@@ -117,10 +152,11 @@ struct PeOthers {
   }
 
   /// Adds the troposcatter to a loss where it can matter.
-  EMSCAPE_HD void addScatter(const ExcessColumn& column, float height_msl_m, PeLoss& loss) const {
+  EMSCAPE_HD void addScatter(const ExcessColumn& column, const PeSight& sight, float height_msl_m,
+                             PeLoss& loss) const {
     constexpr float kMatters_db = 30;  // troposcatter is weaker than that by 15 dB and more
     if (loss.withoutScatter_db() < kMatters_db) return;
-    const float angle_rad = horizonAngle(column, height_msl_m);
+    const float angle_rad = horizonAngle(column, sight, height_msl_m);
     if (!(angle_rad > 0)) return;
     const auto range_m = static_cast<float>(column.range_m);
     const float free_space_db = 92.45f + 20 * std::log10(scatter.clear_air.frequency_ghz * range_m / 1000);
@@ -128,7 +164,6 @@ struct PeOthers {
     loss.scatter_db = scatter_db > 0 ? scatter_db : 0;
   }
 
- private:
   /// Mean of the two rays over a cell, in which the difference of their paths grows linearly.
   EMSCAPE_HD float twoRays_db(double range_m, float height_msl_m) const {
     float excess_db = 0;
@@ -142,24 +177,41 @@ struct PeOthers {
     constexpr float kLowest = 1e-6f;  // 60 dB, as two_ray
     return -10 * std::log10(power > kLowest ? power : kLowest);
   }
+
+ private:
+  /// A post as seen from a column: its distance, and its height without the curvature of the earth.
+  struct Seen {
+    float left_m, ground_m;
+  };
+  static EMSCAPE_HD Seen seenFrom(const ExcessColumn& column, int i) {
+    return {static_cast<float>(column.range_m) - static_cast<float>(column.profile.range_m[i]),
+            column.profile.height_msl_m[i]};
+  }
+  /// True if a post is not above the line from the one before it to the one behind, over the effective earth.
+  EMSCAPE_HD bool isBelow(const Seen& post, const Seen& before, const Seen& behind) const {
+    const float half_curvature = scatter.clear_air.median.half_curvature;
+    const auto slopeTo = [&](const Seen& to) {
+      return (to.ground_m - before.ground_m) / (to.left_m - before.left_m) -
+             half_curvature * (to.left_m + before.left_m);
+    };
+    return slopeTo(post) <= slopeTo(behind);
+  }
   static EMSCAPE_HD float sinc(float x) { return std::fabs(x) < 1e-3f ? 1 : std::sin(x) / x; }
 
   /// Angle (rad) between the horizons' rays of both ends, 0 where they see each other.
-  EMSCAPE_HD float horizonAngle(const ExcessColumn& column, float height_msl_m) const {
+  EMSCAPE_HD float horizonAngle(const ExcessColumn& column, const PeSight& sight, float height_msl_m) const {
     const auto range_m = static_cast<float>(column.range_m);
     const float half_curvature = scatter.clear_air.median.half_curvature;
     const float to_rx = (height_msl_m - tx_msl_m) / range_m - half_curvature * range_m;
-    float of_tx = -HUGE_VALF, of_rx = -HUGE_VALF;
-    for (int i = 1; i < column.profile.count - 1; ++i) {
-      const auto at_m = static_cast<float>(column.profile.range_m[i]);
-      const float left_m = range_m - at_m, ground_m = column.profile.height_msl_m[i];
-      if (!(at_m > 0 && left_m > 0)) continue;
-      const float from_tx = (ground_m - tx_msl_m) / at_m - half_curvature * at_m;
-      const float from_rx = (ground_m - height_msl_m) / left_m - half_curvature * left_m;
-      of_tx = from_tx > of_tx ? from_tx : of_tx;
-      of_rx = from_rx > of_rx ? from_rx : of_rx;
+    if (!(sight.to_ground_rad > to_rx)) return 0;
+    float of_rx = -HUGE_VALF;
+    for (int n = 0; n < sight.horizon_count; ++n) {
+      const Seen post = seenFrom(column, static_cast<int>(sight.horizon_posts[n]));
+      const float from_rx = (post.ground_m - height_msl_m) / post.left_m - half_curvature * post.left_m;
+      if (from_rx < of_rx) break;  // behind the horizon the angles fall
+      of_rx = from_rx;
     }
-    return of_tx > to_rx ? 2 * half_curvature * range_m + of_tx + of_rx : 0;
+    return 2 * half_curvature * range_m + sight.to_ground_rad + of_rx;
   }
 };
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "emscape/base/units.h"
+#include "propagation/parabolic_equation/ducts.h"
 #include "propagation/parabolic_equation/refractivity_field.h"
 
 namespace emscape::propagation {
@@ -82,6 +84,36 @@ std::vector<RefractivityAlongPath> pathAirs(const Atmosphere& atmosphere, const 
   }
   if (airs.empty()) airs.push_back(pathAir(atmosphere, site, azimuth_rad));
   return airs;
+}
+
+RefractivityAlongPath withoutDuctOverLand(const RefractivityAlongPath& air, const float* ground_msl_m,
+                                          std::size_t count, double step_m) {
+  double top_msl_m = 0;
+  for (const RefractivityProfile& profile : air.profiles())
+    top_msl_m = std::max(top_msl_m, evaporationDuctTop_msl_m(profile).value_or(0));
+  const auto isLand = [&](std::size_t post) {
+    return ground_msl_m[post] > 0 && double(ground_msl_m[post]) < top_msl_m;
+  };
+  std::set<double> ranges_m(air.ranges_m().begin(), air.ranges_m().end());
+  bool is_any = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    is_any = is_any || isLand(i);
+    if (i > 0 && isLand(i) != isLand(i - 1)) ranges_m.insert({double(i - 1) * step_m, double(i) * step_m});
+  }
+  if (!is_any) return air;
+  std::vector<RefractivityProfile> profiles;
+  for (const double range_m : ranges_m) {
+    const auto post = std::size_t(std::lround(std::clamp(range_m / step_m, 0.0, double(count - 1))));
+    profiles.push_back(isLand(post) ? withoutEvaporationDuct(air.at(range_m)) : air.at(range_m));
+  }
+  return {{ranges_m.begin(), ranges_m.end()}, std::move(profiles)};
+}
+
+RefractivityAlongPath withoutDuctOverLand(const RefractivityAlongPath& air) {
+  std::vector<RefractivityProfile> profiles;
+  for (const RefractivityProfile& profile : air.profiles())
+    profiles.push_back(withoutEvaporationDuct(profile));
+  return {air.ranges_m(), std::move(profiles)};
 }
 
 }  // namespace emscape::propagation

@@ -1,6 +1,7 @@
 /// The air along one azimuth of an emitter's paths.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "propagation/inputs.h"
@@ -19,5 +20,13 @@ RefractivityAlongPath pathAir(const Atmosphere& atmosphere, const Site& site, do
 /// The same for each member of the atmosphere's ensemble; without one, pathAir() alone.
 std::vector<RefractivityAlongPath> pathAirs(const Atmosphere& atmosphere, const Site& site,
                                             double azimuth_rad);
+
+/// The air over ground that is land in places: there it has no evaporation duct (withoutEvaporationDuct()). A
+/// shore lies between two posts. Land above the duct's top is left as it is: no field there is in the duct.
+/// @param ground_msl_m  at 0, 1, 2, ... steps; land: above 0
+RefractivityAlongPath withoutDuctOverLand(const RefractivityAlongPath& air, const float* ground_msl_m,
+                                          std::size_t count, double step_m);
+/// The same over a smooth earth that is land throughout.
+RefractivityAlongPath withoutDuctOverLand(const RefractivityAlongPath& air);
 
 }  // namespace emscape::propagation

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "emscape/base/error.h"
+#include "propagation/parabolic_equation/direct_ray.h"
+#include "propagation/parabolic_equation/march_lanes.h"
 #include "propagation/parabolic_equation/path_air.h"
 
 namespace emscape::propagation {
@@ -51,6 +54,15 @@ double planAngle_rad(const EmitterInputs& emitter, double height_m, std::string&
 /// Time (s) on one core per azimuth, step and height, rounded up (docs/parabolic-equation.md, Speed).
 double secondsPerPoint(bool has_terrain) {
   return has_terrain ? 20e-9 : 14e-9;
+}
+
+/// What the equation's angles have of an elevation cut.
+std::string sourceText(const ElevationPattern& pattern, double max_angle_rad) {
+  if (!pattern) return "the antenna's elevation cut, which is isotropic";
+  const DirectRayPattern cut = directRayPattern(pattern, max_angle_rad);
+  const float* const largest = std::max_element(cut.db, cut.db + DirectRayPattern::kEntries);
+  return fmt::format("the antenna's elevation cut: at most {:.1f} dB, at {:.2f} degrees; {:.1f} dB at 0",
+                     *largest, radToDeg(cut.angle_rad(int(largest - cut.db))), cut.pattern_db(0));
 }
 
 bool areSameAir(const std::vector<RefractivityAlongPath>& air) {
@@ -104,6 +116,32 @@ void planCells(const RadialInputs& radials, PeCells kept, PePlan& plan) {
       {"cells", fmt::format("{:.4g} m in range, {:.4g} m in height ({} x {}), above {}: the places' spacing",
                             cells.range_step_m, cells.height_step_m, cells.ranges, cells.heights,
                             cells.above_ground ? "the ground" : "mean sea level")});
+}
+
+/// Of each azimuth the cells up to the farthest place that is interpolated from it.
+void planRanges(const RadialInputs& radials, PePlan& plan) {
+  const std::vector<float>& arcs_m = radials.farthest_of_arcs_m;
+  if (arcs_m.empty() || plan.azimuths == 1) return;
+  plan.ranges.assign(std::size_t(plan.azimuths), 1);
+  const double arc_rad = 2 * kPi / double(arcs_m.size());
+  for (std::size_t i = 0; i < arcs_m.size(); ++i) {
+    if (!(arcs_m[i] > 0)) continue;
+    const int needed = std::min(plan.cells.ranges, int(double(arcs_m[i]) / plan.cells.range_step_m) + 2);
+    for (const double end_rad : {double(i) * arc_rad, double(i + 1) * arc_rad}) {
+      const double from_first = std::fmod(end_rad - plan.first_azimuth_rad + 4 * kPi, 2 * kPi);
+      const int before = int(from_first / plan.azimuth_step_rad);
+      for (const int near : {before, before + 1}) {
+        int& ranges = plan.ranges[std::size_t(plan.is_around ? near % plan.azimuths
+                                                             : std::min(near, plan.azimuths - 1))];
+        ranges = std::max(ranges, needed);
+      }
+    }
+  }
+  for (auto group = plan.ranges.begin(); group < plan.ranges.end();) {
+    const auto end = plan.ranges.end() - group > kStepLanes ? group + kStepLanes : plan.ranges.end();
+    std::fill(group, end, *std::max_element(group, end));
+    group = end;
+  }
 }
 
 }  // namespace
@@ -219,20 +257,24 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   plan.grid = automatic.grid;
   plan.choices = std::move(automatic.choices);
   plan.surfaces = planSurfaces(inputs.emitter, air);
+  if (inputs.emitter.settings.parabolic_equation.source == PeRadiator::pattern)
+    plan.choices.push_back({"source", sourceText(inputs.elevation_pattern, plan.max_angle_rad)});
   planCells(radials, inputs.emitter.settings.parabolic_equation.cells, plan);
   planAzimuths(inputs, radials, plan);
+  planRanges(radials, plan);
   plan.min_range_m = std::max({2 * plan.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz),
                                2 * plan.cells.range_step_m});
   plan.choices.push_back(
       {"extent",
        fmt::format("from {:.4g} m, to {:.4g} m above {}: nearer, higher and above the largest angle "
-                   "other models speak",
+                   "other models apply",
                    plan.min_range_m, plan.top_m, plan.cells.above_ground ? "the ground" : "mean sea level")});
-  const double lanes = 8.0 * std::ceil(plan.azimuths / 8.0);
   const auto members = double(plan.air.size());
-  const double points = members * lanes * double(plan.surfaces.size()) *
-                        std::ceil(plan.cells.ranges * plan.cells.range_step_m / plan.grid.range_step_m) *
-                        plan.grid.intervals;
+  const double lanes = kStepLanes * std::ceil(double(plan.azimuths) / kStepLanes);
+  const double marched = plan.ranges.empty() ? lanes * plan.cells.ranges
+                                             : std::accumulate(plan.ranges.begin(), plan.ranges.end(), 0.0);
+  const double points = members * double(plan.surfaces.size()) * marched *
+                        std::ceil(plan.cells.range_step_m / plan.grid.range_step_m) * plan.grid.intervals;
   require(kPeWork, points);
   const double cells = members * plan.azimuths * plan.cells.ranges * plan.cells.heights;
   require(kPeCells, cells);

@@ -79,7 +79,8 @@ struct PePlan {
   /// Of each member of the air's ensemble, one member without one: one for all azimuths, or one each.
   std::vector<std::vector<RefractivityAlongPath>> air;
   int azimuths = 0;
-  bool is_around = false;  ///< the last azimuth's neighbour is the first
+  std::vector<int> ranges;  ///< AzimuthMarch::ranges
+  bool is_around = false;   ///< the last azimuth's neighbour is the first
   double first_azimuth_rad = 0, azimuth_step_rad = 0;
   double max_angle_rad = 0;
   double min_range_m = 0;  ///< nearer, other models speak

@@ -3,9 +3,9 @@
 
 #include <cmath>
 #include <complex>
-#include <functional>
 
 #include "emscape/base/units.h"
+#include "propagation/inputs.h"
 
 namespace emscape::propagation {
 
@@ -13,7 +13,7 @@ struct PeSource {
   double height_agl_m = 0;
   /// Amplitude of the pattern against the angle above the horizontal (rad), 1 at the peak, the tilt included;
   /// empty: isotropic.
-  std::function<double(double)> pattern;
+  ElevationPattern pattern;
 };
 
 /// Taper of the band: 1 up to 0.6 of its largest wavenumber, 0 from 0.9, between them a squared cosine of a

@@ -11,6 +11,7 @@
 #include "propagation/inputs.h"
 #include "propagation/limits.h"
 #include "propagation/mechanism.h"
+#include "propagation/parabolic_equation/field_march.h"
 #include "propagation/path_column.h"
 #include "propagation/radial.h"
 #include "propagation/registry/excess_model.h"
@@ -25,11 +26,26 @@ enum class GasRole {
   included     ///< in the model's own loss
 };
 
+/// CPU time of an emitter's losses on one core, to an order of magnitude. Measured with the four emitters of
+/// scenarios/jacksboro.yaml, which is 30 km wide: the user time of `simulate` of one step, on 40 x 40 x 20
+/// and 100 x 100 x 50 voxels.
+struct ModelCost {
+  double voxel_ns = 0;   ///< at one voxel
+  double emitter_s = 0;  ///< of its tables and marches, on a grid of any size
+};
+
+/// The excess of a model that marches outwards, and the march that makes its tables.
+struct RadialExcess {
+  ExcessModel model;  ///< without its tables, and without the warnings that the march returns
+  FieldMarch march;
+};
+
 struct ModelInfo {
   PropagationModel model = PropagationModel::free_space;
   std::string name;       ///< as in scenario files
   std::string reference;  ///< the publication that the model follows
   std::string accuracy;   ///< as measured, with the names of the tests; README's table quotes it
+  ModelCost cost;
   /// Keys of the model's own section in an emitter, and its description; none: no section.
   std::vector<Setting> settings;
   std::string settings_description;
@@ -60,9 +76,9 @@ struct ModelInfo {
   Explanation (*explain)(const PathInputs&, PathColumn&) = nullptr;
   /// Makes the excess model; null: there is none. `tables` receives the data that the result points to.
   ExcessModel (*excess)(const PathInputs&, std::vector<float>& tables) = nullptr;
-  /// The same of a model that marches outwards, in place of `excess`: marches all azimuths around the emitter
-  /// into the tables. @throws Error (bad_input) for what `choices` refuses
-  ExcessModel (*radial)(const PathInputs&, const RadialInputs&, std::vector<float>& tables) = nullptr;
+  /// The same of a model that marches outwards, in place of `excess`. @throws Error (bad_input) for what
+  /// `choices` refuses
+  RadialExcess (*radial)(const PathInputs&, const RadialInputs&) = nullptr;
   /// What such a model chooses by itself. @throws Error (bad_input) with the value and what is allowed
   std::vector<ModelChoice> (*choices)(const PathInputs&, const RadialInputs&) = nullptr;
 };

@@ -47,7 +47,7 @@ ProgressSink progressSink(const ProgressCall& call) {
     Clock::time_point time;
     std::string step;
   };
-  // The function is let go of with the interpreter locked.
+  // The function is released with the interpreter locked.
   const std::shared_ptr<nb::callable> function(call ? new nb::callable(*call) : nullptr,
                                                [](nb::callable* held) {
                                                  const nb::gil_scoped_acquire locked;

@@ -246,9 +246,9 @@ std::string quantityTitle(const std::string& quantity, const std::string& unit) 
     name.resize(last);
   }
   std::replace(name.begin(), name.end(), '_', ' ');
-  if (name == "snr") name = "SNR";
-  if (name == "sinr") name = "SINR";
-  if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  const bool is_abbreviation = name == "snr" || name == "sinr" || name == "sclnr";
+  for (std::size_t i = 0; i < (is_abbreviation ? name.size() : std::min(name.size(), std::size_t{1})); ++i)
+    name[i] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[i])));
   return colon == std::string::npos ? name : name + " of " + quantity.substr(colon + 1);
 }
 

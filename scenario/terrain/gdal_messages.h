@@ -1,17 +1,28 @@
-/// Messages of GDAL and PROJ, kept instead of printed.
+/// Use of GDAL and PROJ that neither prints nor reaches the network.
 #pragma once
 
+#include <cpl_conv.h>
 #include <cpl_error.h>
+#include <cpl_http.h>
 
+#include <algorithm>
 #include <string>
 
 namespace emscape::scenario {
 
-/// Keeps GDAL from printing and stores its first message, in the scope and thread of this object.
+/// Keeps GDAL from printing and stores the first line of its first failure, in the scope and thread of this
+/// object. There GDAL fetches nothing either: a GML file names its schema by URL, a GeoJSON file its
+/// coordinate system. Names that begin with /vsi are not covered; callers open none.
 class GdalMessages {
  public:
-  GdalMessages() { CPLPushErrorHandlerEx(&GdalMessages::take, this); }
-  ~GdalMessages() { CPLPopErrorHandler(); }
+  GdalMessages() {
+    CPLPushErrorHandlerEx(&GdalMessages::take, this);
+    CPLHTTPPushFetchCallback(&GdalMessages::refuseFetch, nullptr);
+  }
+  ~GdalMessages() {
+    CPLHTTPPopFetchCallback();
+    CPLPopErrorHandler();
+  }
   GdalMessages(const GdalMessages&) = delete;
   GdalMessages& operator=(const GdalMessages&) = delete;
 
@@ -24,7 +35,17 @@ class GdalMessages {
  private:
   static void CPL_STDCALL take(CPLErr severity, CPLErrorNum, const char* message) {
     auto* self = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
-    if (severity >= CE_Failure && self->first_failure_.empty()) self->first_failure_ = message;
+    if (severity < CE_Failure || !self->first_failure_.empty()) return;
+    self->first_failure_ = message;
+    self->first_failure_.resize(std::min(self->first_failure_.find('\n'), self->first_failure_.size()));
+  }
+
+  static CPLHTTPResult* refuseFetch(const char*, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc,
+                                    void*, void*) {
+    auto* const result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
+    result->nStatus = 1;
+    result->pszErrBuf = CPLStrdup("files are read without the network");
+    return result;
   }
 
   std::string first_failure_;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 
+#include "base/memory.h"
 #include "emscape/base/units.h"
 
 namespace emscape::scenario {
@@ -233,6 +234,10 @@ TerrainSheet::TerrainSheet(const TerrainFilePtr& of_file, const PostLattice& of_
   last_column = columns - 2;
   last_row = rows - 2;
   const std::size_t posts = static_cast<std::size_t>(with_columns * with_rows);
+  requireMemory({"elevation file " + file->name() + ": the region's " + std::to_string(with_columns) + " x " +
+                     std::to_string(with_rows) + " posts",
+                 posts * (sizeof(float) + sizeof(PostKind)), "a coarser file or a smaller region takes less"},
+                {});
   heights_m.assign(posts, kNoHeight);
   kinds.assign(posts, PostKind::absent);
 }

@@ -41,7 +41,8 @@ struct TerrainSheet {
   double first_column, last_column, first_row, last_row;  ///< limits of lookups
 
   /// All posts absent.
-  /// @throws Error (bad_input) if the sheet has more than kMaxSheetPosts posts
+  /// @throws Error (bad_input) if the sheet has more than kMaxSheetPosts posts; (other) if they do not fit
+  /// into the memory
   TerrainSheet(const TerrainFilePtr& of_file, const PostLattice& of_lattice, long long with_columns,
                long long with_rows);
 

@@ -205,7 +205,8 @@ class ReportWriter {
     }
     constexpr double kWide = 20;
     plot.is_logarithmic = is_number && smallest > 0 && largest > kWide * smallest;
-    report_.drawing(drawMeasure(plot), plot.measure + " over " + plot.parameter);
+    report_.drawing(drawMeasure(plot),
+                    plot.measure + " over " + plot.parameter + "; blue: the variants, orange: their mean");
     ++plots_;
   }
 

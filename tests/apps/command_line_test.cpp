@@ -61,6 +61,14 @@ TEST(CommandLine, AResultThatCannotBeWrittenIsAnError) {
   EXPECT_EQ(statusOf("--help >/dev/full 2>/dev/null"), 1);
 }
 
+TEST(CommandLine, FaultsThatNeedNoFieldAreToldBeforeOneIsComputed) {
+  EXPECT_THAT(run({"explode"}).err, StartsWith("emscape: error: there is no subcommand 'explode'"));
+  EXPECT_THAT(run({"bench", "explode"}).err, StartsWith("emscape: error: there is no subcommand 'explode'"));
+  EXPECT_THAT(run({}).err, StartsWith("emscape: error: A subcommand is required"));
+  EXPECT_THAT(run({"render", shippedScenario("quick.yaml"), "-o", "x.gif"}).err,
+              StartsWith("emscape: error: x.gif: must end in .png or .mp4"));
+}
+
 TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {
   const std::string quick = shippedScenario("quick.yaml");
   const TemporaryFolder folder;

@@ -45,8 +45,28 @@ TEST_F(Validate, TellsWhatTheFieldTakes) {
   EXPECT_LT(work.at("volumes_mib"), 10 * work.at("step_mib").get<double>());
   EXPECT_DOUBLE_EQ(work.at("memory_mib"),
                    work.at("volumes_mib").get<double>() + work.at("emitters_mib").get<double>());
+  EXPECT_EQ(work.at("terrain_mib"), 0);
   EXPECT_EQ(json::parse(run({"info", shippedScenario("quick.yaml"), "--json"}).out).at("work").at("step_mib"),
             work.at("step_mib"));
+}
+
+TEST_F(Validate, TellsTheTimeToAnOrderOfMagnitude) {
+  const std::string scenario = shippedScenario("jacksboro.yaml");
+  const auto workOf = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"validate", scenario, "--json", "--threads", "1", "--set", "duration_s=0"};
+    words.insert(words.end(), more.begin(), more.end());
+    return json::parse(run(words).out).at("work");
+  };
+  const json coarse = workOf({"--set", "region.dims=[40, 40, 20]"});
+  const json fine = workOf({"--set", "region.dims=[80, 80, 40]"});
+  EXPECT_NEAR(fine.at("time_s").get<double>() / coarse.at("time_s").get<double>(), 8, 1e-9);
+  EXPECT_GT(coarse.at("terrain_mib"), 0.1);
+  const json itm =
+      workOf({"--set", "region.dims=[80, 80, 40]", "--set", "emitters.search radar.propagation=itm"});
+  EXPECT_GT(itm.at("time_s"), 2 * fine.at("time_s").get<double>());
+  EXPECT_EQ(itm.at("threads"), 1);
+  EXPECT_THAT(run({"validate", scenario, "--threads", "1"}).out,
+              HasSubstr("on 1 thread, to an order of magnitude"));
 }
 
 TEST_F(Validate, RefusesAFieldThatDoesNotFitIntoTheMemory) {

@@ -47,9 +47,9 @@ class Columns {
  public:
   Columns(const scenario::Scenario& scenario, double tx_msl_m, const PathExtent& extent, double step_m = 45)
       : station_(makeStation({44.43, -71.47, 0}, tx_msl_m, scenario.atmosphere.k_factor)) {
-    PathInputs inputs = pathInputs(scenario, scenario.emitters[0], station_, nullptr, extent);
+    PathInputs inputs = pathInputs(scenario, scenario.emitters[0], {}, station_, nullptr, extent);
     inputs.post_spacing_m = step_m;
-    excess_ = makeExcess(inputs);
+    excess_ = planExcess(inputs);
   }
 
   std::vector<float> fill(const ProfileData& profile, const std::vector<float>& heights_msl_m) const {

@@ -9,6 +9,7 @@
 #include "emscape/base/units.h"
 #include "scenario/scan_sweep.h"
 #include "tests/emfield/radar_duel.h"
+#include "tests/emfield/scans.h"
 #include "tests/support/on_backends.h"
 
 namespace emscape::emfield {
@@ -23,47 +24,6 @@ using scenario::ScanSpec;
 using scenario::Scenario;
 
 constexpr double kBegin_s = 1.7;
-
-ScanSpec rotating(double rate_rpm, double elevation_deg = 0) {
-  ScanSpec scan;
-  scan.kind = ScanKind::rotate;
-  scan.rate_rpm = rate_rpm;
-  scan.azimuth_deg = 20;
-  scan.elevation_deg = elevation_deg;
-  return scan;
-}
-
-ScanSpec sweeping(ScanKind kind, double width_deg, double rate_deg_s, int bars = 1) {
-  ScanSpec scan;
-  scan.kind = kind;
-  scan.azimuth_deg = 40;
-  scan.elevation_deg = 2;
-  scan.width_deg = width_deg;
-  scan.rate_deg_s = rate_deg_s;
-  scan.bars = bars;
-  scan.elevation_step_deg = 4;
-  return scan;
-}
-
-ScanSpec dwelling() {
-  ScanSpec scan;
-  scan.kind = ScanKind::dwell_list;
-  scan.azimuth_deg = 30;
-  scan.elevation_deg = 5;
-  scan.dwells = {{-20, 0, 0.3}, {5, 10, 0.2}, {25, -3, 0.5}};
-  return scan;
-}
-
-/// An emitter in the middle of a box whose voxels are at all azimuths and elevations.
-std::shared_ptr<Scenario> around(const AntennaPtr& antenna, const ScanSpec& scan) {
-  auto scenario = emptyScenario(FrameKind::enu, 44.3, -71.4, {15000, 15000, 6000}, {15, 15, 6});
-  Emitter emitter = plainEmitter("emitter", 0);
-  emitter.antenna = antenna;
-  emitter.scan = scan;
-  addEmitter(*scenario, middleOf(*scenario), emitter);
-  scenario->platforms.front().track.front().heading_deg = 0;
-  return scenario;
-}
 
 class Intervals : public test::OnBackends {
  protected:

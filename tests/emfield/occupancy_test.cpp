@@ -10,6 +10,7 @@
 #include "emfield/solver/beam_positions.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/radar_duel.h"
+#include "tests/emfield/scans.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/on_backends.h"
@@ -19,7 +20,6 @@ namespace {
 
 using namespace emscape::emfield::testing;
 using scenario::AntennaPtr;
-using scenario::Emitter;
 using scenario::IntervalKind;
 using scenario::ScanKind;
 using scenario::ScanSpec;
@@ -27,44 +27,9 @@ using scenario::Scenario;
 
 constexpr double kBegin_s = 1.7, kThreshold_dbwm2 = -62;
 
-ScanSpec rotating(double rate_rpm, double elevation_deg = 0) {
-  ScanSpec scan;
-  scan.kind = ScanKind::rotate;
-  scan.rate_rpm = rate_rpm;
-  scan.azimuth_deg = 20;
-  scan.elevation_deg = elevation_deg;
-  return scan;
-}
-
-ScanSpec sweeping(ScanKind kind, int bars = 1) {
-  ScanSpec scan;
-  scan.kind = kind;
-  scan.azimuth_deg = 40;
-  scan.elevation_deg = 2;
-  scan.width_deg = 70;
-  scan.rate_deg_s = 60;
-  scan.bars = bars;
-  scan.elevation_step_deg = 4;
-  return scan;
-}
-
-ScanSpec dwelling() {
-  ScanSpec scan;
-  scan.kind = ScanKind::dwell_list;
-  scan.azimuth_deg = 30;
-  scan.elevation_deg = 5;
-  scan.dwells = {{-20, 0, 0.3}, {5, 10, 0.2}, {25, -3, 0.5}};
-  return scan;
-}
-
-/// An emitter in the middle of a box whose voxels are at all azimuths and elevations.
-std::shared_ptr<Scenario> around(const AntennaPtr& antenna, const ScanSpec& scan) {
-  auto scenario = emptyScenario(FrameKind::enu, 44.3, -71.4, {15000, 15000, 6000}, {15, 15, 6});
-  Emitter emitter = plainEmitter("emitter", 0);
-  emitter.antenna = antenna;
-  emitter.scan = scan;
-  addEmitter(*scenario, middleOf(*scenario), emitter);
-  scenario->platforms.front().track.front().heading_deg = 0;
+/// testing::around() with the threshold of the counts.
+std::shared_ptr<Scenario> countedAround(const AntennaPtr& antenna, const ScanSpec& scan) {
+  auto scenario = around(antenna, scan);
   scenario->output.count_threshold_dbwm2 = kThreshold_dbwm2;
   return scenario;
 }
@@ -123,12 +88,12 @@ TEST_P(Occupancy, OfTurnsIsThatOfFineSteps) {
        {scenario::makeGaussian(30, 4, 12, -35), scenario::makeCosecant2(30, 4, 5, 40, -35),
         scenario::makeSinc(30, 4, 12, -40), scenario::makePhasedArray(25, 24, 16, 0.5, 1, -45)}) {
     SCOPED_TRACE(antenna->description);
-    expectAsCounted(around(antenna, rotating(10, 4)), 6, 1800);
+    expectAsCounted(countedAround(antenna, rotating(10, 4)), 6, 1800);
   }
 }
 
 TEST_P(Occupancy, OfPartsOfATurnIsThatOfFineSteps) {
-  const auto scenario = around(scenario::makeGaussian(30, 8, 12, -35), rotating(-10, 3));
+  const auto scenario = countedAround(scenario::makeGaussian(30, 8, 12, -35), rotating(-10, 3));
   expectAsCounted(scenario, 1.9, 1200);
   expectAsCounted(scenario, 8.3, 2400);
 }
@@ -137,30 +102,31 @@ TEST_P(Occupancy, OfSectorsRastersAndDwellsIsThatOfFineSteps) {
   const AntennaPtr antenna = scenario::makeGaussian(30, 8, 9, -35);
   for (const double seconds : {0.8, 3.7}) {
     SCOPED_TRACE(seconds);
-    expectAsCounted(around(antenna, sweeping(ScanKind::sector)), seconds, 1500);
-    expectAsCounted(around(antenna, sweeping(ScanKind::raster, 3)), seconds, 1500);
-    expectAsCounted(around(scenario::makePhasedArray(30, 16, 12, 0.5, 1, -40), dwelling()), seconds, 1480);
-    expectAsCounted(around(scenario::makeGaussian(30, 9, 9, -40), dwelling()), seconds, 1480);
+    expectAsCounted(countedAround(antenna, sweeping(ScanKind::sector, 70, 60)), seconds, 1500);
+    expectAsCounted(countedAround(antenna, sweeping(ScanKind::raster, 70, 60, 3)), seconds, 1500);
+    expectAsCounted(countedAround(scenario::makePhasedArray(30, 16, 12, 0.5, 1, -40), dwelling()), seconds,
+                    1480);
+    expectAsCounted(countedAround(scenario::makeGaussian(30, 9, 9, -40), dwelling()), seconds, 1480);
   }
 }
 
 TEST_P(Occupancy, CountsBothRaysAndTheTimesOfActivity) {
-  auto scenario = around(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
+  auto scenario = countedAround(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
   scenario->emitters.front().propagation.model = propagation::PropagationModel::two_ray;
   scenario->emitters.front().active_s = {{0, 2.5}, {4, 4.5}};
   expectAsCounted(scenario, 6, 2400);
 }
 
 TEST_P(Occupancy, OfAStillBeamIsItsTimeOfActivity) {
-  auto scenario = around(scenario::makeIsotropic(30), ScanSpec{});
+  auto scenario = countedAround(scenario::makeIsotropic(30), ScanSpec{});
   scenario->emitters.front().active_s = {{0, 2.5}, {4, 4.5}};
   const std::vector<float> found = over(scenario, 6);
   EXPECT_NEAR(*std::max_element(found.begin(), found.end()), (0.8 + 0.5) / 6, 1e-5);
 }
 
 TEST_P(Occupancy, OfSeveralEmittersIsThatOfAny) {
-  auto first = around(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
-  auto second = around(scenario::makeGaussian(30, 30, 12, -35), rotating(7, 3));
+  auto first = countedAround(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
+  auto second = countedAround(scenario::makeGaussian(30, 30, 12, -35), rotating(7, 3));
   auto both = std::make_shared<Scenario>(*first);
   both->emitters.push_back(second->emitters.front());
   both->emitters.back().name = "other";
@@ -169,7 +135,8 @@ TEST_P(Occupancy, OfSeveralEmittersIsThatOfAny) {
 }
 
 TEST_P(Occupancy, OfWholeTurnsDoesNotChangeWithTheTime) {
-  const auto scenario = occupancyOf(around(scenario::makeGaussian(30, 4, 6, -35), rotating(10, 3)), 12);
+  const auto scenario =
+      occupancyOf(countedAround(scenario::makeGaussian(30, 4, 6, -35), rotating(10, 3)), 12);
   FieldSolver solver = solverOf(scenario);
   valuesOf(solver, scenario, 0);
   EXPECT_TRUE(solver.update(scenario::snapshotAt(scenario, nullptr, 1.3)).volumes.empty());
@@ -178,7 +145,7 @@ TEST_P(Occupancy, OfWholeTurnsDoesNotChangeWithTheTime) {
 EMSCAPE_ON_BACKENDS(Occupancy);
 
 TEST(OccupancyNeeds, AnInterval) {
-  const auto scenario = around(scenario::makeIsotropic(30), ScanSpec{});
+  const auto scenario = countedAround(scenario::makeIsotropic(30), ScanSpec{});
   FieldOptions options;
   options.quantities = {"occupancy"};
   EXPECT_THAT(test::errorOf([&] { FieldSolver(scenario, nullptr, options); }),

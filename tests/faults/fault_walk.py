@@ -22,10 +22,11 @@ import tempfile
 from pathlib import Path
 
 SKIPPED = 77
-# What a call can fail with. Not pwrite64, by which HDF5 alone writes: where its last write fails, it crashes.
+# What a call can fail with.
 FAULTS = {
     "write": ["ENOSPC", "EIO", "EINTR"],
     "writev": ["ENOSPC"],
+    "pwrite64": ["ENOSPC"],
     "fsync": ["EIO"],
     "rename": ["EACCES"],
     "openat": ["EACCES", "EMFILE", "EINTR"],
@@ -104,6 +105,9 @@ def occurrences(log, touched):
         if (touches or (call == "mmap" and "MAP_ANONYMOUS" in rest)) and loaded:
             if counts[thread, call] > loaded.get(call, 0):
                 found.setdefault(call, set()).add(counts[thread, call])
+    # HDF5 alone uses pwrite64. Its last write is the head of the file again: where it fails, netCDF 4.9.0 (NC4_close)
+    # asks for the names of the objects of the file that is closed already, and HDF5 1.10 crashes.
+    found["pwrite64"] = found.get("pwrite64", set()) - {max(found.get("pwrite64", {0}))}
     return {call: sorted(numbers) for call, numbers in found.items()}
 
 

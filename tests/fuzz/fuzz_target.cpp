@@ -17,6 +17,9 @@ namespace {
 constexpr std::size_t kLongestLine = 1000;
 constexpr std::size_t kDictionaryWords = 1000;
 
+/// What is being read; messages may quote it.
+const std::string* input = nullptr;
+
 std::vector<FuzzTarget>& targets() {
   static std::vector<FuzzTarget> all;
   return all;
@@ -69,7 +72,8 @@ const FuzzTarget& fuzzTarget(const std::string& name) {
 
 void checkFuzzMessage(const std::string& message) {
   for (const char* foreign : {"json.exception", "std::", "yaml-cpp"}) {
-    if (message.find(foreign) != std::string::npos)
+    const bool is_quoted = input != nullptr && input->find(foreign) != std::string::npos;
+    if (!is_quoted && message.find(foreign) != std::string::npos)
       throw std::logic_error("a message in the words of a library: " + message);
   }
   std::istringstream lines(message);
@@ -84,6 +88,7 @@ void checkFuzzMessage(const std::string& message) {
 void runFuzzInput(const FuzzTarget& target, const std::string& bytes) {
   const std::filesystem::path file = workingFolder(target) / target.file;
   writeFile(file, bytes);
+  input = &bytes;
   try {
     target.read(file, bytes);
   } catch (const Error& error) {

@@ -1,6 +1,7 @@
 // Replays what fuzzing has found, and reads valid and damaged files, through the functions that are fuzzed.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <random>
 
 #include "tests/fuzz/fuzz_target.h"
@@ -11,7 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kDamagedInputs = 60;  ///< per target
+/// Damaged inputs per target; EMSCAPE_DAMAGED_INPUTS says another number.
+int damagedInputs() {
+  const char* const number = std::getenv("EMSCAPE_DAMAGED_INPUTS");
+  return number == nullptr ? 60 : std::atoi(number);
+}
 
 class Fuzz : public testing::TestWithParam<std::string> {};
 
@@ -46,7 +51,7 @@ TEST_P(Fuzz, SeedsAndDamagedOnesAreReadOrRefusedWithAnError) {
     EXPECT_NO_THROW(runFuzzInput(target, seed)) << seed;
   }
   std::mt19937 random(1);
-  for (int n = 0; n < kDamagedInputs; ++n) {
+  for (int n = 0; n < damagedInputs(); ++n) {
     const std::string input = damaged(seeds[random() % seeds.size()], random);
     ASSERT_NO_THROW(runFuzzInput(target, input)) << testing::PrintToString(input);
   }

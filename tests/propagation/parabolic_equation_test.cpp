@@ -11,6 +11,7 @@
 #include "propagation/parabolic_equation/march_azimuths.h"
 #include "propagation/parabolic_equation/march_cells.h"
 #include "propagation/parabolic_equation/march_grid.h"
+#include "propagation/parabolic_equation/path_air.h"
 #include "propagation/parabolic_equation/refractivity.h"
 #include "propagation/parabolic_equation/sine_transform.h"
 #include "tests/support/errors.h"
@@ -375,6 +376,51 @@ TEST(RadialMarch, OfEqualProfilesAlongTheRangeIsThatOfOne) {
   EXPECT_GT(one.factorDb(0, 20), ending.factorDb(0, 20) + 3);  // the duct ends
 }
 
+// Rays that a break of slope turns out of the band would come back mirrored, and fill the shadow.
+TEST(RadialMarch, BehindARoughMountainIsNotLitByWhatLeavesTheBand) {
+  const auto shadowDb = [](double max_angle_deg) {
+    MarchNeeds needs;
+    needs.frequency_hz = 3e8;
+    needs.max_height_m = 1500;
+    needs.max_angle_rad = degToRad(max_angle_deg);
+    needs.post_spacing_m = 90;
+    RadialPath path = pathOf(30);
+    for (int i = 0; i < 160; ++i) {
+      const double x_m = 90.0 * i, flank = (x_m - 6000) / 1800;
+      path.ground_msl_m.push_back(std::exp(-flank * flank) * (600 + 50 * std::sin(x_m / 170)));
+    }
+    RadialMarch<double, 1> march(automaticGrid(needs).grid, {path});
+    double sum_db = 0;
+    int count = 0;
+    while (march.range_m() < 14e3) {
+      march.advance();
+      if (march.range_m() < 9e3) continue;
+      for (double z = 10; z < 150; z += 20, ++count)
+        sum_db += 10 * std::log10(march.meanSquaredFactor(0, z, z + 20));
+    }
+    return sum_db / count;
+  };
+  const double shadow_db = shadowDb(9);
+  EXPECT_LT(shadow_db, -62);  // -51 without absorption in every step
+  EXPECT_NEAR(shadow_db, shadowDb(14), 9);
+}
+
+TEST(DuctOverLand, IsLeftOutBetweenTheShores) {
+  const RefractivityAlongPath air(evaporationDuct(14, 339));
+  const std::vector<float> ground_msl_m{0, 0, 3, 5, 0, 0, 100, 100};
+  const RefractivityAlongPath over = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), 100);
+  EXPECT_FALSE(over.pointwise());
+  const auto strength = [&](double range_m) { return over.at(range_m).at(0) - over.at(range_m).at(14); };
+  for (const double range_m : {0.0, 100.0, 400.0, 500.0, 900.0}) EXPECT_NEAR(strength(range_m), 18.3, 0.1);
+  for (const double range_m : {200.0, 250.0, 300.0})
+    EXPECT_NEAR(strength(range_m), -14 * kStandardGradient_m, 0.1);
+  EXPECT_NEAR(over.at(250).at(50), air.at(250).at(50), 1e-9);
+  const std::vector<float> sea(8, 0.0F);
+  EXPECT_EQ(withoutDuctOverLand(air, sea.data(), sea.size(), 100), air);
+  EXPECT_FALSE(withoutDuctOverLand(air).traps());
+  EXPECT_EQ(withoutDuctOverLand(RefractivityAlongPath(surfaceDuct(40, 10))), surfaceDuct(40, 10));
+}
+
 TEST(RadialMarch, OfAPatternLeavesOutWhatItDoesNotRadiate) {
   RadialPath path = pathOf(20, linearRefractivity(0));
   path.source.pattern = [](double elevation_rad) { return elevation_rad > 0 ? 1.0 : 0.0; };
@@ -382,6 +428,37 @@ TEST(RadialMarch, OfAPatternLeavesOutWhatItDoesNotRadiate) {
   marchTo(march, 10e3);
   // no reflected ray: no lobes well above the source
   for (double z = 150; z < 350; z += 5) EXPECT_NEAR(march.factorDb(0, z), 0, 1.0) << z;
+}
+
+// The direct ray and the image's, each with the pattern at its own angle.
+TEST(RadialMarch, OfAPatternIsTwoRaysWeighedByTheirAngles) {
+  constexpr double kRange_m = 10e3, kSource_m = 40;
+  struct Beam {
+    double width_deg, tilt_deg;
+  };
+  for (const Beam beam : {Beam{1, 0}, Beam{2, 1}, Beam{2, -1}, Beam{5, 0.5}, Beam{20, 2}}) {
+    SCOPED_TRACE(beam.width_deg);
+    RadialPath path = pathOf(kSource_m, linearRefractivity(0));
+    path.source.pattern = [beam](double elevation_rad) {
+      const double off = (radToDeg(elevation_rad) - beam.tilt_deg) / beam.width_deg;
+      return std::exp(-2 * std::log(2.0) * off * off);
+    };
+    const MarchGrid grid = gridOf(3e9, 0.25, 2048, 200);
+    RadialMarch<double, 1> march(grid, {path});
+    marchTo(march, kRange_m);
+    double largest_db = -1e9;
+    for (double z = 2; z < 350; z += 3.25) largest_db = std::max(largest_db, march.factorDb(0, z));
+    for (double z = 2; z < 350; z += 3.25) {
+      const double direct_m = std::hypot(kRange_m, z - kSource_m),
+                   image_m = std::hypot(kRange_m, z + kSource_m);
+      const Cx direct = path.source.pattern(std::atan2(z - kSource_m, kRange_m));
+      const Cx image = path.source.pattern(-std::atan2(z + kSource_m, kRange_m)) * direct_m / image_m *
+                       std::polar(1.0, grid.wavenumber() * (image_m - direct_m));
+      const double expected_db = 20 * std::log10(std::abs(direct - image));
+      if (expected_db < largest_db - 30) continue;
+      EXPECT_NEAR(march.factorDb(0, z), expected_db, 0.1) << z;
+    }
+  }
 }
 
 TEST(RadialMarch, RefusesASurfaceOutsideTheMixedTransform) {

@@ -55,7 +55,7 @@ TEST_F(SessionTime, ThePlayingRangeAndWhatIsVisibleAreSetByVerbs) {
   perform(R"({"do":"timeline","pan_s":0.5})");
   EXPECT_EQ(session->report()["visible_to_s"], 3.5);
   perform(R"({"do":"timeline","zoom":0})");
-  EXPECT_THAT(error(), testing::HasSubstr("timeline: zoom: expected a number above 0"));
+  EXPECT_THAT(error(), testing::HasSubstr("timeline: zoom 0: expected a number above 0"));
   perform(R"({"do":"timeline"})");
   EXPECT_EQ(session->report()["visible_from_s"], 0);
 }

@@ -69,7 +69,9 @@ struct FieldChanged {
 
 /// Times (ms) of the stages of the last update; with cuda on the GPU.
 struct StageTimes {
-  double columns_ms = 0, excess_ms = 0, combine_ms = 0, product_ms = 0;
+  double columns_ms = 0;
+  double march_ms = 0;  ///< of models that march outwards
+  double excess_ms = 0, combine_ms = 0, product_ms = 0;
 };
 
 struct MemoryUse {

@@ -17,9 +17,11 @@ struct PathExcess : propagation::Explanation {
 /// By the functions that fill the field's voxels; except p528, which computes its curve instead of reading
 /// the field's table.
 /// @param emitter     with the model to use, at the begin of the profile
+/// @param beam        of the emitter
 /// @param terrain     null: none
 /// @throws Error (bad_input) if the model refuses an input
 PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                      const PathProfile& profile, const scenario::Terrain* terrain);
+                      const scenario::BeamPose& beam, const PathProfile& profile,
+                      const scenario::Terrain* terrain);
 
 }  // namespace emscape::emfield

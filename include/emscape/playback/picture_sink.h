@@ -20,6 +20,9 @@ class PictureSink {
   virtual void finish() = 0;
 };
 
+/// Checks the extension before anything is computed. @throws Error (usage) as makePictureSink()
+void checkPictureOutput(const std::filesystem::path& output);
+
 /// By the extension of `output`: .png (one picture), .mp4, or a folder (no extension) of NAME_0001.png, ....
 /// @throws Error (usage) for another extension, or a .png for several pictures
 std::unique_ptr<PictureSink> makePictureSink(const std::filesystem::path& output, const std::string& name,

@@ -108,7 +108,6 @@ struct P452Settings : ClearAirSettings {
   double transmitter_gain_dbi = 0, receiver_gain_dbi = 0;
 };
 
-/// Numbers that are 0 are chosen by the model.
 /// What parabolic_equation keeps of a cell of range and height.
 enum class PeCells {
   mean,  ///< the mean power
@@ -116,11 +115,20 @@ enum class PeCells {
 };
 const char* toString(PeCells cells);
 
+/// What radiates at the start of parabolic_equation's march.
+enum class PeRadiator {
+  isotropic,  ///< one march serves all patterns, which weigh each place by the direct ray
+  pattern     ///< the antenna's elevation cut: it weighs each ray by its own angle
+};
+const char* toString(PeRadiator radiator);
+
+/// Numbers that are 0 are chosen by the model.
 struct ParabolicEquationSettings {
   double max_angle_deg = 0;  ///< from the horizontal, up to which the equation is solved
   double top_m = 0;          ///< above the ground, up to which the equation is solved
   double range_step_m = 0;
   double azimuths = 0;  ///< around the emitter
+  PeRadiator source = PeRadiator::isotropic;
   RoughnessModel roughness = RoughnessModel::miller_brown;
   double floor_db = -80;  ///< of the propagation factor; the equation's field is not read below it
   PeCells cells = PeCells::mean;

@@ -31,6 +31,7 @@ TEST(Legend, NamesQuantitiesAndUnitsAsPeopleWriteThem) {
   EXPECT_EQ(quantityTitle("field_strength_dbuvm", "dBuV/m"), "Field strength");
   EXPECT_EQ(quantityTitle("snr_db", "dB"), "SNR");
   EXPECT_EQ(quantityTitle("sinr_db", "dB"), "SINR");
+  EXPECT_EQ(quantityTitle("sclnr_db", "dB"), "SCLNR");
   EXPECT_EQ(quantityTitle("emitter_count", ""), "Emitter count");
   EXPECT_EQ(quantityTitle("snr_db:search radar", "dB"), "SNR of search radar");
   EXPECT_EQ(unitText("dBW/m2"), "dBW/m²");

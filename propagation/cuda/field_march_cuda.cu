@@ -1,0 +1,113 @@
+#include "propagation/cuda/field_march_cuda.h"
+#include "propagation/parabolic_equation/excess.h"
+
+namespace emscape::propagation {
+namespace {
+
+using cuda::checkLaunch;
+
+constexpr int kThreads = 256;
+
+unsigned blocksFor(std::size_t count) {
+  constexpr std::size_t kMost = 4096;
+  const std::size_t blocks = (count + kThreads - 1) / kThreads;
+  return unsigned(blocks < kMost ? blocks : kMost);
+}
+
+/// Calls f(i) for i = 0 .. count - 1, in all threads of the grid.
+template <class Function>
+__device__ void each(std::size_t count, const Function& f) {
+  for (std::size_t i = blockIdx.x * std::size_t(blockDim.x) + threadIdx.x; i < count;
+       i += gridDim.x * std::size_t(blockDim.x))
+    f(i);
+}
+
+__device__ float power(float loss_db) {
+  return exp10f(-loss_db / 10);
+}
+
+/// Mean power of the polarisations, and finite losses.
+/// @param other_db  null: one polarisation
+__global__ void finishMember(float* losses_db, const float* other_db, std::size_t count) {
+  each(count, [&](std::size_t i) {
+    float loss_db = losses_db[i];
+    if (other_db != nullptr) loss_db = -10 * log10f((power(loss_db) + power(other_db[i])) / 2);
+    losses_db[i] = loss_db > kPeNoField_db ? kPeNoField_db : loss_db;
+  });
+}
+
+/// The loss of `place` in ascending order.
+__device__ float ofPlace_db(const float* losses_db, std::size_t pitch, int members, int place) {
+  for (int m = 0; m < members; ++m) {
+    const float loss_db = losses_db[m * pitch];
+    int before = 0, equal = 0;
+    for (int n = 0; n < members; ++n) {
+      before += losses_db[n * pitch] < loss_db ? 1 : 0;
+      equal += losses_db[n * pitch] == loss_db ? 1 : 0;
+    }
+    if (before <= place && place < before + equal) return loss_db;
+  }
+  return NAN;
+}
+
+/// @param losses_db  of the members, `count` each
+/// @param place      of the quantile; -1: the mean power
+__global__ void ofMembers(const float* losses_db, std::size_t count, int members, int place,
+                          float* ensemble_db) {
+  each(count, [&](std::size_t i) {
+    if (place >= 0) {
+      ensemble_db[i] = ofPlace_db(losses_db + i, count, members, place);
+      return;
+    }
+    double sum = 0;
+    for (int m = 0; m < members; ++m) sum += double(power(losses_db[m * count + i]));
+    ensemble_db[i] = float(-10 * log10(sum / members));
+  });
+}
+
+/// NaN in cells that are not known.
+__global__ void forgetUnknown(float* losses_db, const int* known_ranges, int ranges, int heights,
+                              std::size_t count) {
+  each(count, [&](std::size_t i) {
+    const std::size_t of_range = i / std::size_t(heights);
+    if (int(of_range % std::size_t(ranges)) >= known_ranges[of_range / std::size_t(ranges)])
+      losses_db[i] = NAN;
+  });
+}
+
+}  // namespace
+
+const float* FieldMarchCuda::start(FieldMarch& field, unsigned* warnings, cudaStream_t stream) {
+  const std::size_t count = field.cellCount(), members = field.members.size();
+  const bool has_two = field.surfaces.size() > 1;
+  const std::size_t needed = (members + (has_two || members > 1 ? 1 : 0)) * count;
+  float* const last_db = losses_db_.atLeast(needed) + members * count;
+  for (std::size_t m = 0; m < members; ++m) {
+    float* const member_db = losses_db_.data() + m * count;
+    march_.start(field.set(field.members[m], field.surfaces.front()), member_db, stream);
+    if (has_two) march_.start(field.set(field.members[m], field.surfaces.back()), last_db, stream);
+    finishMember<<<blocksFor(count), kThreads, 0, stream>>>(member_db, has_two ? last_db : nullptr, count);
+    checkLaunch("finishMember");
+  }
+  march_.addWarnings(warnings);
+  float* const result_db = members > 1 ? last_db : losses_db_.data();
+  if (members > 1) {
+    const int place = field.quantile ? placeOfQuantile(*field.quantile, int(members)) : -1;
+    ofMembers<<<blocksFor(count), kThreads, 0, stream>>>(losses_db_.data(), count, int(members), place,
+                                                         result_db);
+    checkLaunch("ofMembers");
+  }
+  if (!field.known_ranges.empty()) {
+    known_ranges_.send(field.known_ranges, stream);
+    forgetUnknown<<<blocksFor(count), kThreads, 0, stream>>>(
+        result_db, known_ranges_.data(), field.march.cells.ranges, field.march.cells.heights, count);
+    checkLaunch("forgetUnknown");
+  }
+  return result_db;
+}
+
+std::size_t FieldMarchCuda::bytes() const {
+  return march_.bytes() + losses_db_.size() * sizeof(float) + known_ranges_.size() * sizeof(int);
+}
+
+}  // namespace emscape::propagation

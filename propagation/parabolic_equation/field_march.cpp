@@ -1,0 +1,87 @@
+#include "propagation/parabolic_equation/field_march.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "propagation/parabolic_equation/excess.h"
+
+namespace emscape::propagation {
+namespace {
+
+/// The mean of two fields' powers, in dB.
+float meanPower_db(float a_db, float b_db) {
+  return -10 * std::log10((std::pow(10.0f, -a_db / 10) + std::pow(10.0f, -b_db / 10)) / 2);
+}
+
+/// Losses of a member, of the mean power of the polarisations.
+/// @return pieces of ground taken as steps
+int marchMember(FieldMarch& field, const std::vector<RefractivityAlongPath>& member, float* cells_db) {
+  int staircases = marchAzimuths(field.set(member, field.surfaces.front()), cells_db).staircases;
+  const std::size_t count = field.cellCount();
+  if (field.surfaces.size() > 1) {
+    std::vector<float> other_db(count);
+    staircases = marchAzimuths(field.set(member, field.surfaces.back()), other_db.data()).staircases;
+    for (std::size_t i = 0; i < count; ++i) cells_db[i] = meanPower_db(cells_db[i], other_db[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (cells_db[i] > kPeNoField_db) cells_db[i] = kPeNoField_db;
+  }
+  return staircases;
+}
+
+/// @return pieces of ground taken as steps
+int marchEnsemble(FieldMarch& field, float* excess_db) {
+  int staircases = 0;
+  std::vector<std::vector<float>> members;
+  for (const auto& member : field.members) {
+    members.emplace_back(field.cellCount());
+    staircases = marchMember(field, member, members.back().data());
+  }
+  std::vector<float> losses_db(members.size());
+  for (std::size_t i = 0; i < field.cellCount(); ++i) {
+    for (std::size_t m = 0; m < members.size(); ++m) losses_db[m] = members[m][i];
+    const float first_db = losses_db.front();  // where it is NaN, all are: they have their ground in common
+    excess_db[i] = std::isnan(first_db) ? NAN : ofMembers_db(losses_db, field.quantile);
+  }
+  return staircases;
+}
+
+}  // namespace
+
+unsigned marchField(FieldMarch& field, float* excess_db) {
+  const int staircases = field.members.size() > 1 ? marchEnsemble(field, excess_db)
+                                                  : marchMember(field, field.members.front(), excess_db);
+  const RadialCells& cells = field.march.cells;
+  for (std::size_t a = 0; a < field.known_ranges.size(); ++a) {
+    float* const azimuth = excess_db + a * std::size_t(cells.ranges) * std::size_t(cells.heights);
+    std::fill(azimuth + std::size_t(field.known_ranges[a]) * std::size_t(cells.heights),
+              azimuth + std::size_t(cells.ranges) * std::size_t(cells.heights), NAN);
+  }
+  return staircaseWarning(staircases);
+}
+
+float ofMembers_db(std::vector<float>& losses_db, const std::optional<double>& quantile) {
+  if (losses_db.size() == 1) return losses_db.front();
+  if (quantile) {
+    const int at = placeOfQuantile(*quantile, int(losses_db.size()));
+    std::nth_element(losses_db.begin(), losses_db.begin() + at, losses_db.end());
+    return losses_db[std::size_t(at)];
+  }
+  double power = 0;
+  for (const float loss_db : losses_db) power += std::pow(10.0, double(-loss_db) / 10);
+  return static_cast<float>(-10 * std::log10(power / double(losses_db.size())));
+}
+
+int placeOfQuantile(double quantile, int members) {
+  return int(std::lround((1 - quantile) * (members - 1)));
+}
+
+bool isForGpu(const FieldMarch& field) {
+  constexpr int kFewAzimuths = 16;  // each is one block of threads
+  const MarchGrid& grid = field.march.grid;
+  return field.march.azimuths >= kFewAzimuths && grid.intervals >= kMinBlockIntervals &&
+         grid.intervals <= kMaxBlockIntervals &&
+         (grid.form == PeForm::wide || field.march.ground_msl_m.empty());
+}
+
+}  // namespace emscape::propagation

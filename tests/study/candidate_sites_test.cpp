@@ -1,0 +1,89 @@
+// Which files a study's points and polygons are read from.
+#include "study/sweep/candidate_sites.h"
+
+#include <arpa/inet.h>
+#include <cpl_conv.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "tests/support/errors.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::study {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A server on this machine that answers nobody and knows whether somebody connected.
+class Listener {
+ public:
+  Listener() {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof address;
+    auto* const place = reinterpret_cast<sockaddr*>(&address);
+    if (bind(socket_, place, size) != 0 || listen(socket_, 4) != 0 || getsockname(socket_, place, &size) != 0)
+      throw std::runtime_error("no socket can be opened");
+    url_ = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/";
+  }
+  ~Listener() { close(socket_); }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  const std::string& url() const { return url_; }
+  bool wasReached() const {
+    const int connection = accept4(socket_, nullptr, nullptr, 0);
+    if (connection >= 0) close(connection);
+    return connection >= 0;
+  }
+
+ private:
+  int socket_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
+  std::string url_;
+};
+
+TEST(CandidateSites, AreNotReadFromTheNetwork) {
+  const test::TemporaryFolder folder;
+  const Listener listener;
+  CPLSetThreadLocalConfigOption("GDAL_HTTP_TIMEOUT", "1");  // where this fails, it shall not wait for ever
+  const std::string gml = folder.write("a.gml", R"(<?xml version="1.0" encoding="utf-8"?>
+<wfs:FeatureCollection xmlns:wfs="http://www.opengis.net/wfs" xmlns:gml="http://www.opengis.net/gml"
+xmlns:a="http://a/" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:schemaLocation="http://a/ )" +
+                                                    listener.url() +
+                                                    R"(wfs?SERVICE=WFS&amp;VERSION=1.0.0&amp;)"
+                                                    R"(REQUEST=DescribeFeatureType&amp;TYPENAME=a:p">
+<gml:featureMember><a:p fid="1"><a:name>hill</a:name><a:g><gml:Point srsName="EPSG:4326">
+<gml:coordinates>5,52</gml:coordinates></gml:Point></a:g></a:p></gml:featureMember>
+</wfs:FeatureCollection>)");
+  const std::string geojson = folder.write(
+      "a.geojson", R"({"type": "FeatureCollection", "crs": {"type": "link", "properties": {"href": ")" +
+                       listener.url() + R"(crs.wkt", "type": "ogcwkt"}}, "features": [{"type": "Feature",
+"properties": {"name": "hill"}, "geometry": {"type": "Point", "coordinates": [5, 52]}}]})");
+  for (const std::string& file : {gml, geojson}) {
+    const std::vector<CandidateSite> sites = readCandidates(file);
+    ASSERT_EQ(sites.size(), 1u) << file;
+    EXPECT_EQ(sites[0].name, "hill");
+    EXPECT_FALSE(listener.wasReached()) << file;
+  }
+  for (const std::string& name : {"/vsicurl/" + listener.url() + "a.geojson", listener.url() + "a.geojson"}) {
+    EXPECT_THAT(test::errorOf([&] { readCandidates(name); }), HasSubstr("no such file"));
+    EXPECT_FALSE(listener.wasReached()) << name;
+  }
+}
+
+TEST(CandidateSites, AreReadFromFormatsThatNameNoOtherFile) {
+  const test::TemporaryFolder folder;
+  folder.write("other.csv", "name,X,Y\nhill,5,52\n");
+  const std::string vrt =
+      folder.write("a.vrt", "<OGRVRTDataSource><OGRVRTLayer name=\"other\"><SrcDataSource>" +
+                                folder / "other.csv" + "</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>");
+  EXPECT_THAT(test::errorOf([&] { readCandidates(vrt); }),
+              HasSubstr("not a file of points or polygons that can be read"));
+  EXPECT_THAT(test::errorOf([&] { readCandidates(folder.path()); }), HasSubstr("no such file"));
+}
+
+}  // namespace
+}  // namespace emscape::study
