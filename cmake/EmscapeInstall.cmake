@@ -1,11 +1,22 @@
-# Installs the libraries, their public headers and what find_package(emscape) reads.
+# Installs the programs with their data, manual pages and documentation (component program), and the libraries with their public
+# headers and what find_package(emscape) reads (component development).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
+set(share "${PROJECT_BINARY_DIR}/share")
+install(DIRECTORY scenarios DESTINATION "${CMAKE_INSTALL_DATADIR}/emscape" COMPONENT program PATTERN "*.py" EXCLUDE)
+install(DIRECTORY "${share}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT program)
+install(FILES "${share}/completion/emscape" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
+install(FILES "${share}/completion/_emscape" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions"  # where Debian's zsh looks
+  COMPONENT program)
+install(FILES README.md CHANGELOG.md LICENSE "${share}/emscape.cdx.json" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.gif" PATTERN notebooks EXCLUDE PATTERN notes EXCLUDE)
+
 set(config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/emscape")
 
-install(DIRECTORY include/emscape DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}")
-install(EXPORT emscape NAMESPACE emscape:: FILE emscapeTargets.cmake DESTINATION "${config_dir}")
+install(DIRECTORY include/emscape DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}" COMPONENT development)
+install(EXPORT emscape NAMESPACE emscape:: FILE emscapeTargets.cmake DESTINATION "${config_dir}" COMPONENT development)
 
 configure_package_config_file(cmake/emscapeConfig.cmake.in "${PROJECT_BINARY_DIR}/emscapeConfig.cmake"
   INSTALL_DESTINATION "${config_dir}")
@@ -14,4 +25,4 @@ install(FILES
     "${PROJECT_BINARY_DIR}/emscapeConfig.cmake"
     "${PROJECT_BINARY_DIR}/emscapeConfigVersion.cmake"
     cmake/EmscapeDependencies.cmake
-  DESTINATION "${config_dir}")
+  DESTINATION "${config_dir}" COMPONENT development)

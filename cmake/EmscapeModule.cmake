@@ -11,7 +11,7 @@ function(emscape_module name)
                                                     "$<INSTALL_INTERFACE:include>")
   target_link_libraries(emscape_${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
   emscape_warnings(emscape_${name})
-  install(TARGETS emscape_${name} EXPORT emscape)
+  install(TARGETS emscape_${name} EXPORT emscape COMPONENT development)
 endfunction()
 
 # Warnings, as errors if asked for, on a target of our own.

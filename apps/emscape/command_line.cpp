@@ -7,10 +7,9 @@
 #include <new>
 
 #include "apps/emscape/command.h"
+#include "apps/emscape/components.h"
 #include "apps/emscape/console.h"
 #include "apps/emscape/interrupt.h"
-#include "apps/emscape/version.h"
-#include "emscape/base/device.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 
@@ -36,6 +35,16 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
       ->capture_default_str();
   app.add_flag("--json", global.json, "The result, machine-readable, alone on standard output");
   app.add_flag("--quiet,-q", global.quiet, "Neither progress nor messages, only warnings and errors");
+}
+
+/// After the global options: it follows --json.
+void addLicences(CLI::App& app, const GlobalOptions& global) {
+  const auto print_licences = [&global] {
+    throw CLI::CallForVersion(global.json ? billOfMaterials().dump(2) : licencesText(), 0);
+  };
+  app.add_flag_callback("--licences", print_licences,
+                        "Print the licences of Emscape and of all that is linked, and exit; with --json as a "
+                        "CycloneDX bill of materials");
 }
 
 }  // namespace
@@ -101,18 +110,6 @@ int parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
-/// The program's version and devices.
-std::string versionText() {
-  std::string text = std::string("emscape ") + kVersion;
-  const std::string cuda = cudaOfBuild();
-  if (cuda.empty()) return text + "\nGPU: this build has no CUDA";
-  const Device device = findDevice();
-  text += "\nGPU: " + (device.usable ? device.name : "none, " + device.why_not);
-  if (device.usable)
-    text += fmt::format(", {} MiB, {} free", device.total_bytes >> 20, device.free_bytes >> 20);
-  return text + fmt::format(" ({})", cuda);
-}
-
 /// The parser with all subcommands, and what it fills.
 struct CommandLine {
   CLI::App app{
@@ -124,11 +121,13 @@ struct CommandLine {
 
   CommandLine() {
     app.footer(kFooter);
-    app.set_version_flag("--version", std::function<std::string()>(versionText));
+    app.set_version_flag("--version", std::function<std::string()>(versionText),
+                         "Print version, compiler, instruction sets and GPU, and exit");
     app.require_subcommand(1);
     app.option_defaults()->always_capture_default();
 
     addGlobalOptions(app, global);
+    addLicences(app, global);
     addValidate(app, global, action);
     addInfo(app, global, action);
     addSimulate(app, global, action);
@@ -159,6 +158,11 @@ int runCommandLine(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as an error of the write
   catchInterrupts();
   return run(line.action);
+}
+
+std::shared_ptr<const CLI::App> commandLineParser() {
+  const auto line = std::make_shared<const CommandLine>();
+  return {line, &line->app};
 }
 
 CommandResult commandResult(const std::vector<std::string>& arguments, const ProgressSink& progress) {

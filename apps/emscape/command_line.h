@@ -1,10 +1,15 @@
 /// The command line as functions: for the program, and for the Python package.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "emscape/base/progress.h"
+
+namespace CLI {
+class App;
+}
 
 namespace emscape::app {
 
@@ -13,6 +18,9 @@ namespace emscape::app {
 /// @param argv  the program's name and its arguments, ended by a null pointer
 /// @return the exit status
 int runCommandLine(int argc, char** argv);
+
+/// The parser of the command line, to be described.
+std::shared_ptr<const CLI::App> commandLineParser();
 
 /// Result of a subcommand.
 struct CommandResult {

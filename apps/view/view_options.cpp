@@ -6,6 +6,7 @@
 #include "apps/emscape/command.h"
 #include "apps/emscape/value_range.h"
 #include "apps/view/action.h"
+#include "apps/view/view_parser.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -123,35 +124,48 @@ void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
   take("--set", [&] { view.edits.insert(view.edits.end(), typed.edits.begin(), typed.edits.end()); });
 }
 
-}  // namespace
-
-std::optional<ViewOptions> parseOptions(int argc, char** argv) {
+/// The parser, and what it fills.
+struct CommandLine {
+  CLI::App app{"Shows a scenario or volumes in a window.", "emscape view"};
   ViewOptions options;
   Typed typed;
-  CLI::App app("Shows a scenario or volumes in a window.", "emscape view");
-  app.footer(kFooter);
-  app.set_version_flag("--version", std::string("emscape-view ") + EMSCAPE_VERSION);
   bool prints_manual = false;
-  app.add_flag("--manual-tables", prints_manual, "Prints the tables of docs/viewer.md")->group("");
-  app.option_defaults()->always_capture_default();
-  addOptions(app, options, typed);
+
+  CommandLine() {
+    app.footer(kFooter);
+    app.set_version_flag("--version", std::string("emscape-view ") + EMSCAPE_VERSION);
+    app.add_flag("--manual-tables", prints_manual, "Prints the tables of docs/viewer.md")->group("");
+    app.option_defaults()->always_capture_default();
+    addOptions(app, options, typed);
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<const CLI::App> viewParser() {
+  const auto line = std::make_shared<const CommandLine>();
+  return {line, &line->app};
+}
+
+std::optional<ViewOptions> parseOptions(int argc, char** argv) {
+  CommandLine line;
   try {
-    app.parse(argc, argv);
+    line.app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    app.exit(help);
+    line.app.exit(help);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     throw Error(ErrorCode::usage, std::string(error.what()) + "\nTry 'emscape view --help'.");
   }
-  if (prints_manual) {
+  if (line.prints_manual) {
     std::cout << manualTables();
     return std::nullopt;
   }
-  if (options.input.empty()) refuseOptionsOfInput(app);
-  readView(app, typed, options);
-  if (typed.rays != "auto") options.controller.pattern = render::parsePattern(typed.rays);
-  options.controller.budget_ms = typed.budget_ms;
-  return options;
+  if (line.options.input.empty()) refuseOptionsOfInput(line.app);
+  readView(line.app, line.typed, line.options);
+  if (line.typed.rays != "auto") line.options.controller.pattern = render::parsePattern(line.typed.rays);
+  line.options.controller.budget_ms = line.typed.budget_ms;
+  return line.options;
 }
 
 }  // namespace emscape::view

@@ -2,10 +2,9 @@
 
 #include <cstring>
 
+#include "base/simd_targets.h"
 #include "propagation/parabolic_equation/march_block.h"
 
-// What has neither AVX2 nor AVX-512 takes the plain form.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "propagation/parabolic_equation/march_lanes.cpp"
 #include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register

@@ -1,7 +1,6 @@
 #include "render/cpu/packets.h"
 
-// What has neither AVX2 nor AVX-512 takes the scalar form.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include "base/simd_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu/packets.cpp"
 #include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register

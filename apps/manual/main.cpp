@@ -1,0 +1,70 @@
+/// emscape_manual FOLDER: writes the manual pages and the shell completion of the programs, from the parsers
+/// that they use.
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+
+#include "apps/emscape/command_line.h"
+#include "apps/emscape/version.h"
+#include "apps/manual/completion.h"
+#include "apps/manual/manual_page.h"
+#ifdef EMSCAPE_WITH_VIEW
+#include "apps/view/view_parser.h"
+#endif
+
+namespace emscape::manual {
+namespace {
+
+namespace fs = std::filesystem;
+
+void write(const fs::path& file, const std::string& text) {
+  fs::create_directories(file.parent_path());
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+}
+
+/// The command line of emscape; `emscape view` has the options of the program that it starts.
+CommandDescription describeProgram() {
+  CommandDescription program = describe(*app::commandLineParser());
+  const auto view = std::find_if(program.subcommands.begin(), program.subcommands.end(),
+                                 [](const CommandDescription& command) { return command.name == "view"; });
+  if (view == program.subcommands.end()) throw std::logic_error("emscape has no subcommand view");
+#ifdef EMSCAPE_WITH_VIEW
+  const std::string summary = view->summary;
+  *view = describe(*view::viewParser());
+  view->name = "view";
+  view->summary = summary;
+#else
+  program.subcommands.erase(view);
+#endif
+  return program;
+}
+
+void writeAll(const fs::path& folder) {
+  const CommandDescription program = describeProgram();
+  for (const ManualPage& page : manualPages(program, app::kVersion))
+    write(folder / "man" / page.file, page.text);
+  write(folder / "completion" / program.name, bashCompletion(program));
+  write(folder / "completion" / ("_" + program.name), zshCompletion(program));
+}
+
+}  // namespace
+}  // namespace emscape::manual
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: emscape_manual FOLDER\n");
+    return 2;
+  }
+  try {
+    emscape::manual::writeAll(argv[1]);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "emscape_manual: error: %s\n", error.what());
+    return 1;
+  }
+}

@@ -1,0 +1,14 @@
+/// The parser of emscape-view's command line, to be described.
+#pragma once
+
+#include <memory>
+
+namespace CLI {
+class App;
+}
+
+namespace emscape::view {
+
+std::shared_ptr<const CLI::App> viewParser();
+
+}  // namespace emscape::view
