@@ -74,7 +74,7 @@ TEST(Study, AResumedStudyComputesWhatIsMissing) {
   compute({"study", file, "-o", folder / "out"});
   const ProgramResult again = run({"study", file, "-o", folder / "out"});
   EXPECT_EQ(again.status, 2);
-  EXPECT_THAT(again.err, HasSubstr("holds 8 of 8 parts of this study; --resume"));
+  EXPECT_THAT(again.err, HasSubstr("holds 8 of 8 parts of this study; --merge writes"));
   const auto kept = std::filesystem::last_write_time(folder / "out/parts/part_00001.csv");
   std::filesystem::remove(folder / "out/parts/part_00004.json");
   std::filesystem::remove(folder / "out/parts/part_00007.csv");
