@@ -16,6 +16,7 @@ using propagation::RadialInputs;
 constexpr int kArcs = 7200;
 constexpr double kArc_rad = 2 * kPi / kArcs;
 
+/// The farthest column of each arc; of one that leans its middle and its ends.
 void setArcs(const Station& station, const GridColumns& columns, RadialInputs& radials) {
   constexpr double kNoAzimuth_m = 1;
   std::vector<float>& arcs_m = radials.farthest_of_arcs_m;
@@ -30,11 +31,10 @@ void setArcs(const Station& station, const GridColumns& columns, RadialInputs& r
   };
   for (std::size_t c = 0; c < columns.count(); ++c) {
     const GridColumn column = view[c];
-    if (columns.tilted) {
-      for (const float t_m : columns.t_m) add(column, static_cast<double>(t_m));
-    } else {
-      add(column, columns.middle_m());
-    }
+    add(column, columns.middle_m());
+    if (!columns.tilted) continue;
+    for (const float end_m : {columns.t_m.front(), columns.t_m.back()})
+      add(column, static_cast<double>(end_m));
   }
 }
 

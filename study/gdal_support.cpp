@@ -26,8 +26,12 @@ GDALDriver* driverOf(const char* name) {
 Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file) {
   static const char* const kDrivers[] = {"GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf", "KML", "LIBKML",
                                          "GML",  "CSV",     nullptr};
-  if (!std::filesystem::is_regular_file(file))
-    throw Error(ErrorCode::bad_input, {file, 0, 0}, "no such file");
+  std::error_code failure;
+  const std::filesystem::file_status status = std::filesystem::status(file, failure);
+  if (!std::filesystem::is_regular_file(status)) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0},
+                std::filesystem::exists(status) ? "not a regular file" : "no such file");
+  }
   GDALAllRegister();
   Dataset dataset(
       GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, nullptr, nullptr));

@@ -82,7 +82,7 @@ TEST(CandidateSites, AreReadFromFormatsThatNameNoOtherFile) {
                                 folder / "other.csv" + "</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>");
   EXPECT_THAT(test::errorOf([&] { readCandidates(vrt); }),
               HasSubstr("not a file of points or polygons that can be read"));
-  EXPECT_THAT(test::errorOf([&] { readCandidates(folder.path()); }), HasSubstr("no such file"));
+  EXPECT_THAT(test::errorOf([&] { readCandidates(folder.path()); }), HasSubstr("not a regular file"));
 }
 
 }  // namespace
