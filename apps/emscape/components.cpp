@@ -18,11 +18,15 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kOwnLicence = "Apache-2.0";
 
-/// Highway's names of the instruction sets in a mask, the widest vectors first.
+/// Names of Highway's instruction sets in a mask, the widest vectors first.
 std::string instructionSets(std::int64_t mask) {
+  const auto nameOf = [](std::int64_t bit) -> std::string {
+    if (bit == HWY_AVX3) return "AVX-512";
+    return bit == HWY_SCALAR || bit == HWY_EMU128 ? "plain" : hwy::TargetName(bit);
+  };
   std::string names;
   for (std::int64_t bit = 1; bit > 0 && bit <= HWY_SCALAR; bit <<= 1) {
-    if ((mask & bit) != 0) names += (names.empty() ? "" : ", ") + std::string(hwy::TargetName(bit));
+    if ((mask & bit) != 0) names += (names.empty() ? "" : ", ") + nameOf(bit);
   }
   return names;
 }
