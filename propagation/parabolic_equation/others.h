@@ -48,8 +48,11 @@ struct PeLoss {
 
 /// What the other models ask of the ground on the way to a column.
 struct PeSight {
-  /// Largest angle (rad) above the horizontal at which the antenna sees the ground, at least 0; NaN over
-  /// missing terrain. Nearer than 500 m the slopes of its own hill would speak.
+  /// Nearer than that (m) the slopes of the antenna's own hill would speak.
+  static constexpr float kNearGround_m = 500;
+
+  /// Largest angle (rad) above the horizontal at which the antenna sees the ground from kNearGround_m on, at
+  /// least 0; NaN over missing terrain.
   float horizon_rad = 0;
   /// Largest angle (rad) from the antenna to the ground before the column, over the effective earth.
   float to_ground_rad = -HUGE_VALF;
@@ -82,7 +85,6 @@ struct PeOthers {
 
   /// @param memory  for the posts' numbers: one per post
   EMSCAPE_HD PeSight sightOf(const ExcessColumn& column, float* memory) const {
-    constexpr float kNearGround_m = 500;
     const float half_curvature = scatter.clear_air.median.half_curvature;
     const auto end_m = static_cast<float>(column.range_m);
     const TerrainProfile& profile = column.profile;
@@ -91,7 +93,7 @@ struct PeOthers {
     for (int i = 0; i < profile.count; ++i) {
       const auto range_m = static_cast<float>(profile.range_m[i]);
       const float ground_m = profile.height_msl_m[i], angle_rad = launchAngle(range_m, ground_m);
-      if (range_m >= kNearGround_m && angle_rad > sight.horizon_rad) sight.horizon_rad = angle_rad;
+      if (range_m >= PeSight::kNearGround_m && angle_rad > sight.horizon_rad) sight.horizon_rad = angle_rad;
       unknown += 0 * ground_m;
       if (i == 0 || i == profile.count - 1 || !(range_m > 0 && end_m > range_m)) continue;
       const float from_tx = (ground_m - tx_msl_m) / range_m - half_curvature * range_m;
