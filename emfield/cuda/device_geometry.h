@@ -51,7 +51,7 @@ class DeviceGeometry {
   void place(std::vector<Work>& works, cudaStream_t stream);
   void findShadows(const std::vector<Work>& works, cudaStream_t stream);
   void fillDiffractions(const std::vector<Work>& works, cudaStream_t stream);
-  void fillMarched(std::vector<Work>& works, cudaStream_t stream, StageClock& clock);
+  void fillEquations(std::vector<Work>& works, cudaStream_t stream, StageClock& clock);
   ScratchMemory scratch();
 
   const FieldSetup& setup_;

@@ -27,9 +27,8 @@ EMSCAPE_HD inline unsigned staircaseWarning(int staircases) {
 /// Interpolates in dB between azimuths, ranges and heights; other models speak outside the equation's limits.
 struct PeExcess {
   static constexpr bool kNeedsTerrain = true;
-  static constexpr bool kInParts = true;
+  static constexpr bool kInParts = false;
   static constexpr bool kHasMechanisms = true;
-  static constexpr bool kOverDiffraction = true;
 
   PeOthers others;
   /// Losses over free space (dB) of the cells, azimuth slowest, height fastest; NaN below the ground and
@@ -49,39 +48,35 @@ struct PeExcess {
   /// @param excess_db  one per voxel; NaN over missing terrain
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db,
                                  const MechanismStore& mechanisms = {}) const {
-    const PeSight sight = others.sightOf(column, scratch.even_ground_msl_m);
-    if (!sight.isKnown()) return setUnknown(column, excess_db);
+    static_assert(ExcessScratch::kPostNumbers == 4);  // `diffraction` has the first two
+    float* const numbers = scratch.post_numbers + 2 * scratch.posts;
+    const PeSight sight = others.sightOf(column, {numbers, numbers + scratch.posts});
+    if (!sight.isKnown()) {
+      for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
+      return kMissingTerrain;
+    }
     bool has_others = false;
-    const auto other_db = [&](int k) {
-      if (!has_others) others.fill(column, scratch, scratch.other_db);
-      has_others = true;
-      return scratch.other_db[k];
-    };
-    for (int k = 0; k < column.count; ++k) excess_db[k] = lossAt(column, sight, k, other_db, mechanisms);
-    return warnings;
-  }
-  EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
-                            float* excess_db) const {
-    const PeSight sight = others.sightOf(column, scratch.even_ground_msl_m);
-    if (!sight.isKnown()) return setUnknown(column, excess_db);
-    scratch.post_numbers[0] = sight.horizon_rad;
-    scratch.post_numbers[1] = sight.to_ground_rad;
-    scratch.post_numbers[2] = static_cast<float>(sight.horizon_count);
-    return 0;
-  }
-  /// @param part  its memory holds the losses of `diffraction`, over terrain
-  EMSCAPE_HD unsigned fill(const ExcessColumn& column, const ExcessScratch& scratch, const ColumnPart& part,
-                           float* excess_db, const MechanismStore& mechanisms = {}) const {
-    const PeSight sight{scratch.post_numbers[0], scratch.post_numbers[1], scratch.even_ground_msl_m,
-                        static_cast<int>(scratch.post_numbers[2])};
-    for (int k = part.begin; k < part.end; ++k) {
-      const auto other_db = [&](int) {
-        return others.over_terrain ? part.memory_db[k - part.begin]
-                                   : others.twoRays_db(column.range_m, column.height_msl_m[k]);
-      };
-      excess_db[k] = lossAt(column, sight, k, other_db, mechanisms);
+    for (int k = 0; k < column.count; ++k) {
+      const PeLoss loss = lossAt(column, sight, column.height_msl_m[k], [&] {
+        if (!has_others) others.fill(column, scratch, scratch.other_db);
+        has_others = true;
+        return scratch.other_db[k];
+      });
+      mechanisms.set(k, loss.mechanism(others.over_terrain));
+      excess_db[k] = loss.loss_db();
     }
     return warnings;
+  }
+
+  /// The parts of the loss at a height of a column.
+  /// @param other_db  gives that of the other model
+  template <class Other>
+  EMSCAPE_HD PeLoss lossAt(const ExcessColumn& column, const PeSight& sight, float height_msl_m,
+                           const Other& other_db) const {
+    PeLoss loss = equationAt(column, height_msl_m, sight.horizon_rad);
+    if (loss.equation_part < 1) loss.other_db = other_db();
+    others.addScatter(static_cast<float>(column.range_m), sight, height_msl_m, loss);
+    return loss;
   }
 
   /// The equation's part alone.
@@ -103,20 +98,6 @@ struct PeExcess {
   }
 
  private:
-  static EMSCAPE_HD unsigned setUnknown(const ExcessColumn& column, float* excess_db) {
-    for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
-    return kMissingTerrain;
-  }
-  template <class Other>
-  EMSCAPE_HD float lossAt(const ExcessColumn& column, const PeSight& sight, int k, const Other& other_db,
-                          const MechanismStore& mechanisms) const {
-    const float height_msl_m = column.height_msl_m[k];
-    PeLoss loss = equationAt(column, height_msl_m, sight.horizon_rad);
-    if (loss.equation_part < 1) loss.other_db = other_db(k);
-    others.addScatter(column, sight, height_msl_m, loss);
-    mechanisms.set(k, loss.mechanism(others.over_terrain));
-    return loss.loss_db();
-  }
   struct Neighbours {
     int first, second;
     float part;  ///< of the second

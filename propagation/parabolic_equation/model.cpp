@@ -93,8 +93,8 @@ void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& fie
   });
 }
 
-/// Ends the marches behind ground that the antenna sees at more than the equation's largest angle: over it the
-/// field comes at such angles, and other models speak (PeOthers::equationPart()).
+/// Ends the marches behind ground that the antenna sees at more than the equation's largest angle: over it
+/// the field comes at such angles, and other models speak (PeOthers::equationPart()).
 void endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMarch& field) {
   constexpr float kMargin = 1.05f;  // a column between two azimuths may see a little past both
   AzimuthMarch& march = field.march;
@@ -344,8 +344,9 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       std::max(2 * automatic.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz)));
   const char* const other_name = has_terrain ? "diffraction" : "two_ray";
   PeLoss loss;
-  std::vector<float> horizon_posts(static_cast<std::size_t>(profile.count));
-  const PeSight sight = others.sightOf(column, horizon_posts.data());
+  const auto posts = static_cast<std::size_t>(profile.count);
+  std::vector<float> ranges_m(posts), grounds_m(posts);
+  const PeSight sight = others.sightOf(column, {ranges_m.data(), grounds_m.data()});
   loss.equation_part = others.equationPart(static_cast<float>(column.range_m), end_msl_m,
                                            profile.height_msl_m[profile.count - 1], sight.horizon_rad);
   if (loss.equation_part < 1) loss.other_db = static_cast<float>(path.excess_db(OtherColumn{others}));
@@ -363,7 +364,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
     others.setEquation(ofMembers_db(losses_db, refractivity ? refractivity->quantile : std::nullopt),
                        static_cast<float>(column.range_m), end_msl_m, loss);
   }
-  others.addScatter(column, sight, end_msl_m, loss);
+  others.addScatter(static_cast<float>(column.range_m), sight, end_msl_m, loss);
   const bool over_land = has_terrain ? *highest > 0 : isLand(inputs.emitter.ground);
   path.addWarnings(airWarnings(air, over_land, std::max(double(end_msl_m), inputs.site.height_msl_m)));
   if (loss.equation_part > 0)
