@@ -51,6 +51,7 @@ __device__ void fillSegment(const EquationTask& task, const ExcessGrid& grid, in
                walk.add({static_cast<float>(task.ground.ranges_m[i]), height_msl_m});
              });
   const PeSight sight = walk.sight(column.ground_msl_m);
+  const auto beside = model.azimuthsAt(column.azimuth_rad);
   const propagation::AirColumn above(task.air, static_cast<float>(path.distance_m));
   for (int k = grid.firstLayer(segment); k < grid.firstLayer(segment + 1); ++k) {
     const std::size_t voxel = static_cast<std::size_t>(k) * grid.column_count + static_cast<std::size_t>(c);
@@ -59,7 +60,7 @@ __device__ void fillSegment(const EquationTask& task, const ExcessGrid& grid, in
       continue;
     }
     const auto height_msl_m = static_cast<float>(heightMsl_m(base, static_cast<double>(grid.t_m[k])));
-    const PeLoss loss = model.lossAt(column, sight, height_msl_m, [&] {
+    const PeLoss loss = model.lossAt(column, beside, sight, height_msl_m, [&] {
       return model.others.over_terrain ? task.to.out.excess.get(voxel)
                                        : model.others.twoRays_db(column.range_m, height_msl_m);
     });
