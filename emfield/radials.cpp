@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "emfield/foot_inverse.h"
 #include "emfield/read_posts.h"
 #include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 namespace {
@@ -16,26 +19,76 @@ using propagation::RadialInputs;
 constexpr int kArcs = 7200;
 constexpr double kArc_rad = 2 * kPi / kArcs;
 
-/// The farthest column of each arc; of one that leans its middle and its ends.
-void setArcs(const Station& station, const GridColumns& columns, RadialInputs& radials) {
-  constexpr double kNoAzimuth_m = 1;
-  std::vector<float>& arcs_m = radials.farthest_of_arcs_m;
-  arcs_m.assign(kArcs, 0);
-  const ColumnsView view = columns.view();
-  const auto add = [&](const GridColumn& column, double t_m) {
-    const FastInverse foot = footInverse(station, column, t_m);
-    if (foot.distance_m < kNoAzimuth_m) return;
-    const double arc = std::atan2(foot.sin_azimuth, foot.cos_azimuth) / kArc_rad + kArcs;
-    float& farthest_m = arcs_m[static_cast<std::size_t>(arc) % kArcs];
-    farthest_m = std::max(farthest_m, static_cast<float>(foot.distance_m));
-  };
-  for (std::size_t c = 0; c < columns.count(); ++c) {
-    const GridColumn column = view[c];
-    add(column, columns.middle_m());
-    if (!columns.tilted) continue;
-    for (const float end_m : {columns.t_m.front(), columns.t_m.back()})
-      add(column, static_cast<double>(end_m));
+/// The farthest places of each arc.
+class Arcs {
+ public:
+  explicit Arcs(const Station& station) : station_(station), farthest_m_(kArcs, 0) {}
+
+  void add(const GridColumn& column, double t_m) {
+    const Seen seen = see(column, t_m);
+    raise(seen.arc, seen.distance_m);
   }
+  /// All places of the straight line between two columns.
+  void addBetween(const GridColumn& first, const GridColumn& second, double t_m) {
+    const Seen begin = see(first, t_m), end = see(second, t_m);
+    const int gap = ((end.arc - begin.arc) % kArcs + kArcs) % kArcs;
+    const int from = gap <= kArcs / 2 ? begin.arc : end.arc, arcs = std::min(gap, kArcs - gap);
+    for (int i = 0; i <= arcs; ++i) raise((from + i) % kArcs, std::max(begin.distance_m, end.distance_m));
+  }
+  void add(const Arcs& other) {
+    for (int i = 0; i < kArcs; ++i) raise(i, other.farthest_m_[static_cast<std::size_t>(i)]);
+  }
+  std::vector<float> take() { return std::move(farthest_m_); }
+
+ private:
+  struct Seen {
+    int arc;
+    float distance_m;  ///< 0 at the station: no azimuth
+  };
+  Seen see(const GridColumn& column, double t_m) const {
+    constexpr double kNoAzimuth_m = 1;
+    const FastInverse foot = footInverse(station_, column, t_m);
+    const double arc = std::atan2(foot.sin_azimuth, foot.cos_azimuth) / kArc_rad + kArcs;
+    return {static_cast<int>(arc) % kArcs,
+            foot.distance_m < kNoAzimuth_m ? 0 : static_cast<float>(foot.distance_m)};
+  }
+  void raise(int arc, float distance_m) {
+    float& farthest_m = farthest_m_[static_cast<std::size_t>(arc)];
+    farthest_m = std::max(farthest_m, distance_m);
+  }
+
+  const Station& station_;
+  std::vector<float> farthest_m_;
+};
+
+/// Of a grid the farthest places are on its border; of one that leans, at the middles or the ends.
+void addGrid(const GridColumns& columns, Arcs& arcs) {
+  const Dims& dims = columns.dims;
+  std::vector<std::size_t> border;
+  const auto add = [&](int x, int y) { border.push_back(static_cast<std::size_t>(y) * dims.x + x); };
+  for (int x = 0; x < dims.x; ++x) add(x, 0);
+  for (int y = 1; y < dims.y; ++y) add(dims.x - 1, y);
+  for (int x = dims.x - 2; x >= 0; --x) add(x, dims.y - 1);
+  for (int y = dims.y - 2; y >= 0; --y) add(0, y);
+  std::vector<double> heights_m = {columns.middle_m()};
+  if (columns.tilted)
+    for (const float end_m : {columns.t_m.front(), columns.t_m.back()})
+      heights_m.push_back(static_cast<double>(end_m));
+  for (const double t_m : heights_m) {
+    for (std::size_t n = 0; n < border.size(); ++n)
+      arcs.addBetween(columns.of_grid[border[n]], columns.of_grid[border[n > 0 ? n - 1 : n]], t_m);
+  }
+}
+
+void addSurface(const Station& station, const GridColumns& columns, Arcs& arcs) {
+  const ColumnsView view = columns.view();
+  std::mutex of_arcs;
+  parallelFor(static_cast<int>(columns.count()), 1 << 15, [&](int begin, int end) {
+    Arcs part(station);
+    for (int c = begin; c < end; ++c) part.add(view[static_cast<std::size_t>(c)], columns.middle_m());
+    const std::lock_guard lock(of_arcs);
+    arcs.add(part);
+  });
 }
 
 /// Sets the sector that holds all columns: the circle without its widest empty arc, if that is more than
@@ -105,7 +158,13 @@ RadialInputs radialInputs(const Station& station, const GridColumns& columns,
                           const scenario::Terrain* terrain, const propagation::PathExtent& extent) {
   RadialInputs radials;
   radials.farthest_m = std::max(extent.farthest_m, 1.0);
-  setArcs(station, columns, radials);
+  Arcs arcs(station);
+  if (columns.of_grid.empty()) {
+    addSurface(station, columns, arcs);
+  } else {
+    addGrid(columns, arcs);
+  }
+  radials.farthest_of_arcs_m = arcs.take();
   setSector(radials);
   radials.spacing_m = spacingOf(columns);
   setHeights(columns, extent, radials);
@@ -117,11 +176,12 @@ RadialInputs radialInputs(const Station& station, const GridColumns& columns,
   if (std::isnan(radials.site_ground_msl_m)) {
     throw Error(ErrorCode::bad_input, "the ground below the emitter is missing");
   }
-  radials.ground = [station, terrain](double azimuth_rad, double step_m, int count, float* ground_msl_m) {
+  radials.ground = [station, terrain](double azimuth_rad, double length_m, double step_m, int count,
+                                      float* ground_msl_m) {
     std::vector<double> ranges_m(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) ranges_m[static_cast<std::size_t>(i)] = i * step_m;
     FastInverse path;
-    path.distance_m = ranges_m.back();
+    path.distance_m = length_m;
     path.sin_azimuth = std::sin(azimuth_rad);
     path.cos_azimuth = std::cos(azimuth_rad);
     readPostsCpu(station, groundPosts(terrain, ranges_m), path, count, ground_msl_m);
@@ -129,16 +189,21 @@ RadialInputs radialInputs(const Station& station, const GridColumns& columns,
   // The relief, from a few azimuths: summits between them may be higher by some metres.
   constexpr int kAzimuths = 128, kPosts = 512;
   double lowest_m = radials.site_ground_msl_m, highest_m = radials.site_ground_msl_m;
-  std::vector<float> ground_msl_m(kPosts);
-  for (int a = 0; a < kAzimuths; ++a) {
-    radials.ground(radials.first_azimuth_rad + a * radials.azimuth_span_rad / (kAzimuths - 1),
-                   radials.farthest_m / (kPosts - 1), kPosts, ground_msl_m.data());
-    for (const float height_m : ground_msl_m) {
-      if (std::isnan(height_m)) break;
-      lowest_m = std::min(lowest_m, static_cast<double>(height_m));
-      highest_m = std::max(highest_m, static_cast<double>(height_m));
+  std::mutex of_relief;
+  parallelFor(kAzimuths, 8, [&](int begin, int end) {
+    std::vector<float> ground_msl_m(kPosts);
+    for (int a = begin; a < end; ++a) {
+      radials.ground(radials.first_azimuth_rad + a * radials.azimuth_span_rad / (kAzimuths - 1),
+                     radials.farthest_m, radials.farthest_m / (kPosts - 1), kPosts, ground_msl_m.data());
+      const auto known_end = std::find_if(ground_msl_m.begin(), ground_msl_m.end(),
+                                          [](float height_m) { return std::isnan(height_m); });
+      if (known_end == ground_msl_m.begin()) continue;
+      const auto [low, high] = std::minmax_element(ground_msl_m.begin(), known_end);
+      const std::lock_guard lock(of_relief);
+      lowest_m = std::min(lowest_m, static_cast<double>(*low));
+      highest_m = std::max(highest_m, static_cast<double>(*high));
     }
-  }
+  });
   radials.lowest_ground_msl_m = lowest_m;
   radials.highest_ground_msl_m = highest_m;
   return radials;

@@ -26,9 +26,11 @@ struct RadialInputs {
   bool has_terrain = false;                                  ///< false: a smooth earth at mean sea level
   double site_ground_msl_m = 0;                              ///< at the emitter
   double lowest_ground_msl_m = 0, highest_ground_msl_m = 0;  ///< along the azimuths
-  /// Reads the ground (m above mean sea level) at 0, 1, ... count - 1 steps along an azimuth; NaN where it is
-  /// missing. For several threads at once. Not called without terrain.
-  std::function<void(double azimuth_rad, double step_m, int count, float* ground_msl_m)> ground;
+  /// Reads the ground (m above mean sea level) at 0, 1, ... count - 1 steps along an azimuth, on a path of at
+  /// least that length, whose ground is the same however much of it is read; NaN where it is missing. For
+  /// several threads at once. Not called without terrain.
+  std::function<void(double azimuth_rad, double length_m, double step_m, int count, float* ground_msl_m)>
+      ground;
 
   bool isAround() const { return azimuth_span_rad >= 2 * kPi; }
 };

@@ -5,6 +5,7 @@
 
 #include "emfield/column_geometry.h"
 #include "emscape/base/parallel.h"
+#include "propagation/parabolic_equation/field_march.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield::cuda {
@@ -17,6 +18,13 @@ bool isDiffraction(const propagation::ExcessModel& model) {
 }
 bool isEquation(const propagation::ExcessModel& model) {
   return std::holds_alternative<propagation::PeExcess>(model);
+}
+
+/// Heights and cells in range that are marched; 0: none.
+long long marchWork(const EmitterExcess& excess) {
+  if (excess.march == nullptr) return 0;
+  const propagation::AzimuthMarch& march = excess.march->march;
+  return march.rangesOfAll() * march.grid.intervals;
 }
 
 }  // namespace
@@ -164,6 +172,8 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   for (Work& work : works) {
     if (work.model && isEquation(work.model->model)) marched.push_back(&work);
   }
+  std::stable_sort(marched.begin(), marched.end(),
+                   [](const Work* a, const Work* b) { return marchWork(*a->model) > marchWork(*b->model); });
   placed_.record(stream);
   const auto marcherOf = [&](std::size_t n) -> Marcher& { return marchers_[n % marchers_.size()]; };
   for (std::size_t n = 0; n < std::min(marched.size(), marchers_.size()); ++n)

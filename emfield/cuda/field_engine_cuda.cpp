@@ -88,7 +88,8 @@ class CudaEngine : public FieldEngine {
   const FieldSetup& setup_;
   std::size_t voxels_;
   volume::VoxelPrecision precision_;
-  emscape::cuda::Stream stream_;
+  /// Marches of fields, on streams of their own, do not hold it up.
+  emscape::cuda::Stream stream_{emscape::cuda::Stream::Priority::high};
   cuda::StageClock clock_;
   cuda::DeviceGeometry geometry_;
   KeptPower<Buffer<float>> kept_power_;                       // without the last slot, which emitters share

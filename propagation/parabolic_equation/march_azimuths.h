@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 #include "propagation/parabolic_equation/march_cells.h"
@@ -28,6 +29,11 @@ struct AzimuthMarch {
     return air.size() == 1 ? air.front() : air[std::size_t(azimuth)];
   }
   int rangesOf(int azimuth) const { return ranges.empty() ? cells.ranges : ranges[std::size_t(azimuth)]; }
+  /// Cells in range of all azimuths: the march takes so long, times the heights of the grid.
+  long long rangesOfAll() const {
+    return ranges.empty() ? static_cast<long long>(azimuths) * cells.ranges
+                          : std::accumulate(ranges.begin(), ranges.end(), 0LL);
+  }
   /// Losses of all azimuths.
   std::size_t cellCount() const { return std::size_t(azimuths) * cells.ranges * cells.heights; }
 };

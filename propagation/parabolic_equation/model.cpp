@@ -10,6 +10,7 @@
 #include "emscape/base/parallel.h"
 #include "propagation/diffraction/model.h"
 #include "propagation/parabolic_equation/ducts.h"
+#include "propagation/parabolic_equation/march_lanes.h"
 #include "propagation/parabolic_equation/path_air.h"
 #include "propagation/parabolic_equation/plan.h"
 #include "propagation/parabolic_equation/refractivity_field.h"
@@ -70,22 +71,29 @@ bool isLand(const Ground& ground) {
 }
 
 /// Reads the ground along all azimuths; behind the first hole it is level, and cells that reach there are
-/// unknown.
+/// unknown. So it is behind an azimuth's end.
 void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& field) {
   if (!radials.has_terrain) return;
   AzimuthMarch& march = field.march;
   march.ground_steps = std::size_t(radials.farthest_m / plan.grid.range_step_m) + 2;
   march.ground_msl_m.resize(march.ground_steps * std::size_t(plan.azimuths));
   if (field.known_ranges.empty()) field.known_ranges.assign(std::size_t(plan.azimuths), plan.cells.ranges);
+  const double step_m = plan.grid.range_step_m, length_m = step_m * double(march.ground_steps - 1);
   parallelFor(plan.azimuths, 8, [&](int begin, int end) {
     for (int a = begin; a < end; ++a) {
       float* const first = march.ground_msl_m.data() + std::size_t(a) * march.ground_steps;
       float* const last = first + march.ground_steps;
-      radials.ground(plan.azimuth_rad(a), plan.grid.range_step_m, int(march.ground_steps), first);
+      int ranges = 0;  // lanes of a group are marched as far as the farthest
+      for (int l = a / kStepLanes * kStepLanes; l < plan.azimuths && l / kStepLanes == a / kStepLanes; ++l)
+        ranges = std::max(ranges, march.rangesOf(l));
+      const auto read =
+          std::min(march.ground_steps, std::size_t(ranges * plan.cells.range_step_m / step_m) + 2);
+      radials.ground(plan.azimuth_rad(a), length_m, step_m, int(read), first);
+      std::fill(first + read, last, first[read - 1]);
       first[0] = static_cast<float>(radials.site_ground_msl_m);
       float* const hole = std::find_if(first, last, [](float height_m) { return std::isnan(height_m); });
       if (hole == last) continue;
-      const double known_m = double(hole - first) * plan.grid.range_step_m;
+      const double known_m = double(hole - first) * step_m;
       int& known = field.known_ranges[std::size_t(a)];
       known = std::min(known, int(known_m / plan.cells.range_step_m));
       std::fill(hole, last, hole[-1]);

@@ -168,8 +168,8 @@ std::vector<double> differencesFromSingleMarches(const scenario::TerrainPtr& ter
     const int steps = static_cast<int>((foot.distance_m + half_m) / grid.range_step_m) + 1;
     std::vector<float> ground_msl_m(static_cast<std::size_t>(steps) + 1);
     if (terrain)
-      made.radials.ground(std::atan2(foot.sin_azimuth, foot.cos_azimuth), grid.range_step_m, steps + 1,
-                          ground_msl_m.data());
+      made.radials.ground(std::atan2(foot.sin_azimuth, foot.cos_azimuth), steps * grid.range_step_m,
+                          grid.range_step_m, steps + 1, ground_msl_m.data());
     path.ground_msl_m.assign(ground_msl_m.begin(), ground_msl_m.end());
     propagation::RadialMarch<double, 1> march(grid, {path});
     double sum = 0;
@@ -419,6 +419,26 @@ TEST(ParabolicField, BehindARidgeAboveTheLargestAngleDiffractionSpeaks) {
   EXPECT_GT(std::abs(testing::valueAt(*solve(scenario, terrain), 70, 4, 1) -
                      testing::valueAt(*diffraction, 70, 4, 1)),
             1);  // the equation
+}
+
+// Marches toward that ridge end behind it, others at the region's border.
+TEST(ParabolicField, IsNotMarchedBehindARidgeAboveTheLargestAngle) {
+  constexpr double kMetresPerDegree = 70e3;
+  const auto terrain =
+      std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, [](double east, double) {
+        return std::max(0.0, 450 - std::abs((east - 0.5) * kMetresPerDegree - 6000) * 0.18);
+      });
+  const auto scenario = around(3e8, 30, {24e3, 4e3, 500}, {80, 8, 10});
+  const Made made(*scenario, terrain.get());
+  const propagation::PeField field = peField(made.inputs, made.radials);
+  const propagation::AzimuthMarch& march = field.march.march;
+  const auto reached_m = [&](double azimuth_deg) {
+    const int a = static_cast<int>(std::lround(degToRad(azimuth_deg) / made.plan.azimuth_step_rad));
+    return march.rangesOf(a) * march.cells.range_step_m;
+  };
+  EXPECT_GT(reached_m(90), 6000 - 2500);  // where the slope is seen at 3 degrees
+  EXPECT_LT(reached_m(90), 6000 + 1000);
+  EXPECT_GT(reached_m(270), 11.9e3);
 }
 
 // In rugged country rays must stay in the band whatever the slopes below them, else the field in sight is
