@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "emfield/column_geometry.h"
 #include "emscape/base/parallel.h"
@@ -81,6 +82,10 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
     work.model =
         planExcess(scenario, emitter, request.state.beam, station, setup_.terrain.get(), setup_.columns);
     if (work.model->march != nullptr && !isForGpu(*work.model->march)) marchTables(emitter, *work.model);
+    inModel(emitter, [&] {
+      if (work.model->march != nullptr)
+        work.march_inputs = propagation::FieldMarchCuda::inputs(*work.model->march);
+    });
   }
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);
   work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
@@ -266,8 +271,8 @@ void DeviceGeometry::startMarch(Work& work, Marcher& marcher) {
   if (work.model->march == nullptr) return;
   placed_.holdBack(marcher.stream);
   marcher.read.holdBack(marcher.stream);
-  std::get<propagation::PeExcess>(work.model->model).tables =
-      marcher.march.start(*work.model->march, &work.task.counts->warnings, marcher.stream);
+  std::get<propagation::PeExcess>(work.model->model).tables = marcher.march.start(
+      *work.model->march, std::move(work.march_inputs), &work.task.counts->warnings, marcher.stream);
   marcher.marched.record(marcher.stream);
 }
 

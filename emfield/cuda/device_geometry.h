@@ -42,6 +42,7 @@ class DeviceGeometry {
     std::vector<double> ranges_m;
     GroundPosts ground;                  ///< on the device, from place() on
     std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on, or when marched
+    std::vector<propagation::BlockInput> march_inputs;  ///< of its march
     ExcessOutputs excess;
     std::optional<ClutterMapTask> clutter;  ///< its ground on the device, from place() on
     bool has_shadow = false, has_reflected_ray = false, has_mechanisms = false;

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "propagation/cuda/field_march_cuda.h"
 #include "propagation/parabolic_equation/excess.h"
 
@@ -77,15 +79,27 @@ __global__ void forgetUnknown(float* losses_db, const int* known_ranges, int ran
 
 }  // namespace
 
-const float* FieldMarchCuda::start(FieldMarch& field, unsigned* warnings, cudaStream_t stream) {
+std::vector<BlockInput> FieldMarchCuda::inputs(FieldMarch& field) {
+  std::vector<BlockInput> inputs;
+  for (const auto& member : field.members) {
+    for (const PeSurface& surface : field.surfaces) inputs.push_back(blockInput(field.set(member, surface)));
+  }
+  return inputs;
+}
+
+const float* FieldMarchCuda::start(FieldMarch& field, std::vector<BlockInput> inputs, unsigned* warnings,
+                                   cudaStream_t stream) {
+  auto input = inputs.begin();
   const std::size_t count = field.cellCount(), members = field.members.size();
   const bool has_two = field.surfaces.size() > 1;
   const std::size_t needed = (members + (has_two || members > 1 ? 1 : 0)) * count;
   float* const last_db = losses_db_.atLeast(needed) + members * count;
   for (std::size_t m = 0; m < members; ++m) {
     float* const member_db = losses_db_.data() + m * count;
-    march_.start(field.set(field.members[m], field.surfaces.front()), member_db, stream);
-    if (has_two) march_.start(field.set(field.members[m], field.surfaces.back()), last_db, stream);
+    march_.start(field.set(field.members[m], field.surfaces.front()), std::move(*input++), member_db, stream);
+    if (has_two) {
+      march_.start(field.set(field.members[m], field.surfaces.back()), std::move(*input++), last_db, stream);
+    }
     finishMember<<<blocksFor(count), kThreads, 0, stream>>>(member_db, has_two ? last_db : nullptr, count);
     checkLaunch("finishMember");
   }

@@ -1,6 +1,8 @@
 /// All marches of an emitter's field on a GPU; the losses stay there.
 #pragma once
 
+#include <vector>
+
 #include "propagation/cuda/march_cuda.h"
 #include "propagation/parabolic_equation/field_march.h"
 
@@ -10,12 +12,18 @@ namespace emscape::propagation {
 /// at once.
 class FieldMarchCuda {
  public:
+  /// What the marches begin with, each member's polarisations one after another: milliseconds of the host.
+  /// @throws Error as marchAzimuthsOnGpu()
+  static std::vector<BlockInput> inputs(FieldMarch& field);
+
   /// Starts the marches of marchField(); they agree with it as marchAzimuthsOnGpu() with marchAzimuths().
-  /// @param field  isForGpu(); may change after the call
+  /// @param field   isForGpu(); may change after the call
+  /// @param inputs  of the field
   /// @param warnings  device memory; the bits that marchField() returns are added at the end
   /// @return field.cellCount() losses in device memory, until the next start()
   /// @throws Error as marchAzimuthsOnGpu()
-  const float* start(FieldMarch& field, unsigned* warnings, cudaStream_t stream);
+  const float* start(FieldMarch& field, std::vector<BlockInput> inputs, unsigned* warnings,
+                     cudaStream_t stream);
   std::size_t bytes() const;
 
  private:

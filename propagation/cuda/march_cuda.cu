@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "propagation/cuda/march_cuda.h"
 #include "propagation/parabolic_equation/excess.h"
 #include "propagation/parabolic_equation/march_block_run.h"
@@ -130,10 +132,15 @@ void AzimuthMarchCuda::launch(MarchBlockTask task, cudaStream_t stream) {
 
 void AzimuthMarchCuda::start(const AzimuthMarch& march, float* excess_db, cudaStream_t stream,
                              const std::vector<int>& columns_at) {
+  start(march, blockInput(march, kMaxBlockIntervals, columns_at), excess_db, stream, columns_at);
+}
+
+void AzimuthMarchCuda::start(const AzimuthMarch& march, BlockInput input, float* excess_db,
+                             cudaStream_t stream, const std::vector<int>& columns_at) {
   if (march.grid.form == PeForm::narrow && !march.ground_msl_m.empty()) {
     throw Error(ErrorCode::bad_input, "parabolic_equation: the narrow form over terrain is not for a GPU");
   }
-  input_ = blockInput(march, kMaxBlockIntervals, columns_at);
+  input_ = std::move(input);
   grid_ = march.grid;
   azimuths_ = march.azimuths;
   columns_at_ = columns_at;

@@ -19,6 +19,9 @@ class AzimuthMarchCuda {
   /// @throws Error as marchAzimuthsOnGpu()
   void start(const AzimuthMarch& march, float* excess_db, cudaStream_t stream,
              const std::vector<int>& columns_at = {});
+  /// @param input  blockInput() of the march and the columns
+  void start(const AzimuthMarch& march, BlockInput input, float* excess_db, cudaStream_t stream,
+             const std::vector<int>& columns_at = {});
   /// Waits for the march.
   MarchNotes notes();
   /// Adds staircaseWarning() of the march to bits in device memory, behind it on its stream.
