@@ -99,6 +99,7 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
             wanted_intervals, needs.max_height_m, radToDeg(needs.max_angle_rad), kPeMaxIntervals,
             affordable));
   }
+  found.wanted_intervals = wanted_intervals;
   grid.intervals = 1 << std::max(8, int(std::ceil(std::log2(wanted_intervals))));
   grid.top_m = grid.intervals * largest_step_m;
   setAbsorber(grid);

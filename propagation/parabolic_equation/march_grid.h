@@ -70,6 +70,7 @@ struct MarchNeeds {
 
 struct AutomaticGrid {
   MarchGrid grid;
+  double wanted_intervals = 0;  ///< of which grid.intervals is the next power of two
   std::vector<ModelChoice> choices;
 };
 

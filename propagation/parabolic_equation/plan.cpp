@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "emscape/base/error.h"
 #include "propagation/parabolic_equation/direct_ray.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr double kAngle_rad = 3 * kPi / 180, kSmallestAngle_rad = kPi / 180;
 constexpr int kPlainIntervals = 4096, kTerrainIntervals = 2048;  // the domain is no higher than they afford
 constexpr int kDearIntervals = 8192;                             // for a larger angle no more than this
+/// Of the largest angle, over terrain: no more of it is given up for half of the height steps.
+constexpr double kWorthwhileAngle = 0.75;
 constexpr int kMaxAzimuths = 1584;
 constexpr double kFinestStep_m = 50;  // over places that are closer
 constexpr int kMaxHeights = 1024, kMaxRanges = 2000;
@@ -182,6 +185,19 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
   march.post_spacing_m = needs.post_spacing_m;
   march.traps = air.traps();
   AutomaticGrid found = automaticGrid(march);
+  if (settings.max_angle_deg <= 0 && !needs.is_single && needs.post_spacing_m > 0) {
+    const double fewer = found.grid.intervals / 2 / found.wanted_intervals;
+    const double smaller_rad = std::asin(std::sin(max_angle_rad) * fewer) * (1 - 1e-9);
+    if (fewer < 1 && smaller_rad >= kWorthwhileAngle * max_angle_rad) {
+      march.max_angle_rad = smaller_rad;
+      AutomaticGrid cheaper = automaticGrid(march);
+      if (cheaper.grid.intervals < found.grid.intervals) {
+        found = std::move(cheaper);
+        max_angle_rad = smaller_rad;
+        angle_why = fmt::format("what {} height steps afford", found.grid.intervals);
+      }
+    }
+  }
   found.choices.insert(
       found.choices.begin(),
       {"largest angle", fmt::format("{:.3g} degrees: {}", radToDeg(max_angle_rad), angle_why)});
