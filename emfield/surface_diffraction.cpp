@@ -347,7 +347,7 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
 
 /// Number of sectors: none wider than a part of the posts' spacing, and not more than paths are worth it.
 int sectorsOf(const ExcessTask<propagation::DiffractionExcess>& task) {
-  constexpr double kWidth_posts = 2.5;
+  constexpr double kWidth_posts = 1.5;
   constexpr std::size_t kPathsPerSector = 32;
   const GroundPosts& ground = task.ground;
   const double farthest_m = ground.ranges_m[ground.range_count - 1];
