@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/near_ecef.h"
 #include "emfield/foot_inverse.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geoid.h"
@@ -94,12 +93,11 @@ class NearGeoid {
 class ColumnMaker {
  public:
   PlaceColumn columnAbove(const Surface::Place& place, double base_msl_m) {
-    return {ecef_.at(place.latitude_deg, place.longitude_deg),
+    return {toEcef({place.latitude_deg, place.longitude_deg, 0}),
             base_msl_m + geoid_.undulation_m(place.latitude_deg, place.longitude_deg), base_msl_m};
   }
 
  private:
-  NearEcef ecef_;
   NearGeoid geoid_;
 };
 
