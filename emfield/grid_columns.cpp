@@ -56,26 +56,37 @@ GridColumn tiltedColumn(const GeoFrame& frame, const Vec3d& base_m, double upper
 class NearGeoid {
  public:
   double undulation_m(double latitude_deg, double longitude_deg) {
-    constexpr double kCellsPerDegree = 64;
     const double row = latitude_deg * kCellsPerDegree, column = longitude_deg * kCellsPerDegree;
     const double j = std::floor(row), i = std::floor(column);
-    if (i != i_ || j != j_) {
-      i_ = i;
-      j_ = j;
-      for (int n = 0; n < 4; ++n) {
-        corners_m_[n] =
-            geoidUndulation_m(std::min((j + n / 2) / kCellsPerDegree, 90.0), (i + n % 2) / kCellsPerDegree);
-      }
-    }
+    const Cell& cell = cellAt(i, j);
     const double x = column - i, y = row - j;
-    const double south = corners_m_[0] + x * (corners_m_[1] - corners_m_[0]);
-    const double north = corners_m_[2] + x * (corners_m_[3] - corners_m_[2]);
+    const double south = cell.corners_m[0] + x * (cell.corners_m[1] - cell.corners_m[0]);
+    const double north = cell.corners_m[2] + x * (cell.corners_m[3] - cell.corners_m[2]);
     return south + y * (north - south);
   }
 
  private:
-  double i_ = HUGE_VAL, j_ = HUGE_VAL;
-  double corners_m_[4] = {};
+  static constexpr double kCellsPerDegree = 64;
+  static constexpr int kKept = 128;  ///< cells of one row, which the next row of places often needs again
+  struct Cell {
+    double i = HUGE_VAL, j = HUGE_VAL;
+    double corners_m[4];
+  };
+
+  const Cell& cellAt(double i, double j) {
+    Cell& cell = cells_[static_cast<unsigned>(static_cast<long long>(i)) % kKept];
+    if (cell.i != i || cell.j != j) {
+      cell.i = i;
+      cell.j = j;
+      for (int n = 0; n < 4; ++n) {
+        cell.corners_m[n] =
+            geoidUndulation_m(std::min((j + n / 2) / kCellsPerDegree, 90.0), (i + n % 2) / kCellsPerDegree);
+      }
+    }
+    return cell;
+  }
+
+  Cell cells_[kKept];
 };
 
 /// Makes the vertical columns whose t = 0 is at a height above a place.

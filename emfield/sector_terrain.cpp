@@ -124,15 +124,14 @@ void SectorTerrain::read(const PathSectors::Azimuth& middle, double half_width_r
   }
 }
 
-/// Reads the blocks of a chord, and those of them before the edge of the raster.
+/// Reads the blocks of a chord; beyond the edge of the raster no post is known.
 void SectorTerrain::readChord(int first_block, int end_block) {
   const int first = first_block * kBlock;
-  int last = 0;
-  for (;; --end_block) {
-    if (end_block == first_block) return;
-    last = std::min(end_block * kBlock, posts_read_) - 1;
-    if (setChord(first, last)) break;
-  }
+  const int within = setLongestChord(first, std::min(end_block * kBlock, posts_read_));
+  if (within < std::min(end_block * kBlock, posts_read_)) posts_read_ = within;
+  if (within == first) return;
+  end_block = (within + kBlock - 1) / kBlock;
+  const int last = within - 1;
   const SectorChord& chord = chords_[first_block / posts_.blocksPerChord()];
   const ChordTask task{chord,
                        posts_.part(),
@@ -150,6 +149,22 @@ void SectorTerrain::readChord(int first_block, int end_block) {
     if (!(slack_m_[blocks_] < HUGE_VALF)) return;
   }
   if (!is_known) blocks_ = first_block;
+}
+
+/// Sets the chord from a post to the last one before `end` that is in the raster. @return the post beyond
+/// that
+int SectorTerrain::setLongestChord(int first, int end) {
+  if (setChord(first, end - 1)) return end;
+  int within = first, beyond = end - 1;  // the chord to the post before `within` is in the raster
+  while (within < beyond) {
+    const int middle = within + (beyond - within + 1) / 2;
+    if (setChord(first, middle - 1)) {
+      within = middle;
+    } else {
+      beyond = middle - 1;
+    }
+  }
+  return within;
 }
 
 /// Sets the chord of posts first..last. @return false if it is not entirely in the raster

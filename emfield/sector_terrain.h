@@ -57,10 +57,10 @@ class SectorTerrain {
   /// @param posts           that the farthest path needs, >= 1
   void read(const PathSectors::Azimuth& middle, double half_width_rad, int posts);
 
-  /// Blocks that are known: from the emitter to the first that is not entirely in the finest raster, at a
-  /// void, or wider than the bounds reach.
+  /// Blocks that are known: from the emitter to the edge of the finest raster, or to the first that is at a
+  /// void or wider than the bounds reach.
   int blocks() const { return blocks_; }
-  /// Posts of these blocks.
+  /// Posts of these blocks; the last block may be known in part.
   int posts() const { return std::min(blocks_ * SectorPosts::kBlock, posts_read_); }
   /// Heights of the posts in the middle of the sector.
   const float* height_msl_m() const { return height_msl_m_.data(); }
@@ -71,7 +71,8 @@ class SectorTerrain {
   int rowPosts() const { return raster_->columns; }
 
  private:
-  bool setChord(int first_post, int end_post);
+  int setLongestChord(int first_post, int end_post);
+  bool setChord(int first_post, int last_post);
   void readChord(int first_block, int end_block);
 
   const Station& station_;

@@ -26,7 +26,6 @@ int groupsOf(int count) {
 struct SectorBounds {
   float base_msl_m = 0;
   float tx_m = 0;
-  int blocks = 0;
   std::vector<float> lowered_m;  ///< largest lowered height of an obstacle
   std::vector<float> tx_slope;   ///< largest slope from the transmitter to a lowered obstacle
   /// The largest over this block and all before it, and a lower bound of that.
@@ -41,6 +40,7 @@ struct Posts {
   const double* exact_range_m;
   const float *range_m, *part;
   int count;
+  double last_step_m;                         ///< between the farthest posts
   const float *first_m, *last_m;              ///< per block: range of its first and last obstacle
   const float *group_first_m, *group_last_m;  ///< per group
 };
@@ -255,13 +255,12 @@ EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terr
   const float tx = posts.model.raised_m(tx_msl_m - base, 0);
   bounds.base_msl_m = base;
   bounds.tx_m = tx;
-  bounds.blocks = terrain.blocks();
   for (std::vector<float>* const padded :
        {&bounds.lowered_m, &bounds.tx_slope, &bounds.group_lowered_m, &bounds.group_tx_slope}) {
     std::fill(padded->begin(), padded->end(), -HUGE_VALF);
   }
   float highest_slope = -HUGE_VALF, least_slope = -HUGE_VALF;
-  for (int b = 0; b < bounds.blocks; ++b) {
+  for (int b = 0; b < terrain.blocks(); ++b) {
     const int begin = std::max(b * kBlock, 1), end = std::min((b + 1) * kBlock, terrain.posts());
     const float slack = slack_m[b];
     float lowered = -HUGE_VALF, steepest = -HUGE_VALF, least = -HUGE_VALF;
@@ -296,9 +295,11 @@ struct SectorTask {
   char* is_left;
 };
 
-/// Last post nearer than a range, from a guess.
-inline int lastBefore(const Posts& posts, double distance_m, int guess) {
-  int post = std::min(guess, posts.count - 1);
+/// Last post nearer than a range. Most posts are equally far apart.
+inline int lastBefore(const Posts& posts, double distance_m) {
+  const double from_last_m = posts.exact_range_m[posts.count - 1] - distance_m;
+  int post = posts.count - 1 - static_cast<int>(std::max(from_last_m / posts.last_step_m, 0.0));
+  post = std::max(post, 0);
   while (post + 1 < posts.count && posts.exact_range_m[post + 1] < distance_m) ++post;
   while (post > 0 && posts.exact_range_m[post] >= distance_m) --post;
   return post;
@@ -315,11 +316,11 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
   Path path{};
   for (const SectorPath* to = sector.begin; to < sector.end; ++to) {
     path.distance_m = static_cast<float>(to->distance_m);
-    path.before = lastBefore(posts, to->distance_m, path.before);
+    path.before = lastBefore(posts, to->distance_m);
     path.blocks = path.before / kBlock + 1;
     path.aside = to->aside_rad * per_rad;
     ++path.number;
-    if (path.before < kMinPosts || path.blocks > bounds.blocks) continue;
+    if (path.before < kMinPosts || path.before >= terrain.posts()) continue;
     const float ground_m = to->ground_msl_m - bounds.base_msl_m;
     for (int n = 0; n < grid.layers; ++n) {
       memory.height_msl_m[n] = static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n]));
@@ -379,9 +380,11 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
   const int padded_groups = groupsOf(groups) * kGroup;
   group_first_m.resize(padded_groups, group_first_m.back());
   group_last_m.resize(padded_groups, group_last_m.back());
-  const Posts posts{task.model.model,    task.ground.ranges_m,    sector_posts.range_m(),
-                    sector_posts.part(), task.ground.range_count, first_m.data(),
-                    last_m.data(),       group_first_m.data(),    group_last_m.data()};
+  const int count = task.ground.range_count;
+  const double last_step_m = task.ground.ranges_m[count - 1] - task.ground.ranges_m[count - 2];
+  const Posts posts{
+      task.model.model, task.ground.ranges_m, sector_posts.range_m(), sector_posts.part(), count, last_step_m,
+      first_m.data(),   last_m.data(),        group_first_m.data(),   group_last_m.data()};
   parallelFor(sectors.count(), 16, [&](int begin, int end) {
     SectorTerrain terrain(task.station, task.ground, bounds, sector_posts);
     SectorBounds of_sector;

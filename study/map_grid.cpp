@@ -8,7 +8,8 @@
 #include <memory>
 
 #include "base/fast_geodesy.h"
-#include "base/near_angle.h"
+#include "base/near_ecef.h"
+#include "base/simd.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/parallel.h"
@@ -114,11 +115,12 @@ void addBorder(const scenario::GeoBox& box, std::vector<double>& longitudes, std
 }
 
 /// Square metres of the ellipsoid per square degree.
-double metres2PerDegree2(const SineCosine& latitude) {
+double metres2PerDegree2(double latitude_deg) {
   constexpr double kPerDegree2 = kPi / 180 * (kPi / 180);
   constexpr double kA2 = kWgs84SemiMajor_m * kWgs84SemiMajor_m;
-  const double root = 1 - kWgs84EccentricitySquared * latitude.sine * latitude.sine;
-  return kA2 * (1 - kWgs84EccentricitySquared) / (root * root) * latitude.cosine * kPerDegree2;
+  const double sine = std::sin(degToRad(latitude_deg)), cosine = std::cos(degToRad(latitude_deg));
+  const double root = 1 - kWgs84EccentricitySquared * sine * sine;
+  return kA2 * (1 - kWgs84EccentricitySquared) / (root * root) * cosine * kPerDegree2;
 }
 
 /// Longitudes and latitudes at the corners, the middles of the sides and the middles of square patches.
@@ -126,6 +128,7 @@ struct Lattice {
   int side = 2;  ///< pixels along a patch, even: every node is the centre of a pixel
   int patches_x = 0, patches_y = 0;
   std::vector<double> longitudes_deg, latitudes_deg;
+  std::vector<double> metres2_per_degree2;  ///< of the ellipsoid there
 
   int nodesX() const { return 2 * patches_x + 1; }
   /// First of a patch's nodes.
@@ -148,6 +151,9 @@ Lattice latticeOf(const Projection& toEarth, const MapGrid& grid) {
   }
   if (!toEarth(lattice.longitudes_deg, lattice.latitudes_deg)) {
     throw Error(ErrorCode::usage, fmt::format("crs '{}' does not reach over the whole area", grid.crs));
+  }
+  for (const double latitude_deg : lattice.latitudes_deg) {
+    lattice.metres2_per_degree2.push_back(metres2PerDegree2(latitude_deg));
   }
   return lattice;
 }
@@ -206,9 +212,13 @@ class AreaTest {
   explicit AreaTest(const MapArea& area) : area_(area) {
     if (area.circle) middle_ = fastGeodesy(area.circle->latitude_deg, area.circle->longitude_deg);
   }
-  bool isInside(const emfield::Surface::Place& place) const {
+  /// @param near  the calling thread's
+  bool isInside(const emfield::Surface::Place& place, NearEcef& near) const {
     constexpr double kMargin_deg = 1e-9;
-    if (area_.circle) return distance_m(place) <= area_.circle->radius_m;
+    if (area_.circle) {
+      const Vec3d foot_m = near.at(place.latitude_deg, place.longitude_deg);
+      return fastInverse(middle_, foot_m).distance_m <= area_.circle->radius_m;
+    }
     const double east_deg = place.longitude_deg - area_.box.west_deg;
     return place.latitude_deg >= area_.box.south_deg - kMargin_deg &&
            place.latitude_deg <= area_.box.north_deg + kMargin_deg &&
@@ -219,17 +229,14 @@ class AreaTest {
   /// @param radius_m  no place of it is farther from its middle
   PatchPart partOf(const emfield::Surface::Place& middle, double radius_m) const {
     if (!area_.circle) return PatchPart::across;
-    const double middle_m = distance_m(middle);
+    const Vec3d foot_m = toEcef({middle.latitude_deg, middle.longitude_deg, 0});
+    const double middle_m = fastInverse(middle_, foot_m).distance_m;
     return middle_m + radius_m <= area_.circle->radius_m  ? PatchPart::inside
            : middle_m - radius_m > area_.circle->radius_m ? PatchPart::outside
                                                           : PatchPart::across;
   }
 
  private:
-  double distance_m(const emfield::Surface::Place& place) const {
-    return fastInverse(middle_, toEcef({place.latitude_deg, place.longitude_deg, 0})).distance_m;
-  }
-
   const MapArea& area_;
   FastGeodesy middle_{};
 };
@@ -249,41 +256,58 @@ double radiusOf(const Lattice& lattice, std::size_t node) {
   return kMargin * chord_m;
 }
 
+/// Sets the places and areas of a patch's row of pixels.
+/// @param per_degree2  m2 per square degree, over areas of the patch
+EMSCAPE_SIMD_CLONES void fillRow(const Patch::Row& latitude, const Patch::Row& longitude,
+                                 const Parabola& per_degree2, double step, int pixels,
+                                 emfield::Surface::Place* places, float* areas_m2) {
+  int beyond = 0;
+  for (int i = 0; i < pixels; ++i) {
+    const double u = i * step;
+    const double latitude_deg = latitude.value.at(u), longitude_deg = longitude.value.at(u);
+    const double degrees2 = longitude.value.slope(u) * latitude.slope_south.at(u) -
+                            longitude.slope_south.at(u) * latitude.value.slope(u);
+    places[i].latitude_deg = latitude_deg;
+    places[i].longitude_deg = longitude_deg;
+    areas_m2[i] = static_cast<float>(std::fabs(degrees2) * per_degree2.at(u));
+    beyond |= std::fabs(longitude_deg) < 180 ? 0 : 1;
+  }
+  if (beyond == 0) return;
+  for (int i = 0; i < pixels; ++i) places[i].longitude_deg = wrapLongitude_deg(places[i].longitude_deg);
+}
+
 /// Sets places and areas, on patches between the nodes of a lattice.
 void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
   grid.places.resize(static_cast<std::size_t>(grid.width) * grid.height);
   grid.areas_m2.resize(grid.places.size());
   const AreaTest test(area);
   const int side = lattice.side, nodes_x = lattice.nodesX();
-  const double per_side2 = 1.0 / (static_cast<double>(side) * side);
+  const double step = 1.0 / side;
   parallelFor(lattice.patches_y * lattice.patches_x, 1, [&](int begin, int end) {
-    NearAngle latitude_sine;
+    NearEcef near;
     for (int patch = begin; patch < end; ++patch) {
       const int patch_x = patch % lattice.patches_x, patch_y = patch / lattice.patches_x;
       const std::size_t node = lattice.node(patch_x, patch_y), middle = node + nodes_x + 1;
       const Patch longitudes(lattice.longitudes_deg, node, nodes_x, 360);
       const Patch latitudes(lattice.latitudes_deg, node, nodes_x, 0);
+      const Patch scales(lattice.metres2_per_degree2, node, nodes_x, 0);
       const PatchPart part = test.partOf({lattice.latitudes_deg[middle], lattice.longitudes_deg[middle]},
                                          radiusOf(lattice, node));
       const int columns = std::min(side, grid.width - patch_x * side);
       const int rows = std::min(side, grid.height - patch_y * side);
       for (int j = 0; j < rows; ++j) {
-        const double v = static_cast<double>(j) / side;
-        const Patch::Row longitude = longitudes.row(v), latitude = latitudes.row(v);
+        const double v = j * step;
         const std::size_t first = static_cast<std::size_t>(patch_y * side + j) * grid.width + patch_x * side;
+        emfield::Surface::Place* const places = grid.places.data() + first;
+        float* const areas_m2 = grid.areas_m2.data() + first;
+        Parabola per_degree2 = scales.row(v).value;
+        for (double* const c : {&per_degree2.c0, &per_degree2.c1, &per_degree2.c2}) *c *= step * step;
+        fillRow(latitudes.row(v), longitudes.row(v), per_degree2, step, columns, places, areas_m2);
+        if (part == PatchPart::inside) continue;
         for (int i = 0; i < columns; ++i) {
-          const double u = static_cast<double>(i) / side;
-          const double latitude_deg = latitude.value.at(u);
-          emfield::Surface::Place& place =
-              grid.places[first + i] = {latitude_deg, wrapLongitude_deg(longitude.value.at(u))};
-          if (part == PatchPart::outside || (part == PatchPart::across && !test.isInside(place))) {
-            place.latitude_deg = NAN;
-            continue;  // its area is 0
-          }
-          const double degrees2 = longitude.value.slope(u) * latitude.slope_south.at(u) -
-                                  longitude.slope_south.at(u) * latitude.value.slope(u);
-          grid.areas_m2[first + i] = static_cast<float>(
-              std::abs(degrees2) * per_side2 * metres2PerDegree2(latitude_sine.at(degToRad(latitude_deg))));
+          if (part == PatchPart::across && test.isInside(places[i], near)) continue;
+          places[i].latitude_deg = NAN;
+          areas_m2[i] = 0;
         }
       }
     }
