@@ -305,7 +305,8 @@ void RealTimeLoop::report(RealTimeEvent event) {
   event.scenario_s = source_.time_s(shown_step_);
   event.pattern = drawn_.pattern;
   done_(event);
-  report_.events.push_back(std::move(event));
+  report_.totals.add(event);
+  if (options_.keep_events) report_.events.push_back(std::move(event));
 }
 
 }  // namespace emscape::playback

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "base/json_reading.h"
 #include "emscape/base/error.h"
@@ -37,6 +38,17 @@ std::string lineOf(const StepRecord& record) {
   return json.dump() + "\n";
 }
 
+/// A count that fits into the type.
+template <class Count>
+Count countFrom(const Json& file, const char* key) {
+  const Json& value = file.at(key);
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > std::numeric_limits<Count>::max()) {
+    throw std::invalid_argument(
+        fmt::format("{} is not a whole number in 0..{}", key, std::numeric_limits<Count>::max()));
+  }
+  return value.get<Count>();
+}
+
 StepRecord recordFrom(const Json& json, int steps, std::size_t channels) {
   StepRecord record;
   const auto number = json.at("step").get<double>();
@@ -47,8 +59,9 @@ StepRecord recordFrom(const Json& json, int steps, std::size_t channels) {
   record.own = rangesFromJson(json.at("range"), channels);
   record.stored = rangesFromJson(json.at("stored_range"), channels);
   for (const Json& file : json.at("files")) {
-    record.files.push_back({file.at("name").get<std::string>(),
-                            {file.at("bytes").get<std::uint64_t>(), file.at("crc32").get<std::uint32_t>()}});
+    record.files.push_back(
+        {file.at("name").get<std::string>(),
+         {countFrom<std::uint64_t>(file, "bytes"), countFrom<std::uint32_t>(file, "crc32")}});
   }
   return record;
 }

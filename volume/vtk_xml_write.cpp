@@ -98,6 +98,7 @@ void setVtkRange(const std::filesystem::path& path, const char* type,
     const std::string before = file.fieldText("emscape:" + range.quantity);
     if (before.empty()) failNoSuchQuantity(path, range.quantity);
     Json description = parseJson(spelledText(before), path.string());
+    if (!description.contains("range_min")) failNoSuchQuantity(path, range.quantity);
     description["range_min"] = numberToJson(range.min);
     description["range_max"] = numberToJson(range.max);
     const std::string after = descriptionText(description);

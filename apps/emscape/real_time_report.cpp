@@ -20,43 +20,27 @@ Json optionalJson(const std::optional<Value>& value) {
   return value ? Json(*value) : Json(nullptr);
 }
 
-/// The totals.
-struct Totals {
-  int busy = 0, late = 0;
-  int restores_done = 0, restores_aborted = 0;
-  int settled = 0, compared = 0, equal = 0;
-  std::vector<double> abort_latencies_ms;  // sorted
-
-  explicit Totals(const RealTimeReport& report) {
-    for (const RealTimeEvent& event : report.events) {
-      switch (event.state) {
-        case ControllerState::busy:
-          ++busy;
-          late += event.late ? 1 : 0;
-          if (event.abort_latency_ms) abort_latencies_ms.push_back(*event.abort_latency_ms);
-          break;
-        case ControllerState::restore:
-          ++(event.restored ? restores_done : restores_aborted);
-          break;
-        case ControllerState::idle:
-          ++settled;
-          compared += event.equals_full ? 1 : 0;
-          equal += event.equals_full.value_or(false) ? 1 : 0;
-          break;
-      }
-    }
-    std::sort(abort_latencies_ms.begin(), abort_latencies_ms.end());
-  }
-};
-
-double heldPerSecond(const RealTimeReport& report, int frames) {
+double heldPerSecond(const RealTimeReport& report) {
+  const auto frames = static_cast<double>(report.totals.busy);
   return report.due > 0 ? report.frames_per_s * frames / static_cast<double>(report.due) : 0;
 }
 
-int framesWith(const RealTimeReport& report, render::Pattern pattern) {
-  return static_cast<int>(std::count_if(report.events.begin(), report.events.end(), [&](const auto& event) {
-    return event.state == ControllerState::busy && event.pattern == pattern;
-  }));
+/// Fraction of the busy frames.
+double fractionOf(render::Pattern pattern, const playback::RealTimeTotals& totals) {
+  const auto found = totals.frames_of.find(pattern);
+  if (found == totals.frames_of.end()) return 0;
+  return static_cast<double>(found->second) / static_cast<double>(totals.busy);
+}
+
+/// {median, max} of the events; null if there are none.
+Json abortLatencies(const std::vector<RealTimeEvent>& events) {
+  std::vector<double> latencies_ms;
+  for (const RealTimeEvent& event : events) {
+    if (event.abort_latency_ms) latencies_ms.push_back(*event.abort_latency_ms);
+  }
+  if (latencies_ms.empty()) return nullptr;
+  std::sort(latencies_ms.begin(), latencies_ms.end());
+  return {{"median", rounded(latencies_ms[latencies_ms.size() / 2])}, {"max", rounded(latencies_ms.back())}};
 }
 
 Json toJson(const RealTimeEvent& event) {
@@ -101,19 +85,17 @@ std::string lineOf(const RealTimeEvent& event) {
 }
 
 std::string summaryOf(const RealTimeReport& report) {
-  const Totals totals(report);
-  std::string text =
-      fmt::format("{} frames in {:.1f} s; {:g} a second asked, {:.2f} held; {} late, {} dropped", totals.busy,
-                  report.seconds, report.frames_per_s, heldPerSecond(report, totals.busy), totals.late,
-                  report.due - totals.busy);
+  const playback::RealTimeTotals& totals = report.totals;
+  std::string text = fmt::format(
+      "{} frames in {:.1f} s; {:g} a second asked, {:.2f} held; {} late, {} dropped", totals.busy,
+      report.seconds, report.frames_per_s, heldPerSecond(report), totals.late, report.due - totals.busy);
   for (const render::Pattern pattern : render::allPatterns()) {
-    const int frames = framesWith(report, pattern);
-    if (frames > 0)
-      text += fmt::format("; {} {:.0f} %", render::toString(pattern), 100.0 * frames / totals.busy);
+    const double fraction = fractionOf(pattern, totals);
+    if (fraction > 0) text += fmt::format("; {} {:.0f} %", render::toString(pattern), 100 * fraction);
   }
   text += fmt::format("\nrestored {}, aborted {}", totals.restores_done, totals.restores_aborted);
-  if (!totals.abort_latencies_ms.empty()) {
-    text += fmt::format(" (next frame at most {:.2f} ms after the event)", totals.abort_latencies_ms.back());
+  if (totals.max_abort_latency_ms) {
+    text += fmt::format(" (next frame at most {:.2f} ms after the event)", *totals.max_abort_latency_ms);
   }
   text += fmt::format("; settled {}", totals.settled);
   if (totals.compared > 0)
@@ -125,18 +107,14 @@ std::string summaryOf(const RealTimeReport& report) {
 }
 
 Json toJson(const RealTimeReport& report) {
-  const Totals totals(report);
+  const playback::RealTimeTotals& totals = report.totals;
   Json patterns = Json::object();
-  for (const render::Pattern pattern : render::allPatterns()) {
-    patterns[render::toString(pattern)] =
-        totals.busy > 0 ? rounded(static_cast<double>(framesWith(report, pattern)) / totals.busy) : 0.0;
-  }
-  const std::vector<double>& latencies = totals.abort_latencies_ms;
+  for (const render::Pattern pattern : render::allPatterns())
+    patterns[render::toString(pattern)] = rounded(fractionOf(pattern, totals));
   Json frames = Json::array();
   for (const RealTimeEvent& event : report.events) frames.push_back(toJson(event));
   return {{"seconds", rounded(report.seconds)},
-          {"frames_per_s",
-           {{"asked", report.frames_per_s}, {"held", rounded(heldPerSecond(report, totals.busy))}}},
+          {"frames_per_s", {{"asked", report.frames_per_s}, {"held", rounded(heldPerSecond(report))}}},
           {"busy_frames", totals.busy},
           {"due", report.due},
           {"late", totals.late},
@@ -145,9 +123,7 @@ Json toJson(const RealTimeReport& report) {
           {"restores", {{"done", totals.restores_done}, {"aborted", totals.restores_aborted}}},
           {"settled", totals.settled},
           {"settled_equal_full", totals.compared > 0 ? Json(totals.equal) : Json(nullptr)},
-          {"abort_latency_ms", latencies.empty() ? Json(nullptr)
-                                                 : Json{{"median", rounded(latencies[latencies.size() / 2])},
-                                                        {"max", rounded(latencies.back())}}},
+          {"abort_latency_ms", abortLatencies(report.events)},
           {"epsilon_ms", rounded(report.epsilon_ms)},
           {"field_updates", report.field_updates},
           {"field_steps_skipped", report.field_steps_skipped},

@@ -17,6 +17,7 @@ std::string lineOf(const RealTimeEvent& event);
 std::string summaryOf(const RealTimeReport& report);
 /// Keys: frames_per_s {asked, held}, frames, due, late, dropped, patterns, restores {done, aborted}, settled,
 /// settled_equal_full (null: not compared), abort_latency_ms {median, max} (null: none), ..., frames [...].
+/// @param report  with its events
 Json toJson(const RealTimeReport& report);
 
 }  // namespace emscape::app

@@ -277,7 +277,8 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   return 0;
 }
 
-RealTimeOptions realTimeOptionsOf(const RenderOptions& options) {
+/// @param keeps_events  for --json, which tells each frame
+RealTimeOptions realTimeOptionsOf(const RenderOptions& options, bool keeps_events) {
   RealTimeOptions loop;
   constexpr double kBudget_ms = 40;  // the paper's limit for real time
   loop.frames_per_s = options.frames_per_s.value_or(1000 / options.budget_ms.value_or(kBudget_ms));
@@ -285,6 +286,7 @@ RealTimeOptions realTimeOptionsOf(const RenderOptions& options) {
   loop.duration_s = options.duration_s;
   loop.orbit_rate_deg_s = options.orbit_rate_deg_s;
   loop.verify = options.verify;
+  loop.keep_events = keeps_events;
   if (options.rays != "auto") loop.controller.pattern = render::parsePattern(options.rays);
   loop.controller.interpolation = render::parseInterpolation(options.interpolate);
   loop.controller.budget_ms = options.budget_ms.value_or(1000 / loop.frames_per_s);
@@ -296,7 +298,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   const ViewState view = viewOf(options);
   checkMeshOptions(options, view);
   const PictureStyle style = styleOf(view, options);
-  const RealTimeOptions loop_options = realTimeOptionsOf(options);
+  const RealTimeOptions loop_options = realTimeOptionsOf(options, global.json);
   if (loop_options.orbit_rate_deg_s != 0 && style.camera.kind != render::CameraSpec::Kind::orbit) {
     throw Error(ErrorCode::usage, "--orbit-rate: the camera must be an orbit");
   }
@@ -336,10 +338,9 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
     json.update(toJson(report));
     printJson(json);
   }
-  if (report.unequal() > 0) {
-    throw Error(ErrorCode::check_failed,
-                fmt::format("{} of {} settled pictures differ from a full cast", report.unequal(),
-                            report.count(render::ControllerState::idle)));
+  if (report.totals.unequal() > 0) {
+    throw Error(ErrorCode::check_failed, fmt::format("{} of {} settled pictures differ from a full cast",
+                                                     report.totals.unequal(), report.totals.settled));
   }
   return 0;
 }

@@ -1,4 +1,4 @@
-/// One task at a time on its own thread, and an event that is signalled on completion.
+/// One task at a time on a thread, and an event that is signalled on completion.
 #pragma once
 
 #include <atomic>
@@ -53,7 +53,8 @@ class Event {
   std::atomic<int> begun_{0};
 };
 
-/// The owner starts a task, polls it, and takes the result. One thread owns it.
+/// The owner starts a task, polls it, and takes the result. One thread owns it. All tasks run on one thread,
+/// from the first on: for each thread that enters a loop, oneTBB keeps memory until the program ends.
 template <class Result>
 class AsyncTask {
  public:
@@ -61,31 +62,30 @@ class AsyncTask {
   explicit AsyncTask(Event& event) : event_(event) {}
   /// Waits for the end of the work.
   ~AsyncTask() {
-    if (thread_.joinable()) thread_.join();
+    if (!thread_.joinable()) return;
+    if (active_) end_.wait();
+    begin_.set();  // without work
+    thread_.join();
   }
   AsyncTask(const AsyncTask&) = delete;
   AsyncTask& operator=(const AsyncTask&) = delete;
 
   /// Only after the last result was taken.
   void start(std::function<Result()> work) {
+    active_ = true;
     done_ = false;
+    work_ = std::move(work);
     event_.begin();
-    thread_ = std::thread([this, work = std::move(work)] {
-      try {
-        result_ = work();
-      } catch (...) {
-        failure_ = std::current_exception();
-      }
-      done_ = true;
-      event_.finish();
-    });
+    if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+    begin_.set();
   }
   /// True if the task runs or its result was not taken.
-  bool active() const { return thread_.joinable(); }
-  bool done() const { return active() && done_; }
+  bool active() const { return active_; }
+  bool done() const { return active_ && done_; }
   /// Waits for the end. Rethrows an exception of the work.
   Result take() {
-    thread_.join();
+    end_.wait();
+    active_ = false;
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
     Result result = std::move(*result_);
     result_.reset();
@@ -93,11 +93,28 @@ class AsyncTask {
   }
 
  private:
+  void run() {
+    for (begin_.wait(); work_; begin_.wait()) {
+      try {
+        result_ = work_();
+      } catch (...) {
+        failure_ = std::current_exception();
+      }
+      work_ = nullptr;
+      done_ = true;
+      event_.finish();
+      end_.set();
+    }
+  }
+
   Event& event_;
-  std::thread thread_;
+  Event begin_, end_;  // of the work
+  bool active_ = false;
   std::atomic<bool> done_{false};
+  std::function<Result()> work_;
   std::optional<Result> result_;
   std::exception_ptr failure_;
+  std::thread thread_;
 };
 
 }  // namespace emscape::playback

@@ -20,7 +20,8 @@ struct RealTimeOptions {
   double speed = 1;                  ///< scenario seconds per second
   std::optional<double> duration_s;  ///< of the clock; none: until one step after the last
   double orbit_rate_deg_s = 0;       ///< of the camera, clockwise from above
-  bool verify = false;  ///< compare each settled picture with a full cast; the clock is stopped meanwhile
+  bool verify = false;      ///< compare each settled picture with a full cast; the clock is stopped meanwhile
+  bool keep_events = true;  ///< in the report; else a long playback would need more and more memory
   render::ControllerOptions controller;
 };
 

@@ -1,6 +1,7 @@
-/// Report of a real-time loop, frame by frame.
+/// Report of a real-time loop, frame by frame and in sum.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,19 @@ struct RealTimeEvent {
   std::string reason;               ///< reason for a change of the pattern
 };
 
+/// Sums over the events of a playback, however long it is.
+struct RealTimeTotals {
+  long long busy = 0, late = 0;                    ///< busy frames; of these shown after their slot
+  std::map<render::Pattern, long long> frames_of;  ///< busy frames by pattern
+  long long restores_done = 0, restores_aborted = 0;
+  long long settled = 0, compared = 0, equal = 0;  ///< settled pictures; of these compared, and equal
+  std::optional<double> max_abort_latency_ms;      ///< none: no restoration was stopped
+
+  void add(const RealTimeEvent& event);
+  /// Settled pictures that differ from a full cast.
+  long long unequal() const { return compared - equal; }
+};
+
 struct RealTimeReport {
   double frames_per_s = 0;  ///< asked for
   double seconds = 0;
@@ -36,11 +50,8 @@ struct RealTimeReport {
   long long due = 0;      ///< slots of 1 / frames_per_s with a change to show
   int field_updates = 0;
   int field_steps_skipped = 0;  ///< steps that could not be computed in time
-  std::vector<RealTimeEvent> events;
-
-  int count(render::ControllerState state) const;
-  /// Settled pictures that differ from a full cast.
-  int unequal() const;
+  RealTimeTotals totals;
+  std::vector<RealTimeEvent> events;  ///< empty without RealTimeOptions::keep_events
 };
 
 }  // namespace emscape::playback
