@@ -47,7 +47,7 @@ struct ExcessScratch {
   float* post_numbers = nullptr;  ///< kPostNumbers arrays of `posts` elements, for the model
   int posts = 0;
 
-  static constexpr int kPostNumbers = 2;
+  static constexpr int kPostNumbers = 4;
 
   /// @param posts  of the longest profile
   static EMSCAPE_HD std::size_t bytes(int posts, int layers) {

@@ -15,6 +15,9 @@ using emscape::cuda::check;
 bool isDiffraction(const propagation::ExcessModel& model) {
   return std::holds_alternative<DiffractionExcess>(model);
 }
+bool isEquation(const propagation::ExcessModel& model) {
+  return std::holds_alternative<propagation::PeExcess>(model);
+}
 
 }  // namespace
 
@@ -157,18 +160,30 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   place(works, stream);
   locateColumns(tasks_.data(), static_cast<int>(works.size()), columns_, stream);
   clock.end(&StageTimes::columns_ms, stream);
+  std::vector<Work*> marched;
+  for (Work& work : works) {
+    if (work.model && isEquation(work.model->model)) marched.push_back(&work);
+  }
+  placed_.record(stream);
+  const auto marcherOf = [&](std::size_t n) -> Marcher& { return marchers_[n % marchers_.size()]; };
+  for (std::size_t n = 0; n < std::min(marched.size(), marchers_.size()); ++n)
+    startMarch(*marched[n], marcherOf(n));
   clock.begin(stream);
   findShadows(works, stream);
   fillDiffractions(works, stream);
   for (const Work& work : works) {
-    if (!work.model || work.model->march != nullptr || isDiffraction(work.model->model)) continue;
+    if (!work.model || isEquation(work.model->model) || isDiffraction(work.model->model)) continue;
     fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
   }
   for (std::size_t r = 0; r < requests.size(); ++r) {
     if (works[r].clutter) fillClutterMap(*works[r].clutter, slots_[requests[r].slot].clutter.data(), stream);
   }
   clock.end(&StageTimes::excess_ms, stream);
-  fillMarched(works, stream, clock);
+  for (std::size_t n = 0; n < marched.size(); ++n) {
+    readMarch(*marched[n], marcherOf(n), stream, clock);
+    const std::size_t next = n + marchers_.size();
+    if (next < marched.size()) startMarch(*marched[next], marcherOf(next));
+  }
 
   std::vector<GeometryCounts> counts(works.size());
   check(cudaMemcpyAsync(counts.data(), counts_.data(), counts.size() * sizeof(GeometryCounts),
@@ -221,7 +236,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<Work>& works, cudaStream
     if (isDiffraction(work.model->model)) {
       tasks.push_back({std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station,
                        work.ground, work.excess});
-    } else if (needsDiffraction(*work.model)) {
+    } else if (isEquation(work.model->model) && setup_.terrain != nullptr) {
       Station straight = work.task.station;  // no bent rays: the model is not on the effective earth
       straight.refraction.exponential = false;
       tasks.push_back({std::get<propagation::PeExcess>(work.model->model).others.diffraction, AirLoss{},
@@ -236,28 +251,29 @@ void DeviceGeometry::fillDiffractions(const std::vector<Work>& works, cudaStream
                   columns_.row, scratch(), stream);
 }
 
-/// Marches the emitters' fields, a few at a time, so that one's last azimuths do not leave the device idle,
-/// and reads them one after the other.
-void DeviceGeometry::fillMarched(std::vector<Work>& works, cudaStream_t stream, StageClock& clock) {
-  placed_.record(stream);
-  std::size_t marches = 0;
-  for (Work& work : works) {
-    if (!work.model || work.model->march == nullptr) continue;
-    Marcher& marcher = marchers_[marches++ % marchers_.size()];
-    placed_.holdBack(marcher.stream);
-    marcher.read.holdBack(marcher.stream);
-    const float* const losses_db =
-        marcher.march.start(*work.model->march, &work.task.counts->warnings, marcher.stream);
-    marcher.marched.record(marcher.stream);
+/// Begins a march that the host has not done.
+void DeviceGeometry::startMarch(Work& work, Marcher& marcher) {
+  if (work.model->march == nullptr) return;
+  placed_.holdBack(marcher.stream);
+  marcher.read.holdBack(marcher.stream);
+  std::get<propagation::PeExcess>(work.model->model).tables =
+      marcher.march.start(*work.model->march, &work.task.counts->warnings, marcher.stream);
+  marcher.marched.record(marcher.stream);
+}
+
+/// The voxels of an emitter whose march has begun.
+void DeviceGeometry::readMarch(const Work& work, Marcher& marcher, cudaStream_t stream, StageClock& clock) {
+  if (work.model->march != nullptr) {
     clock.begin(stream);
     marcher.marched.holdBack(stream);
     clock.end(&StageTimes::march_ms, stream);
-    clock.begin(stream);
-    fillExcess(work.model->withTablesAt(losses_db, work.model->air.gases), work.task.station, excess_grid_,
-               work.ground, work.excess, scratch(), stream);
-    clock.end(&StageTimes::excess_ms, stream);
-    marcher.read.record(stream);
   }
+  clock.begin(stream);
+  fillEquation({std::get<propagation::PeExcess>(work.model->model), work.model->air, work.task.station,
+                work.ground, work.excess},
+               excess_grid_, columns_.row, scratch(), stream);
+  clock.end(&StageTimes::excess_ms, stream);
+  marcher.read.record(stream);
 }
 
 ScratchMemory DeviceGeometry::scratch() {

@@ -47,11 +47,20 @@ class DeviceGeometry {
     bool has_shadow = false, has_reflected_ray = false, has_mechanisms = false;
   };
 
+  /// Marches of one emitter after the other, on a stream of their own.
+  struct Marcher {
+    emscape::cuda::Stream stream;
+    propagation::FieldMarchCuda march;
+    emscape::cuda::Event marched;  ///< its losses are there
+    emscape::cuda::Event read;     ///< and were read
+  };
+
   Work prepare(const GeometryRequest& request) const;
   void place(std::vector<Work>& works, cudaStream_t stream);
   void findShadows(const std::vector<Work>& works, cudaStream_t stream);
   void fillDiffractions(const std::vector<Work>& works, cudaStream_t stream);
-  void fillMarched(std::vector<Work>& works, cudaStream_t stream, StageClock& clock);
+  void startMarch(Work& work, Marcher& marcher);
+  void readMarch(const Work& work, Marcher& marcher, cudaStream_t stream, StageClock& clock);
   ScratchMemory scratch();
 
   const FieldSetup& setup_;
@@ -75,14 +84,7 @@ class DeviceGeometry {
   };
   std::vector<Slot> slots_;
 
-  /// Marches of one emitter after the other, on a stream of their own.
-  struct Marcher {
-    emscape::cuda::Stream stream;
-    propagation::FieldMarchCuda march;
-    emscape::cuda::Event marched;  ///< its losses are there
-    emscape::cuda::Event read;     ///< and were read
-  };
-  std::array<Marcher, 3> marchers_;
+  std::array<Marcher, 8> marchers_;  ///< each waits for the longest of its azimuths: several fill the device
   emscape::cuda::Event placed_;
 
   // for the emitters being computed; kept for the next update

@@ -39,12 +39,22 @@ struct DiffractionTask {
 void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
                      const ScratchMemory& scratch, cudaStream_t stream);
 
-/// True for models with propagation::OverDiffraction, over terrain.
-bool needsDiffraction(const EmitterExcess& excess);
+/// `parabolic_equation` of one emitter. Pointers are to device memory.
+struct EquationTask {
+  propagation::PeExcess model;  ///< with its tables of losses
+  AirLoss air;
+  Station station;
+  GroundPosts ground;
+  ExcessOutputs to;  ///< over terrain, its excess holds that of fillDiffraction(), without the air
+};
+/// One thread per column, which keeps the posts of its horizons.
+/// @param grid  of device memory
+/// @param row   columns along x
+void fillEquation(const EquationTask& task, const ExcessGrid& grid, int row, const ScratchMemory& scratch,
+                  cudaStream_t stream);
 
-/// Any model: one thread per column, with its own scratch memory.
-/// @param excess        its tables in device memory; with needsDiffraction(), the results hold those of
-/// fillDiffraction(), without the air
+/// Any other model: one thread per column, with its own scratch memory.
+/// @param excess        its tables in device memory
 /// @param grid, ground  of device memory
 void fillExcess(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
                 const GroundPosts& ground, const ExcessOutputs& to, const ScratchMemory& scratch,

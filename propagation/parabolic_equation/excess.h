@@ -27,9 +27,8 @@ EMSCAPE_HD inline unsigned staircaseWarning(int staircases) {
 /// Interpolates in dB between azimuths, ranges and heights; other models speak outside the equation's limits.
 struct PeExcess {
   static constexpr bool kNeedsTerrain = true;
-  static constexpr bool kInParts = true;
+  static constexpr bool kInParts = false;
   static constexpr bool kHasMechanisms = true;
-  static constexpr bool kOverDiffraction = true;
 
   PeOthers others;
   /// Losses over free space (dB) of the cells, azimuth slowest, height fastest; NaN below the ground and
@@ -49,84 +48,33 @@ struct PeExcess {
   /// @param excess_db  one per voxel; NaN over missing terrain
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db,
                                  const MechanismStore& mechanisms = {}) const {
-    const PeSight sight = others.sightOf(column, scratch.even_ground_msl_m);
-    if (!sight.isKnown()) return setUnknown(column, excess_db);
+    static_assert(ExcessScratch::kPostNumbers == 4);  // `diffraction` has the first two
+    float* const numbers = scratch.post_numbers + 2 * scratch.posts;
+    const PeSight sight = others.sightOf(column, {numbers, numbers + scratch.posts});
+    if (!sight.isKnown()) {
+      for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
+      return kMissingTerrain;
+    }
+    const Neighbours beside = azimuthsAt(column.azimuth_rad);
     bool has_others = false;
-    const auto other_db = [&](int k) {
-      if (!has_others) others.fill(column, scratch, scratch.other_db);
-      has_others = true;
-      return scratch.other_db[k];
-    };
-    for (int k = 0; k < column.count; ++k) excess_db[k] = lossAt(column, sight, k, other_db, mechanisms);
-    return warnings;
-  }
-  EMSCAPE_HD unsigned begin(const ExcessColumn& column, const ExcessScratch& scratch,
-                            float* excess_db) const {
-    const PeSight sight = others.sightOf(column, scratch.even_ground_msl_m);
-    if (!sight.isKnown()) return setUnknown(column, excess_db);
-    scratch.post_numbers[0] = sight.horizon_rad;
-    scratch.post_numbers[1] = sight.to_ground_rad;
-    scratch.post_numbers[2] = static_cast<float>(sight.horizon_count);
-    return 0;
-  }
-  /// @param part  its memory holds the losses of `diffraction`, over terrain
-  EMSCAPE_HD unsigned fill(const ExcessColumn& column, const ExcessScratch& scratch, const ColumnPart& part,
-                           float* excess_db, const MechanismStore& mechanisms = {}) const {
-    const PeSight sight{scratch.post_numbers[0], scratch.post_numbers[1], scratch.even_ground_msl_m,
-                        static_cast<int>(scratch.post_numbers[2])};
-    for (int k = part.begin; k < part.end; ++k) {
-      const auto other_db = [&](int) {
-        return others.over_terrain ? part.memory_db[k - part.begin]
-                                   : others.twoRays_db(column.range_m, column.height_msl_m[k]);
-      };
-      excess_db[k] = lossAt(column, sight, k, other_db, mechanisms);
+    for (int k = 0; k < column.count; ++k) {
+      const PeLoss loss = lossAt(column, beside, sight, column.height_msl_m[k], [&] {
+        if (!has_others) others.fill(column, scratch, scratch.other_db);
+        has_others = true;
+        return scratch.other_db[k];
+      });
+      mechanisms.set(k, loss.mechanism(others.over_terrain));
+      excess_db[k] = loss.loss_db();
     }
     return warnings;
   }
 
-  /// The equation's part alone.
-  EMSCAPE_HD PeLoss equationAt(const ExcessColumn& column, float height_msl_m, float horizon_rad) const {
-    const auto range_m = static_cast<float>(column.range_m);
-    const float datum_msl_m = above_ground ? column.ground_msl_m : 0;
-    PeLoss loss;
-    loss.equation_part = others.equationPart(range_m, height_msl_m, column.ground_msl_m, horizon_rad);
-    if (loss.equation_part <= 0) return loss;
-    float at_m = range_m, height_m = height_msl_m - datum_msl_m;
-    if (height_m > top_m) {
-      loss.is_extended = true;
-      at_m = others.crossing_m(range_m, height_msl_m, top_m + datum_msl_m);
-      height_m = top_m;
-    }
-    others.setEquation(cells_db(column.azimuth_rad, at_m, height_m), range_m, height_msl_m, loss);
-    if (!(loss.equation_db == loss.equation_db)) loss.equation_part = 0;
-    return loss;
-  }
-
- private:
-  static EMSCAPE_HD unsigned setUnknown(const ExcessColumn& column, float* excess_db) {
-    for (int k = 0; k < column.count; ++k) excess_db[k] = NAN;
-    return kMissingTerrain;
-  }
-  template <class Other>
-  EMSCAPE_HD float lossAt(const ExcessColumn& column, const PeSight& sight, int k, const Other& other_db,
-                          const MechanismStore& mechanisms) const {
-    const float height_msl_m = column.height_msl_m[k];
-    PeLoss loss = equationAt(column, height_msl_m, sight.horizon_rad);
-    if (loss.equation_part < 1) loss.other_db = other_db(k);
-    others.addScatter(column, sight, height_msl_m, loss);
-    mechanisms.set(k, loss.mechanism(others.over_terrain));
-    return loss.loss_db();
-  }
+  /// Two of a row and where a place is between them.
   struct Neighbours {
     int first, second;
     float part;  ///< of the second
   };
-  static EMSCAPE_HD Neighbours between(float at, int count) {
-    if (!(at > 0)) return {0, 0, 0};
-    if (at >= static_cast<float>(count - 1)) return {count - 1, count - 1, 0};
-    const int first = static_cast<int>(at);
-    return {first, first + 1, at - static_cast<float>(first)};
-  }
+  /// The azimuths beside a column's.
   EMSCAPE_HD Neighbours azimuthsAt(double azimuth_rad) const {
     if (azimuths == 1) return {0, 0, 0};
     double from_first = azimuth_rad - first_azimuth_rad;
@@ -141,10 +89,47 @@ struct PeExcess {
     return between(static_cast<float>(from_first / azimuth_step_rad), azimuths);
   }
 
+  /// The parts of the loss at a height of a column.
+  /// @param beside    azimuthsAt() the column's
+  /// @param other_db  gives that of the other model
+  template <class Other>
+  EMSCAPE_HD PeLoss lossAt(const ExcessColumn& column, const Neighbours& beside, const PeSight& sight,
+                           float height_msl_m, const Other& other_db) const {
+    PeLoss loss = equationAt(column, beside, height_msl_m, sight.horizon_rad);
+    if (loss.equation_part < 1) loss.other_db = other_db();
+    others.addScatter(static_cast<float>(column.range_m), sight, height_msl_m, loss);
+    return loss;
+  }
+
+  /// The equation's part alone.
+  EMSCAPE_HD PeLoss equationAt(const ExcessColumn& column, const Neighbours& beside, float height_msl_m,
+                               float horizon_rad) const {
+    const auto range_m = static_cast<float>(column.range_m);
+    const float datum_msl_m = above_ground ? column.ground_msl_m : 0;
+    PeLoss loss;
+    loss.equation_part = others.equationPart(range_m, height_msl_m, column.ground_msl_m, horizon_rad);
+    if (loss.equation_part <= 0) return loss;
+    float at_m = range_m, height_m = height_msl_m - datum_msl_m;
+    if (height_m > top_m) {
+      loss.is_extended = true;
+      at_m = others.crossing_m(range_m, height_msl_m, top_m + datum_msl_m);
+      height_m = top_m;
+    }
+    others.setEquation(cells_db(beside, at_m, height_m), range_m, height_msl_m, loss);
+    if (!(loss.equation_db == loss.equation_db)) loss.equation_part = 0;
+    return loss;
+  }
+
+ private:
+  static EMSCAPE_HD Neighbours between(float at, int count) {
+    if (!(at > 0)) return {0, 0, 0};
+    if (at >= static_cast<float>(count - 1)) return {count - 1, count - 1, 0};
+    const int first = static_cast<int>(at);
+    return {first, first + 1, at - static_cast<float>(first)};
+  }
   /// NaN where no cell around is known.
-  EMSCAPE_HD float cells_db(double azimuth_rad, float range_m, float height_m) const {
-    const Neighbours a = azimuthsAt(azimuth_rad),
-                     r = between((range_m - first_range_m) / range_step_m, ranges);
+  EMSCAPE_HD float cells_db(const Neighbours& a, float range_m, float height_m) const {
+    const Neighbours r = between((range_m - first_range_m) / range_step_m, ranges);
     float sum = 0, weights = 0;
     for (int i = 0; i < 4; ++i) {
       const int azimuth = i & 1 ? a.second : a.first, range = i & 2 ? r.second : r.first;

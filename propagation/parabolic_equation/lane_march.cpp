@@ -68,7 +68,10 @@ LaneMarch::LaneMarch(const LaneMarchPlan& plan, int first, int count)
     : plan_(plan), first_(first), count_(count), transform_(plan.input.intervals.front()) {
   for (int l = 0; l < kStepLanes; ++l) {
     states_[std::size_t(l)] = plan.input.states[std::size_t(first + std::min(l, count - 1))];
+    own_end_[std::size_t(l)] = states_[std::size_t(l)].end_step;
   }
+  const int end_step = *std::max_element(own_end_.begin(), own_end_.end());
+  for (MarchState& state : states_) state.end_step = end_step;
   for (const StoredComplex& u : plan.input.start) {
     StepLanes& lanes = field_.emplace_back();
     std::fill(std::begin(lanes.re), std::end(lanes.re), u.re);
@@ -191,7 +194,7 @@ void LaneMarch::advance() {
     const PlannedStep& step = planned(l);
     state.ground_m = step.ground_m;
     state.sine = step.sine;
-    state.staircases += step.staircases;
+    if (step_ < own_end_[std::size_t(l)]) state.staircases += step.staircases;
     if (step.shift != 0) shift(l, step.shift);
   }
   ++step_;

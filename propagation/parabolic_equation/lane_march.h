@@ -61,7 +61,8 @@ class LaneMarch {
   int first_, count_, step_ = 0;
   std::size_t level_ = 0;  ///< of plan_.tables
   LaneTransform transform_;
-  std::array<MarchState, kStepLanes> states_;
+  std::array<MarchState, kStepLanes> states_;  ///< all end where the last of them does
+  std::array<int, kStepLanes> own_end_;        ///< steps
   std::vector<PlannedStep> planned_;
   struct Air {
     std::vector<float> level_m, units, gradient;

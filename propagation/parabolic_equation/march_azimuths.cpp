@@ -60,10 +60,13 @@ MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db) {
         const int first = group * kStepLanes, count = std::min(kStepLanes, march.azimuths - first);
         auto of_group = groupMarch(first, count);
         RadialCells marched = march.cells;
-        marched.ranges = march.rangesOf(first);
+        marched.ranges = 0;
+        for (int l = 0; l < count; ++l) marched.ranges = std::max(marched.ranges, march.rangesOf(first + l));
         const auto cells = marchCells(of_group, marched);
-        for (int l = 0; l < count; ++l)
-          std::copy(cells[l].begin(), cells[l].end(), excess_db + std::size_t(first + l) * of_azimuth);
+        for (int l = 0; l < count; ++l) {
+          const auto own = std::ptrdiff_t(march.rangesOf(first + l)) * marched.heights;
+          std::copy_n(cells[l].begin(), own, excess_db + std::size_t(first + l) * of_azimuth);
+        }
         const std::lock_guard lock(of_notes);
         notes.staircases += of_group.staircases();
       }

@@ -15,7 +15,7 @@ struct AzimuthMarch {
   PeSurface surface;
   RadialCells cells;
   int azimuths = 0;
-  /// Of each azimuth the cells in range that are marched, in groups of kStepLanes the same; empty: all.
+  /// Of each azimuth the cells in range that are marched; empty: all.
   std::vector<int> ranges;
   /// One for all azimuths, or one each.
   std::vector<RefractivityAlongPath> air;

@@ -93,6 +93,33 @@ void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& fie
   });
 }
 
+/// Ends the marches behind ground that the antenna sees at more than the equation's largest angle: over it
+/// the field comes at such angles, and other models speak (PeOthers::equationPart()).
+void endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMarch& field) {
+  constexpr float kMargin = 1.05f;  // a column between two azimuths may see a little past both
+  AzimuthMarch& march = field.march;
+  const auto azimuths = std::size_t(plan.azimuths);
+  std::vector<int> reached(azimuths, plan.cells.ranges);
+  for (std::size_t a = 0; a < azimuths; ++a) {
+    const float* const ground_msl_m = march.ground_msl_m.data() + a * march.ground_steps;
+    for (std::size_t i = 1; i < march.ground_steps; ++i) {
+      const auto range_m = static_cast<float>(double(i) * plan.grid.range_step_m);
+      if (range_m < PeSight::kNearGround_m ||
+          others.launchAngle(range_m, ground_msl_m[i]) < kMargin * others.max_angle_rad)
+        continue;
+      reached[a] = int(double(range_m) / plan.cells.range_step_m) + 2;
+      break;
+    }
+  }
+  if (march.ranges.empty()) march.ranges.assign(azimuths, plan.cells.ranges);
+  for (std::size_t a = 0; a < azimuths; ++a) {
+    const std::size_t before = a > 0 ? a - 1 : plan.is_around ? azimuths - 1 : a;
+    const std::size_t behind = a + 1 < azimuths ? a + 1 : plan.is_around ? 0 : a;
+    march.ranges[a] = std::min(march.ranges[a], std::max({reached[before], reached[a], reached[behind]}));
+    field.known_ranges[a] = std::min(field.known_ranges[a], march.ranges[a]);
+  }
+}
+
 /// The air of each azimuth over its ground, or one for all.
 std::vector<RefractivityAlongPath> airOverGround(const std::vector<RefractivityAlongPath>& air,
                                                  const AzimuthMarch& march, const Ground& ground) {
@@ -264,6 +291,7 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   PeExcess excess;
   excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m,
                            plan.max_angle_rad);
+  if (radials.has_terrain) endBehindSteepGround(excess.others, plan, field);
   excess.others.min_range_m = static_cast<float>(plan.min_range_m);
   if (!cells.are_points) {
     excess.others.cell_range_m = static_cast<float>(cells.range_step_m);
@@ -316,8 +344,9 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       std::max(2 * automatic.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz)));
   const char* const other_name = has_terrain ? "diffraction" : "two_ray";
   PeLoss loss;
-  std::vector<float> horizon_posts(static_cast<std::size_t>(profile.count));
-  const PeSight sight = others.sightOf(column, horizon_posts.data());
+  const auto posts = static_cast<std::size_t>(profile.count);
+  std::vector<float> ranges_m(posts), grounds_m(posts);
+  const PeSight sight = others.sightOf(column, {ranges_m.data(), grounds_m.data()});
   loss.equation_part = others.equationPart(static_cast<float>(column.range_m), end_msl_m,
                                            profile.height_msl_m[profile.count - 1], sight.horizon_rad);
   if (loss.equation_part < 1) loss.other_db = static_cast<float>(path.excess_db(OtherColumn{others}));
@@ -335,7 +364,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
     others.setEquation(ofMembers_db(losses_db, refractivity ? refractivity->quantile : std::nullopt),
                        static_cast<float>(column.range_m), end_msl_m, loss);
   }
-  others.addScatter(column, sight, end_msl_m, loss);
+  others.addScatter(static_cast<float>(column.range_m), sight, end_msl_m, loss);
   const bool over_land = has_terrain ? *highest > 0 : isLand(inputs.emitter.ground);
   path.addWarnings(airWarnings(air, over_land, std::max(double(end_msl_m), inputs.site.height_msl_m)));
   if (loss.equation_part > 0)

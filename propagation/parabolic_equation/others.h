@@ -10,6 +10,7 @@
 #include "propagation/mechanism.h"
 #include "propagation/p1812/p1812.h"
 #include "propagation/parabolic_equation/direct_ray.h"
+#include "propagation/parabolic_equation/sight.h"
 #include "propagation/two_ray/excess.h"
 
 namespace emscape::propagation {
@@ -46,21 +47,6 @@ struct PeLoss {
   }
 };
 
-/// What the other models ask of the ground on the way to a column.
-struct PeSight {
-  /// Largest angle (rad) above the horizontal at which the antenna sees the ground, at least 0; NaN over
-  /// missing terrain. Nearer than 500 m the slopes of its own hill would speak.
-  float horizon_rad = 0;
-  /// Largest angle (rad) from the antenna to the ground before the column, over the effective earth.
-  float to_ground_rad = -HUGE_VALF;
-  /// Posts before the column of which each is the horizon of some height there: the corners of the upper
-  /// convex hull of the ground, seen from the column. Numbers of posts, the nearest to the column first.
-  const float* horizon_posts = nullptr;
-  int horizon_count = 0;
-
-  EMSCAPE_HD bool isKnown() const { return horizon_rad == horizon_rad; }
-};
-
 /// Plain data, for one emitter. Heights are above mean sea level unless named otherwise.
 struct PeOthers {
   float tx_msl_m = 0, tx_agl_m = 0;
@@ -80,34 +66,18 @@ struct PeOthers {
     return (height_msl_m - tx_msl_m) / range_m - curvature_per_m * range_m / 2;
   }
 
-  /// @param memory  for the posts' numbers: one per post
-  EMSCAPE_HD PeSight sightOf(const ExcessColumn& column, float* memory) const {
-    constexpr float kNearGround_m = 500;
-    const float half_curvature = scatter.clear_air.median.half_curvature;
-    const auto end_m = static_cast<float>(column.range_m);
+  /// The pass over the ground to a column.
+  /// @param posts  memory for the ground's posts before the column
+  EMSCAPE_HD PeSightWalk sightWalk(double range_m, const SightPosts& posts) const {
+    return {tx_msl_m, curvature_per_m, scatter.clear_air.median.half_curvature, static_cast<float>(range_m),
+            posts};
+  }
+  EMSCAPE_HD PeSight sightOf(const ExcessColumn& column, const SightPosts& posts) const {
     const TerrainProfile& profile = column.profile;
-    PeSight sight;
-    float unknown = 0;  // or NaN
-    for (int i = 0; i < profile.count; ++i) {
-      const auto range_m = static_cast<float>(profile.range_m[i]);
-      const float ground_m = profile.height_msl_m[i], angle_rad = launchAngle(range_m, ground_m);
-      if (range_m >= kNearGround_m && angle_rad > sight.horizon_rad) sight.horizon_rad = angle_rad;
-      unknown += 0 * ground_m;
-      if (i == 0 || i == profile.count - 1 || !(range_m > 0 && end_m > range_m)) continue;
-      const float from_tx = (ground_m - tx_msl_m) / range_m - half_curvature * range_m;
-      sight.to_ground_rad = from_tx > sight.to_ground_rad ? from_tx : sight.to_ground_rad;
-    }
-    sight.horizon_rad += unknown;
-    sight.horizon_posts = memory;
-    for (int i = profile.count - 2; i > 0 && sight.isKnown(); --i) {
-      if (!(seenFrom(column, i).left_m > 0) || !(profile.range_m[i] > 0)) continue;
-      while (sight.horizon_count > 1 &&
-             isBelow(seenFrom(column, int(memory[sight.horizon_count - 1])),
-                     seenFrom(column, int(memory[sight.horizon_count - 2])), seenFrom(column, i)))
-        --sight.horizon_count;
-      memory[sight.horizon_count++] = static_cast<float>(i);
-    }
-    return sight;
+    PeSightWalk walk = sightWalk(column.range_m, posts);
+    for (int i = 0; i + 1 < profile.count; ++i)
+      walk.add({static_cast<float>(profile.range_m[i]), profile.height_msl_m[i]});
+    return walk.sight(profile.count > 0 ? profile.height_msl_m[profile.count - 1] : 0);
   }
 
   /// Weight of the equation.
@@ -152,13 +122,11 @@ struct PeOthers {
   }
 
   /// Adds the troposcatter to a loss where it can matter.
-  EMSCAPE_HD void addScatter(const ExcessColumn& column, const PeSight& sight, float height_msl_m,
-                             PeLoss& loss) const {
+  EMSCAPE_HD void addScatter(float range_m, const PeSight& sight, float height_msl_m, PeLoss& loss) const {
     constexpr float kMatters_db = 30;  // troposcatter is weaker than that by 15 dB and more
     if (loss.withoutScatter_db() < kMatters_db) return;
-    const float angle_rad = horizonAngle(column, sight, height_msl_m);
+    const float angle_rad = horizonAngle(range_m, sight, height_msl_m);
     if (!(angle_rad > 0)) return;
-    const auto range_m = static_cast<float>(column.range_m);
     const float free_space_db = 92.45f + 20 * std::log10(scatter.clear_air.frequency_ghz * range_m / 1000);
     const float scatter_db = p1812TroposcatterDb(scatter, range_m, 1000 * angle_rad) - free_space_db;
     loss.scatter_db = scatter_db > 0 ? scatter_db : 0;
@@ -179,35 +147,18 @@ struct PeOthers {
   }
 
  private:
-  /// A post as seen from a column: its distance, and its height without the curvature of the earth.
-  struct Seen {
-    float left_m, ground_m;
-  };
-  static EMSCAPE_HD Seen seenFrom(const ExcessColumn& column, int i) {
-    return {static_cast<float>(column.range_m) - static_cast<float>(column.profile.range_m[i]),
-            column.profile.height_msl_m[i]};
-  }
-  /// True if a post is not above the line from the one before it to the one behind, over the effective earth.
-  EMSCAPE_HD bool isBelow(const Seen& post, const Seen& before, const Seen& behind) const {
-    const float half_curvature = scatter.clear_air.median.half_curvature;
-    const auto slopeTo = [&](const Seen& to) {
-      return (to.ground_m - before.ground_m) / (to.left_m - before.left_m) -
-             half_curvature * (to.left_m + before.left_m);
-    };
-    return slopeTo(post) <= slopeTo(behind);
-  }
   static EMSCAPE_HD float sinc(float x) { return std::fabs(x) < 1e-3f ? 1 : std::sin(x) / x; }
 
   /// Angle (rad) between the horizons' rays of both ends, 0 where they see each other.
-  EMSCAPE_HD float horizonAngle(const ExcessColumn& column, const PeSight& sight, float height_msl_m) const {
-    const auto range_m = static_cast<float>(column.range_m);
+  EMSCAPE_HD float horizonAngle(float range_m, const PeSight& sight, float height_msl_m) const {
     const float half_curvature = scatter.clear_air.median.half_curvature;
     const float to_rx = (height_msl_m - tx_msl_m) / range_m - half_curvature * range_m;
     if (!(sight.to_ground_rad > to_rx)) return 0;
     float of_rx = -HUGE_VALF;
-    for (int n = 0; n < sight.horizon_count; ++n) {
-      const Seen post = seenFrom(column, static_cast<int>(sight.horizon_posts[n]));
-      const float from_rx = (post.ground_m - height_msl_m) / post.left_m - half_curvature * post.left_m;
+    for (int n = sight.count - 1; n >= 0; --n) {
+      const SightPost post = sight.posts.get(n);
+      const float left_m = range_m - post.range_m;
+      const float from_rx = (post.ground_m - height_msl_m) / left_m - half_curvature * left_m;
       if (from_rx < of_rx) break;  // behind the horizon the angles fall
       of_rx = from_rx;
     }

@@ -137,11 +137,6 @@ void planRanges(const RadialInputs& radials, PePlan& plan) {
       }
     }
   }
-  for (auto group = plan.ranges.begin(); group < plan.ranges.end();) {
-    const auto end = plan.ranges.end() - group > kStepLanes ? group + kStepLanes : plan.ranges.end();
-    std::fill(group, end, *std::max_element(group, end));
-    group = end;
-  }
 }
 
 }  // namespace

@@ -18,10 +18,6 @@
 /// A model whose row names several mechanisms has
 ///     static constexpr bool kHasMechanisms = true;
 /// and a last parameter (const MechanismStore&), which takes the mechanism of each height; fill() too.
-/// A model that gives way to `diffraction` over terrain, and whose fill() finds its losses in ColumnPart's
-/// memory, has
-///     static constexpr bool kOverDiffraction = true;
-/// and the members others.diffraction and others.over_terrain.
 #pragma once
 
 #include <type_traits>
@@ -59,11 +55,5 @@ template <class Model, class = void>
 struct HasMechanisms : std::false_type {};
 template <class Model>
 struct HasMechanisms<Model, std::void_t<decltype(Model::kHasMechanisms)>> : std::true_type {};
-
-/// True for models whose fill() wants the losses of `diffraction`.
-template <class Model, class = void>
-struct OverDiffraction : std::false_type {};
-template <class Model>
-struct OverDiffraction<Model, std::void_t<decltype(Model::kOverDiffraction)>> : std::true_type {};
 
 }  // namespace emscape::propagation

@@ -280,7 +280,8 @@ TEST(ParabolicField, HasNoSeamOverASmoothEarth) {
     propagation::ExcessColumn column;
     column.range_m = range_m;
     for (float height_m = 22.5F; height_m < 700; height_m += 5) {
-      const propagation::PeLoss loss = excess.equationAt(column, height_m, 0);
+      const propagation::PeLoss loss =
+          excess.equationAt(column, excess.azimuthsAt(column.azimuth_rad), height_m, 0);
       if (loss.equation_part <= 0 || loss.equation_part >= 1) continue;
       column.height_msl_m = &height_m;
       column.count = 1;

@@ -1,0 +1,197 @@
+#include <algorithm>
+
+#include "base/cuda/cuda_memory.h"
+#include "emfield/cuda/column_tiles.h"
+
+namespace emscape::emfield::cuda {
+namespace {
+
+using propagation::DiffractionColumn;
+using propagation::TerrainSums;
+
+constexpr int kReceivers = propagation::kDiffractionReceivers;
+
+/// Summary of a block of posts; see DiffractionColumn.
+struct PostBlock {
+  float highest_msl_m, lowered_msl_m;
+};
+
+/// Memory for the profiles of the columns that are computed at a time: of each post or block of posts the
+/// threads one after another.
+class ProfileMemory {
+ public:
+  /// @param posts  of the longest profile
+  ProfileMemory(const ScratchMemory& memory, int posts) {
+    constexpr int kBlock = propagation::kDiffractionBlock;
+    const auto blocks = static_cast<std::size_t>((posts + kBlock - 1) / kBlock);
+    const std::size_t bytes_each = blocks * (kBlock * sizeof(float) + sizeof(PostBlock));
+    threads_ = static_cast<int>(std::min<std::size_t>(memory.bytes / bytes_each, 1 << 30)) / kColumnThreads *
+               kColumnThreads;
+    if (threads_ == 0) throwTooSmall(bytes_each, memory.bytes);
+    blocks_ = static_cast<PostBlock*>(memory.data);
+    heights_msl_m_ = reinterpret_cast<float*>(blocks_ + blocks * static_cast<std::size_t>(threads_));
+  }
+  int threads() const { return threads_; }
+  __device__ float& height_msl_m(int thread, int post) const {
+    return heights_msl_m_[static_cast<long long>(post) * threads_ + thread];
+  }
+  __device__ PostBlock& block(int thread, int b) const {
+    return blocks_[static_cast<long long>(b) * threads_ + thread];
+  }
+
+ private:
+  int threads_;
+  PostBlock* blocks_;
+  float* heights_msl_m_;
+};
+
+/// A column's profile for DiffractionColumn, as propagation::ProfilePosts.
+class ColumnPosts {
+ public:
+  /// Reads the profile.
+  __device__ ColumnPosts(const DiffractionTask& task, const FastInverse& path, float ground_msl_m,
+                         const ProfileMemory& memory, int thread)
+      : ranges_m_(task.ground.ranges_m),
+        before_(task.ground.lastBefore(path.distance_m)),
+        thread_(thread),
+        distance_m_(path.distance_m),
+        ground_msl_m_(ground_msl_m),
+        memory_(memory) {
+    constexpr int kBlock = propagation::kDiffractionBlock;
+    const auto curvature = static_cast<float>(task.model.model.half_curvature);
+    const int last_block = before_ / kBlock * kBlock;
+    PostBlock block{-HUGE_VALF, -HUGE_VALF};
+    double base = 0, before_m = 0, before_height_m = 0;
+    visitPosts(task.station, task.ground, path, count(), [&](int i, float height_msl_m) {
+      memory.height_msl_m(thread, i) = height_msl_m;
+      const double range_m = ranges_m_[i];
+      if (i == 0) base = static_cast<double>(height_msl_m);
+      const double height_m = static_cast<double>(height_msl_m) - base;
+      if (i > 0 && i < last_block) sums_.add(before_m, before_height_m, range_m, height_m);
+      before_m = range_m;
+      before_height_m = height_m;
+      const auto range = static_cast<float>(range_m);
+      block.highest_msl_m = fmaxf(block.highest_msl_m, height_msl_m);
+      block.lowered_msl_m = fmaxf(block.lowered_msl_m, height_msl_m - curvature * range * range);
+      if (i % kBlock != kBlock - 1 && i != before_) return;
+      memory.block(thread, i / kBlock) = block;
+      block = {-HUGE_VALF, -HUGE_VALF};
+    });
+  }
+
+  __device__ int count() const { return before_ + 1; }
+  __device__ double range_m(int i) const { return ranges_m_[i]; }
+  __device__ float height_msl_m(int i) const { return memory_.height_msl_m(thread_, i); }
+  __device__ float highest_msl_m(int b) const { return memory_.block(thread_, b).highest_msl_m; }
+  __device__ float lowered_msl_m(int b) const { return memory_.block(thread_, b).lowered_msl_m; }
+  /// Those before the last block: DiffractionColumn reads no others.
+  __device__ TerrainSums sumsBefore(int) const { return sums_; }
+  __device__ double distance_m() const { return distance_m_; }
+  __device__ float ground_msl_m() const { return ground_msl_m_; }
+  __device__ double sea_m() const {
+    return propagation::lengthOverSea_m(
+        count() + 1, [this](int i) { return i <= before_ ? ranges_m_[i] : distance_m_; },
+        [this](int i) { return i <= before_ ? height_msl_m(i) : ground_msl_m_; });
+  }
+  /// Ranges are even except for the first ones: an estimate from the end, then a few steps.
+  __device__ int lastBefore(double range_m) const {
+    if (before_ == 0) return 0;
+    const double even_m = ranges_m_[before_] - ranges_m_[before_ - 1];
+    const int guess = before_ - static_cast<int>((ranges_m_[before_] - range_m) / even_m);
+    int post = guess < 0 ? 0 : guess > before_ ? before_ : guess;
+    while (post > 0 && ranges_m_[post] >= range_m) --post;
+    while (post < before_ && ranges_m_[post + 1] < range_m) ++post;
+    return post;
+  }
+
+ private:
+  const double* ranges_m_;
+  int before_;
+  int thread_;
+  double distance_m_;
+  float ground_msl_m_;
+  const ProfileMemory& memory_;
+  TerrainSums sums_;
+};
+
+/// A call of its own: its registers are not those of the columns.
+__device__ __noinline__ float effectiveHeight_m(const Station& station, float height_msl_m, double range_m) {
+  return static_cast<float>(
+      station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));
+}
+
+/// The column of a thread in a tile.
+__device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGrid& grid, int c,
+                                    const ProfileMemory& memory, int thread) {
+  const auto layer = static_cast<long long>(grid.column_count);
+  const auto set = [&](int layer_k, float excess_db) {
+    task.to.out.excess.set(static_cast<std::size_t>(layer_k * layer + c), excess_db);
+  };
+  const int lowest = grid.firstValid(static_cast<std::size_t>(c));
+  for (int below = 0; below < lowest; ++below) set(below, 0);
+  if (grid.isLeftOut(static_cast<std::size_t>(c))) return;
+  const AirLoss& air = task.air;
+  const GridColumn column = grid.columns[static_cast<std::size_t>(c)];
+  bool is_unknown = false;
+  for (int segment = 0; segment < grid.segments; ++segment) {
+    const int end = grid.firstLayer(segment + 1);
+    int k = max(lowest, grid.firstLayer(segment));
+    const auto heightOf = [&](int layer_k) {
+      const int here = min(layer_k, end - 1);
+      return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[here])));
+    };
+    const FastInverse path = grid.coordinatesOf(task.station, static_cast<std::size_t>(c), segment);
+    const propagation::AirColumn above(air, static_cast<float>(path.distance_m));
+    bool is_free = !(path.distance_m > 0);  // at the emitter itself
+    if (!is_free) {
+      const float ground_msl_m =
+          grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(task.station, task.ground, path);
+      const ColumnPosts posts(task, path, ground_msl_m, memory, thread);
+      DiffractionColumn<float, ColumnPosts> receivers(task.model.model, posts, task.model.tx_msl_m);
+      if (receivers.isUnknown()) {
+        is_unknown = true;
+        for (; k < end; ++k) set(k, NAN);
+      }
+      while (k < end && !is_free) {
+        float rx_msl_m[kReceivers], loss_db[kReceivers];
+#pragma unroll
+        for (int j = 0; j < kReceivers; ++j) rx_msl_m[j] = heightOf(k + j);
+        if (task.station.refraction.exponential) {
+          for (int j = 0; j < kReceivers; ++j) {
+            rx_msl_m[j] = effectiveHeight_m(task.station, rx_msl_m[j], path.distance_m);
+          }
+        }
+        is_free = receivers.losses(rx_msl_m, loss_db);
+#pragma unroll
+        for (int j = 0; j < kReceivers; ++j) {
+          if (k + j >= end) break;
+          if (!air.isClear()) loss_db[j] += above.lossDb(heightOf(k + j));
+          set(k + j, loss_db[j]);
+        }
+        k += kReceivers;
+      }
+    }
+    for (; k < end; ++k) set(k, air.isClear() ? 0 : above.lossDb(heightOf(k)));
+  }
+  if (is_unknown) markUnknown(task.to, c);
+}
+
+__global__ void __launch_bounds__(kColumnThreads, 5)
+    diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
+                      const __grid_constant__ ProfileMemory memory, const __grid_constant__ Tiles tiles) {
+  tiles.eachColumn(
+      grid, [&](int task, int c, int thread) { diffractionOfColumn(tasks[task], grid, c, memory, thread); });
+}
+
+}  // namespace
+
+void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
+                     const ScratchMemory& scratch, cudaStream_t stream) {
+  const Tiles tiles(grid, row, count);
+  const ProfileMemory memory(scratch, ranges);
+  const int blocks = std::min(tiles.count(), memory.threads() / kColumnThreads);
+  diffractionKernel<<<static_cast<unsigned>(blocks), kColumnThreads, 0, stream>>>(tasks, grid, memory, tiles);
+  emscape::cuda::checkLaunch("diffraction");
+}
+
+}  // namespace emscape::emfield::cuda
