@@ -1,6 +1,8 @@
 # emscape_module(NAME SOURCES ... [LINKS ...] [PRIVATE_LINKS ...])
 # A library emscape_NAME, called emscape::NAME, of one module's sources. Its public headers lie in
-# include/emscape/NAME, the internal ones next to the sources.
+# include/emscape/NAME, the internal ones next to the sources. Its sources are compiled in groups, which parse the headers
+# once and instantiate templates once (EMSCAPE_UNITY): a name in an anonymous namespace is unique in its module. A source with
+# options of its own, or with SKIP_UNITY_BUILD_INCLUSION, is compiled alone.
 function(emscape_module name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS")
   add_library(emscape_${name} ${ARG_SOURCES})
@@ -11,7 +13,17 @@ function(emscape_module name)
                                                     "$<INSTALL_INTERFACE:include>")
   target_link_libraries(emscape_${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
   emscape_warnings(emscape_${name})
+  emscape_unity(emscape_${name})
   install(TARGETS emscape_${name} EXPORT emscape COMPONENT development)
+endfunction()
+
+# The sources of a target are compiled in groups, if asked for.
+function(emscape_unity target)
+  if(EMSCAPE_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
+    # a class that a source defines for itself, with members of an anonymous namespace, seems to come from a header
+    target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
+  endif()
 endfunction()
 
 # Warnings, as errors if asked for, on a target of our own.

@@ -1,6 +1,7 @@
 # Options and what holds for every target of the project.
 option(EMSCAPE_TESTS "Build the tests" ON)
 option(EMSCAPE_WERROR "Treat warnings as errors" ON)
+option(EMSCAPE_UNITY "Compile the sources of the libraries in groups: half the time of a whole build" ON)
 option(EMSCAPE_PYTHON_MODULE "Build the extension module of the Python package" OFF)
 set(EMSCAPE_SANITIZE "" CACHE STRING "Sanitizer of every target: address, thread, fuzzer (needs clang) or empty")
 set_property(CACHE EMSCAPE_SANITIZE PROPERTY STRINGS "" address thread fuzzer)

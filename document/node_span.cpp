@@ -9,14 +9,14 @@ namespace emscape::document {
 
 namespace {
 
-constexpr std::string_view kBlanks = " \t\r\n";
+constexpr std::string_view kWhiteSpace = " \t\r\n";
 
 [[noreturn]] void refuse(const std::string& why) {
   throw Error(ErrorCode::bad_input, "the file cannot be edited here: " + why);
 }
 
 bool isBlank(char c) {
-  return kBlanks.find(c) != std::string_view::npos;
+  return kWhiteSpace.find(c) != std::string_view::npos;
 }
 
 std::size_t endOfQuoted(std::string_view text, std::size_t begin) {

@@ -50,4 +50,9 @@ Station makeStation(const GeodeticPosition& position, double height_msl_m,
   return station;
 }
 
+Vec3d lineTo(const Station& from, const GeodeticPosition& to) {
+  const Vec3d line = toEcef(to) - from.ecef_m;
+  return {dot(line, from.geodesy.east), dot(line, from.geodesy.north), dot(line, from.geodesy.station.up)};
+}
+
 }  // namespace emscape::emfield

@@ -9,6 +9,9 @@
 
 namespace emscape::emfield {
 
+/// Ground distance (m) from a station below which there is no path.
+constexpr double kMinPath_m = 1;
+
 /// Immutable once made.
 struct Station {
   FastGeodesy geodesy;
@@ -25,6 +28,9 @@ Station makeStation(const GeodeticPosition& position, double height_msl_m, doubl
 /// Refractivity is that of the atmosphere.
 Station makeStation(const GeodeticPosition& position, double height_msl_m,
                     const propagation::Atmosphere& atmosphere);
+
+/// The straight line (m) from a station to a point, east-north-up.
+Vec3d lineTo(const Station& from, const GeodeticPosition& to);
 
 /// Correction of the rise (m) of the straight line to a point, so that it starts along the refracted ray.
 /// @param range_m       over the ground

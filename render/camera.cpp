@@ -25,7 +25,7 @@ constexpr double kHeightWanted = 0.32;
 // --- text form ---
 
 /// One key of the text form: a number, its range, and where it goes.
-struct NumberKey {
+struct CameraKey {
   const char* name;
   double least, largest;
   void (*set)(CameraSpec&, double);
@@ -36,20 +36,20 @@ Vec3d& orNew(std::optional<Vec3d>& position) {
 }
 
 constexpr double kFar_m = 1e9;
-const std::vector<NumberKey>& commonKeys() {
-  static const std::vector<NumberKey> keys{
+const std::vector<CameraKey>& commonKeys() {
+  static const std::vector<CameraKey> keys{
       {"fov_deg", kLeastFov_deg, kLargestFov_deg, [](CameraSpec& s, double v) { s.fov_deg = v; }},
       {"target_x_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.target_m).x = v; }},
       {"target_y_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.target_m).y = v; }},
       {"target_z_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.target_m).z = v; }}};
   return keys;
 }
-const std::vector<NumberKey>& ownKeys(CameraSpec::Kind kind) {
-  static const std::vector<NumberKey> orbit{
+const std::vector<CameraKey>& ownKeys(CameraSpec::Kind kind) {
+  static const std::vector<CameraKey> orbit{
       {"azimuth_deg", -360, 360, [](CameraSpec& s, double v) { s.azimuth_deg = v; }},
       {"elevation_deg", -90, 90, [](CameraSpec& s, double v) { s.elevation_deg = v; }},
       {"distance", kMinDistance, kMaxDistance, [](CameraSpec& s, double v) { s.distance = v; }}};
-  static const std::vector<NumberKey> lookat{
+  static const std::vector<CameraKey> lookat{
       {"eye_x_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.eye_m).x = v; }},
       {"eye_y_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.eye_m).y = v; }},
       {"eye_z_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.eye_m).z = v; }}};
@@ -68,8 +68,8 @@ void setKey(CameraSpec& spec, const SpecText& text, const std::string& key, cons
     return;
   }
   std::string allowed = "projection";
-  for (const std::vector<NumberKey>* keys : {&ownKeys(spec.kind), &commonKeys()}) {
-    for (const NumberKey& known : *keys) {
+  for (const std::vector<CameraKey>* keys : {&ownKeys(spec.kind), &commonKeys()}) {
+    for (const CameraKey& known : *keys) {
       allowed += std::string(", ") + known.name;
       if (key != known.name) continue;
       known.set(spec, text.number(key, value, known.least, known.largest));
@@ -124,13 +124,13 @@ std::array<Vec3d, 8> cornersOf(const SceneBox& box) {
 
 /// What the box covers of the plane at one unit before the eye (perspective), or of the plane through it
 /// (orthographic).
-struct Extent {
+struct ViewExtent {
   double least_x = 1e300, largest_x = -1e300, least_y = 1e300, largest_y = -1e300;
   bool in_front = true;
 };
 
-Extent extentOf(const SceneBox& box, const Axes& axes, const Vec3d& eye, Projection projection) {
-  Extent extent;
+ViewExtent extentOf(const SceneBox& box, const Axes& axes, const Vec3d& eye, Projection projection) {
+  ViewExtent extent;
   for (const Vec3d& corner : cornersOf(box)) {
     const Vec3d offset = corner - eye;
     const double depth = dot(offset, axes.forward);
@@ -159,7 +159,7 @@ FreeArea freeArea(ImageSize size, const FrameMargins& margins) {
 }
 
 /// How many times too large the box is for the free area when half_height is the scale.
-double overflowOf(const Extent& extent, const FreeArea& area, double half_height) {
+double overflowOf(const ViewExtent& extent, const FreeArea& area, double half_height) {
   return std::max((extent.largest_x - extent.least_x) / area.width,
                   (extent.largest_y - extent.least_y) / area.height) /
          half_height;
@@ -171,7 +171,7 @@ double fittingDistance_m(const SceneBox& box, const Axes& axes, const Vec3d& tar
   double too_near = 0;
   double far = box.drawnDiagonal_m();
   const auto fits = [&](double distance) {
-    const Extent extent = extentOf(box, axes, target - axes.forward * distance, Projection::perspective);
+    const ViewExtent extent = extentOf(box, axes, target - axes.forward * distance, Projection::perspective);
     return extent.in_front && overflowOf(extent, area, half_height) <= 1;
   };
   while (!fits(far)) far *= 2;
@@ -190,7 +190,7 @@ void fitOrbit(Camera& camera, const SceneBox& box, const Axes& axes, const Vec3d
     camera.eye_m = target - axes.forward * (2 * box.drawnDiagonal_m());
     camera.half_height = overflowOf(extentOf(box, axes, camera.eye_m, camera.projection), area, 1.0);
   }
-  const Extent extent = extentOf(box, axes, camera.eye_m, camera.projection);
+  const ViewExtent extent = extentOf(box, axes, camera.eye_m, camera.projection);
   camera.shift_x = 0.5 * (extent.least_x + extent.largest_x) / camera.half_height - area.center_x;
   camera.shift_y = 0.5 * (extent.least_y + extent.largest_y) / camera.half_height - area.center_y;
 }

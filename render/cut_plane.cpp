@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMaxAltitude_m = 1e6;
 constexpr double kMaxBearing_deg = 360;
-constexpr double kFar_m = 1e9;
+constexpr double kFarthest_m = 1e9;
 constexpr std::array<const char*, 4> kSides{"below", "above", "left", "right"};
 
 const char* nameOf(CutPlane::Side side) {
@@ -47,24 +47,24 @@ struct LinePoints {
 };
 
 /// A number of a text form and where it goes.
-struct NumberKey {
+struct PlaneKey {
   const char* name;
   double largest;  ///< and its negative is the least
   void (*set)(CutPlane&, LinePoints&, double);
 };
 
-const std::vector<NumberKey>& keysOf(CutPlane::Kind kind) {
-  static const std::vector<NumberKey> horizontal{
+const std::vector<PlaneKey>& keysOf(CutPlane::Kind kind) {
+  static const std::vector<PlaneKey> horizontal{
       {"altitude_m", kMaxAltitude_m, [](CutPlane& p, LinePoints&, double v) { p.altitude_m = v; }}};
-  static const std::vector<NumberKey> vertical{
+  static const std::vector<PlaneKey> vertical{
       {"bearing_deg", kMaxBearing_deg, [](CutPlane& p, LinePoints&, double v) { p.bearing_deg = v; }},
-      {"x_m", kFar_m, [](CutPlane& p, LinePoints&, double v) { p.x_m = v; }},
-      {"y_m", kFar_m, [](CutPlane& p, LinePoints&, double v) { p.y_m = v; }},
-      {"offset_m", kFar_m, [](CutPlane& p, LinePoints&, double v) { p.offset_m = v; }},
-      {"x1_m", kFar_m, [](CutPlane&, LinePoints& line, double v) { line.x1_m = v; }},
-      {"y1_m", kFar_m, [](CutPlane&, LinePoints& line, double v) { line.y1_m = v; }},
-      {"x2_m", kFar_m, [](CutPlane&, LinePoints& line, double v) { line.x2_m = v; }},
-      {"y2_m", kFar_m, [](CutPlane&, LinePoints& line, double v) { line.y2_m = v; }}};
+      {"x_m", kFarthest_m, [](CutPlane& p, LinePoints&, double v) { p.x_m = v; }},
+      {"y_m", kFarthest_m, [](CutPlane& p, LinePoints&, double v) { p.y_m = v; }},
+      {"offset_m", kFarthest_m, [](CutPlane& p, LinePoints&, double v) { p.offset_m = v; }},
+      {"x1_m", kFarthest_m, [](CutPlane&, LinePoints& line, double v) { line.x1_m = v; }},
+      {"y1_m", kFarthest_m, [](CutPlane&, LinePoints& line, double v) { line.y1_m = v; }},
+      {"x2_m", kFarthest_m, [](CutPlane&, LinePoints& line, double v) { line.x2_m = v; }},
+      {"y2_m", kFarthest_m, [](CutPlane&, LinePoints& line, double v) { line.y2_m = v; }}};
   return kind == CutPlane::Kind::horizontal ? horizontal : vertical;
 }
 
@@ -108,7 +108,7 @@ CutPlane parseCutPlane(const std::string& text) {
     plane.kind = CutPlane::Kind::vertical;
     plane.keep = CutPlane::Side::left;
   }
-  const std::vector<NumberKey>& keys = keysOf(plane.kind);
+  const std::vector<PlaneKey>& keys = keysOf(plane.kind);
   LinePoints line;
   for (const auto& [key, value] : parts.entries()) {
     if (key == "keep") {
@@ -120,8 +120,8 @@ CutPlane parseCutPlane(const std::string& text) {
       continue;
     }
     std::string allowed = "keep, on";
-    const NumberKey* found = nullptr;
-    for (const NumberKey& known : keys) {
+    const PlaneKey* found = nullptr;
+    for (const PlaneKey& known : keys) {
       allowed += std::string(", ") + known.name;
       if (key == known.name) found = &known;
     }
@@ -183,9 +183,9 @@ void checkCutPlanes(const std::vector<CutPlane>& planes) {
     }
     requireWithin("altitude_m", plane.altitude_m, kMaxAltitude_m);
     requireWithin("bearing_deg", plane.bearing_deg, kMaxBearing_deg);
-    requireWithin("x_m", plane.x_m.value_or(0), kFar_m);
-    requireWithin("y_m", plane.y_m.value_or(0), kFar_m);
-    requireWithin("offset_m", plane.offset_m, kFar_m);
+    requireWithin("x_m", plane.x_m.value_or(0), kFarthest_m);
+    requireWithin("y_m", plane.y_m.value_or(0), kFarthest_m);
+    requireWithin("offset_m", plane.offset_m, kFarthest_m);
   }
 }
 

@@ -18,7 +18,7 @@ constexpr double kMaxPosts = 1 << 28;
 constexpr double kPlinth = 0.025;
 /// Hatching lines of a pit across the longer side of the ground.
 constexpr float kHatchLines = 90;
-constexpr int kRowGrain = 16;
+constexpr int kGroundGrain = 16;
 
 /// Muted, so that the field's colours stand out: lowland, slopes, heights, summits.
 struct TintPoint {
@@ -152,7 +152,7 @@ void GroundSurface::shade(const volume::Grid& grid, const SceneBox& box) {
     const float rise = after - before;
     return rise == rise ? static_cast<float>(rise / (2 * spacing)) : 0.0F;
   };
-  parallelFor(rows, kRowGrain, [&](int begin, int end) {
+  parallelFor(rows, kGroundGrain, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
       for (int i = 0; i < columns; ++i) {
         const float slope_x = slope(height(i - 1, j), height(i + 1, j), post_x_m / voxel_z_m);

@@ -16,7 +16,7 @@ constexpr Named<Pattern> kPatterns[] = {{Pattern::full, "full"},
 constexpr Named<Interpolation> kInterpolations[] = {{Interpolation::float32, "float"},
                                                     {Interpolation::bits8, "8bit"}};
 
-constexpr int kRowGrain = 16;
+constexpr int kFillGrain = 16;
 
 Lattice lattice(ImageSize size, int first_x, int first_y, int step_x, int step_y) {
   return {first_x,
@@ -150,7 +150,7 @@ long long pixelCount(const std::vector<Lattice>& lattices) {
 void interpolate(Pattern pattern, Interpolation interpolation, Image& image) {
   if (pattern == Pattern::full || pattern == Pattern::adaptive || image.size.count() == 0) return;
   const auto fill = interpolation == Interpolation::float32 ? fillRowsFloat : fillRows8;
-  parallelFor(image.size.height, kRowGrain, [&](int begin, int end) { fill(pattern, image, begin, end); });
+  parallelFor(image.size.height, kFillGrain, [&](int begin, int end) { fill(pattern, image, begin, end); });
 }
 
 }  // namespace emscape::render

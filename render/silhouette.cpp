@@ -9,7 +9,7 @@
 namespace emscape::render {
 namespace {
 
-constexpr int kRowGrain = 32;
+constexpr int kSilhouetteGrain = 32;
 /// Pixels by which the projected outline is widened, so that only its inside must be looked at: far more than
 /// the projection's rounding errors, little enough that few rays are tested.
 constexpr double kMargin = 1.0 / 64;
@@ -147,7 +147,7 @@ void findRows(const CameraView& camera, const Vec3d& lower, const Vec3d& upper, 
   const ImageSize size = camera.size;
   silhouette.rows.resize(static_cast<std::size_t>(size.height));
   const Outline outline = outlineOf(camera, lower, upper);
-  parallelFor(size.height, kRowGrain, [&](int first, int last) {
+  parallelFor(size.height, kSilhouetteGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       Span& row = silhouette.rows[static_cast<std::size_t>(y)];
       row = spanOf(outline, y, size.width);
@@ -221,7 +221,7 @@ void narrowSilhouette(const CameraView& camera, const std::vector<IndexBox>& box
       height.add(q.y);
     }
   }
-  parallelFor(camera.size.height, kRowGrain, [&](int first, int last) {
+  parallelFor(camera.size.height, kSilhouetteGrain, [&](int first, int last) {
     for (int y = first; y < last; ++y) {
       Span& row = silhouette.rows[static_cast<std::size_t>(y)];
       Span covered{row.end, row.begin};

@@ -16,7 +16,7 @@ Rgb rgbOf(unsigned hex) {
           static_cast<float>(hex & 255U) / 255.0F};
 }
 
-Rgb lerp(const Rgb& a, const Rgb& b, float f) {
+Rgb lerpColor(const Rgb& a, const Rgb& b, float f) {
   return {a.r + f * (b.r - a.r), a.g + f * (b.g - a.g), a.b + f * (b.b - a.b)};
 }
 
@@ -197,7 +197,8 @@ Rgb ColorMap::at(double position) const {
   if (above == points.begin()) return points.front().color;
   if (above == points.end()) return points.back().color;
   const Point& below = *(above - 1);
-  return lerp(below.color, above->color, static_cast<float>((position - below.at) / (above->at - below.at)));
+  return lerpColor(below.color, above->color,
+                   static_cast<float>((position - below.at) / (above->at - below.at)));
 }
 
 const ColorMap& colorMap(const std::string& name) {
@@ -226,7 +227,8 @@ Rgb TransferFunction::color(double value) const {
   if (above == colors.begin()) return colors.front().color;
   if (above == colors.end()) return colors.back().color;
   const ColorPoint& below = *(above - 1);
-  return lerp(below.color, above->color, static_cast<float>((value - below.at) / (above->at - below.at)));
+  return lerpColor(below.color, above->color,
+                   static_cast<float>((value - below.at) / (above->at - below.at)));
 }
 
 double TransferFunction::opacity(double value) const {

@@ -9,7 +9,7 @@ namespace emscape::scenario {
 namespace {
 
 /// Times looked at: longer series have been everywhere by then or repeat themselves.
-constexpr double kMaxTimes = 20000;
+constexpr double kMaxSampledTimes = 20000;
 
 /// Part of 0..range (deg) that is within half a width of one of the azimuths.
 /// @param closed  0 and range are one azimuth
@@ -40,7 +40,7 @@ std::optional<ScanSampling> scanSampling(const ScanSpec& scan, double beamwidth_
   sampling.step_deg = clock.step_s * (rotates ? 6 * std::abs(scan.rate_rpm) : scan.rate_deg_s);
   std::vector<double> azimuths_deg;
   const double left_deg = rotates ? 0 : scan.azimuth_deg - scan.width_deg / 2;
-  for (double i = 0; i <= std::min(last, kMaxTimes); ++i) {
+  for (double i = 0; i <= std::min(last, kMaxSampledTimes); ++i) {
     azimuths_deg.push_back(beamAt(scan, i * clock.step_s).azimuth_deg - left_deg);
   }
   sampling.lit_share =

@@ -20,7 +20,7 @@ namespace {
 
 using namespace propagation;
 
-constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxSoundingBytes = std::size_t{64} << 20;
 constexpr double kHighest_m = 10000;
 constexpr double kLeastStep_m = 1;  ///< between levels
 constexpr double kTolerance = 0.5;  ///< M-units
@@ -34,10 +34,10 @@ struct FieldSpec {
   const char* name;
   std::size_t first, last;
 };
-constexpr FieldSpec kYear{"YEAR", 14, 17}, kMonth{"MONTH", 19, 20}, kDay{"DAY", 22, 23},
-    kHour{"HOUR", 25, 26}, kLevels{"NUMLEV", 33, 36};
-constexpr FieldSpec kPressure{"PRESS", 10, 15}, kHeight{"GPH", 17, 21}, kTemperature{"TEMP", 23, 27},
-    kHumidity{"RH", 29, 33}, kDepression{"DPDP", 35, 39};
+constexpr FieldSpec kYearField{"YEAR", 14, 17}, kMonthField{"MONTH", 19, 20}, kDayField{"DAY", 22, 23},
+    kHourField{"HOUR", 25, 26}, kLevelsField{"NUMLEV", 33, 36};
+constexpr FieldSpec kPressureField{"PRESS", 10, 15}, kHeightField{"GPH", 17, 21},
+    kTemperatureField{"TEMP", 23, 27}, kHumidityField{"RH", 29, 33}, kDepressionField{"DPDP", 35, 39};
 
 struct Line {
   std::string_view text;
@@ -61,7 +61,8 @@ struct Level {
 
 class SoundingReader {
  public:
-  explicit SoundingReader(const std::string& file) : file_(file), text_(readWholeText(file, kMaxBytes)) {
+  explicit SoundingReader(const std::string& file)
+      : file_(file), text_(readWholeText(file, kMaxSoundingBytes)) {
     int number = 0;
     for (std::size_t begin = 0; begin < text_.size();) {
       const std::size_t end = std::min(text_.find('\n', begin), text_.size());
@@ -119,18 +120,19 @@ class SoundingReader {
     Header header;
     header.line = line;
     header.first = index + 1;
-    header.levels = int(number(line, kLevels));
+    header.levels = int(number(line, kLevelsField));
     if (header.levels < 0 || header.first + std::size_t(header.levels) > lines_.size()) {
       fail(
-          line, kLevels.first,
+          line, kLevelsField.first,
           fmt::format("NUMLEV is {}, but only {} lines follow", header.levels, lines_.size() - header.first));
     }
-    const int hour = int(number(line, kHour));  // 99: missing
+    const int hour = int(number(line, kHourField));  // 99: missing
     header.station = line.text.substr(1, 11);
-    header.time_utc = fmt::format("{:04}-{:02}-{:02}T{:02}:00:00Z", int(number(line, kYear)),
-                                  int(number(line, kMonth)), int(number(line, kDay)), hour == 99 ? 0 : hour);
+    header.time_utc =
+        fmt::format("{:04}-{:02}-{:02}T{:02}:00:00Z", int(number(line, kYearField)),
+                    int(number(line, kMonthField)), int(number(line, kDayField)), hour == 99 ? 0 : hour);
     const std::optional<std::int64_t> time_ms = parseUtc_ms(header.time_utc);
-    if (!time_ms) fail(line, kYear.first, fmt::format("{} is not a time", header.time_utc));
+    if (!time_ms) fail(line, kYearField.first, fmt::format("{} is not a time", header.time_utc));
     header.time_ms = *time_ms;
     return header;
   }
@@ -141,16 +143,16 @@ class SoundingReader {
       const Line& line = lines_[header.first + std::size_t(i)];
       Level level;
       level.line = line.number;
-      level.pressure_hpa = number(line, kPressure) / 100;
-      level.temperature_k = number(line, kTemperature) / 10 + kFreezing_k;
-      const double height_m = number(line, kHeight), percent = number(line, kHumidity) / 10,
-                   depression_k = number(line, kDepression) / 10;
+      level.pressure_hpa = number(line, kPressureField) / 100;
+      level.temperature_k = number(line, kTemperatureField) / 10 + kFreezing_k;
+      const double height_m = number(line, kHeightField), percent = number(line, kHumidityField) / 10,
+                   depression_k = number(line, kDepressionField) / 10;
       // Geopotential to geometric height.
       level.height_msl_m = height_m * kGeopotentialRadius_m / (kGeopotentialRadius_m - height_m);
       if (std::isnan(level.pressure_hpa) || std::isnan(level.temperature_k)) continue;
       if (level.temperature_k < 150 || level.temperature_k > 350 || level.pressure_hpa <= 0 ||
           level.pressure_hpa > 1100) {
-        fail(line, kPressure.first,
+        fail(line, kPressureField.first,
              fmt::format("{} hPa and {} K are not of the atmosphere", level.pressure_hpa,
                          level.temperature_k));
       }
@@ -209,7 +211,7 @@ class SoundingReader {
           {level.height_msl_m, refractivity_n(level.pressure_hpa, level.temperature_k, level.vapour_hpa) +
                                    kFlatteningGradient_m * level.height_msl_m});
       if (const std::string fault = faultOfLevel(all, all.size() - 1); !fault.empty()) {
-        fail(lines_[std::size_t(level.line) - 1], kPressure.first, fault);
+        fail(lines_[std::size_t(level.line) - 1], kPressureField.first, fault);
       }
     }
     if (all.size() < 2) {
@@ -236,11 +238,11 @@ RefractivityFile readSounding(const std::string& file, std::optional<std::int64_
 
 bool isSoundingFile(const std::string& file) {
   std::ifstream stream(file, std::ios::binary);
-  std::string line(kLevels.last, '\0');
+  std::string line(kLevelsField.last, '\0');
   stream.read(line.data(), std::streamsize(line.size()));
   line.resize(std::size_t(stream.gcount()));
-  return line.size() >= kLevels.last && line.front() == '#' && line[12] == ' ' && line[17] == ' ' &&
-         numberIn(std::string_view(line).substr(kYear.first - 1, 4)).has_value();
+  return line.size() >= kLevelsField.last && line.front() == '#' && line[12] == ' ' && line[17] == ' ' &&
+         numberIn(std::string_view(line).substr(kYearField.first - 1, 4)).has_value();
 }
 
 }  // namespace emscape::scenario

@@ -18,7 +18,7 @@ namespace emscape::study {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 [[noreturn]] void fail(const fs::path& file, const std::string& why) {
   throw Error(ErrorCode::bad_input, {file.string(), 0, 0}, why);

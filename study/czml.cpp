@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kOpacity = 150;  ///< of 255, of the polygons
+constexpr int kPolygonOpacity = 150;  ///< of 255, of the polygons
 
 Json colorJson(const render::Rgb& color, int alpha) {
   const auto level = [](float part) { return static_cast<int>(std::lround(255 * part)); };
@@ -71,7 +71,7 @@ class Czml : public MapCollection {
         packet["polygon"] = polygonJson(map, *polygon);
         packet["polygon"]["show"] = group == groups_.front();
         packet["polygon"]["material"]["solidColor"]["color"] =
-            colorJson(band.color.value_or(render::Rgb{}), kOpacity);
+            colorJson(band.color.value_or(render::Rgb{}), kPolygonOpacity);
         packets_.push_back(std::move(packet));
       }
     }

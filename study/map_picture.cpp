@@ -21,7 +21,7 @@ using render::Point2;
 using render::Rgb;
 using render::Weight;
 
-constexpr double kOpacity = 0.72;  ///< of the colours over the ground
+constexpr double kMapOpacity = 0.72;  ///< of the colours over the ground
 
 /// Lambert's shading, from the north-west, 45 degrees high. 0..1; 0.7 where the slope is unknown.
 std::vector<float> shadesOf(const MapGrid& grid, const std::vector<float>& ground_msl_m) {
@@ -97,8 +97,8 @@ class MapPicture {
       const Rgb over = *over_ground;
       // Multiplied by the shade, so that hills show through.
       const auto mix = [&](float ground, float colour) {
-        return static_cast<float>((1 - kOpacity) * static_cast<double>(ground) +
-                                  kOpacity * static_cast<double>(colour) * (0.45 + 0.6 * shade));
+        return static_cast<float>((1 - kMapOpacity) * static_cast<double>(ground) +
+                                  kMapOpacity * static_cast<double>(colour) * (0.45 + 0.6 * shade));
       };
       color = {mix(color.r, over.r), mix(color.g, over.g), mix(color.b, over.b)};
     }

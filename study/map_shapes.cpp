@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kMaxLevels = 64;
 
-double logOdds(double probability) {
+double logOddsOf(double probability) {
   constexpr double kLeast = 1e-6;
   const double clamped = std::clamp(probability, kLeast, 1 - kLeast);
   return std::log(clamped / (1 - clamped));
@@ -73,7 +73,7 @@ class Layer {
 void addContours(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
   const std::vector<double> levels = levelsOf(map);
   const bool by_log_odds = map.kind == MapKind::probability;
-  const auto scaled = [&](double value) { return by_log_odds ? logOdds(value) : value; };
+  const auto scaled = [&](double value) { return by_log_odds ? logOddsOf(value) : value; };
   const Dataset raster = memoryRaster(grid, GDT_Float64, file);
   GDALRasterBand* const band = raster->GetRasterBand(1);
   std::vector<double> values(map.values.size(), NAN);

@@ -11,7 +11,7 @@
 namespace emscape::volume {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
 /// Reduces every layer of a volume in parallel, and then the layers in order, so that the result does not
 /// depend on the threads. Calls visit(part, value, masked) for each voxel; part += other joins two.
@@ -36,7 +36,7 @@ Part foldLayers(const DenseVolume& volume, const Part& start, const Visit& visit
 
 struct Moments {
   long long valid = 0, masked = 0, nan = 0, at_floor = 0;
-  float min = kInfinity, max = -kInfinity;
+  float min = kUnbounded, max = -kUnbounded;
   double sum = 0;
 
   void operator+=(const Moments& other) {
@@ -62,7 +62,7 @@ struct Bins {
 };
 
 struct Range {
-  float min = kInfinity, max = -kInfinity;
+  float min = kUnbounded, max = -kUnbounded;
 
   void operator+=(const Range& other) {
     min = std::min(min, other.min);

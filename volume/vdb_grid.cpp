@@ -39,7 +39,9 @@ class GridFiller {
         }
       }
     });
-    auto grid = GridType::create(floor_);
+    // Made by the library, so that the virtual functions of grid and tree are not compiled here once more.
+    const auto grid = openvdb::gridPtrCast<GridType>(openvdb::GridBase::createGrid(GridType::gridType()));
+    grid->tree().root().setBackground(floor_, /*updateChildNodes=*/false);
     for (std::unique_ptr<Leaf>& leaf : leaves) {
       if (!leaf) continue;
       if (isConstant(*leaf)) {

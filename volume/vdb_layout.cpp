@@ -35,10 +35,10 @@ constexpr std::int32_t kFarthest = 1 << 28;
 
 class TreeWalk {
  public:
-  TreeWalk(ByteReader& reader, VdbVoxel voxel, bool half, std::uint32_t compression)
+  TreeWalk(ByteReader& reader, VdbVoxel voxel, bool is_half, std::uint32_t compression)
       : reader_(reader),
         voxel_bytes_(static_cast<std::uint64_t>(voxel.bytes)),
-        half_(half && voxel.real),
+        half_(is_half && voxel.real),
         compression_(compression) {}
 
   void run() {

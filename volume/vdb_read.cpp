@@ -25,7 +25,7 @@ class MemoryStream : public boost::iostreams::stream<boost::iostreams::array_sou
   }
 };
 
-struct GridEntry {
+struct VdbGrid {
   VdbDescriptor descriptor;
   std::uint32_t compression = 0;
   VdbMetadata metadata;
@@ -40,7 +40,7 @@ class VdbFile {
     initializeOpenVdb();
     header_ = readVdbHeader(reader_);
     for (int i = 0; i < header_.grid_count; ++i) {
-      const GridEntry& entry = entries_.emplace_back(readEntry());
+      const VdbGrid& entry = entries_.emplace_back(readEntry());
       if (header_.has_offsets) {
         reader_.seek(entry.descriptor.end, "the next grid");
       } else if (i + 1 < header_.grid_count && entry.descriptor.instance_parent.empty()) {
@@ -50,12 +50,12 @@ class VdbFile {
     if (entries_.empty()) fail("the file holds no grid");
   }
 
-  const std::vector<GridEntry>& entries() const { return entries_; }
+  const std::vector<VdbGrid>& entries() const { return entries_; }
 
-  const GridEntry& find(const std::string& name) const {
+  const VdbGrid& find(const std::string& name) const {
     if (name.empty()) return entries_.front();
     std::string names;
-    for (const GridEntry& entry : entries_) {
+    for (const VdbGrid& entry : entries_) {
       if (entry.descriptor.name == name) return entry;
       names += (names.empty() ? "" : ", ") + entry.descriptor.name;
     }
@@ -63,8 +63,8 @@ class VdbFile {
   }
 
   /// The grid with its tree, all of it checked before OpenVDB reads it.
-  openvdb::GridBase::Ptr load(const GridEntry& entry) {
-    const GridEntry& owner = ownerOfTree(entry);
+  openvdb::GridBase::Ptr load(const VdbGrid& entry) {
+    const VdbGrid& owner = ownerOfTree(entry);
     reader_.seek(owner.tree, "tree");
     walkTree(owner);
     reader_.seek(owner.tree, "tree");
@@ -83,8 +83,8 @@ class VdbFile {
   }
 
  private:
-  GridEntry readEntry() {
-    GridEntry entry;
+  VdbGrid readEntry() {
+    VdbGrid entry;
     entry.descriptor = readVdbDescriptor(reader_, header_);
     entry.compression = reader_.value<std::uint32_t>("compression");
     entry.metadata = readVdbMetadata(reader_);
@@ -105,7 +105,7 @@ class VdbFile {
     openvdb::io::setDataCompression(stream, compression);
   }
 
-  void walkTree(const GridEntry& entry) {
+  void walkTree(const VdbGrid& entry) {
     const std::optional<VdbVoxel> voxel = vdbVoxelOf(entry.descriptor.type);
     if (!voxel) {
       fail("grid " + entry.descriptor.name + " is of type " + entry.descriptor.type +
@@ -114,10 +114,10 @@ class VdbFile {
     walkVdbTree(reader_, *voxel, entry.descriptor.half, entry.compression);
   }
 
-  const GridEntry& ownerOfTree(const GridEntry& entry) const {
+  const VdbGrid& ownerOfTree(const VdbGrid& entry) const {
     const std::string& parent = entry.descriptor.instance_parent;
     if (parent.empty()) return entry;
-    for (const GridEntry& other : entries_) {
+    for (const VdbGrid& other : entries_) {
       if (other.descriptor.unique_name == parent && other.descriptor.instance_parent.empty()) return other;
     }
     fail("grid " + entry.descriptor.name + " shares the tree of a grid that is not in the file");
@@ -126,11 +126,11 @@ class VdbFile {
   std::vector<std::uint8_t> bytes_;
   ByteReader reader_;
   VdbHeader header_;
-  std::vector<GridEntry> entries_;
+  std::vector<VdbGrid> entries_;
 };
 
 /// The metadata; a file of another program leaves dims 0 and most other values at their defaults.
-DenseVolume volumeOf(const GridEntry& entry) {
+DenseVolume volumeOf(const VdbGrid& entry) {
   const VdbMetadata& metadata = entry.metadata;
   const auto text = [&](const char* key) { return metaText(metadata, std::string("emscape:") + key); };
   const auto number = [&](const char* key) { return metaNumber(metadata, std::string("emscape:") + key); };
@@ -192,7 +192,7 @@ bool isOurs(const DenseVolume& description) {
   return description.grid.dims.count() > 0;
 }
 
-void readMask(DenseVolume& volume, const GridEntry& entry, const VdbFile& file) {
+void readMask(DenseVolume& volume, const VdbGrid& entry, const VdbFile& file) {
   const auto found = entry.metadata.find("emscape:first_valid_k");
   if (found == entry.metadata.end()) return;
   const std::string& bytes = found->second.bytes;
@@ -215,7 +215,7 @@ void copyValues(const GridType& grid, const openvdb::CoordBBox& box, DenseVolume
 }
 
 template <class GridType>
-bool makeDense(const openvdb::GridBase& base, const GridEntry& entry, const VdbFile& file,
+bool makeDense(const openvdb::GridBase& base, const VdbGrid& entry, const VdbFile& file,
                DenseVolume& volume) {
   const auto* grid = dynamic_cast<const GridType*>(&base);
   if (grid == nullptr) return false;
@@ -261,7 +261,7 @@ auto withFileNamed(const std::filesystem::path& path, const Body& body) {
   }
 }
 
-DenseVolume readGrid(VdbFile& file, const GridEntry& entry) {
+DenseVolume readGrid(VdbFile& file, const VdbGrid& entry) {
   DenseVolume volume = volumeOf(entry);
   const openvdb::GridBase::Ptr grid = file.load(entry);
   makeDense<openvdb::FloatGrid>(*grid, entry, file, volume) ||
@@ -284,7 +284,7 @@ std::vector<DenseVolume> describeVdb(const std::filesystem::path& path) {
   return withFileNamed(path, [&] {
     VdbFile file(path);
     std::vector<DenseVolume> descriptions;
-    for (const GridEntry& entry : file.entries()) {
+    for (const VdbGrid& entry : file.entries()) {
       DenseVolume volume = volumeOf(entry);
       if (isOurs(volume)) {
         placeGrid(volume, *entry.transform, openvdb::Coord(0, 0, 0), file);

@@ -29,12 +29,12 @@ std::array<Number, count> numbers(const VtkXmlFile& file, const pugi::xml_node& 
 }
 
 std::optional<VoxelType> voxelTypeOf(const std::string& vtk_type) {
-  static const std::map<std::string, VoxelType> kTypes = {
+  static const std::map<std::string, VoxelType> by_name = {
       {"Int8", VoxelType::int8},       {"UInt8", VoxelType::uint8},    {"Int16", VoxelType::int16},
       {"UInt16", VoxelType::uint16},   {"Int32", VoxelType::int32},    {"UInt32", VoxelType::uint32},
       {"Float32", VoxelType::float32}, {"Float64", VoxelType::float64}};
-  const auto found = kTypes.find(vtk_type);
-  if (found == kTypes.end()) return std::nullopt;
+  const auto found = by_name.find(vtk_type);
+  if (found == by_name.end()) return std::nullopt;
   return found->second;
 }
 

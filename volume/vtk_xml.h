@@ -10,6 +10,8 @@
 
 namespace emscape::volume {
 
+constexpr std::uint8_t kVtkTetrahedron = 10;  ///< type of a cell
+
 class VtkXmlFile {
  public:
   /// @throws Error (bad_input) for a file that is not VTK XML of the type (such as ImageData), or is not

@@ -12,8 +12,6 @@
 namespace emscape::volume {
 namespace {
 
-constexpr int kTetrahedron = 10;
-
 /// Copies numbers out of a file's bytes.
 template <class Stored, class To>
 std::vector<To> copied(const std::vector<std::uint8_t>& bytes, bool big_endian) {
@@ -129,7 +127,7 @@ class VtuFile {
   void checkTypes() const {
     const std::vector<std::int64_t> types = integers(cellArray("types"), cells_);
     const auto other =
-        std::find_if(types.begin(), types.end(), [](auto type) { return type != kTetrahedron; });
+        std::find_if(types.begin(), types.end(), [](auto type) { return type != kVtkTetrahedron; });
     if (other != types.end()) {
       file_.fail("cell " + std::to_string(other - types.begin()) + " is of VTK type " +
                  std::to_string(*other) + "; tetrahedra (10) can be read");

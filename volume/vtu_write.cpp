@@ -5,12 +5,11 @@
 
 #include "emscape/volume/mesh_file.h"
 #include "volume/volume_json.h"
+#include "volume/vtk_xml.h"
 #include "volume/vtk_xml_write.h"
 
 namespace emscape::volume {
 namespace {
-
-constexpr std::uint8_t kTetrahedron = 10;
 
 void checkFields(const std::filesystem::path& path, const std::vector<const MeshField*>& fields) {
   const SourceLocation location{path.string()};
@@ -53,7 +52,7 @@ void writeMesh(const std::filesystem::path& path, const std::vector<const MeshFi
   std::vector<std::vector<std::int32_t>> indices;
   std::vector<std::int64_t> offsets(mesh.cells.size());
   for (std::size_t n = 0; n < offsets.size(); ++n) offsets[n] = 4 * static_cast<std::int64_t>(n + 1);
-  const std::vector<std::uint8_t> types(mesh.cells.size(), kTetrahedron);
+  const std::vector<std::uint8_t> types(mesh.cells.size(), kVtkTetrahedron);
 
   pugi::xml_document document;
   pugi::xml_node grid = appendVtkRoot(document, "UnstructuredGrid");

@@ -28,7 +28,7 @@ double parseNumber(std::string_view text, const SourceLocation& place) {
   throw Error(ErrorCode::bad_input, place, fmt::format("'{}' is not a number", text));
 }
 
-struct Posts {
+struct P1812Posts {
   std::vector<double> range_m;
   std::vector<float> height_msl_m;
   std::vector<double> clutter_m;
@@ -40,10 +40,10 @@ struct Posts {
 };
 
 /// A profile in the format of Study Group 3's measurement data (Fryderyk).
-Posts readPosts(const fs::path& file) {
+P1812Posts readP1812Posts(const fs::path& file) {
   const std::string text = readWholeText(file);
   document::CsvReader reader(text);
-  Posts posts;
+  P1812Posts posts;
   bool is_profile = false;
   for (document::CsvRow row; reader.next(row);) {
     const std::string_view first = row.cells[0].text;
@@ -98,7 +98,7 @@ class Log {
 };
 
 /// Differences, by unit.
-struct Figures {
+struct P1812Figures {
   FigureCheck loss{"Lb", 1e-3, "dB"};
   FigureCheck losses{"losses of mechanisms", 1e-3, "dB"};
   FigureCheck angles{"angles", 1e-3, "mrad"};
@@ -109,7 +109,7 @@ struct Figures {
 };
 
 void compare(const P1812Model<double>& model, const ClearAirColumn<double>& column,
-             const P1812Path<double>& path, const Log& log, Figures& figures) {
+             const P1812Path<double>& path, const Log& log, P1812Figures& figures) {
   const ClearAirPath<double>& at = path.geometry;
   const ClearAirLoss<double>& loss = path.median;
   const DeltaBullington<double>& ducting = loss.diffraction.ducting;
@@ -178,11 +178,11 @@ DatasetCheck checkP1812(const fs::path& folder) {
   std::vector<fs::path> results;
   for (const auto& entry : fs::directory_iterator(folder / "results")) results.push_back(entry.path());
   std::sort(results.begin(), results.end());
-  Figures figures;
+  P1812Figures figures;
   for (const fs::path& file : results) {
     const std::string name = file.stem().string();  // PROFILE_N_log
-    const Posts posts =
-        readPosts(folder / "profiles" / (name.substr(0, name.rfind('_', name.rfind('_') - 1)) + ".csv"));
+    const P1812Posts posts =
+        readP1812Posts(folder / "profiles" / (name.substr(0, name.rfind('_', name.rfind('_') - 1)) + ".csv"));
     const Log log(file);
 
     ClearAirParameters parameters;

@@ -17,20 +17,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Posts {
+struct P452Posts {
   std::vector<double> range_m;
   std::vector<float> height_msl_m;
   std::vector<double> clutter_m;
   std::vector<PathZone> zones;
 };
 
-Posts readPosts(const fs::path& file) {
+P452Posts readP452Posts(const fs::path& file) {
   const char* const kZone = "zone: 1=Coastal Land/2=Inland/3=Sea";
   const ReferenceTable table(file, {"d (km)", "h(m)", kZone});
   const PathZone zones[] = {PathZone::coastal_land, PathZone::inland, PathZone::sea};
   const char* const clutter =
       table.hasColumn("Ground cover height (m)") ? "Ground cover height (m)" : "Ground Cover Height (m)";
-  Posts posts;
+  P452Posts posts;
   for (int i = 0; i < table.rows(); ++i) {
     posts.range_m.push_back(1000 * table.number(i, "d (km)"));
     posts.height_msl_m.push_back(static_cast<float>(table.number(i, "h(m)")));
@@ -54,7 +54,7 @@ double middleLatitude_deg(const ReferenceTable& cases, int i) {
 }
 
 /// Differences, by unit.
-struct Figures {
+struct P452Figures {
   FigureCheck loss{"Lb", 1e-3, "dB"};
   FigureCheck losses{"losses of mechanisms", 1e-3, "dB"};
   FigureCheck angles{"angles", 1e-3, "mrad"};
@@ -64,7 +64,7 @@ struct Figures {
 };
 
 void compare(const P452Model<double>& model, const ClearAirColumn<double>& column,
-             const P452Path<double>& path, const ReferenceTable& cases, int i, Figures& figures) {
+             const P452Path<double>& path, const ReferenceTable& cases, int i, P452Figures& figures) {
   const auto check = [&](FigureCheck& figure, const char* name, double computed) {
     figure.compare(computed, cases.number(i, name), cases.location(i).line);
   };
@@ -111,12 +111,12 @@ DatasetCheck checkP452(const fs::path& folder) {
   std::vector<fs::path> results;
   for (const auto& entry : fs::directory_iterator(folder / "results")) results.push_back(entry.path());
   std::sort(results.begin(), results.end());
-  Figures figures;
+  P452Figures figures;
   int count = 0;
   for (const fs::path& file : results) {
     std::string name = file.filename().string();  // test_result_PATH.csv
     name.replace(name.find("result"), 6, "profile");
-    const Posts posts = readPosts(folder / "profiles" / name);
+    const P452Posts posts = readP452Posts(folder / "profiles" / name);
     const ReferenceTable cases(file, {"f (GHz)", "p (%)", "Lb"});
     for (int i = 0; i < cases.rows(); ++i, ++count) {
       P452Parameters parameters;

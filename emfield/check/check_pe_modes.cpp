@@ -24,7 +24,7 @@ double topOverEarth_m(double frequency_hz) {
 }
 
 /// Rows of one march, by range.
-using Marches = std::map<std::tuple<double, std::string, double>, std::multimap<double, int>>;
+using MarchesByRange = std::map<std::tuple<double, std::string, double>, std::multimap<double, int>>;
 
 RefractivityProfile ductOf(const std::string& name) {
   if (name == "evap14_10ghz") return evaporationDuct(14);
@@ -40,7 +40,7 @@ MarchGrid ductGrid(double frequency_hz) {
 
 template <class Real>
 void checkEarth(const ReferenceTable& cases, std::vector<FigureCheck>& figures) {
-  Marches marches;
+  MarchesByRange marches;
   for (int i = 0; i < cases.rows(); ++i) {
     marches[{cases.number(i, "frequency_hz"), cases.text(i, "ground"), cases.number(i, "source_height_m")}]
         .emplace(cases.number(i, "range_m"), i);
@@ -85,7 +85,7 @@ double decayDbPerKm(PeMarch<double>& march, double from_m, double to_m, double h
 
 template <class Real>
 void checkDucts(const ReferenceTable& cases, std::vector<FigureCheck>& figures) {
-  Marches marches;
+  MarchesByRange marches;
   for (int i = 0; i < cases.rows(); ++i) {
     marches[{cases.number(i, "frequency_hz"), cases.text(i, "case"), cases.number(i, "source_height_m")}]
         .emplace(cases.number(i, "range_m"), i);

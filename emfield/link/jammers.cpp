@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "emfield/combine.h"
+#include "emfield/station.h"
 #include "emfield/two_rays.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
@@ -19,12 +20,6 @@ using scenario::EmitterState;
 
 /// Ground distance (m) below which there is no obstacle between two stations: no path is computed.
 constexpr double kNoPath_m = 2;
-
-/// The straight line from a station to a point, east-north-up (m).
-Vec3d lineBetween(const Station& from, const GeodeticPosition& to) {
-  const Vec3d line = toEcef(to) - from.ecef_m;
-  return {dot(line, from.geodesy.east), dot(line, from.geodesy.north), dot(line, from.geodesy.station.up)};
-}
 
 double freeSpaceDensity_wm2(const Emitter& emitter, const scenario::BeamPose& beam, const Vec3d& line) {
   const double distance_m = std::max(length(line), static_cast<double>(kMinDistance_m));
@@ -48,12 +43,12 @@ std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int rada
     const EmitterState& from = snapshot.emitters[j];
     if (!from.active) continue;
     const Station jammer_station = makeStation(from.position, from.height_msl_m, scenario.atmosphere);
-    Vec3d ray = lineBetween(station, from.position);
+    Vec3d ray = lineTo(station, from.position);
     const double level_m = std::hypot(ray.x, ray.y);
     JammerPath jammer;
     jammer.jammer = j;
     const auto alone = [&] {
-      return freeSpaceDensity_wm2(scenario.emitters[j], from.beam, lineBetween(jammer_station, at.position));
+      return freeSpaceDensity_wm2(scenario.emitters[j], from.beam, lineTo(jammer_station, at.position));
     };
     if (level_m < kNoPath_m) {
       jammer.power_density_wm2 = alone();

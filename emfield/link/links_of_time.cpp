@@ -24,9 +24,6 @@ using scenario::EmitterState;
 using scenario::PlacedReceiver;
 using scenario::Scenario;
 
-/// Ground distance (m) below which there is no path.
-constexpr double kMinPath_m = 1;
-
 bool isAbove(const GeodeticPosition& a, const GeodeticPosition& b) {
   return geodesicInverse(a.latitude_deg, a.longitude_deg, b.latitude_deg, b.longitude_deg).distance_m <
          kMinPath_m;
@@ -35,12 +32,6 @@ bool isAbove(const GeodeticPosition& a, const GeodeticPosition& b) {
 /// Components of a direction, east-north-up, in the axes of a pose.
 Vec3d inAxesOf(const scenario::BeamPose& pose, const Vec3d& direction) {
   return {dot(direction, pose.forward), dot(direction, pose.right), dot(direction, pose.up)};
-}
-
-/// The straight line (m) between two positions in the first one's east-north-up axes.
-Vec3d lineBetween(const Station& from, const GeodeticPosition& to) {
-  const Vec3d line = toEcef(to) - from.ecef_m;
-  return {dot(line, from.geodesy.east), dot(line, from.geodesy.north), dot(line, from.geodesy.station.up)};
 }
 
 /// A receiver with the gain that its antenna has towards a wave.
@@ -149,7 +140,7 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
   keepWarnings(warnings, scenario.emitters[emitter].name, own.name, *wave.budget);
   wave.is_present = from.active;
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
-  Vec3d ray = lineBetween(station, from.position);
+  Vec3d ray = lineTo(station, from.position);
   ray.z +=
       refractionLift_m(station, wave.budget->profile.range_m, std::hypot(ray.x, ray.y), from.height_msl_m);
   const auto amplitudeTowards = [&](const Vec3d& direction) {

@@ -32,13 +32,6 @@ double smoothHorizon_m(double height_msl_m, double effective_earth_radius_m) {
   return std::sqrt(2 * effective_earth_radius_m * std::max(height_msl_m, 0.0));
 }
 
-/// Components of the straight line to the point in the station's east-north-up axes (m).
-Vec3d lineTo(const Station& station, const GeodeticPosition& point) {
-  const Vec3d line = toEcef(point) - station.ecef_m;
-  return {dot(line, station.geodesy.east), dot(line, station.geodesy.north),
-          dot(line, station.geodesy.station.up)};
-}
-
 double elevationOf_rad(const Vec3d& direction) {
   return std::atan2(direction.z, std::hypot(direction.x, direction.y));
 }

@@ -14,8 +14,6 @@
 namespace emscape::emfield {
 namespace {
 
-constexpr double kMinPath_m = 1;
-
 /// Ranges of the posts before the path's end, and the end.
 std::vector<double> pathRanges(double range_m, double post_spacing_m) {
   std::vector<double> ranges = postRanges(range_m, post_spacing_m);

@@ -11,7 +11,7 @@
 namespace emscape::emfield {
 namespace {
 
-constexpr double kTurn_deg = 360, kStepsPerBeamwidth = 20;
+constexpr double kStepsPerBeamwidth = 20;
 constexpr int kLeastSteps = 1024, kMostSteps = 16384;
 
 Aim aimOf(double azimuth_deg, double elevation_deg) {

@@ -20,8 +20,6 @@ using scenario::ScanSweep;
 using scenario::SweptArc;
 using scenario::SweptPattern;
 
-constexpr double kTurn_deg = 360;
-
 /// The azimuths that a beam passes, each once: those of sweeps there and back join. The largest values depend
 /// on them alone, so that intervals of a sweep there and back or more have the same pattern whenever they
 /// begin.

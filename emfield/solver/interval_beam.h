@@ -9,6 +9,8 @@
 
 namespace emscape::emfield {
 
+constexpr double kTurn_deg = 360;
+
 struct IntervalBeam {
   scenario::AntennaPtr antenna;  ///< its pattern is that of the interval; the emitter's own if not asked for
   scenario::BeamPose pose;

@@ -22,7 +22,7 @@ constexpr double kCharnock = 0.011;
 constexpr double kInversion_m = 600;
 constexpr double kGust = 1.25;
 constexpr double kTop_m = 100, kLowest_m = 1e-4;
-constexpr int kHeights = 600;
+constexpr int kGradedHeights = 600;
 constexpr double kTolerance = 0.02;
 constexpr int kMaxIterations = 100;
 
@@ -181,10 +181,10 @@ BulkAir bulkAir(const BulkInputs& inputs) {
   std::vector<RefractivityLevel> levels;
   bool is_possible = true;
   double pressure_hpa = inputs.pressure_hpa, virtual_below_k = 0;
-  std::size_t lowest = 0, impossible = kHeights;
-  for (int i = 0; i < kHeights; ++i) {
+  std::size_t lowest = 0, impossible = kGradedHeights;
+  for (int i = 0; i < kGradedHeights; ++i) {
     // From the surface, then evenly in the logarithm of the height.
-    const double z = i == 0 ? 0 : kLowest_m * std::pow(kTop_m / kLowest_m, (i - 1.0) / (kHeights - 2));
+    const double z = i == 0 ? 0 : kLowest_m * std::pow(kTop_m / kLowest_m, (i - 1.0) / (kGradedHeights - 2));
     const double profile =
         z <= scales.heat_roughness_m
             ? 0

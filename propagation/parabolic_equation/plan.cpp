@@ -25,7 +25,7 @@ constexpr double kFinestStep_m = 50;  // over places that are closer
 constexpr int kMaxHeights = 1024, kMaxRanges = 2000;
 constexpr double kUsablePart = 0.8;  // of the height below the absorber
 
-void require(const ModelLimit& limit, double value_si) {
+void requireWithinLimit(const ModelLimit& limit, double value_si) {
   if (!limit.holds(value_si)) throw Error(ErrorCode::bad_input, outsideMessage(limit, value_si));
 }
 
@@ -161,7 +161,7 @@ RefractivityAlongPath highestDuct(const std::vector<RefractivityAlongPath>& airs
 AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath& air,
                        const DomainNeeds& needs, double& max_angle_rad) {
   const ParabolicEquationSettings& settings = emitter.settings.parabolic_equation;
-  require(kPeFrequency, emitter.frequency_hz);
+  requireWithinLimit(kPeFrequency, emitter.frequency_hz);
   std::string angle_why;
   double height_m = std::max(needs.required_m, 1.5 * trappingTop_m(air));
   if (needs.is_single) height_m = std::max(height_m, needs.wanted_m);
@@ -216,8 +216,8 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
     found.choices.back().text =
         fmt::format("{:.4g} m: the places' spacing, at least {:g} m", places_m, kFinestStep_m);
   }
-  require(kPeDistance, needs.farthest_m);
-  require(kPeSteps, std::ceil(needs.farthest_m / found.grid.range_step_m));
+  requireWithinLimit(kPeDistance, needs.farthest_m);
+  requireWithinLimit(kPeSteps, std::ceil(needs.farthest_m / found.grid.range_step_m));
   return found;
 }
 
@@ -286,9 +286,9 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
                                              : std::accumulate(plan.ranges.begin(), plan.ranges.end(), 0.0);
   const double points = members * double(plan.surfaces.size()) * marched *
                         std::ceil(plan.cells.range_step_m / plan.grid.range_step_m) * plan.grid.intervals;
-  require(kPeWork, points);
+  requireWithinLimit(kPeWork, points);
   const double cells = members * plan.azimuths * plan.cells.ranges * plan.cells.heights;
-  require(kPeCells, cells);
+  requireWithinLimit(kPeCells, cells);
   plan.choices.push_back(
       {"cost",
        fmt::format("{:.3g} million steps of a height, about {:.2g} s on one core; {:.0f} MiB of cells",

@@ -14,7 +14,7 @@ namespace {
 constexpr double kTick = 6;  // lengths at 1200 x 900
 constexpr double kTickToLabel = 6;
 constexpr double kTitleBeyondLabels = 13;
-constexpr double kPixelsPerTick = 85;
+constexpr double kPixelsPerEdgeTick = 85;
 
 /// An edge of the box along one axis; the other two coordinates are at their lower (0) or upper (1) ends.
 struct Edge {
@@ -135,7 +135,7 @@ void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis, 
   const AxisWords words = wordsOf(axis, georeferenced);
   const double lowest = component(p.box.lower_m, axis) / words.scale;
   const double highest = component(p.box.upper_m, axis) / words.scale;
-  const int count = std::max(2, static_cast<int>(edge_px / (kPixelsPerTick * style.unit)));
+  const int count = std::max(2, static_cast<int>(edge_px / (kPixelsPerEdgeTick * style.unit)));
   const std::vector<double> ticks = roundTicks(lowest, highest, count);
   const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : 1;
   const Align align = outward.x > 0.35 ? Align::left : (outward.x < -0.35 ? Align::right : Align::center);

@@ -8,7 +8,7 @@
 namespace emscape::render {
 namespace {
 
-constexpr double kHiddenAlpha = 0.35;
+constexpr double kHiddenTrackAlpha = 0.35;
 constexpr double kTravelledAlpha = 0.95, kAheadAlpha = 0.6;
 
 Vec3d between(const Vec3d& a, const Vec3d& b, double part) {
@@ -67,7 +67,8 @@ class TrackLine {
   }
 
   void flush() {
-    const double alpha = (is_travelled_ ? kTravelledAlpha : kAheadAlpha) * (is_hidden_ ? kHiddenAlpha : 1);
+    const double alpha =
+        (is_travelled_ ? kTravelledAlpha : kAheadAlpha) * (is_hidden_ ? kHiddenTrackAlpha : 1);
     const double width = (is_travelled_ ? 2.6 : 1.8) * style_.unit;
     if (line_.size() > 1) {
       canvas_.outline(line_, style_.rimInk(0.5 * alpha), width + 1.6 * style_.unit, false);

@@ -22,8 +22,8 @@ using document::CsvCell;
 using document::CsvReader;
 using document::CsvRow;
 
-constexpr ColumnSpec kAzimuth{"azimuth_deg", -360, 360, "deg"};
-constexpr ColumnSpec kElevation{"elevation_deg", -90, 90, "deg"};
+constexpr ColumnSpec kAzimuthColumn{"azimuth_deg", -360, 360, "deg"};
+constexpr ColumnSpec kElevationColumn{"elevation_deg", -90, 90, "deg"};
 constexpr ColumnSpec kAttenuation{"attenuation_db", 0, kMaxAttenuation_db, "dB"};
 
 struct GridRow {
@@ -139,8 +139,8 @@ std::vector<double> inGridOrder(std::vector<GridRow> rows, const MeasuredAxis& a
 
 AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& elevation_file, double gain_dbi) {
   requireGain(gain_dbi);
-  ShapeTable azimuth = tableOf(readCut(azimuth_file, kAzimuth, AxisKind::circle), kPi);
-  ShapeTable elevation = tableOf(readCut(elevation_file, kElevation, AxisKind::elevation), kPi / 2);
+  ShapeTable azimuth = tableOf(readCut(azimuth_file, kAzimuthColumn, AxisKind::circle), kPi);
+  ShapeTable elevation = tableOf(readCut(elevation_file, kElevationColumn, AxisKind::elevation), kPi / 2);
   const double azimuth_deg = radToDeg(halfPowerWidth(azimuth.values, azimuth.half_span, true));
   const double elevation_deg = radToDeg(halfPowerWidth(elevation.values, elevation.half_span, false));
   return describedAntenna(std::make_shared<SeparableAntenna>(std::move(azimuth), std::move(elevation), 0.0),
@@ -158,7 +158,7 @@ double MeasuredGrid::valueAt(const AxisSample& a, const AxisSample& e) const {
 MeasuredGrid readMeasuredGrid(const std::string& file, const ColumnSpec& value) {
   const SourceLocation location{file, 0, 0};
   const AntennaText text(file);
-  std::vector<GridRow> rows = readRows(text, {kElevation, kAzimuth, value});
+  std::vector<GridRow> rows = readRows(text, {kElevationColumn, kAzimuthColumn, value});
   std::vector<double> azimuths_deg, elevations_deg;
   for (GridRow& row : rows) {
     elevations_deg.push_back(row.values[0] = MeasuredAxis::normalized(AxisKind::elevation, row.values[0]));

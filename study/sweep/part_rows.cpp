@@ -11,7 +11,7 @@
 namespace emscape::study {
 namespace {
 
-[[noreturn]] void fail(const std::string& why) {
+[[noreturn]] void failRow(const std::string& why) {
   throw Error(ErrorCode::bad_input, why);
 }
 
@@ -27,19 +27,19 @@ VariantResult readRow(std::string_view row, std::size_t measures) {
   VariantResult result;
   const char* const end = row.data() + row.size();
   auto read = std::from_chars(row.data(), end, result.variant);
-  if (read.ec != std::errc()) fail("the number of a variant is expected");
+  if (read.ec != std::errc()) failRow("the number of a variant is expected");
   const char* at = read.ptr;
   for (std::size_t m = 0; m < measures; ++m) {
     double value = NAN;
-    if (at == end || *at++ != ',') fail(fmt::format("has less than {} measures", m + 1));
+    if (at == end || *at++ != ',') failRow(fmt::format("has less than {} measures", m + 1));
     if (at != end && *at != ',') {
       read = std::from_chars(at, end, value);
-      if (read.ec != std::errc()) fail("holds text that is no number");
+      if (read.ec != std::errc()) failRow("holds text that is no number");
       at = read.ptr;
     }
     result.values.push_back(value);
   }
-  if (at != end) fail("does not end after its last measure");
+  if (at != end) failRow("does not end after its last measure");
   return result;
 }
 

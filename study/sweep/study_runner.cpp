@@ -35,11 +35,6 @@ bool sameHeight(const MapHeight& a, const MapHeight& b) {
   return a.reference == b.reference && a.metres == b.metres;
 }
 
-bool sameBox(const scenario::GeoBox& a, const scenario::GeoBox& b) {
-  return a.south_deg == b.south_deg && a.north_deg == b.north_deg && a.west_deg == b.west_deg &&
-         a.east_deg == b.east_deg;
-}
-
 }  // namespace
 
 struct StudyRunner::Impl {
@@ -101,9 +96,9 @@ struct StudyRunner::Impl {
 
   /// The terrain of a scenario, which depends on nothing but the scenario.
   const scenario::TerrainPtr& terrainFor(const ScenarioPtr& scenario) {
-    const bool is_same = scenario->terrain == terrain_of->terrain &&
-                         (!scenario->terrain || sameBox(terrainBoxOf(*scenario, study.area),
-                                                        terrainBoxOf(*terrain_of, study.area)));
+    const bool is_same =
+        scenario->terrain == terrain_of->terrain &&
+        (!scenario->terrain || terrainBoxOf(*scenario, study.area) == terrainBoxOf(*terrain_of, study.area));
     if (!is_same) {
       terrain = loadTerrain(*scenario, study.area);
       terrain_of = scenario;

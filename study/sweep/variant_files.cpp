@@ -50,11 +50,6 @@ std::set<std::pair<scenario::Quantity, double>> levelsOf(const StudySpec& study)
   return levels;
 }
 
-bool sameBox(const scenario::GeoBox& a, const scenario::GeoBox& b) {
-  return a.south_deg == b.south_deg && a.north_deg == b.north_deg && a.west_deg == b.west_deg &&
-         a.east_deg == b.east_deg;
-}
-
 }  // namespace
 
 const char* toString(KeptFiles kept) {
@@ -82,7 +77,7 @@ struct VariantFiles::State {
 
   const scenario::TerrainPtr& terrainFor(const std::shared_ptr<const scenario::Scenario>& scenario) {
     const bool is_same = terrain_of != nullptr && scenario->terrain == terrain_of->terrain &&
-                         (!scenario->terrain || sameBox(terrainBox(*scenario), terrainBox(*terrain_of)));
+                         (!scenario->terrain || terrainBox(*scenario) == terrainBox(*terrain_of));
     if (!is_same) {
       terrain = scenario::loadTerrain(*scenario);
       terrain_of = scenario;

@@ -22,6 +22,11 @@ struct GeoBox {
   double south_deg = 0, north_deg = 0, west_deg = 0, east_deg = 0;
 };
 
+inline bool operator==(const GeoBox& a, const GeoBox& b) {
+  return a.south_deg == b.south_deg && a.north_deg == b.north_deg && a.west_deg == b.west_deg &&
+         a.east_deg == b.east_deg;
+}
+
 struct TerrainSpec {
   std::vector<std::string> files;         ///< as resolved: absolute or relative to the working folder
   std::vector<SourceLocation> locations;  ///< of each file's name in the scenario
