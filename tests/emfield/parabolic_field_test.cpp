@@ -613,6 +613,33 @@ TEST(ParabolicField, ReportsWhatItChooses) {
     EXPECT_THAT(all, ::testing::HasSubstr(name));
 }
 
+// Over terrain as many heights as a power of two below the wanted one hold, if they hold most of the angle.
+TEST(ParabolicField, GivesUpAQuarterOfTheAngleForHalfOfTheHeights) {
+  constexpr double kMetresPerDegree = 70e3;
+  const auto terrain =
+      std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, [](double east, double) {
+        return std::max(0.0, 450 - std::abs((east - 0.5) * kMetresPerDegree - 3000) * 0.18);
+      });
+  int halved = 0;
+  for (const double frequency_hz : {4.0e9, 5.0e9, 5.5e9, 7e9}) {
+    const auto scenario = around(frequency_hz, 30, {8e3, 8e3, 1000}, {8, 8, 10});
+    const PePlan automatic = Made(*scenario, terrain.get()).plan;
+    scenario->emitters[0].propagation.parabolic_equation.max_angle_deg = 3;
+    const PePlan given = Made(*scenario, terrain.get()).plan;
+    EXPECT_NEAR(given.max_angle_rad, degToRad(3.0), 1e-12);
+    if (automatic.grid.intervals == given.grid.intervals) {
+      EXPECT_NEAR(automatic.max_angle_rad, given.max_angle_rad, 1e-12) << frequency_hz;
+      continue;
+    }
+    ++halved;
+    EXPECT_EQ(2 * automatic.grid.intervals, given.grid.intervals) << frequency_hz;
+    EXPECT_GE(automatic.max_angle_rad, degToRad(2.25)) << frequency_hz;
+    EXPECT_LT(automatic.max_angle_rad, given.max_angle_rad) << frequency_hz;
+  }
+  EXPECT_GT(halved, 0);
+  EXPECT_LT(halved, 4);
+}
+
 // The figure of duct_fields.csv: 10 to 10 m at 60 km 6.84 dB over free space in a duct of 14 m; without, deep
 // behind the horizon.
 TEST(ParabolicField, AnEvaporationDuctGuidesBeyondTheHorizon) {
