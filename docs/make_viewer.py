@@ -12,6 +12,10 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "bench"))
+
+import virtual_display  # noqa: E402
+
 BEGIN = [{"do": "seek", "time_s": 90}, {"do": "orbit", "azimuth_deg": 20, "elevation_deg": 4}]
 CLOSED = {"do": "panel", "name": "scenario", "open": False}
 
@@ -61,16 +65,9 @@ def write_tables(programs):
 def main():
     programs = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT / "build" / "release" / "bin").resolve()
     write_tables(programs)
-    read, write = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1920x1200x24"], pass_fds=[write],
-                              stderr=subprocess.DEVNULL)
-    try:
-        display = ":" + os.read(read, 16).decode().strip()
+    with virtual_display.virtual_display() as display:
         for name, (options, commands) in PICTURES.items():
             picture(programs, display, name, options, commands)
-    finally:
-        server.terminate()
-        server.wait()
 
 
 if __name__ == "__main__":

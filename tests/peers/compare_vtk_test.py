@@ -20,7 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 LEAST_PSNR_DB = 45
 
 if __name__ == "__main__":
-    if not shutil.which("xvfb-run"):
+    if not shutil.which("Xvfb"):
         series.skip("xvfb is not installed")
     emscape = sys.argv[1]
     result = subprocess.run([sys.executable, ROOT / "bench/compare_vtk", ROOT / "scenarios/quick.yaml", "--emscape", emscape,

@@ -17,7 +17,7 @@ except ImportError:
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 if __name__ == "__main__":
-    if not shutil.which("xvfb-run"):
+    if not shutil.which("Xvfb"):
         series.skip("xvfb is not installed")
     result = json.loads(subprocess.run(
         [sys.executable, ROOT / "bench/compare_vtk_cells", ROOT / "scenarios/quick.yaml", "--emscape", sys.argv[1], "--mesh",

@@ -1,0 +1,42 @@
+"""A display for programs that draw with OpenGL where there is none."""
+
+import contextlib
+import os
+import subprocess
+
+
+@contextlib.contextmanager
+def virtual_display():
+    """An X server of its own that shows nothing, as $DISPLAY for as long as it lasts; yields its name.
+
+    The server chooses a number that is free, so that any number of them start at the same time. Needs xvfb.
+    """
+    before = os.environ.get("DISPLAY")
+    read, write = os.pipe()
+    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1920x1200x24", "-nolisten", "tcp"],
+                              pass_fds=[write], stderr=subprocess.DEVNULL)
+    os.close(write)
+    try:
+        with os.fdopen(read) as answer:
+            number = answer.readline().strip()
+        if not number:
+            raise RuntimeError(f"Xvfb did not start: exit status {server.wait()}")
+        os.environ["DISPLAY"] = f":{number}"
+        yield os.environ["DISPLAY"]
+    finally:
+        if before is None:
+            os.environ.pop("DISPLAY", None)
+        else:
+            os.environ["DISPLAY"] = before
+        server.terminate()
+        server.wait()
+
+
+@contextlib.contextmanager
+def display():
+    """The display that there is, else a virtual one."""
+    if os.environ.get("DISPLAY"):
+        yield os.environ["DISPLAY"]
+    else:
+        with virtual_display() as name:
+            yield name
