@@ -31,6 +31,9 @@ class Arcs {
   /// All places of the straight line between two columns.
   void addBetween(const GridColumn& first, const GridColumn& second, double t_m) {
     const Seen begin = see(first, t_m), end = see(second, t_m);
+    raise(begin.arc, begin.distance_m);
+    raise(end.arc, end.distance_m);
+    if (begin.distance_m == 0 || end.distance_m == 0) return;
     const int gap = ((end.arc - begin.arc) % kArcs + kArcs) % kArcs;
     const int from = gap <= kArcs / 2 ? begin.arc : end.arc, arcs = std::min(gap, kArcs - gap);
     for (int i = 0; i <= arcs; ++i) raise((from + i) % kArcs, std::max(begin.distance_m, end.distance_m));
@@ -61,7 +64,7 @@ class Arcs {
   std::vector<float> farthest_m_;
 };
 
-/// Of a grid the farthest places are on its border; of one that leans, at the middles or the ends.
+/// Of a grid the farthest places are on its border; where columns lean, at their middles or ends.
 void addGrid(const GridColumns& columns, Arcs& arcs) {
   const Dims& dims = columns.dims;
   std::vector<std::size_t> border;

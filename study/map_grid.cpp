@@ -8,7 +8,6 @@
 #include <memory>
 
 #include "base/fast_geodesy.h"
-#include "base/near_ecef.h"
 #include "base/simd.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geo_frame.h"
@@ -212,13 +211,9 @@ class AreaTest {
   explicit AreaTest(const MapArea& area) : area_(area) {
     if (area.circle) middle_ = fastGeodesy(area.circle->latitude_deg, area.circle->longitude_deg);
   }
-  /// @param near  the calling thread's
-  bool isInside(const emfield::Surface::Place& place, NearEcef& near) const {
+  bool isInside(const emfield::Surface::Place& place) const {
     constexpr double kMargin_deg = 1e-9;
-    if (area_.circle) {
-      const Vec3d foot_m = near.at(place.latitude_deg, place.longitude_deg);
-      return fastInverse(middle_, foot_m).distance_m <= area_.circle->radius_m;
-    }
+    if (area_.circle) return distance_m(place) <= area_.circle->radius_m;
     const double east_deg = place.longitude_deg - area_.box.west_deg;
     return place.latitude_deg >= area_.box.south_deg - kMargin_deg &&
            place.latitude_deg <= area_.box.north_deg + kMargin_deg &&
@@ -229,14 +224,17 @@ class AreaTest {
   /// @param radius_m  no place of it is farther from its middle
   PatchPart partOf(const emfield::Surface::Place& middle, double radius_m) const {
     if (!area_.circle) return PatchPart::across;
-    const Vec3d foot_m = toEcef({middle.latitude_deg, middle.longitude_deg, 0});
-    const double middle_m = fastInverse(middle_, foot_m).distance_m;
+    const double middle_m = distance_m(middle);
     return middle_m + radius_m <= area_.circle->radius_m  ? PatchPart::inside
            : middle_m - radius_m > area_.circle->radius_m ? PatchPart::outside
                                                           : PatchPart::across;
   }
 
  private:
+  double distance_m(const emfield::Surface::Place& place) const {
+    return fastInverse(middle_, toEcef({place.latitude_deg, place.longitude_deg, 0})).distance_m;
+  }
+
   const MapArea& area_;
   FastGeodesy middle_{};
 };
@@ -284,7 +282,6 @@ void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
   const int side = lattice.side, nodes_x = lattice.nodesX();
   const double step = 1.0 / side;
   parallelFor(lattice.patches_y * lattice.patches_x, 1, [&](int begin, int end) {
-    NearEcef near;
     for (int patch = begin; patch < end; ++patch) {
       const int patch_x = patch % lattice.patches_x, patch_y = patch / lattice.patches_x;
       const std::size_t node = lattice.node(patch_x, patch_y), middle = node + nodes_x + 1;
@@ -305,7 +302,7 @@ void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
         fillRow(latitudes.row(v), longitudes.row(v), per_degree2, step, columns, places, areas_m2);
         if (part == PatchPart::inside) continue;
         for (int i = 0; i < columns; ++i) {
-          if (part == PatchPart::across && test.isInside(places[i], near)) continue;
+          if (part == PatchPart::across && test.isInside(places[i])) continue;
           places[i].latitude_deg = NAN;
           areas_m2[i] = 0;
         }

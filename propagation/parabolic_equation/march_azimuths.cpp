@@ -26,6 +26,13 @@ RadialPath pathOf(const AzimuthMarch& march, int azimuth) {
 
 }  // namespace
 
+int AzimuthMarch::rangesOfGroup(int azimuth) const {
+  const int first = azimuth / kStepLanes * kStepLanes;
+  int most = 0;
+  for (int a = first; a < std::min(first + kStepLanes, azimuths); ++a) most = std::max(most, rangesOf(a));
+  return most;
+}
+
 void checkMarch(const AzimuthMarch& march) {
   checkGrid(march.grid);
   if (march.air.size() != 1 && march.air.size() != std::size_t(march.azimuths)) {
@@ -60,8 +67,7 @@ MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db) {
         const int first = group * kStepLanes, count = std::min(kStepLanes, march.azimuths - first);
         auto of_group = groupMarch(first, count);
         RadialCells marched = march.cells;
-        marched.ranges = 0;
-        for (int l = 0; l < count; ++l) marched.ranges = std::max(marched.ranges, march.rangesOf(first + l));
+        marched.ranges = march.rangesOfGroup(first);
         const auto cells = marchCells(of_group, marched);
         for (int l = 0; l < count; ++l) {
           const auto own = std::ptrdiff_t(march.rangesOf(first + l)) * marched.heights;

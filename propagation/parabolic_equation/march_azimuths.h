@@ -29,6 +29,8 @@ struct AzimuthMarch {
     return air.size() == 1 ? air.front() : air[std::size_t(azimuth)];
   }
   int rangesOf(int azimuth) const { return ranges.empty() ? cells.ranges : ranges[std::size_t(azimuth)]; }
+  /// The most of the group of kStepLanes azimuths in which an azimuth is marched on a CPU, to the end of all.
+  int rangesOfGroup(int azimuth) const;
   /// Cells in range of all azimuths: the march takes so long, times the heights of the grid.
   long long rangesOfAll() const {
     return ranges.empty() ? static_cast<long long>(azimuths) * cells.ranges

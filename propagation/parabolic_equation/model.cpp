@@ -10,7 +10,6 @@
 #include "emscape/base/parallel.h"
 #include "propagation/diffraction/model.h"
 #include "propagation/parabolic_equation/ducts.h"
-#include "propagation/parabolic_equation/march_lanes.h"
 #include "propagation/parabolic_equation/path_air.h"
 #include "propagation/parabolic_equation/plan.h"
 #include "propagation/parabolic_equation/refractivity_field.h"
@@ -83,11 +82,8 @@ void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& fie
     for (int a = begin; a < end; ++a) {
       float* const first = march.ground_msl_m.data() + std::size_t(a) * march.ground_steps;
       float* const last = first + march.ground_steps;
-      int ranges = 0;  // lanes of a group are marched as far as the farthest
-      for (int l = a / kStepLanes * kStepLanes; l < plan.azimuths && l / kStepLanes == a / kStepLanes; ++l)
-        ranges = std::max(ranges, march.rangesOf(l));
-      const auto read =
-          std::min(march.ground_steps, std::size_t(ranges * plan.cells.range_step_m / step_m) + 2);
+      const double end_m = march.rangesOfGroup(a) * plan.cells.range_step_m;
+      const auto read = std::min(march.ground_steps, std::size_t(end_m / step_m) + 2);
       radials.ground(plan.azimuth_rad(a), length_m, step_m, int(read), first);
       std::fill(first + read, last, first[read - 1]);
       first[0] = static_cast<float>(radials.site_ground_msl_m);
