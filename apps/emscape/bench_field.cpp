@@ -128,6 +128,7 @@ class FieldBench {
 
 int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
   const playback::LoadedScenario input = playback::loadScenarioWithTerrain(options.scenario, options.edits);
+  const std::vector<std::size_t> chosen = chosenEmitters(*input.scenario, options.emitters);
   const std::unique_ptr<FieldBench> opened =
       openOnTarget(global, options.device_volume, [&](const ComputeTarget& target) {
         return std::make_unique<FieldBench>(input, options.repeats, target);
@@ -135,7 +136,6 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
   FieldBench& bench = *opened;
   const std::string device = bench.target().device();
   const double tolerance_m = bench.tolerance_m();
-  const std::vector<std::size_t> chosen = chosenEmitters(*input.scenario, options.emitters);
   constexpr double kTurn_rad = 0.1;
   const Measured moved = bench.measure([&](scenario::Snapshot& snapshot, int repeat) {
     for (std::size_t e : chosen) move(snapshot.emitters[e], tolerance_m, repeat);
