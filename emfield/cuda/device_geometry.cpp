@@ -6,6 +6,7 @@
 
 #include "emfield/column_geometry.h"
 #include "emscape/base/parallel.h"
+#include "propagation/diffraction/model.h"
 #include "propagation/parabolic_equation/field_march.h"
 #include "propagation/registry/model_info.h"
 
@@ -16,9 +17,6 @@ using emscape::cuda::check;
 
 bool isDiffraction(const propagation::ExcessModel& model) {
   return std::holds_alternative<DiffractionExcess>(model);
-}
-bool isEquation(const propagation::ExcessModel& model) {
-  return std::holds_alternative<propagation::PeExcess>(model);
 }
 
 /// Heights and cells in range that are marched; 0: none.
@@ -78,14 +76,11 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   work.has_shadow = model.casts_shadow;
   work.has_reflected_ray = model.has_reflected_ray;
-  if (hasExcess(scenario, emitter)) {
+  work.has_excess = hasExcess(scenario, emitter);
+  work.is_equation = work.has_excess && model.radial != nullptr;
+  if (work.has_excess && !work.is_equation) {
     work.model =
         planExcess(scenario, emitter, request.state.beam, station, setup_.terrain.get(), setup_.columns);
-    if (work.model->march != nullptr && !isForGpu(*work.model->march)) marchTables(emitter, *work.model);
-    inModel(emitter, [&] {
-      if (work.model->march != nullptr)
-        work.march_inputs = propagation::FieldMarchCuda::inputs(*work.model->march);
-    });
   }
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);
   work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
@@ -108,6 +103,18 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   return work;
 }
 
+void DeviceGeometry::planEquation(const GeometryRequest& request, Work& work) const {
+  const scenario::Emitter& emitter = setup_.scenario->emitters[request.emitter];
+  work.model = planExcess(*setup_.scenario, emitter, request.state.beam, work.task.station,
+                          setup_.terrain.get(), setup_.columns);
+  if (work.model->march == nullptr) return;
+  if (!isForGpu(*work.model->march)) {
+    marchTables(emitter, *work.model);
+  } else {
+    inModel(emitter, [&] { work.march_inputs = propagation::FieldMarchCuda::inputs(*work.model->march); });
+  }
+}
+
 /// Assigns memory to the tasks.
 void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   // All lists of ranges begin as the longest.
@@ -124,7 +131,7 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
     if (work.clutter) work.clutter->ground.ranges_m = ranges_m;
     work.task.counts = work.excess.counts = counts++;
     tasks.push_back(work.task);
-    if (!work.model) continue;
+    if (work.is_equation || !work.model) continue;
     for (const auto& table : {work.model->model_tables, work.model->air_tables}) {
       tables.insert(tables.end(), table->begin(), table->end());
     }
@@ -132,7 +139,7 @@ void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
   tasks_.send(tasks, stream);
   const float* table = model_tables_.send(tables, stream);
   for (Work& work : works) {
-    if (!work.model) continue;
+    if (work.is_equation || !work.model) continue;
     const float* const air = table + work.model->model_tables->size();
     const float* const next = air + work.model->air_tables->size();
     work.model = work.model->withTablesAt(table, air);
@@ -152,7 +159,7 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     LocateTask& task = works[r].task;
     task.numbers = slot.numbers.atLeast((kColumnNumbers + 1) * columns);
     task.shadow_edge_m = task.numbers + kColumnNumbers * columns;
-    slot.has_excess = works[r].model.has_value();
+    slot.has_excess = works[r].has_excess;
     slot.has_reflected = works[r].has_reflected_ray;
     slot.has_mechanisms = works[r].has_mechanisms;
     slot.has_clutter = works[r].clutter.has_value();
@@ -169,31 +176,28 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
         slot.has_mechanisms ? slot.mechanisms.atLeast(voxels) : nullptr,
         task.shadow_edge_m};
   }
-  clock.begin(stream);
-  place(works, stream);
-  locateColumns(tasks_.data(), static_cast<int>(works.size()), columns_, stream);
-  clock.end(&StageTimes::columns_ms, stream);
-  std::vector<Work*> marched;
-  for (Work& work : works) {
-    if (work.model && isEquation(work.model->model)) marched.push_back(&work);
+  std::vector<std::size_t> equations;
+  for (std::size_t r = 0; r < works.size(); ++r) {
+    if (works[r].is_equation) equations.push_back(r);
   }
+  // While the device computes what needs no march, the host plans the marches.
+  const auto count_of_equations = static_cast<int>(equations.size());
+  parallelFor(1 + count_of_equations, 1, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      if (i == 0) {
+        computeUnmarched(requests, works, stream, clock);
+      } else {
+        planEquation(requests[equations[i - 1]], works[equations[i - 1]]);
+      }
+    }
+  });
+  std::vector<Work*> marched;
+  for (const std::size_t r : equations) marched.push_back(&works[r]);
   std::stable_sort(marched.begin(), marched.end(),
                    [](const Work* a, const Work* b) { return marchWork(*a->model) > marchWork(*b->model); });
-  placed_.record(stream);
   const auto marcherOf = [&](std::size_t n) -> Marcher& { return marchers_[n % marchers_.size()]; };
   for (std::size_t n = 0; n < std::min(marched.size(), marchers_.size()); ++n)
     startMarch(*marched[n], marcherOf(n));
-  clock.begin(stream);
-  findShadows(works, stream);
-  fillDiffractions(works, stream);
-  for (const Work& work : works) {
-    if (!work.model || isEquation(work.model->model) || isDiffraction(work.model->model)) continue;
-    fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
-  }
-  for (std::size_t r = 0; r < requests.size(); ++r) {
-    if (works[r].clutter) fillClutterMap(*works[r].clutter, slots_[requests[r].slot].clutter.data(), stream);
-  }
-  clock.end(&StageTimes::excess_ms, stream);
   for (std::size_t n = 0; n < marched.size(); ++n) {
     readMarch(*marched[n], marcherOf(n), stream, clock);
     const std::size_t next = n + marchers_.size();
@@ -223,6 +227,27 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   return all;
 }
 
+/// All that needs no march, in order.
+void DeviceGeometry::computeUnmarched(const std::vector<GeometryRequest>& requests, std::vector<Work>& works,
+                                      cudaStream_t stream, StageClock& clock) {
+  clock.begin(stream);
+  place(works, stream);
+  locateColumns(tasks_.data(), static_cast<int>(works.size()), columns_, stream);
+  clock.end(&StageTimes::columns_ms, stream);
+  placed_.record(stream);
+  clock.begin(stream);
+  findShadows(works, stream);
+  fillDiffractions(requests, works, stream);
+  for (const Work& work : works) {
+    if (work.is_equation || !work.model || isDiffraction(work.model->model)) continue;
+    fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
+  }
+  for (std::size_t r = 0; r < requests.size(); ++r) {
+    if (works[r].clutter) fillClutterMap(*works[r].clutter, slots_[requests[r].slot].clutter.data(), stream);
+  }
+  clock.end(&StageTimes::excess_ms, stream);
+}
+
 void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t stream) {
   std::vector<DeviceShadowTask> shadows;
   std::size_t all_ranges = 0;
@@ -243,19 +268,19 @@ void DeviceGeometry::findShadows(const std::vector<Work>& works, cudaStream_t st
                   stream);
 }
 
-void DeviceGeometry::fillDiffractions(const std::vector<Work>& works, cudaStream_t stream) {
+void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& requests,
+                                      const std::vector<Work>& works, cudaStream_t stream) {
   std::vector<DiffractionTask> tasks;
   int most_ranges = 0;
-  for (const Work& work : works) {
-    if (!work.model) continue;
-    if (isDiffraction(work.model->model)) {
+  for (std::size_t r = 0; r < works.size(); ++r) {
+    const Work& work = works[r];
+    if (work.is_equation && setup_.terrain != nullptr) {
+      tasks.push_back(
+          {besideEquation(requests[r], work), AirLoss{}, work.task.station, work.ground, work.excess});
+      tasks.back().station.refraction.exponential = false;  // no bent rays: not on the effective earth
+    } else if (!work.is_equation && work.model && isDiffraction(work.model->model)) {
       tasks.push_back({std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station,
                        work.ground, work.excess});
-    } else if (isEquation(work.model->model) && setup_.terrain != nullptr) {
-      Station straight = work.task.station;  // no bent rays: the model is not on the effective earth
-      straight.refraction.exponential = false;
-      tasks.push_back({std::get<propagation::PeExcess>(work.model->model).others.diffraction, AirLoss{},
-                       straight, work.ground, work.excess});
     } else {
       continue;
     }
@@ -266,23 +291,32 @@ void DeviceGeometry::fillDiffractions(const std::vector<Work>& works, cudaStream
                   columns_.row, scratch(), stream);
 }
 
-/// Begins a march that the host has not done.
+/// PeOthers::diffraction of an equation that is not planned yet.
+DiffractionExcess DeviceGeometry::besideEquation(const GeometryRequest& request, const Work& work) const {
+  const scenario::Emitter& emitter = setup_.scenario->emitters[request.emitter];
+  return propagation::diffractionExcess(pathInputs(*setup_.scenario, emitter, request.state.beam,
+                                                   work.task.station, setup_.terrain.get(),
+                                                   pathExtent(work.task.station, setup_.columns)));
+}
+
+/// Brings an equation's tables to the device, and begins the march that the host has not done.
 void DeviceGeometry::startMarch(Work& work, Marcher& marcher) {
-  if (work.model->march == nullptr) return;
   placed_.holdBack(marcher.stream);
   marcher.read.holdBack(marcher.stream);
-  std::get<propagation::PeExcess>(work.model->model).tables = marcher.march.start(
-      *work.model->march, std::move(work.march_inputs), &work.task.counts->warnings, marcher.stream);
+  EmitterExcess& model = *work.model;
+  const float* const tables = model.march == nullptr
+                                  ? marcher.model_tables.send(*model.model_tables, marcher.stream)
+                                  : marcher.march.start(*model.march, std::move(work.march_inputs),
+                                                        &work.task.counts->warnings, marcher.stream);
+  model = model.withTablesAt(tables, marcher.air_tables.send(*model.air_tables, marcher.stream));
   marcher.marched.record(marcher.stream);
 }
 
 /// The voxels of an emitter whose march has begun.
 void DeviceGeometry::readMarch(const Work& work, Marcher& marcher, cudaStream_t stream, StageClock& clock) {
-  if (work.model->march != nullptr) {
-    clock.begin(stream);
-    marcher.marched.holdBack(stream);
-    clock.end(&StageTimes::march_ms, stream);
-  }
+  clock.begin(stream);
+  marcher.marched.holdBack(stream);
+  clock.end(&StageTimes::march_ms, stream);
   clock.begin(stream);
   fillEquation({std::get<propagation::PeExcess>(work.model->model), work.model->air, work.task.station,
                 work.ground, work.excess},
@@ -301,7 +335,8 @@ std::size_t DeviceGeometry::bytes() const {
                       bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(shadows_) +
                       bytesOf(terms_) + bytesOf(diffraction_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
                       bytesOf(model_tables_);
-  for (const Marcher& marcher : marchers_) bytes += marcher.march.bytes();
+  for (const Marcher& marcher : marchers_)
+    bytes += marcher.march.bytes() + bytesOf(marcher.model_tables) + bytesOf(marcher.air_tables);
   for (const Slot& slot : slots_) {
     bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.excess_db) +
              bytesOf(slot.reflected) + bytesOf(slot.mechanisms) + bytesOf(slot.clutter);

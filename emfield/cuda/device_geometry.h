@@ -40,26 +40,36 @@ class DeviceGeometry {
   struct Work {
     LocateTask task;
     std::vector<double> ranges_m;
-    GroundPosts ground;                  ///< on the device, from place() on
-    std::optional<EmitterExcess> model;  ///< its tables on the device, from place() on, or when marched
+    GroundPosts ground;  ///< on the device, from place() on
+    /// Its tables on the device, from place() on; that of an equation from planEquation() on, its tables
+    /// there when it is marched.
+    std::optional<EmitterExcess> model;
+    bool is_equation = false;
     std::vector<propagation::BlockInput> march_inputs;  ///< of its march
     ExcessOutputs excess;
     std::optional<ClutterMapTask> clutter;  ///< its ground on the device, from place() on
-    bool has_shadow = false, has_reflected_ray = false, has_mechanisms = false;
+    bool has_excess = false, has_shadow = false, has_reflected_ray = false, has_mechanisms = false;
   };
 
   /// Marches of one emitter after the other, on a stream of their own.
   struct Marcher {
     emscape::cuda::Stream stream;
     propagation::FieldMarchCuda march;
-    emscape::cuda::Event marched;  ///< its losses are there
-    emscape::cuda::Event read;     ///< and were read
+    emscape::cuda::Buffer<float> model_tables, air_tables;  ///< those that come from the host
+    emscape::cuda::Event marched;                           ///< its losses are there
+    emscape::cuda::Event read;                              ///< and were read
   };
 
   Work prepare(const GeometryRequest& request) const;
+  /// Milliseconds of the host.
+  void planEquation(const GeometryRequest& request, Work& work) const;
   void place(std::vector<Work>& works, cudaStream_t stream);
+  void computeUnmarched(const std::vector<GeometryRequest>& requests, std::vector<Work>& works,
+                        cudaStream_t stream, StageClock& clock);
   void findShadows(const std::vector<Work>& works, cudaStream_t stream);
-  void fillDiffractions(const std::vector<Work>& works, cudaStream_t stream);
+  void fillDiffractions(const std::vector<GeometryRequest>& requests, const std::vector<Work>& works,
+                        cudaStream_t stream);
+  DiffractionExcess besideEquation(const GeometryRequest& request, const Work& work) const;
   void startMarch(Work& work, Marcher& marcher);
   void readMarch(const Work& work, Marcher& marcher, cudaStream_t stream, StageClock& clock);
   ScratchMemory scratch();
