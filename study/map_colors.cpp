@@ -1,5 +1,7 @@
 #include "study/map_colors.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +30,8 @@ render::Legend legendOf(const Map& map) {
   if (isWhole(map.kind)) {
     legend.function.categorical = true;
     const int first = map.kind == MapKind::category ? 0 : 1;
-    const int last = std::min(std::isfinite(largest) ? static_cast<int>(largest) : 0, first + 15);
+    int last = std::min(std::isfinite(largest) ? static_cast<int>(largest) : 0, first + 15);
+    if (map.kind == MapKind::classes) last = static_cast<int>(map.labels.size()) - 1;  // those absent too
     for (int n = first; n <= last; ++n) {
       const std::string label = n < static_cast<int>(map.labels.size()) ? map.labels[n] : std::to_string(n);
       legend.categories.push_back({categoryOf(map, n), label});
@@ -40,6 +43,7 @@ render::Legend legendOf(const Map& map) {
   if (isPart(map.kind)) {
     low = 0;
     high = 1;
+    legend.note = fmt::format("no colour: < {}", kNoPart);
   } else if (map.kind == MapKind::difference) {
     high = std::max(std::abs(low), std::abs(high));
     low = -high;

@@ -23,17 +23,29 @@ using render::Weight;
 
 constexpr double kMapOpacity = 0.72;  ///< of the colours over the ground
 
+/// Slope of three posts at distances of cell_m: central where all are known, one-sided at an edge, else NaN.
+float slopeOf(float before, float here, float after, float cell_m) {
+  if (std::isnan(before)) return (after - here) / cell_m;
+  if (std::isnan(after)) return (here - before) / cell_m;
+  return (after - before) / (2 * cell_m);
+}
+
 /// Lambert's shading, from the north-west, 45 degrees high. 0..1; 0.7 where the slope is unknown.
 std::vector<float> shadesOf(const MapGrid& grid, const std::vector<float>& ground_msl_m) {
   std::vector<float> shades(grid.pixels(), 0.7f);
   if (ground_msl_m.empty()) return shades;
-  parallelFor(grid.height - 2, 16, [&](int begin, int end) {
-    for (int j = begin + 1; j < end + 1; ++j) {
-      for (int i = 1; i + 1 < grid.width; ++i) {
+  const auto groundAt = [&](int i, int j) {
+    const bool is_inside = i >= 0 && i < grid.width && j >= 0 && j < grid.height;
+    return is_inside ? ground_msl_m[static_cast<std::size_t>(j) * grid.width + i] : NAN;
+  };
+  const auto cell_m = static_cast<float>(grid.cell_m);
+  parallelFor(grid.height, 16, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      for (int i = 0; i < grid.width; ++i) {
         const std::size_t p = static_cast<std::size_t>(j) * grid.width + i;
-        const auto scale = static_cast<float>(0.5 / grid.cell_m);
-        const float east = (ground_msl_m[p + 1] - ground_msl_m[p - 1]) * scale;
-        const float south = (ground_msl_m[p + grid.width] - ground_msl_m[p - grid.width]) * scale;
+        const float here = ground_msl_m[p];
+        const float east = slopeOf(groundAt(i - 1, j), here, groundAt(i + 1, j), cell_m);
+        const float south = slopeOf(groundAt(i, j - 1), here, groundAt(i, j + 1), cell_m);
         const float toward = (0.5f * (east + south) + 0.7071f) / std::sqrt(1 + east * east + south * south);
         if (!std::isnan(toward)) shades[p] = std::clamp(0.25f + 0.75f * toward, 0.05f, 1.0f);
       }
@@ -67,13 +79,22 @@ class MapPicture {
     drawAxes(canvas);
     drawMarkers(canvas);
     render::drawLegend(canvas, style_, legend_);
-    canvas.text(options_.title, {left_, 34 * style_.unit}, 1.35 * style_.text_px, style_.textInk(),
-                Align::left, Weight::bold);
+    drawTitle(canvas);
     canvas.text(options_.subtitle, {left_, 64 * style_.unit}, style_.text_px, style_.mutedInk());
     return canvas.pixels();
   }
 
  private:
+  /// As large as the picture's width allows.
+  void drawTitle(Canvas& canvas) const {
+    double size_px = 1.35 * style_.text_px;
+    const double room = options_.width - left_ - 16 * style_.unit;
+    const double width = canvas.textBox(options_.title, size_px, Weight::bold).width;
+    if (width > room) size_px *= room / width;
+    canvas.text(options_.title, {left_, 34 * style_.unit}, size_px, style_.textInk(), Align::left,
+                Weight::bold);
+  }
+
   void drawPixels(Canvas& canvas) const {
     const std::vector<float> shades = shadesOf(grid_, options_.ground_msl_m);
     canvas.changeRows([&](int y, std::uint32_t* row) {

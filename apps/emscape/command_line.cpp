@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <csignal>
 #include <exception>
 #include <new>
@@ -96,10 +97,25 @@ std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
   return error.what();
 }
 
+/// CLI11 takes 'nan' and 'inf' for numbers; no option does.
+/// @throws CLI::ValidationError naming the first such option of the program or its subcommands
+void checkNumbers(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_type_name().rfind("FLOAT", 0) != 0) continue;
+    for (const std::string& text : option->results()) {
+      double value = 0;
+      if (!CLI::detail::lexical_cast(text, value) || std::isfinite(value)) continue;
+      throw CLI::ValidationError(option->get_name(), "'" + text + "' is no number");
+    }
+  }
+  for (const CLI::App* subcommand : app.get_subcommands()) checkNumbers(*subcommand);
+}
+
 /// Parses; returns an exit status if there is nothing to run.
 int parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
+    checkNumbers(app);
     return -1;
   } catch (const CLI::Success& help) {
     return run([&] { return app.exit(help); });
@@ -170,6 +186,7 @@ CommandResult commandResult(const std::vector<std::string>& arguments, const Pro
   try {
     line.app.parse(
         std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them reversed
+    checkNumbers(line.app);
   } catch (const CLI::Success&) {
     throw Error(ErrorCode::usage, "help and version are texts of the program, without a result");
   } catch (const CLI::ParseError& error) {

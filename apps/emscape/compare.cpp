@@ -195,6 +195,13 @@ int compare(const CompareCommand& command, const GlobalOptions& global) {
   if (is_folder && command.b.empty()) {
     throw Error(ErrorCode::usage, "compare: give a second folder of emscape coverage");
   }
+  for (const std::string& read : {command.a, command.b}) {
+    std::error_code none;
+    if (is_folder && std::filesystem::equivalent(read, command.folder, none)) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("--output: {} is one of the folders to compare; give another", command.folder));
+    }
+  }
   return is_folder ? compareFolders(command, global) : compareScenarios(command, global);
 }
 

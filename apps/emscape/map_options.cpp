@@ -1,8 +1,11 @@
 #include "apps/emscape/map_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "apps/emscape/study_options.h"
+#include "emscape/base/error.h"
 #include "emscape/study/area.h"
 #include "emscape/study/map_folder.h"
 
@@ -34,7 +37,13 @@ void addMapOptions(CLI::App& command, MapOptions& options) {
 
 std::vector<study::Product> productsOf(const MapOptions& options) {
   std::vector<study::Product> products;
-  for (const std::string& name : options.products) products.push_back(study::productNamed(name));
+  for (const std::string& name : options.products) {
+    const study::Product product = study::productNamed(name);
+    if (std::find(products.begin(), products.end(), product) != products.end()) {
+      throw Error(ErrorCode::usage, fmt::format("--products: '{}' is given twice", name));
+    }
+    products.push_back(product);
+  }
   return products;
 }
 

@@ -40,11 +40,6 @@ void addThresholdOption(CLI::App& command, double& threshold) {
       .add_option(
           "--threshold", threshold,
           "Level of the quantity, in its unit; default: 0.5 of detection_probability, 0 dB of a margin")
-      ->check([](const std::string& text) {
-        double value = 0;
-        const bool is_nan = CLI::detail::lexical_cast(text, value) && std::isnan(value);
-        return is_nan ? "'" + text + "' is no number" : std::string();
-      })
       ->default_str("");
 }
 
@@ -55,11 +50,9 @@ double thresholdOf(double threshold, scenario::Quantity quantity) {
     throw Error(ErrorCode::usage, fmt::format("--threshold: quantity '{}' has no usual one; give it in {}",
                                               info.name, info.unit));
   }
-  if (!std::isfinite(threshold) ||
-      (quantity == scenario::Quantity::detection_probability && !(threshold > 0 && threshold < 1))) {
+  if (quantity == scenario::Quantity::detection_probability && !(threshold > 0 && threshold < 1)) {
     throw Error(ErrorCode::usage,
-                fmt::format("--threshold: {} of {}; a finite number, of a probability between 0 and 1",
-                            threshold, info.name));
+                fmt::format("--threshold: {} of {}; between 0 and 1", threshold, info.name));
   }
   return threshold;
 }

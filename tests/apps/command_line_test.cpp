@@ -32,6 +32,15 @@ TEST(CommandLine, HelpAndVersionAreNoErrors) {
   EXPECT_THAT(run({"--version"}).out, StartsWith("emscape "));
 }
 
+TEST(CommandLine, NumbersAreFinite) {
+  for (const std::string number : {"nan", "inf", "-inf"}) {
+    const ProgramResult result = run({"vertical", shippedScenario("jacksboro.yaml"), "--emitter",
+                                      "search radar", "--azimuth", "30", "-o", "out.png", "--time", number});
+    EXPECT_EQ(result.status, kUsage);
+    EXPECT_THAT(result.err, HasSubstr("--time: '" + number + "' is no number"));
+  }
+}
+
 /// Exit status of `emscape ARGUMENTS` with its streams redirected by the shell.
 int statusOf(const std::string& arguments_and_redirections) {
   const std::string command = besideThisProgram("emscape") + " " + arguments_and_redirections;

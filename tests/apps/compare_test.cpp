@@ -171,6 +171,11 @@ TEST(Compare, RefusesFoldersThatDoNotFit) {
   with("pictures", {"--format", "png"});
   EXPECT_THAT(errorOf("pictures", {}, 3), HasSubstr("has no GeoTIFFs"));
   EXPECT_THAT(errorOf("none", {}, 2), HasSubstr("is a folder and"));
+  const std::string report = readFile(folder / "a/report.json");
+  const ProgramResult onto_itself = run({"compare", folder / "a", folder / "a", "-o", folder / "a/."});
+  EXPECT_EQ(onto_itself.status, 2);
+  EXPECT_THAT(onto_itself.err, HasSubstr("is one of the folders to compare"));
+  EXPECT_EQ(readFile(folder / "a/report.json"), report);
   EXPECT_THAT(errorOf("a", {"--products", "best"}, 2), HasSubstr("'best'"));
   EXPECT_THAT(errorOf("a", {"--products", "count"}, 2), HasSubstr("has no map of these products"));
   for (const Arguments& option : {Arguments{"--cell", "200"}, {"--set-b", "a=1"}, {"--quantity", "snr_db"}})

@@ -83,7 +83,8 @@ TEST(Coverage, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"--area", "36,-84"}, 2), HasSubstr("2 numbers"));
   EXPECT_THAT(errorOf({"--area", "bbox:1,2,x,4"}, 2), HasSubstr("'x' is no number"));
   EXPECT_THAT(errorOf({"--quantity", "power_density_dbwm2"}, 2), HasSubstr("--threshold"));
-  EXPECT_THAT(errorOf({"--threshold", "nan"}, 2), HasSubstr("'nan' is no number"));
+  EXPECT_THAT(errorOf({"--threshold", "nan"}, 2), HasSubstr("--threshold: 'nan' is no number"));
+  EXPECT_THAT(errorOf({"--products", "value,covered,value"}, 2), HasSubstr("'value' is given twice"));
   EXPECT_THAT(errorOf({"--quantity", "loudness"}, 2), HasSubstr("unknown quantity 'loudness'"));
   EXPECT_THAT(errorOf({"--products", "fraction"}, 2), HasSubstr("two times"));
   EXPECT_THAT(errorOf({"--format", "shp"}, 2), HasSubstr("shp"));
