@@ -58,8 +58,7 @@ void Painter::prepareCells(const Frame& frame) {
   projects_ = style_.cells.method == CellMethod::project;
   if (style_.cells.method == CellMethod::automatic && renderer_.backend() == Backend::cpu) {
     try {
-      cells->prepareProjection();
-      projects_ = true;
+      projects_ = !cells->projectsOnCpu();
     } catch (const Error& error) {
       if (error.code() != ErrorCode::device) throw;
       logInfo(std::string("tetrahedra are marched, not projected: ") + error.what());

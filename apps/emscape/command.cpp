@@ -58,7 +58,8 @@ void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& c
     command.add_option_function<std::string>(name, take, help)->check(CLI::IsMember(names));
   };
   addChoice("--cells",
-            "Tetrahedra are marched, or projected by OpenGL; auto: pictures that are complete are marched",
+            "Tetrahedra are marched, or projected by OpenGL; auto: marched, but for incomplete pictures "
+            "where OpenGL has a GPU and CUDA does not",
             [&cells](const std::string& name) { cells.method = playback::parseCellMethod(name); },
             {"auto", "march", "project"});
   addChoice("--cell-order", "Of projected cells; default: visibility",

@@ -102,6 +102,14 @@ void CellRenderer::prepareProjection() {
   if (!impl_->rasterizer) impl_->rasterizer = std::make_unique<gl::CellRasterizer>();
 }
 
+bool CellRenderer::projectsOnCpu() {
+  prepareProjection();
+  const std::string& device = impl_->rasterizer->device();
+  constexpr const char* kSoftware[] = {"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer"};
+  return std::any_of(std::begin(kSoftware), std::end(kSoftware),
+                     [&](const char* name) { return device.find(name) != std::string::npos; });
+}
+
 Image CellRenderer::project(ImageSize size, const ProjectionOptions& options, ProjectionReport* report) {
   prepareProjection();
   Impl& impl = *impl_;

@@ -110,6 +110,9 @@ class CellRenderer {
   /// Prepares project(), which otherwise does so at the first call.
   /// @throws Error (device) without OpenGL 3.3, or in a build without libepoxy
   void prepareProjection();
+  /// True if OpenGL is a program on the CPU, such as Mesa's llvmpipe: there render() is faster.
+  /// @throws Error (device) as prepareProjection()
+  bool projectsOnCpu();
   /// The same by projection of the cells with OpenGL, without a window.
   /// @accuracy exact, visibility: within 1e-5 of render() in 99 % of the pixels, 2e-6 in the mean; 2e-2 at
   /// most, where a face is seen on edge or a ray passes within 1/256 pixel of an edge: rasterisers round to
