@@ -10,6 +10,7 @@
 #include "base/fast_geodesy.h"
 #include "base/quantity_text.h"
 #include "base/whole_file.h"
+#include "emscape/scenario/clock.h"
 #include "emscape/scenario/snapshot.h"
 #include "propagation/registry/model_info.h"
 
@@ -137,7 +138,11 @@ std::vector<std::pair<std::string, std::string>> metadataOf(const scenario::Scen
       {"EMSCAPE_HEIGHT_DATUM", "EGM96 (EPSG:5773)"},
       {"EMSCAPE_VERSION", EMSCAPE_VERSION}};
   if (map.height) metadata.emplace_back("EMSCAPE_HEIGHT", describe(*map.height));
-  if (map.time_s) metadata.emplace_back("EMSCAPE_TIME_S", fmt::format("{}", *map.time_s));
+  if (map.time_s) {
+    metadata.emplace_back("EMSCAPE_TIME_S", fmt::format("{}", *map.time_s));
+    if (const std::string utc = utcAt(scenario.clock, *map.time_s); !utc.empty())
+      metadata.emplace_back("EMSCAPE_TIME_UTC", utc);
+  }
   return metadata;
 }
 

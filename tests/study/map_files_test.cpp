@@ -254,6 +254,8 @@ TEST_F(MapFiles, AGeoTiffOfClassesNamesThem) {
   ASSERT_EQ(CSLCount(names), 3);
   EXPECT_STREQ(names[1], "it's");
   EXPECT_STREQ(table->GetValueAsString(2, table->GetColOfUsage(GFU_Name)), "third");
+  EXPECT_STREQ(map->GetMetadataItem("EMSCAPE_TIME_S"), "70");
+  EXPECT_STREQ(map->GetMetadataItem("EMSCAPE_TIME_UTC"), "2026-06-01T06:01:10.000Z");
   EXPECT_THAT(test::readFile(folder / "a/study.json"), HasSubstr("best_msl1500m_t70s.tif.aux.xml"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a/maps/value_msl1500m_t70s.tif.aux.xml"));
 }
