@@ -32,8 +32,8 @@ struct MeshFile {
   std::vector<MeshField> fields;
 };
 
-/// Reads a file that writeMesh() wrote exactly; of other programs: point data of one component in binary form
-/// (appended or inline, raw or base64, uncompressed or compressed with zlib). The mesh is oriented and
+/// Reads a file that writeMesh() wrote exactly; of other programs: point data of one component, as text or in binary
+/// form (appended or inline, raw or base64, uncompressed or compressed with zlib). The mesh is oriented and
 /// checked (orientCells(), facesOf(), touchingFaces()). Sizes are checked against the file's before memory is
 /// allocated.
 /// @param name  of one field; empty: all
