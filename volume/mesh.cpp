@@ -8,6 +8,7 @@
 #include <string>
 
 #include "emscape/base/parallel.h"
+#include "volume/mesh_text.h"
 
 namespace emscape::volume {
 namespace {
@@ -15,12 +16,6 @@ namespace {
 constexpr int kGrain = 1 << 14;
 /// Least volume of a cell, as a part of the cube of its longest edge.
 constexpr double kDegenerate = 1e-12;
-
-std::string cellText(const TetrahedralMesh& mesh, long long cell) {
-  const auto& v = mesh.cells[static_cast<std::size_t>(cell)];
-  return "cell " + std::to_string(cell) + " (points " + std::to_string(v[0]) + ", " + std::to_string(v[1]) +
-         ", " + std::to_string(v[2]) + ", " + std::to_string(v[3]) + ")";
-}
 
 /// Calls test(n) for n in [0, count) in parallel. @return the least n for which it is true; -1 if none is
 template <class Test>

@@ -3,6 +3,9 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
 #include <sstream>
 #include <string_view>
 
@@ -136,7 +139,7 @@ std::vector<std::uint8_t> VtkXmlFile::storedBytes(const pugi::xml_node& array,
   }
   if (format != "appended") {
     fail("array " + std::string(array.attribute("Name").value()) + " is stored as \"" + std::string(format) +
-         "\"; appended and binary can be read");
+         "\"; appended, binary and ascii can be read");
   }
   if (appended_ == 0) fail("damaged: there are no appended data");
   const std::uint64_t offset = array.attribute("offset").as_ullong();
@@ -151,8 +154,62 @@ std::vector<std::uint8_t> VtkXmlFile::storedBytes(const pugi::xml_node& array,
   return {begin, begin + std::min<std::uint64_t>(max_bytes, static_cast<std::uint64_t>(end - begin))};
 }
 
+/// `count` numbers as text, separated by blanks, as a binary array contains them.
+template <class Number>
+std::vector<std::uint8_t> VtkXmlFile::spelledNumbers(const pugi::xml_node& array, std::uint64_t count) const {
+  using Parsed = std::conditional_t<std::is_floating_point_v<Number>, double, Number>;
+  const std::string name = array.attribute("Name").value(), type = array.attribute("type").value();
+  const std::string_view text = array.child_value();
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(std::min<std::uint64_t>(count, text.size()) * sizeof(Number));
+  constexpr std::string_view kBlanks = " \t\r\n";
+  std::uint64_t found = 0;
+  for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos; ++found) {
+    if (found == count) fail("array " + name + ": more than " + std::to_string(count) + " values");
+    const std::size_t end = std::min(text.find_first_of(kBlanks, at), text.size());
+    const char* const last = text.data() + end;
+    Parsed value{};
+    const auto result = std::from_chars(text.data() + at, last, value);
+    bool is_number = result.ec == std::errc() && result.ptr == last;
+    if constexpr (std::is_same_v<Number, float>) {
+      is_number = is_number && !(std::isfinite(value) && std::abs(value) > std::numeric_limits<float>::max());
+    }
+    if (!is_number) {
+      fail("array " + name + ": value " + std::to_string(found) + ": \"" +
+           std::string(text.substr(at, std::min<std::size_t>(end - at, 40))) +
+           "\": must be a number of type " + type);
+    }
+    const auto number = static_cast<Number>(value);
+    std::uint8_t digits[sizeof(Number)];
+    std::memcpy(digits, &number, sizeof(Number));
+    if (bigEndian()) std::reverse(digits, digits + sizeof(Number));
+    bytes.insert(bytes.end(), digits, digits + sizeof(Number));
+    at = text.find_first_not_of(kBlanks, end);
+  }
+  if (found != count) {
+    fail("array " + name + ": expected " + std::to_string(count) + " values, found " + std::to_string(found));
+  }
+  return bytes;
+}
+
+std::vector<std::uint8_t> VtkXmlFile::textBytes(const pugi::xml_node& array,
+                                                std::uint64_t expected_bytes) const {
+  const std::string_view type = array.attribute("type").value();
+  if (type == "Int8") return spelledNumbers<std::int8_t>(array, expected_bytes);
+  if (type == "UInt8") return spelledNumbers<std::uint8_t>(array, expected_bytes);
+  if (type == "Int16") return spelledNumbers<std::int16_t>(array, expected_bytes / 2);
+  if (type == "UInt16") return spelledNumbers<std::uint16_t>(array, expected_bytes / 2);
+  if (type == "Int32") return spelledNumbers<std::int32_t>(array, expected_bytes / 4);
+  if (type == "UInt32") return spelledNumbers<std::uint32_t>(array, expected_bytes / 4);
+  if (type == "Int64") return spelledNumbers<std::int64_t>(array, expected_bytes / 8);
+  if (type == "UInt64") return spelledNumbers<std::uint64_t>(array, expected_bytes / 8);
+  if (type == "Float32") return spelledNumbers<float>(array, expected_bytes / 4);
+  return spelledNumbers<double>(array, expected_bytes / 8);
+}
+
 std::vector<std::uint8_t> VtkXmlFile::arrayBytes(const pugi::xml_node& array,
                                                  std::uint64_t expected_bytes) const {
+  if (std::string_view(array.attribute("format").value()) == "ascii") return textBytes(array, expected_bytes);
   const std::string compressor = root_.attribute("compressor").value();
   if (!compressor.empty() && compressor != "vtkZLibDataCompressor") {
     fail("compressed with " + compressor + "; vtkZLibDataCompressor can be read");

@@ -22,7 +22,8 @@ class VtkXmlFile {
   pugi::xml_node root() const { return root_; }
   bool bigEndian() const;
 
-  /// The bytes of a DataArray, decoded and decompressed.
+  /// The bytes of a DataArray of numbers, decoded and decompressed; of numbers as text those that a binary
+  /// array would have.
   /// @param expected_bytes  any other number is an Error, before anything is allocated for it
   std::vector<std::uint8_t> arrayBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
 
@@ -35,6 +36,9 @@ class VtkXmlFile {
 
  private:
   std::vector<std::uint8_t> storedBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
+  template <class Number>
+  std::vector<std::uint8_t> spelledNumbers(const pugi::xml_node& array, std::uint64_t count) const;
+  std::vector<std::uint8_t> textBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
   std::uint64_t headerValue(ByteReader& reader) const;
   std::vector<std::uint8_t> inflate(ByteReader& reader, std::uint64_t expected_bytes) const;
 

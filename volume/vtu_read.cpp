@@ -204,6 +204,7 @@ MeshFile readMesh(const std::filesystem::path& path, const std::string& name) {
   }
   result.inverted_cells = orientCells(*mesh, location);
   result.faces = std::make_shared<MeshFaces>(facesOf(*mesh, location));
+  result.touching_faces = touchingFaces(*mesh, *result.faces, location);
   result.mesh = std::move(mesh);
   return result;
 }

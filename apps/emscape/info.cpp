@@ -232,6 +232,7 @@ Json describeMeshFiles(const std::string& path) {
             {"tetrahedra", file.mesh->cells.size()},
             {"inverted_tetrahedra", file.inverted_cells},
             {"boundary_faces", file.faces->boundary.size()},
+            {"touching_faces", file.touching_faces},
             {"lower_m", toJson(bounds.lower_m)},
             {"upper_m", toJson(bounds.upper_m)},
             {"frame", file.mesh->georeferenced ? toJson(file.mesh->frame) : Json(nullptr)}};

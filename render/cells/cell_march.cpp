@@ -35,9 +35,8 @@ void marchAll(const CellMeshView& mesh, const RayFrame& frame, std::vector<Entry
   std::sort(entries.begin(), entries.end());
   double been = -std::numeric_limits<double>::infinity();
   for (const EntryHit& entry : entries) {
-    if (isPassed(entry, been)) continue;
     if (entry.distance >= limits.distance || integral.through() < limits.through) return;
-    been = march(mesh, frame, entry, limits, integral, cells);
+    been = march(mesh, frame, entry, been, limits, integral, cells);
   }
 }
 

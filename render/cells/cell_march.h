@@ -11,8 +11,8 @@ namespace emscape::render {
 /// The cell that holds a position (index space); -1 if none does. Looks at all cells, in parallel.
 int cellAt(const CellMesh& mesh, const Vec3d& position);
 
-/// Marches from every entry, in ascending order, where the ray has not been yet: a mesh that is not convex is
-/// left and entered again.
+/// Marches from every entry, in ascending order, and counts what the ray has not passed yet: a mesh that is
+/// not convex is left and entered again.
 /// @param entries  sorted here
 void marchAll(const CellMeshView& mesh, const RayFrame& frame, std::vector<EntryHit>& entries,
               const MarchLimits& limits, RayIntegral& integral, long long& cells);

@@ -168,12 +168,15 @@ EMSCAPE_HD inline volume::FaceId entryFaceOf(const CellMeshView& mesh, const Ray
   return entered;
 }
 
-/// Follows a ray from cell to cell until it leaves the mesh or reaches a limit. What is behind its origin
-/// does not count.
+/// Follows a ray from cell to cell until it leaves the mesh or reaches a limit. What is behind its origin, or
+/// where it has been, does not count: rounding may have moved an entry into the cells that it has just left,
+/// and an edge is an entry for the faces on both its sides.
+/// @param been  the distance up to which the ray has been followed; -infinity at first
 /// @param cells  the number of cells that were passed is added
-/// @return the distance where it ended
+/// @return the distance up to which it has been followed now
 EMSCAPE_HD inline double march(const CellMeshView& mesh, const RayFrame& frame, const EntryHit& entry,
-                               const MarchLimits& limits, RayIntegral& integral, long long& cells) {
+                               double been, const MarchLimits& limits, RayIntegral& integral,
+                               long long& cells) {
   // Only a ray along an edge can pass so many cells and come no farther.
   constexpr int kMaxStanding = 10000;
   Crossing crossing = entryOf(mesh, frame, entry.face);
@@ -186,7 +189,7 @@ EMSCAPE_HD inline double march(const CellMeshView& mesh, const RayFrame& frame, 
     const double next = fmax(crossing.distance(), distance);
     const double next_value = crossing.value();
     standing = next > distance ? 0 : standing + 1;
-    const double begin = fmax(distance, 0.0), end = fmin(next, limits.distance);
+    const double begin = fmax(fmax(distance, been), 0.0), end = fmin(next, limits.distance);
     if (end > begin && value == value && next_value == next_value) {
       const double slope = (next_value - value) / (next - distance);
       const double front = begin > distance ? value + slope * (begin - distance) : value;
@@ -203,14 +206,7 @@ EMSCAPE_HD inline double march(const CellMeshView& mesh, const RayFrame& frame, 
     cell = other >> 2;
     fourth = cornerOf(mesh, frame, mesh.vertex(cell, other & 3));
   }
-  return distance;
-}
-
-/// Whether a ray that has been as far as `been` has already passed an entry. A face that touches the one
-/// where it has just left may be this much nearer by rounding.
-EMSCAPE_HD inline bool isPassed(const EntryHit& entry, double been) {
-  constexpr double kRounding = 1e-9;
-  return entry.distance < been - kRounding * (1 + fabs(been));
+  return fmax(distance, been);
 }
 
 }  // namespace emscape::render

@@ -44,6 +44,7 @@ TEST(MeshSeries, IsComputedDescribedAndDrawnTheSameTwice) {
     EXPECT_EQ(info["points"], 20 * 18 * 10);
     EXPECT_EQ(info["tetrahedra"], 6 * 19 * 17 * 9);
     EXPECT_EQ(info["inverted_tetrahedra"], 0);
+    EXPECT_EQ(info["touching_faces"], 0);
     EXPECT_EQ(info["fields"][0]["quantity"], "power_density_dbwm2");
     EXPECT_EQ(info["fields"][0]["unit"], "dBW/m2");
   }

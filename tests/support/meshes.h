@@ -34,6 +34,16 @@ inline volume::TetrahedralMesh boxMesh(const Dims& points, const Vec3d& lower_m,
   return mesh;
 }
 
+/// Adds the cells of another mesh; no point is shared.
+inline void append(volume::TetrahedralMesh& mesh, const volume::TetrahedralMesh& other) {
+  const auto before = static_cast<std::int32_t>(mesh.points_m.size());
+  mesh.points_m.insert(mesh.points_m.end(), other.points_m.begin(), other.points_m.end());
+  for (auto cell : other.cells) {
+    for (auto& vertex : cell) vertex += before;
+    mesh.cells.push_back(cell);
+  }
+}
+
 /// A field on a mesh by a function of the place.
 inline volume::MeshField fieldOn(volume::TetrahedralMesh mesh,
                                  const std::function<double(const Vec3d&)>& value) {

@@ -106,6 +106,60 @@ TEST(Mesh, RefusesFacesThatDoNotConform) {
   EXPECT_THAT(errorOf([&] { facesOf(mesh, kFile); }), HasSubstr("on its same side: they overlap"));
 }
 
+TEST(MeshContacts, MeshesThatConformHaveNone) {
+  TetrahedralMesh mesh = boxMesh({5, 4, 6}, {-1, 0, 2}, {3, 7, 4});
+  // Rugged ground, a gap above, and a box beside.
+  for (Vec3d& point : mesh.points_m) point.z += 0.6 * std::sin(2 * point.x) * std::cos(1.7 * point.y);
+  test::append(mesh, boxMesh({3, 5, 3}, {-1, 0, 6}, {3, 7, 7}));
+  test::append(mesh, boxMesh({2, 2, 2}, {3.1, 0, 2}, {4, 7, 9}));
+  EXPECT_EQ(touchingFaces(mesh, facesOf(mesh, kFile), kFile), 0);
+  TetrahedralMesh thin = oneCell();
+  for (Vec3d& point : thin.points_m) point = {point.x * 1e4, point.y * 1e4, point.z * 1e-3};
+  EXPECT_EQ(touchingFaces(thin, facesOf(thin, kFile), kFile), 0);
+}
+
+TEST(MeshContacts, FacesOnFacesOfOthersAreCounted) {
+  // The side of one box is cut into 8 faces, the one on it into 18: none is shared.
+  TetrahedralMesh mesh = boxMesh({3, 3, 3}, {0, 0, 0}, {1, 1, 1});
+  test::append(mesh, boxMesh({4, 4, 4}, {0, 0, 1}, {1, 1, 2}));
+  EXPECT_EQ(touchingFaces(mesh, facesOf(mesh, kFile), kFile), 8 + 18);
+  // So is rounding to single precision, far from the origin.
+  for (Vec3d& point : mesh.points_m) {
+    const auto stored = [](double at) { return static_cast<double>(static_cast<float>(at)); };
+    point = {stored(1e3 * point.x + 5e5), stored(1e3 * point.y + 4e6),
+             stored(100 * point.z + 0.3 * point.x - 0.2 * point.y)};
+  }
+  EXPECT_EQ(touchingFaces(mesh, facesOf(mesh, kFile), kFile), 8 + 18);
+  // A vertex in the face of two cells divides it for one of them alone: 1 + 3 faces.
+  TetrahedralMesh split = oneCell();
+  split.points_m.push_back({1, 1, 1});
+  split.points_m.push_back({1. / 3, 1. / 3, 1. / 3});
+  split.cells.insert(split.cells.end(), {{1, 2, 5, 4}, {2, 3, 5, 4}, {3, 1, 5, 4}});
+  orientCells(split, kFile);
+  EXPECT_EQ(touchingFaces(split, facesOf(split, kFile), kFile), 4);
+}
+
+TEST(MeshContacts, RefusesCellsThatOverlapWithoutACommonFace) {
+  const auto errorWith = [](const Vec3d& lower, const Vec3d& upper, const Dims& points) {
+    TetrahedralMesh mesh = boxMesh({3, 3, 3}, {0, 0, 0}, {1, 1, 1});
+    test::append(mesh, boxMesh(points, lower, upper));
+    const MeshFaces faces = facesOf(mesh, kFile);
+    return errorOf([&] { touchingFaces(mesh, faces, kFile); }, ErrorCode::bad_input);
+  };
+  const auto overlap = ::testing::MatchesRegex(
+      "a.vtu: cell [0-9]+ \\(points [0-9 ,]+\\) and cell [0-9]+ \\(points [0-9 ,]+\\) overlap, at "
+      "\\([-0-9. ,]+\\)");
+  // Within a cell; through the box; shifted; the same box again; a corner alone.
+  EXPECT_THAT(errorWith({0.1, 0.2, 0.3}, {0.12, 0.22, 0.32}, {2, 2, 2}), overlap);
+  EXPECT_THAT(errorWith({0.3, 0.3, -1}, {0.4, 0.4, 2}, {2, 2, 2}), overlap);
+  EXPECT_THAT(errorWith({0.5, 0, 0}, {1.5, 1, 1}, {3, 3, 3}), overlap);
+  EXPECT_THAT(errorWith({0.5, 0.5, 0.5}, {1.5, 1.5, 1.5}, {3, 3, 3}), overlap);
+  EXPECT_THAT(errorWith({0, 0, 0}, {1, 1, 1}, {4, 4, 4}), overlap);
+  EXPECT_THAT(errorWith({0.97, 0.97, 0.97}, {2, 2, 2}, {3, 3, 3}), overlap);
+  // Beside it.
+  EXPECT_EQ(errorWith({1.001, 0, 0}, {2, 1, 1}, {3, 3, 3}), "");
+}
+
 TEST(Mesh, StatisticsLeaveOutWhatIsNotKnown) {
   MeshField field = test::fieldOn(oneCell(), [](const Vec3d& p) { return p.x + 2 * p.y; });
   field.values[3] = std::numeric_limits<float>::quiet_NaN();

@@ -1,5 +1,7 @@
 #include "volume/vti.h"
 
+#include <cmath>
+
 #include "emscape/volume/statistics.h"
 #include "tests/volume/sample_volumes.h"
 
@@ -110,10 +112,29 @@ TEST(ForeignVti, MayBeCompressedWithZlib) {
   }
 }
 
+TEST(ForeignVti, MayBeText) {
+  const DenseVolume volume =
+      readText(vti("", "type=\"Float32\" format=\"ascii\">\n  1 -2.5e1\r\n\tnan 1e-3\n", ""));
+  ASSERT_EQ(volume.values.size(), 4U);
+  EXPECT_EQ(volume.values[1], -25);
+  EXPECT_TRUE(std::isnan(volume.values[2]));
+  EXPECT_EQ(volume.values[3], 1e-3F);
+  const auto refusal = [](const std::string& array) {
+    return errorOf([&] { readText(vti("", array, "")); }, ErrorCode::bad_input);
+  };
+  EXPECT_THAT(refusal("type=\"UInt8\" format=\"ascii\">1 2 300 4"),
+              HasSubstr("array d: value 2: \"300\": must be a number of type UInt8"));
+  EXPECT_THAT(refusal("type=\"Float32\" format=\"ascii\">1 2 3 1e40"), HasSubstr("value 3: \"1e40\""));
+  EXPECT_THAT(refusal("type=\"Float32\" format=\"ascii\">1 2,5 3 4"), HasSubstr("value 1: \"2,5\""));
+  EXPECT_THAT(refusal("type=\"UInt8\" format=\"ascii\">1 2 3"),
+              HasSubstr("array d: expected 4 values, found 3"));
+  EXPECT_THAT(refusal("type=\"UInt8\" format=\"ascii\">1 2 3 4 5"), HasSubstr("array d: more than 4 values"));
+}
+
 TEST(ForeignVti, IsRefusedWhereItCannotBeRead) {
   const auto refusal = [](const std::string& text) { return errorOf([&] { readText(text); }); };
-  EXPECT_THAT(refusal(vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "")),
-              HasSubstr("stored as \"ascii\"; appended and binary can be read"));
+  EXPECT_THAT(refusal(vti("", "type=\"UInt8\" format=\"hex\">1 2 3 4", "")),
+              HasSubstr("stored as \"hex\"; appended, binary and ascii can be read"));
   EXPECT_THAT(
       refusal(vti("compressor=\"vtkLZ4DataCompressor\"", "type=\"UInt8\" format=\"binary\">AA==", "")),
       HasSubstr("compressed with vtkLZ4DataCompressor"));

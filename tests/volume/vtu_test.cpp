@@ -182,6 +182,29 @@ TEST(Vtu, ReadsInlineFilesOfOthers) {
               HasSubstr("cell 0 is of VTK type 12; tetrahedra (10) can be read"));
 }
 
+TEST(Vtu, ReadsTextOfOthers) {
+  TemporaryFolder folder;
+  std::string text =
+      "<VTKFile type=\"UnstructuredGrid\" byte_order=\"BigEndian\"><UnstructuredGrid>"
+      "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData>"
+      "<DataArray type=\"Float64\" Name=\"s\" format=\"ascii\"> 0 0.5 -1 1e2 </DataArray></PointData>"
+      "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">"
+      "0 0 0 1 0 0\n0 1 0 0 0 1</DataArray></Points><Cells>"
+      "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"
+      "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray>"
+      "</Cells></Piece></UnstructuredGrid></VTKFile>";
+  folder.write("a.vtu", text);
+  const MeshFile file = readMesh(folder / "a.vtu");
+  EXPECT_EQ(file.mesh->points_m[3].z, 1);
+  EXPECT_EQ(file.mesh->cells[0], (std::array<std::int32_t, 4>{0, 1, 2, 3}));
+  EXPECT_EQ(file.fields.at(0).values, (std::vector<float>{0, 0.5F, -1, 100}));
+  text.replace(text.find("0 1 2 3"), 7, "0 1 2 ?");
+  folder.write("a.vtu", text);
+  EXPECT_THAT(errorOf([&] { readMesh(folder / "a.vtu"); }, ErrorCode::bad_input),
+              HasSubstr("a.vtu: array connectivity: value 3: \"?\": must be a number of type Int64"));
+}
+
 TEST(Vtu, ZeroIsAValueInFilesOfOthers) {
   TemporaryFolder folder;
   std::string text =

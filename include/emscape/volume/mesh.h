@@ -68,6 +68,15 @@ struct MeshFaces {
 /// to three cells, or to two on its same side, which overlap
 MeshFaces facesOf(const TetrahedralMesh& mesh, const SourceLocation& location);
 
+/// Compares the boundary faces with each other, along lines through their insides and near their vertices: at
+/// most about 6e7 pairs of lines and faces; of more lines every n-th. Overlaps thinner than rounding
+/// (1e-6 of the box's diagonal and 2e-7 of the largest coordinate) are none.
+/// @return the number of boundary faces, of those examined, whose inside lies on a boundary face of another
+/// cell: vertices in faces of other cells (T-junctions) and points that are there twice. The mesh has no gap
+/// there, but the field may jump
+/// @throws Error (bad_input) at `location` that names two cells which overlap
+long long touchingFaces(const TetrahedralMesh& mesh, const MeshFaces& faces, const SourceLocation& location);
+
 /// The tetrahedra of a lattice of hexahedra: six for each, about the diagonal from its lowest to its highest
 /// corner, so that neighbours share the diagonals of their faces. The vertices are the indices of the
 /// lattice's points, x fastest, then y, then z. Where the columns of points are vertical no cell is inverted,

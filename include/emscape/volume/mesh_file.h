@@ -28,12 +28,14 @@ struct MeshFile {
   std::shared_ptr<const TetrahedralMesh> mesh;
   std::shared_ptr<const MeshFaces> faces;
   long long inverted_cells = 0;  ///< in the file; oriented when read
+  long long touching_faces = 0;  ///< see touchingFaces()
   std::vector<MeshField> fields;
 };
 
-/// Reads a file that writeMesh() wrote exactly; of other programs: point data of one component in binary form
-/// (appended or inline, raw or base64, uncompressed or compressed with zlib). The mesh is oriented and
-/// checked (orientCells(), facesOf()). Sizes are checked against the file's before memory is allocated.
+/// Reads a file that writeMesh() wrote exactly; of other programs: point data of one component, as text or in binary
+/// form (appended or inline, raw or base64, uncompressed or compressed with zlib). The mesh is oriented and
+/// checked (orientCells(), facesOf(), touchingFaces()). Sizes are checked against the file's before memory is
+/// allocated.
 /// @param name  of one field; empty: all
 /// @throws Error (bad_input), which lists the file's fields if none has that name
 MeshFile readMesh(const std::filesystem::path& path, const std::string& name = "");

@@ -76,7 +76,7 @@ __global__ void __launch_bounds__(kTile* kTile)
       EntryHit start{0, entryFaceOf(task.mesh, frame, task.start_cell)};
       entersThrough(task.mesh, frame, start.face, start);
       start.distance = fmin(start.distance, 0.0);
-      been = march(task.mesh, frame, start, limits, integral, cells);
+      been = march(task.mesh, frame, start, been, limits, integral, cells);
       is_hit = true;
     }
     for (bool is_done = false; !is_done;) {
@@ -85,12 +85,11 @@ __global__ void __launch_bounds__(kTile* kTile)
       is_done = !entries.isFull();
       for (int n = 0; n < entries.count(); ++n) {
         last = entries[n];
-        if (isPassed(last, been)) continue;
         if (last.distance >= limits.distance || integral.through() < limits.through) {
           is_done = true;
           break;
         }
-        been = march(task.mesh, frame, last, limits, integral, cells);
+        been = march(task.mesh, frame, last, been, limits, integral, cells);
       }
     }
     picture[pixel] = integral.color();
