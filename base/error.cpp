@@ -1,41 +1,8 @@
 #include "emscape/base/error.h"
 
-#include <algorithm>
-#include <string_view>
+#include "base/readable_text.h"
 
 namespace emscape {
-namespace {
-
-constexpr std::size_t kLongestLine = 800;
-constexpr std::string_view kLeftOut = " ... ";
-constexpr std::size_t kLineBegin = 500, kLineEnd = 200;  // of a longer one
-
-/// The first byte of a character of UTF-8 at or before `at`.
-std::size_t characterBegin(const std::string& text, std::size_t at) {
-  while (at > 0 && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80) --at;
-  return at;
-}
-
-/// A message that quotes what was found in a file, in clear lines: without control characters, and with the
-/// middle of very long lines left out.
-std::string readable(std::string message) {
-  std::replace_if(
-      message.begin(), message.end(), [](unsigned char c) { return (c < 0x20 && c != '\n') || c == 0x7F; },
-      '?');
-  for (std::size_t begin = 0; begin < message.size();) {
-    std::size_t end = std::min(message.find('\n', begin), message.size());
-    if (end - begin > kLongestLine) {
-      const std::size_t from = characterBegin(message, begin + kLineBegin);
-      const std::size_t to = characterBegin(message, end - kLineEnd);
-      message.replace(from, to - from, kLeftOut);
-      end = end - (to - from) + kLeftOut.size();
-    }
-    begin = end + 1;
-  }
-  return message;
-}
-
-}  // namespace
 
 std::string toString(const SourceLocation& location) {
   std::string text = location.file;
@@ -49,10 +16,10 @@ std::string toString(const SourceLocation& location) {
 Error::Error(ErrorCode code, const std::string& message) : Error(code, SourceLocation{}, message) {}
 
 Error::Error(ErrorCode code, const SourceLocation& location, const std::string& message, Hint hint)
-    : std::runtime_error(readable(location.file.empty() ? message : toString(location) + ": " + message)),
+    : std::runtime_error(readableText(location.file.empty() ? message : toString(location) + ": " + message)),
       code_(code),
       location_(location),
-      message_(readable(message)),
+      message_(readableText(message)),
       hint_(hint) {}
 
 }  // namespace emscape

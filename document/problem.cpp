@@ -4,6 +4,8 @@
 #include <tuple>
 #include <utility>
 
+#include "base/readable_text.h"
+
 namespace emscape::document {
 
 namespace {
@@ -27,6 +29,7 @@ void ProblemList::addErrorElsewhere(const SourceLocation& named_at, const Source
 
 void ProblemList::add(const SourceLocation& order, Problem problem) {
   if (entries_.size() > kMaxProblems) return;
+  problem.message = readableText(std::move(problem.message));
   if (entries_.size() == kMaxProblems) problem.message = "further faults are not reported";
   entries_.push_back({std::move(problem), order.line, order.column});
 }

@@ -111,6 +111,17 @@ class SoundingReader {
     return *value == -9999 || *value == -8888 ? kMissing : *value;
   }
 
+  /// @throws Error (bad_input) for a value that is missing, not whole, or outside [lowest, highest]
+  int wholeNumber(const Line& line, const FieldSpec& field, int lowest, int highest) const {
+    const double value = number(line, field);
+    if (!(value >= lowest && value <= highest) || value != std::floor(value)) {
+      fail(line, field.first,
+           fmt::format("{} is '{}', not a whole number from {} to {}", field.name,
+                       line.text.substr(field.first - 1, field.last - field.first + 1), lowest, highest));
+    }
+    return int(value);
+  }
+
   Header headerAt(std::size_t index) const {
     const Line& line = lines_[index];
     if (line.text.empty() || line.text.front() != '#') {
@@ -120,17 +131,17 @@ class SoundingReader {
     Header header;
     header.line = line;
     header.first = index + 1;
-    header.levels = int(number(line, kLevelsField));
-    if (header.levels < 0 || header.first + std::size_t(header.levels) > lines_.size()) {
+    header.levels = wholeNumber(line, kLevelsField, 0, 9999);
+    if (header.first + std::size_t(header.levels) > lines_.size()) {
       fail(
           line, kLevelsField.first,
           fmt::format("NUMLEV is {}, but only {} lines follow", header.levels, lines_.size() - header.first));
     }
-    const int hour = int(number(line, kHourField));  // 99: missing
+    const int hour = wholeNumber(line, kHourField, 0, 99);  // 99: missing
     header.station = line.text.substr(1, 11);
-    header.time_utc =
-        fmt::format("{:04}-{:02}-{:02}T{:02}:00:00Z", int(number(line, kYearField)),
-                    int(number(line, kMonthField)), int(number(line, kDayField)), hour == 99 ? 0 : hour);
+    header.time_utc = fmt::format("{:04}-{:02}-{:02}T{:02}:00:00Z", wholeNumber(line, kYearField, 0, 9999),
+                                  wholeNumber(line, kMonthField, 0, 99), wholeNumber(line, kDayField, 0, 99),
+                                  hour == 99 ? 0 : hour);
     const std::optional<std::int64_t> time_ms = parseUtc_ms(header.time_utc);
     if (!time_ms) fail(line, kYearField.first, fmt::format("{} is not a time", header.time_utc));
     header.time_ms = *time_ms;

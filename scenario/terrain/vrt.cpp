@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <system_error>
 
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
@@ -31,6 +32,7 @@ bool looksLikeVrt(const fs::path& file) {
 /// @param element  an element that names a source
 std::string faultOfSource(const CPLXMLNode& element, const fs::path& vrt, int nesting) {
   const std::string name = CPLGetXMLValue(&element, nullptr, "");
+  if (name.empty()) return "names a source without a name";
   const bool relative = std::string(CPLGetXMLValue(&element, "relativeToVRT", "0")) == "1";
   const fs::path folder = fs::absolute(vrt).parent_path().lexically_normal();
   const fs::path source = fs::absolute(relative ? folder / name : fs::path(name)).lexically_normal();
@@ -55,7 +57,8 @@ std::string faultOfElements(const CPLXMLNode* first, const fs::path& vrt, int ne
 }
 
 std::string foreignSource(const fs::path& file, int nesting) {
-  if (!fs::is_regular_file(file) || !looksLikeVrt(file)) return "";
+  std::error_code ignored;  // a name that is too long, for one, is GDAL's to refuse
+  if (!fs::is_regular_file(file, ignored) || !looksLikeVrt(file)) return "";
   if (nesting > kMaxNesting)
     return "names VRTs that name VRTs, more than " + std::to_string(kMaxNesting) + " deep";
   const std::string text = readWholeText(file, kMaxVrtBytes);

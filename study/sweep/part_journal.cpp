@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
 
+#include "base/json_reading.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "study/sweep/part_rows.h"
@@ -32,11 +34,28 @@ std::string hexOf(const std::string& bytes) {
   return text;
 }
 
-std::string bytesOf(const std::string& hex) {
+std::string bytesOf(std::string_view hex) {
   std::string bytes;
-  for (std::size_t i = 0; i + 1 < hex.size(); i += 2)
-    bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+  for (std::size_t i = 0; i + 1 < hex.size(); i += 2) {
+    unsigned char byte = 0;
+    if (std::from_chars(hex.data() + i, hex.data() + i + 2, byte, 16).ptr != hex.data() + i + 2)
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("bits hold '{}', not a hexadecimal byte", hex.substr(i, 2)));
+    bytes += static_cast<char>(byte);
+  }
   return bytes;
+}
+
+/// @throws Error (bad_input) without a place
+std::vector<std::uint8_t> pixelsOf(const Json& record) {
+  const std::string bytes = bytesOf(record.at("bits").get_ref<const std::string&>());
+  const Json& pixels = record.at("pixels");
+  if (!pixels.is_number_unsigned() || pixels.get<std::uint64_t>() > 8 * bytes.size()) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("pixels is {}, not a whole number from 0 to {}, the number of bits",
+                            pixels.dump(), 8 * bytes.size()));
+  }
+  return unpackedPixels(bytes, pixels);
 }
 
 }  // namespace
@@ -48,7 +67,12 @@ PartJournal::PartJournal(std::filesystem::path file, std::vector<std::size_t> va
     throw Error(ErrorCode::other, {file_.string(), 0, 0},
                 "cannot write: " + std::generic_category().message(errno));
   }
-  read(readWholeText(file_));
+  try {
+    read(readWholeText(file_));
+  } catch (...) {
+    ::close(descriptor_);  // no destructor is called
+    throw;
+  }
 }
 
 PartJournal::~PartJournal() {
@@ -57,23 +81,30 @@ PartJournal::~PartJournal() {
 
 void PartJournal::read(const std::string& text) {
   const std::set<std::size_t> own(variants_.begin(), variants_.end());
+  const auto readRecord = [&](const Json& record) {
+    VariantResult result = readRow(record.at("row").get_ref<const std::string&>(), measures_);
+    if (own.count(result.variant) == 0) return;
+    if (record.contains("pixels")) result.pixels = pixelsOf(record);
+    machines_.insert(record.at("machine"));
+    for (const std::string warning : record.at("warnings")) warnings_.insert(warning);
+    const std::size_t variant = result.variant;
+    finished_.emplace(variant, std::move(result));
+  };
+  int number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
     const std::string_view line(text.data() + begin, end - begin);
     begin = end + 1;
+    ++number;
     if (line.size() <= kChecksumDigits + 1) continue;
     const std::string_view content = line.substr(kChecksumDigits + 1);
     if (line.substr(0, kChecksumDigits) != checksumOf(content)) continue;
-    const Json record = Json::parse(content);
-    VariantResult result = readRow(record["row"].get<std::string>(), measures_);
-    if (own.count(result.variant) == 0) continue;
-    if (record.contains("pixels")) {
-      result.pixels = unpackedPixels(bytesOf(record["bits"]), record["pixels"]);
+    try {
+      readJson<Json>(content, "", readRecord);
+    } catch (const Error& error) {
+      throw Error(ErrorCode::bad_input, {file_.string(), number, 0},
+                  "its checksum is right, but it is no record of a variant: " + error.message());
     }
-    machines_.insert(record["machine"]);
-    for (const std::string warning : record["warnings"]) warnings_.insert(warning);
-    const std::size_t variant = result.variant;
-    finished_.emplace(variant, std::move(result));
   }
 }
 

@@ -207,6 +207,10 @@ TEST_F(Soundings, TellWhereTheyAreWrong) {
   text = kChanhassen;
   text.replace(text.find("2023 11 18 12"), 13, "2023 13 18 12");
   EXPECT_THAT(soundingError(text), HasSubstr("station.txt:5:14: 2023-13-18T12:00:00Z is not a time"));
+  text = kChanhassen;
+  text.replace(text.find("2023 11 18 12"), 4, "9e23");
+  EXPECT_THAT(soundingError(text),
+              HasSubstr("station.txt:5:14: YEAR is '9e23', not a whole number from 0 to 9999"));
   EXPECT_THAT(soundingError("#USM00072649 2023 11 18 00 2303    1\n21     0  98107B  290\n"),
               HasSubstr("station.txt:2:22: the line ends before TEMP in columns 23 to 27"));
   EXPECT_THAT(soundingError("#USM00072649 2023 11 18 00 2303    1\n"

@@ -19,7 +19,8 @@ class PartJournal {
  public:
   /// Opens or makes the file and reads it.
   /// @param variants  of the part, in the plan's order; lines of others are left out
-  /// @throws Error (other) naming the file
+  /// @throws Error (other) naming the file; (bad_input) with the line for one that is no record of a variant
+  /// although its checksum is right
   PartJournal(std::filesystem::path file, std::vector<std::size_t> variants, std::size_t measures);
   ~PartJournal();
   PartJournal(const PartJournal&) = delete;
