@@ -10,6 +10,7 @@
 #include "emfield/fill_excess.h"
 #include "emfield/shadow.h"
 #include "emscape/base/parallel.h"
+#include "propagation/parabolic_equation/field_march.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
@@ -51,6 +52,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
   if (hasExcess(scenario, emitter)) {
     EmitterExcess excess = planExcess(scenario, emitter, state.beam, station, terrain, columns);
     times.excess_ms += watch.lap_ms();
+    if (excess.march != nullptr) times.marched_heights += excess.march->heights();
     marchTables(emitter, excess);
     times.march_ms += watch.lap_ms();
     const std::size_t voxels = column_count_ * columns.t_m.size();

@@ -28,6 +28,7 @@ class EmitterGeometry {
   /// Times of the two stages (ms), the second without its marches.
   struct Times {
     double columns_ms = 0, march_ms = 0, excess_ms = 0;
+    double marched_heights = 0;
   };
 
   /// @param emitter  of the scenario

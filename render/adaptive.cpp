@@ -60,8 +60,7 @@ inline PixelLanes magnitude(const PixelLanes& p) {
   return greater(p, PixelLanes{} - p);
 }
 inline float largestChannel(const PixelLanes& p) {
-  using Order = int __attribute__((vector_size(16)));
-  const PixelLanes pairs = greater(p, {__builtin_shuffle(p.lanes, Order{2, 3, 2, 3})});
+  const PixelLanes pairs = greater(p, {__builtin_shufflevector(p.lanes, p.lanes, 2, 3, 2, 3)});
   return std::max(pairs.lanes[0], pairs.lanes[1]);
 }
 

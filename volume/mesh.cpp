@@ -293,8 +293,9 @@ void setRangeFromValues(MeshField& field) {
     min = std::min(min, value);
     max = std::max(max, value);
   }
-  field.info.range_min = min <= max ? min : field.info.floor;
-  field.info.range_max = min <= max ? max : field.info.floor;
+  const float empty = field.info.floor == kNoFloor ? 0 : field.info.floor;
+  field.info.range_min = min <= max ? min : empty;
+  field.info.range_max = min <= max ? max : empty;
 }
 
 DenseVolume valuesOf(const MeshField& field) {

@@ -135,8 +135,9 @@ void setRangeFromValues(DenseVolume& volume) {
     part.max = std::max(part.max, value);
   });
   const bool any = range.min <= range.max;
-  volume.info.range_min = any ? range.min : floor;
-  volume.info.range_max = any ? range.max : floor;
+  const float empty = floor == kNoFloor ? 0 : floor;
+  volume.info.range_min = any ? range.min : empty;
+  volume.info.range_max = any ? range.max : empty;
 }
 
 }  // namespace emscape::volume

@@ -73,6 +73,7 @@ class VtiFile {
     DenseVolume volume;
     volume.grid = grid_;
     volume.info.quantity = name.empty() ? "scalars" : name;
+    volume.info.floor = kNoFloor;
     const std::string time = file_.fieldText("TimeValue");
     if (!time.empty()) volume.info.time_s = std::strtod(time.c_str(), nullptr);
     if (!std::isfinite(volume.info.time_s)) volume.info.time_s = 0;

@@ -86,6 +86,7 @@ class VtuFile {
     MeshField field;
     field.mesh = std::make_shared<TetrahedralMesh>();
     field.info.quantity = name.empty() ? "scalars" : name;
+    field.info.floor = kNoFloor;
     const std::string time = file_.fieldText("TimeValue");
     if (!time.empty()) field.info.time_s = std::strtod(time.c_str(), nullptr);
     if (!std::isfinite(field.info.time_s)) field.info.time_s = 0;

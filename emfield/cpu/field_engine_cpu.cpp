@@ -78,6 +78,7 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     times_.columns_ms += spent.columns_ms;
     times_.march_ms += spent.march_ms;
     times_.excess_ms += spent.excess_ms;
+    times_.marched_heights += spent.marched_heights;
 
     GeometryResult found;
     found.unknown_columns = geometry.unknownColumns();

@@ -19,11 +19,9 @@ bool isDiffraction(const propagation::ExcessModel& model) {
   return std::holds_alternative<DiffractionExcess>(model);
 }
 
-/// Heights and cells in range that are marched; 0: none.
-long long marchWork(const EmitterExcess& excess) {
-  if (excess.march == nullptr) return 0;
-  const propagation::AzimuthMarch& march = excess.march->march;
-  return march.rangesOfAll() * march.grid.intervals;
+/// What the GPU marches; 0: nothing.
+double marchedHeights(const EmitterExcess& excess) {
+  return excess.march == nullptr ? 0 : excess.march->heights();
 }
 
 }  // namespace
@@ -193,8 +191,9 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   });
   std::vector<Work*> marched;
   for (const std::size_t r : equations) marched.push_back(&works[r]);
-  std::stable_sort(marched.begin(), marched.end(),
-                   [](const Work* a, const Work* b) { return marchWork(*a->model) > marchWork(*b->model); });
+  std::stable_sort(marched.begin(), marched.end(), [](const Work* a, const Work* b) {
+    return marchedHeights(*a->model) > marchedHeights(*b->model);
+  });
   const auto marcherOf = [&](std::size_t n) -> Marcher& { return marchers_[n % marchers_.size()]; };
   for (std::size_t n = 0; n < std::min(marched.size(), marchers_.size()); ++n)
     startMarch(*marched[n], marcherOf(n));
@@ -317,6 +316,7 @@ void DeviceGeometry::readMarch(const Work& work, Marcher& marcher, cudaStream_t 
   clock.begin(stream);
   marcher.marched.holdBack(stream);
   clock.end(&StageTimes::march_ms, stream);
+  clock.countMarch(marchedHeights(*work.model));
   clock.begin(stream);
   fillEquation({std::get<propagation::PeExcess>(work.model->model), work.model->air, work.task.station,
                 work.ground, work.excess},

@@ -15,7 +15,11 @@ class StageClock {
  public:
   using Stage = double StageTimes::*;
 
-  void reset() { used_ = 0; }
+  void reset() {
+    used_ = 0;
+    marched_heights_ = 0;
+  }
+  void countMarch(double heights) { marched_heights_ += heights; }
   void begin(cudaStream_t stream) {
     if (used_ == timers_.size()) timers_.push_back(std::make_unique<Piece>());
     timers_[used_]->timer.begin(stream);
@@ -27,6 +31,7 @@ class StageClock {
   /// Waits for the last interval.
   StageTimes times() const {
     StageTimes times;
+    times.marched_heights = marched_heights_;
     for (std::size_t i = 0; i < used_; ++i) times.*(timers_[i]->stage) += timers_[i]->timer.elapsed_ms();
     return times;
   }
@@ -38,6 +43,7 @@ class StageClock {
   };
   std::vector<std::unique_ptr<Piece>> timers_;
   std::size_t used_ = 0;
+  double marched_heights_ = 0;
 };
 
 }  // namespace emscape::emfield::cuda

@@ -19,6 +19,11 @@ struct FieldMarch {
   std::vector<int> known_ranges;
 
   std::size_t cellCount() const { return march.cellCount(); }
+  /// Steps in range of all azimuths of all marches times N at the start: what they cost without halving.
+  double heights() const {
+    return double(march.rangesOfAll()) * (march.cells.range_step_m / march.grid.range_step_m) *
+           march.grid.intervals * double(surfaces.size() * members.size());
+  }
   /// One of the marches.
   const AzimuthMarch& set(const std::vector<RefractivityAlongPath>& member, const PeSurface& surface) {
     march.air = member;

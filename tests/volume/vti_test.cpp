@@ -1,5 +1,6 @@
 #include "volume/vti.h"
 
+#include "emscape/volume/statistics.h"
 #include "tests/volume/sample_volumes.h"
 
 namespace emscape::volume {
@@ -82,6 +83,14 @@ TEST(ForeignVti, MayBeInlineBase64) {
   EXPECT_EQ(volume.grid.first_center_m, (Vec3d{12, 20, 30}));
   EXPECT_EQ(volume.info.quantity, "d");
   EXPECT_FALSE(volume.grid.georeferenced);
+}
+
+TEST(ForeignVti, ZeroIsAValue) {
+  const DenseVolume volume = readText(vti("", "type=\"UInt8\" format=\"binary\">BAAAAAAAAAE=", ""));
+  EXPECT_EQ(volume.values, (std::vector<float>{0, 0, 0, 1}));
+  EXPECT_EQ(volume.info.range_min, 0);
+  EXPECT_EQ(volume.info.range_max, 1);
+  EXPECT_EQ(statisticsOf(volume).at_floor, 0);
 }
 
 TEST(ForeignVti, MayBeAppendedBase64WithPaddingAfterTheHeader) {

@@ -182,6 +182,20 @@ TEST(Vtu, ReadsInlineFilesOfOthers) {
               HasSubstr("cell 0 is of VTK type 12; tetrahedra (10) can be read"));
 }
 
+TEST(Vtu, ZeroIsAValueInFilesOfOthers) {
+  TemporaryFolder folder;
+  std::string text =
+      foreign("AQAAAAo=", "MAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAACAPw==");
+  const std::string one_to_four = "BAAAAAECAwQ=";
+  text.replace(text.find(one_to_four), one_to_four.size(), "BAAAAAAAAAE=");
+  folder.write("a.vtu", text);
+  const MeshField field = readMesh(folder / "a.vtu").fields.at(0);
+  EXPECT_EQ(field.values, (std::vector<float>{0, 0, 0, 1}));
+  EXPECT_EQ(field.info.range_min, 0);
+  EXPECT_EQ(field.info.range_max, 1);
+  EXPECT_EQ(statisticsOf(field).at_floor, 0);
+}
+
 TEST(Vtu, ASeriesIsListedInAPvd) {
   TemporaryFolder folder;
   writePvd(folder / "a.pvd", {{0, folder / "a_0001.vtu"}, {1, folder / "a_0002.vtu"}});

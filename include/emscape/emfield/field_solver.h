@@ -67,11 +67,13 @@ struct FieldChanged {
   std::vector<int> volumes;  ///< channels whose volume was recomputed
 };
 
-/// Times (ms) of the stages of the last update; with cuda on the GPU.
+/// Times (ms) of the stages of the last update, and their work; with cuda on the GPU.
 struct StageTimes {
   double columns_ms = 0;
   double march_ms = 0;  ///< of models that march outwards
   double excess_ms = 0, combine_ms = 0, product_ms = 0;
+  /// What those models marched: azimuths times steps in range times heights at the start.
+  double marched_heights = 0;
 };
 
 struct MemoryUse {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "emscape/volume/grid.h"
 
 namespace emscape::volume {
+
+/// Floor of fields in which every finite value is a field, 0 included: arrays of other programs, which state
+/// none.
+constexpr float kNoFloor = std::numeric_limits<float>::lowest();
 
 /// Description of the values. Every volume file contains it, as `emscape:*` if the format has metadata.
 struct VolumeInfo {

@@ -36,7 +36,7 @@ struct Histogram {
 Histogram histogramOf(const DenseVolume& volume, int bins, float lower, float upper);
 
 /// Sets info.range_min and range_max to the smallest and largest valid finite value that is not the floor;
-/// both to the floor if there is none.
+/// both to the floor if there is none, or to 0 if the floor is kNoFloor.
 void setRangeFromValues(DenseVolume& volume);
 
 }  // namespace emscape::volume
