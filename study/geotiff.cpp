@@ -12,7 +12,7 @@ namespace emscape::study {
 namespace {
 
 constexpr int kNoIndex = 255;
-constexpr int kMostIndices = 255;
+constexpr float kLargestIndex = 254;  ///< of counts it stands for more, too
 
 /// Colours of counts and indices: none for 0, then hues that differ.
 GDALColorTable coloursOf(MapKind kind, int count) {
@@ -68,9 +68,10 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
     std::vector<std::uint8_t> bytes;
     int largest = 1;
     for (const float value : map.values) {
-      const bool is_none = std::isnan(value) || value < 0 || value >= kMostIndices;
-      bytes.push_back(static_cast<std::uint8_t>(is_none ? static_cast<float>(kNoIndex) : value));
-      if (!is_none) largest = std::max(largest, static_cast<int>(value));
+      const bool is_none = std::isnan(value) || value < 0;
+      const int index = is_none ? kNoIndex : static_cast<int>(std::min(value, kLargestIndex));
+      bytes.push_back(static_cast<std::uint8_t>(index));
+      if (!is_none) largest = std::max(largest, index);
     }
     band->SetNoDataValue(kNoIndex);
     GDALColorTable colours = coloursOf(map.kind, std::max(largest + 1, static_cast<int>(map.labels.size())));

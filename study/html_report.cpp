@@ -19,7 +19,7 @@ h1 { margin-bottom: 0; } h2 { margin-top: 2em; border-bottom: 1px solid #c9d1d9;
 .subtitle { color: #57606a; margin-top: 0; }
 table { border-collapse: collapse; margin: 1em 0; } caption { text-align: left; color: #57606a; }
 th, td { padding: 0.25em 0.8em; border-bottom: 1px solid #d8dee4; text-align: left; vertical-align: top; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; }
+.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 figure { margin: 1.5em 0; } figure img { max-width: 100%; height: auto; }
 figcaption { color: #57606a; }
 @media print { h2 { break-after: avoid; } figure, table { break-inside: avoid; } }
@@ -47,6 +47,16 @@ bool isNumber(const std::string& cell) {
   return !cell.empty() && *end == '\0';
 }
 
+/// True for columns that hold numbers: their heading and all their cells are aligned on the right.
+std::vector<bool> numberColumns(const ReportTable& table) {
+  std::vector<bool> columns(table.columns.size(), false);
+  for (const std::vector<std::string>& row : table.rows) {
+    for (std::size_t c = 0; c < std::min(row.size(), columns.size()); ++c)
+      columns[c] = columns[c] || isNumber(row[c]);
+  }
+  return columns;
+}
+
 }  // namespace
 
 HtmlReport::HtmlReport(const std::string& title, const std::string& subtitle)
@@ -72,16 +82,19 @@ void HtmlReport::facts(const std::vector<std::pair<std::string, std::string>>& f
 void HtmlReport::table(const ReportTable& table) {
   body_ += "<table>\n";
   if (!table.caption.empty()) body_ += "<caption>" + escapedXml(table.caption) + "</caption>\n";
-  body_ += "<thead><tr>";
-  for (const std::string& column : table.columns) body_ += "<th>" + escapedXml(column) + "</th>";
-  body_ += "</tr></thead>\n<tbody>\n";
-  for (const std::vector<std::string>& row : table.rows) {
+  const std::vector<bool> is_number = numberColumns(table);
+  const auto addRow = [&](const char* tag, const std::vector<std::string>& cells) {
     body_ += "<tr>";
-    for (const std::string& cell : row) {
-      body_ += fmt::format("<td{}>{}</td>", isNumber(cell) ? " class=\"number\"" : "", escapedXml(cell));
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+      const char* const style = c < is_number.size() && is_number[c] ? " class=\"number\"" : "";
+      body_ += fmt::format("<{0}{1}>{2}</{0}>", tag, style, escapedXml(cells[c]));
     }
     body_ += "</tr>\n";
-  }
+  };
+  body_ += "<thead>";
+  addRow("th", table.columns);
+  body_ += "</thead>\n<tbody>\n";
+  for (const std::vector<std::string>& row : table.rows) addRow("td", row);
   body_ += "</tbody></table>\n";
 }
 

@@ -13,14 +13,28 @@ std::string fileNameOf(const Map& map) {
   return name;
 }
 
+std::string figureText(double value, const std::string& unit) {
+  if (!std::isfinite(value)) return "none";
+  // As many digits as the figure is good for.
+  if (unit == "km2") return fmt::format("{:.3f}", value);
+  if (unit == "percent" || unit.rfind("dB", 0) == 0) return fmt::format("{:.2f}", value);
+  if (unit == "m") return fmt::format("{:.1f}", value);
+  if (unit.empty()) return fmt::format("{:.4f}", value);
+  return fmt::format("{:.4g}", value);
+}
+
 MapSummary summaryOf(const MapGrid& grid, const Map& map) {
-  MapSummary summary{NAN, NAN};
+  MapSummary summary;
+  summary.min = summary.max = NAN;
+  if (map.kind == MapKind::category) summary.label_areas_m2.assign(map.labels.size(), 0);
   for (std::size_t p = 0; p < grid.pixels(); ++p) {
     const auto value = static_cast<double>(map.values[p]);
     if (std::isnan(value)) continue;
     const auto area_m2 = static_cast<double>(grid.areas_m2[p]);
     summary.known_area_m2 += area_m2;
     if (map.area_class >= 0 && value == map.area_class) summary.class_area_m2 += area_m2;
+    if (value >= 0 && value < static_cast<double>(summary.label_areas_m2.size()))
+      summary.label_areas_m2[static_cast<std::size_t>(value)] += area_m2;
     if (!(value >= summary.min)) summary.min = value;
     if (!(value <= summary.max)) {
       summary.max = value;

@@ -37,6 +37,8 @@ Json toJson(const MapRecord& record) {
   json["max"] = number(record.summary.max);
   json["known_area_km2"] = record.summary.known_area_m2 / 1e6;
   if (map.area_class >= 0) json["area_km2"] = record.summary.class_area_m2 / 1e6;
+  const std::vector<double>& areas_m2 = record.summary.label_areas_m2;
+  for (std::size_t n = 0; n < areas_m2.size(); ++n) json["areas_km2"][map.labels[n]] = areas_m2[n] / 1e6;
   return json;
 }
 
@@ -209,18 +211,29 @@ ReportTable tableOf(const std::vector<MapRecord>& records) {
   table.caption =
       "Areas are those of the ellipsoid; the share is of the area whose values are known. Min and max "
       "are over the pixels.";
-  const auto text = [](double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : "none"; };
   for (const MapRecord& record : records) {
     const Map& map = record.map;
     const MapSummary& summary = record.summary;
-    const bool has_area = map.area_class >= 0,
-               is_named = map.kind == MapKind::category || map.kind == MapKind::classes;
-    const double share = summary.known_area_m2 > 0 ? 100 * summary.class_area_m2 / summary.known_area_m2 : 0;
-    table.rows.push_back({map.name, map.height ? describe(*map.height) : "",
-                          map.time_s ? fmt::format("{}", *map.time_s) : "all",
-                          has_area ? fmt::format("{:.3f}", summary.class_area_m2 / 1e6) : "",
-                          has_area ? fmt::format("{:.2f}", share) : "", is_named ? "" : text(summary.min),
-                          is_named ? "" : text(summary.max), map.unit});
+    const auto addRow = [&](const std::string& name, std::optional<double> area_m2, bool has_range) {
+      const auto text = [&](double value) {
+        if (!has_range) return std::string();
+        return map.kind == MapKind::count && std::isfinite(value) ? fmt::format("{}", value)
+                                                                  : figureText(value, map.unit);
+      };
+      const double share = area_m2 && summary.known_area_m2 > 0 ? 100 * *area_m2 / summary.known_area_m2 : 0;
+      table.rows.push_back(
+          {name, map.height ? describe(*map.height) : "", map.time_s ? fmt::format("{}", *map.time_s) : "all",
+           area_m2 ? figureText(*area_m2 / 1e6, "km2") : "", area_m2 ? figureText(share, "percent") : "",
+           text(summary.min), text(summary.max), map.unit});
+    };
+    if (map.kind == MapKind::category) {
+      for (std::size_t n = 0; n < map.labels.size(); ++n)
+        if (summary.label_areas_m2[n] > 0)
+          addRow(map.name + ": " + map.labels[n], summary.label_areas_m2[n], false);
+      continue;
+    }
+    addRow(map.name, map.area_class >= 0 ? std::optional(summary.class_area_m2) : std::nullopt,
+           map.kind != MapKind::classes);
   }
   return table;
 }

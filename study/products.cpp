@@ -74,7 +74,7 @@ const std::vector<ProductInfo>& productTable() {
        2},
       {Product::first_detection, "first_detection", "s", "time of the first coverage", true},
       {Product::fraction, "fraction", "", "fraction of the time with coverage", true},
-      {Product::gaps, "gaps", "", "number of the gaps in coverage", true},
+      {Product::gaps, "gaps", "", "number of the gaps in coverage", true, true},
       {Product::longest_gap, "longest_gap", "s", "longest time without coverage", true},
       {Product::mean_gap, "mean_gap", "s", "mean time of the gaps in coverage", true},
       {Product::revisit, "revisit", "s", "mean time from the beginning of a coverage to that of the next",

@@ -18,7 +18,7 @@ MapKind kindOf(const ProductInfo& product, Quantity quantity, const std::string&
   if (product.product == Product::best) return MapKind::category;
   if (!product.classes.empty()) return MapKind::classes;
   if (product.categorical) return MapKind::count;
-  if (!unit.empty() || product.product == Product::gaps) return MapKind::level;
+  if (!unit.empty()) return MapKind::level;
   const bool is_probability =
       product.product == Product::value && quantity == Quantity::detection_probability;
   return is_probability ? MapKind::probability : MapKind::part;

@@ -19,6 +19,7 @@
 #include "base/whole_file.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
+#include "emscape/study/map.h"
 #include "emscape/study/study_folder.h"
 #include "emscape/study/study_report.h"
 
@@ -107,14 +108,15 @@ int mergeParts(const LoadedStudy& loaded, study::StudyFolder& folder, bool parti
   }
   for (const study::MeasureSummary& summary : report.measures) {
     const std::string unit = summary.unit.empty() ? "" : " " + summary.unit;
-    print("{:<24} {:.6g} to {:.6g}{}; the largest: {}\n", summary.name, summary.min, summary.max, unit,
+    print("{:<24} {} to {}{}; the largest: {}\n", summary.name, study::figureText(summary.min, summary.unit),
+          study::figureText(summary.max, summary.unit), unit,
           study::describeVariant(loaded.spec, summary.max_variant));
   }
   if (!report.sites.empty()) {
     std::string names;
     for (const std::string& site : report.sites) names += (names.empty() ? "" : ", ") + site;
-    print("sites: {}: {:.6g} {}\n", names, report.sites_value,
-          unitOf(loaded.spec.measures[loaded.spec.sites->measure]));
+    const std::string unit = unitOf(loaded.spec.measures[loaded.spec.sites->measure]);
+    print("sites: {}: {} {}\n", names, study::figureText(report.sites_value, unit), unit);
   }
   print("{}: results.csv, results.nc, report.html\n", folder.path().string());
   return 0;

@@ -9,6 +9,7 @@
 
 #include "document/schema_check.h"
 #include "emscape/study/html_report.h"
+#include "emscape/study/map.h"
 #include "emscape/study/map_grid.h"
 #include "study/map_report.h"
 #include "study/sweep/choose_sites.h"
@@ -18,10 +19,6 @@ namespace emscape::study {
 namespace {
 
 constexpr std::size_t kBest = 5, kMaxRows = 500, kMaxPlots = 60;
-
-std::string shown(double value) {
-  return std::isnan(value) ? "-" : fmt::format("{:.6g}", value);
-}
 
 std::string titleOf(const StudyMeasure& measure) {
   const std::string unit = unitOf(measure);
@@ -54,6 +51,10 @@ class ReportWriter {
  private:
   double value(std::size_t variant, std::size_t m) const {
     return results_.value(variant, m, study_.measures.size());
+  }
+
+  std::string text(std::size_t variant, std::size_t m) const {
+    return figureText(value(variant, m), unitOf(study_.measures[m]));
   }
 
   void addInputs() {
@@ -124,8 +125,8 @@ class ReportWriter {
       const std::size_t v = computed_[site];
       const VariantFactor& factor = study_.variants.factors().front();
       summary_.sites.push_back(factor.names[v]);
-      table.rows.push_back({factor.names[v], factor.value(v, 0), factor.value(v, 1), shown(value(v, m)),
-                            shown(together(so_far))});
+      table.rows.push_back({factor.names[v], factor.value(v, 0), factor.value(v, 1), text(v, m),
+                            figureText(together(so_far), unitOf(measure))});
     }
     if (!chosen.empty()) summary_.sites_value = together(chosen);
     report_.table(table);
@@ -154,8 +155,9 @@ class ReportWriter {
     summary.min_variant = ranked.back();
     summary.min = value(ranked.back(), m);
     summary_.measures.push_back(summary);
-    report_.paragraph(
-        fmt::format("From {} to {}, mean {}.", shown(summary.min), shown(summary.max), shown(summary.mean)));
+    report_.paragraph(fmt::format("From {} to {}, mean {}.", figureText(summary.min, summary.unit),
+                                  figureText(summary.max, summary.unit),
+                                  figureText(summary.mean, summary.unit)));
     const std::size_t count = std::min(kBest, ranked.size());
     report_.table(
         ranking(m, {ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count)}, "Largest"));
@@ -170,7 +172,7 @@ class ReportWriter {
                       const std::string& caption) const {
     ReportTable table{{"Variant", titleOf(study_.measures[m]), "What it sets"}, {}, caption};
     for (const std::size_t v : variants) {
-      table.rows.push_back({fmt::format("{}", v), shown(value(v, m)), describeVariant(study_, v)});
+      table.rows.push_back({fmt::format("{}", v), text(v, m), describeVariant(study_, v)});
     }
     return table;
   }
@@ -220,8 +222,7 @@ class ReportWriter {
     for (std::size_t i = 0; i < std::min(kMaxRows, computed_.size()); ++i) {
       const std::size_t v = computed_[i];
       table.rows.push_back({fmt::format("{}", v), describeVariant(study_, v)});
-      for (std::size_t m = 0; m < study_.measures.size(); ++m)
-        table.rows.back().push_back(shown(value(v, m)));
+      for (std::size_t m = 0; m < study_.measures.size(); ++m) table.rows.back().push_back(text(v, m));
     }
     report_.table(table);
   }

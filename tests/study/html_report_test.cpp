@@ -19,6 +19,7 @@ TEST(HtmlReport, HoldsItsPartsEscapedAndInOrder) {
   EXPECT_THAT(html, HasSubstr("<title>A &lt; B</title>"));
   EXPECT_THAT(html, HasSubstr("two radars &amp; a jammer"));
   EXPECT_THAT(html, HasSubstr("<td class=\"number\">12.5</td>"));
+  EXPECT_THAT(html, HasSubstr("<th>height</th><th class=\"number\">won (km2)</th>"));
   EXPECT_THAT(html, HasSubstr("<td>&lt;none&gt;</td>"));
   EXPECT_THAT(html, HasSubstr("a &quot;b&quot;"));
   EXPECT_THAT(html, HasSubstr("<a href=\"#section2\">Inputs</a>"));

@@ -12,7 +12,9 @@
 #include <set>
 
 #include "emscape/scenario/scenario_file.h"
+#include "emscape/study/geotiff.h"
 #include "emscape/study/map_folder.h"
+#include "study/map_report.h"
 #include "study/map_shapes.h"
 #include "tests/support/errors.h"
 #include "tests/support/file_size_limit.h"
@@ -258,6 +260,46 @@ TEST_F(MapFiles, AGeoTiffOfClassesNamesThem) {
   EXPECT_STREQ(map->GetMetadataItem("EMSCAPE_TIME_UTC"), "2026-06-01T06:01:10.000Z");
   EXPECT_THAT(test::readFile(folder / "a/study.json"), HasSubstr("best_msl1500m_t70s.tif.aux.xml"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a/maps/value_msl1500m_t70s.tif.aux.xml"));
+}
+
+TEST_F(MapFiles, AGeoTiffHoldsCountsUpTo254) {
+  Map counts = fixture.map(MapKind::count, 70, 0, 300);
+  const std::size_t largest = summaryOf(*fixture.grid, counts).largest_pixel;
+  ASSERT_GT(counts.values[largest], 254);
+  const std::string file = (folder_ / "counts.tif").string();
+  writeGeoTiff(file, *fixture.grid, counts, {});
+  const Opened dataset = open(file, GDAL_OF_RASTER);
+  std::uint8_t value = 0;
+  const int width = fixture.grid->width, index = static_cast<int>(largest);
+  ASSERT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Read, index % width, index / width, 1, 1, &value, 1, 1,
+                                                GDT_Byte, 0, 0, nullptr),
+            CE_None);
+  EXPECT_EQ(value, 254);
+}
+
+TEST_F(MapFiles, TheReportHasTheAreaOfEachBestEmitter) {
+  Map best = fixture.map(MapKind::category, 70, -1, 1);
+  best.labels = {"search radar", "tracking radar"};
+  const MapSummary summary = summaryOf(*fixture.grid, best);
+  double areas_m2[2] = {0, 0};
+  for (std::size_t p = 0; p < fixture.grid->pixels(); ++p) {
+    if (best.values[p] >= 0) areas_m2[static_cast<int>(best.values[p])] += fixture.grid->areas_m2[p];
+  }
+  EXPECT_THAT(summary.label_areas_m2, ElementsAre(areas_m2[0], areas_m2[1]));
+  const ReportTable table = tableOf({{best, {}, summary}});
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(table.rows[0][0], "best: search radar");
+  EXPECT_EQ(table.rows[0][3], figureText(areas_m2[0] / 1e6, "km2"));
+  EXPECT_EQ(table.rows[0][5], "");
+}
+
+TEST(FigureText, HasTheDigitsOfTheUnit) {
+  EXPECT_EQ(figureText(4.19996e-05, ""), "0.0000");
+  EXPECT_EQ(figureText(614.522, "km2"), "614.522");
+  EXPECT_EQ(figureText(-3.14159, "dBW/m2"), "-3.14");
+  EXPECT_EQ(figureText(645.625, "m"), "645.6");
+  EXPECT_EQ(figureText(12.3456, "s"), "12.35");
+  EXPECT_EQ(figureText(NAN, "dB"), "none");
 }
 
 TEST_F(MapFiles, TheNetCdfHoldsTheValuesOverTimeAndHeight) {

@@ -46,12 +46,18 @@ struct Map {
 /// Name of a map's files, layers and variables: "covered_agl150m_t80s".
 std::string fileNameOf(const Map& map);
 
+/// A figure as reports write it, to the digits that maps are good for: km2 to 0.001, percent and dB to 0.01,
+/// m to 0.1, without a unit (probabilities, fractions) to 0.0001, all else to 4 digits. "none" of NaN and
+/// infinities.
+std::string figureText(double value, const std::string& unit);
+
 /// What a map holds.
 struct MapSummary {
-  double min = 0, max = 0;       ///< of the values; NaN: there is none
-  double known_area_m2 = 0;      ///< of the pixels with a value, on the ellipsoid
-  double class_area_m2 = 0;      ///< of the pixels in Map::area_class
-  long long largest_pixel = -1;  ///< with the largest value; -1: there is none
+  double min = 0, max = 0;             ///< of the values; NaN: there is none
+  double known_area_m2 = 0;            ///< of the pixels with a value, on the ellipsoid
+  double class_area_m2 = 0;            ///< of the pixels in Map::area_class
+  long long largest_pixel = -1;        ///< with the largest value; -1: there is none
+  std::vector<double> label_areas_m2;  ///< of categories: of the pixels of each of Map::labels; else empty
 };
 MapSummary summaryOf(const MapGrid& grid, const Map& map);
 
