@@ -266,7 +266,7 @@ TEST_F(MapFiles, AGeoTiffHoldsCountsUpTo254) {
   Map counts = fixture.map(MapKind::count, 70, 0, 300);
   const std::size_t largest = summaryOf(*fixture.grid, counts).largest_pixel;
   ASSERT_GT(counts.values[largest], 254);
-  const std::string file = (folder_ / "counts.tif").string();
+  const std::string file = folder / "counts.tif";
   writeGeoTiff(file, *fixture.grid, counts, {});
   const Opened dataset = open(file, GDAL_OF_RASTER);
   std::uint8_t value = 0;
@@ -286,7 +286,7 @@ TEST_F(MapFiles, TheReportHasTheAreaOfEachBestEmitter) {
     if (best.values[p] >= 0) areas_m2[static_cast<int>(best.values[p])] += fixture.grid->areas_m2[p];
   }
   EXPECT_THAT(summary.label_areas_m2, ElementsAre(areas_m2[0], areas_m2[1]));
-  const ReportTable table = tableOf({{best, {}, summary}});
+  const ReportTable table = tableOf({{best, summary, {}}});
   ASSERT_EQ(table.rows.size(), 2u);
   EXPECT_EQ(table.rows[0][0], "best: search radar");
   EXPECT_EQ(table.rows[0][3], figureText(areas_m2[0] / 1e6, "km2"));
