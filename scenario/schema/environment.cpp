@@ -1,0 +1,130 @@
+// Sections of the environment: region, terrain, atmosphere, ground.
+#include "emscape/scenario/scenario.h"
+#include "scenario/schema/sections.h"
+#include "scenario/schema/values.h"
+
+namespace emscape::scenario {
+namespace {
+
+using document::ValueType;
+using document::spec::byDefault;
+using document::spec::choice;
+using document::spec::listOf;
+using document::spec::number;
+using document::spec::object;
+using document::spec::optional;
+using document::spec::required;
+using document::spec::simple;
+using propagation::Atmosphere;
+using propagation::GasLosses;
+using propagation::Ground;
+using propagation::GroundKind;
+using propagation::RadioClimate;
+using propagation::RefractionProfile;
+
+const ObjectSpec& originSpec() {
+  static const ObjectSpec spec{
+      "origin",
+      "",
+      {
+          latitudeKey(),
+          longitudeKey(),
+          byDefault("height_msl_m", kHeight, 0.0, "bottom of the region, above EGM96 mean sea level"),
+      }};
+  return spec;
+}
+
+}  // namespace
+
+const ObjectSpec& regionSpec() {
+  static const ObjectSpec spec{
+      "region",
+      "",
+      {
+          required("origin", object(originSpec()), "centre of the region's bottom"),
+          byDefault("frame", choice({toString(FrameKind::altitude), toString(FrameKind::enu)}), "altitude",
+                    "altitude: x east and y north along the ground, z above mean sea level; enu: a Cartesian "
+                    "box tangent at the origin"),
+          required("size_m", listOf(number("m").from(1).to(4e6), 3, 3),
+                   "extent along x, y and z; a voxel's x and y differ by at most 1000 times"),
+          required("dims", listOf(kInteger.from(2).to(4096), 3, 3),
+                   "voxels along x, y and z; at most 2^31 in all"),
+      }};
+  return spec;
+}
+
+const ObjectSpec& terrainSpec() {
+  static const ObjectSpec spec{
+      "terrain",
+      "",
+      {
+          required("files", listOf(kFile, 1, kMaxItems),
+                   "elevation files (HGT, DTED, GeoTIFF, VRT), relative to the scenario's folder"),
+          byDefault("vertical_datum", choice({"egm96", "ellipsoid", "egm2008"}), "egm96",
+                    "datum of the files' heights; egm2008 (Copernicus GLO-30) needs PROJ's or "
+                    "GeographicLib's grid of it"),
+      }};
+  return spec;
+}
+
+const ObjectSpec& atmosphereSpec() {
+  static const ObjectSpec spec{
+      "atmosphere",
+      "",
+      {
+          byDefault("k_factor", number().from(0.5).to(10), Atmosphere{}.k_factor,
+                    "effective earth radius over earth radius"),
+          byDefault("pressure_hpa", number("hPa").from(300).to(1100), Atmosphere{}.pressure_hpa,
+                    "at sea level"),
+          byDefault("temperature_k", number("K").from(180).to(340), Atmosphere{}.temperature_k,
+                    "at sea level"),
+          byDefault("vapour_g_m3", number("g/m3").from(0).to(100), Atmosphere{}.vapour_g_m3, "water vapour"),
+          byDefault("rain_mm_h", number("mm/h").from(0).to(200), Atmosphere{}.rain_mm_h,
+                    "rain rate, everywhere up to rain_height_m; its loss is added to every model's"),
+          optional("rain_height_m", number("m").from(0).to(20000),
+                   "upper limit of the rain, above mean sea level; by default by latitude (P.839-2), 5000 in "
+                   "the tropics; P.839-4's maps differ from it by up to 1.7 km at middle latitudes"),
+          byDefault("gases", choiceUpTo(GasLosses::never), toString(Atmosphere{}.gases),
+                    "attenuation by oxygen and water vapour; auto: with every model except free_space and "
+                    "horizon; p528 and p452 include their own"),
+          byDefault("refraction", choiceUpTo(RefractionProfile::exponential),
+                    toString(Atmosphere{}.refraction),
+                    "refractivity over height, for horizon, diffraction, two_ray and the directions of all "
+                    "rays: linear, by k_factor, right up to about 10 km; exponential, from "
+                    "sea_level_refractivity, at all heights"),
+          byDefault("sea_level_refractivity", number().from(200).to(450), Atmosphere{}.sea_level_refractivity,
+                    "N-units; for refraction: exponential, for itm, whose rays are bent by it, not by "
+                    "k_factor, and "
+                    "for the troposcatter of p1812 and p452"),
+          byDefault("climate", choiceUpTo(RadioClimate::maritime_temperate_over_sea),
+                    toString(Atmosphere{}.climate), "for itm's statistics"),
+          optional("refractivity", object(refractivitySpec()),
+                   "profiles of the air, for parabolic_equation; not together with k_factor, which the other "
+                   "models then have by default, or from kind: linear"),
+      }};
+  return spec;
+}
+
+const ObjectSpec& groundSpec() {
+  static const ObjectSpec spec{
+      "ground",
+      "",
+      {
+          byDefault("kind", choiceUpTo(GroundKind::concrete), toString(Ground{}.kind),
+                    "electrical constants of the ground; for sea and fresh water by frequency"),
+          optional("relative_permittivity", number().from(1).to(200), "by default that of the kind"),
+          optional("conductivity_s_m", number("S/m").from(0).to(100), "by default that of the kind"),
+          byDefault("roughness_m", number("m").from(0).to(1000), Ground{}.roughness_m,
+                    "standard deviation of the surface's height, for two_ray"),
+          optional("surface_msl_m", kHeight,
+                   "height of the smooth surface of two_ray and p528; by default of the ground below each "
+                   "emitter"),
+          optional(
+              "sea_by_height", simple(ValueType::boolean),
+              "true: sea where the terrain is at or below mean sea level; diffraction weighs the losses over "
+              "sea and over this ground by their parts of the path; p1812 and p452 have their own, `zone`"),
+      }};
+  return spec;
+}
+
+}  // namespace emscape::scenario

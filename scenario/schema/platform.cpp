@@ -1,0 +1,95 @@
+// Section of a platform, and the row of a track file.
+#include "scenario/schema/sections.h"
+#include "scenario/schema/values.h"
+
+namespace emscape::scenario {
+namespace {
+
+using document::DefaultValue;
+using document::spec::byDefault;
+using document::spec::number;
+using document::spec::object;
+using document::spec::optional;
+using document::spec::required;
+
+KeySpec heightMslKey() {
+  return optional("height_msl_m", kHeight, "above EGM96 mean sea level");
+}
+
+KeySpec heightAglKey() {
+  return optional("height_agl_m", kHeightAboveGround,
+                  "above the ground; above mean sea level without terrain");
+}
+
+const ObjectSpec& positionSpec() {
+  static const ObjectSpec spec{"position",
+                               "",
+                               {latitudeKey(), longitudeKey(), heightMslKey(), heightAglKey(),
+                                optional("height_ellipsoid_m", kHeight, "above the WGS84 ellipsoid")},
+                               {{"height_msl_m", "height_agl_m", "height_ellipsoid_m"}}};
+  return spec;
+}
+
+KeySpec headingKey(DefaultValue default_value) {
+  return byDefault("heading_deg", kAngle, std::move(default_value), "clockwise from true north");
+}
+
+KeySpec pitchKey() {
+  return byDefault("pitch_deg", kElevation, 0.0, "nose up");
+}
+
+KeySpec rollKey() {
+  return byDefault("roll_deg", kAngle, 0.0, "right wing down");
+}
+
+const ObjectSpec& attitudeSpec() {
+  static const ObjectSpec spec{"attitude", "", {headingKey(0.0), pitchKey(), rollKey()}};
+  return spec;
+}
+
+const ObjectSpec& trackSpec() {
+  static const ObjectSpec spec{
+      "track",
+      "",
+      {required("file", kFile,
+                "CSV with a header line: t_s, latitude_deg, longitude_deg, height_msl_m or height_agl_m and, "
+                "if wanted, heading_deg, pitch_deg, roll_deg; relative to the scenario's folder")}};
+  return spec;
+}
+
+}  // namespace
+
+KeySpec latitudeKey() {
+  return required("latitude_deg", kLatitude, "geodetic, WGS84");
+}
+
+KeySpec longitudeKey() {
+  return required("longitude_deg", kLongitude, "WGS84, positive eastwards");
+}
+
+const ObjectSpec& platformSpec() {
+  static const ObjectSpec spec{
+      "platform",
+      "",
+      {
+          required("name", kName, "emitters, receivers and targets refer to it by this name"),
+          optional("position", object(positionSpec()), "of a fixed site"),
+          optional("attitude", object(attitudeSpec()), "of a fixed site; level and north by default"),
+          optional("track", object(trackSpec()), "of a moving platform"),
+      },
+      {{"position", "track"}},
+      {{"attitude", "position"}}};
+  return spec;
+}
+
+const ObjectSpec& trackRowSpec() {
+  static const ObjectSpec spec{
+      "track file",
+      "",
+      {required("t_s", number("s").from(-1e8).to(1e8), "since the epoch"), latitudeKey(), longitudeKey(),
+       heightMslKey(), heightAglKey(), headingKey({}), pitchKey(), rollKey()},
+      {{"height_msl_m", "height_agl_m"}}};
+  return spec;
+}
+
+}  // namespace emscape::scenario
