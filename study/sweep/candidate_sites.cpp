@@ -11,7 +11,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/units.h"
-#include "study/gdal_support.h"
+#include "study/maps/gdal_support.h"
 
 namespace emscape::study {
 namespace {

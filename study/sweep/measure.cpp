@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
-#include "study/gdal_support.h"
+#include "study/maps/gdal_support.h"
 
 namespace emscape::study {
 

@@ -11,7 +11,7 @@
 #include "emscape/study/html_report.h"
 #include "emscape/study/map.h"
 #include "emscape/study/map_grid.h"
-#include "study/map_report.h"
+#include "study/report/map_report.h"
 #include "study/sweep/choose_sites.h"
 #include "study/sweep/measure_plot.h"
 

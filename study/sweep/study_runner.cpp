@@ -7,8 +7,8 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/scenario_file.h"
+#include "study/maps/warnings.h"
 #include "study/sweep/measure.h"
-#include "study/warnings.h"
 
 namespace emscape::study {
 namespace {

@@ -12,7 +12,7 @@
 #include "emscape/scenario/snapshot.h"
 #include "emscape/study/geotiff.h"
 #include "emscape/volume/file.h"
-#include "study/map_report.h"
+#include "study/files/map_metadata.h"
 
 namespace emscape::study {
 namespace {

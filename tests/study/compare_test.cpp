@@ -7,7 +7,7 @@
 #include <map>
 
 #include "emscape/scenario/scenario_file.h"
-#include "study/changed_areas.h"
+#include "study/compare/changed_areas.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 

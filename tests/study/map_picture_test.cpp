@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "emscape/study/map_grid.h"
-#include "study/map_colors.h"
+#include "study/files/map_colors.h"
 
 namespace emscape::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "study/time_figures.h"
+#include "study/maps/time_figures.h"
 
 #include <gtest/gtest.h>
 

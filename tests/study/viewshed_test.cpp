@@ -12,7 +12,7 @@
 #include "emscape/study/coverage.h"
 #include "emscape/study/map_picture.h"
 #include "scenario/antenna/shapes.h"
-#include "study/least_heights.h"
+#include "study/maps/least_heights.h"
 #include "tests/support/files.h"
 
 namespace emscape::study {

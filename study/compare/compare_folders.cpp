@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "emscape/base/error.h"
+#include "emscape/study/compare.h"
+#include "study/compare/changed_areas.h"
+#include "study/compare/map_comparer.h"
+
+namespace emscape::study {
+namespace {
+
+/// @param what  of B differs from that of A
+[[noreturn]] void failDiffer(const CoverageFolder& a, const CoverageFolder& b, const std::string& what,
+                             const std::string& of_a, const std::string& of_b, const char* hint = "") {
+  throw Error(ErrorCode::bad_input, {b.path.string(), 0, 0},
+              fmt::format("{} differs from {}: {} instead of {}{}", what, a.path.string(), of_b, of_a, hint));
+}
+
+std::string textOf(const MapGrid& grid) {
+  return fmt::format("{} x {} of {} m in {}, from {}, {}", grid.width, grid.height, grid.cell_m, grid.crs,
+                     grid.left_m, grid.top_m);
+}
+
+void checkAlike(const CoverageFolder& a, const CoverageFolder& b) {
+  const MapGrid &of_a = *a.grid, &of_b = *b.grid;
+  if (of_a.wkt != of_b.wkt || textOf(of_a) != textOf(of_b)) {
+    failDiffer(a, b, "the grid of pixels", textOf(of_a), textOf(of_b),
+               "; emscape coverage makes them alike with the same --area, --cell and --crs");
+  }
+  if (a.quantity != b.quantity) {
+    failDiffer(a, b, "the quantity", scenario::info(a.quantity).name, scenario::info(b.quantity).name);
+  }
+}
+
+bool isSame(const std::optional<MapHeight>& a, const std::optional<MapHeight>& b) {
+  return a.has_value() == b.has_value() && (!a || (a->reference == b->reference && a->metres == b->metres));
+}
+
+bool isSameMap(const CoverageMap& a, const CoverageMap& b) {
+  return a.product == b.product && isSame(a.height, b.height) && a.time_s == b.time_s;
+}
+
+/// True for maps of a choice. Maps for all heights or times belong to every choice.
+bool isChosen(const CoverageMap& map, const MapChoice& choice) {
+  const auto holds = [](const auto& list, const auto& test) {
+    return list.empty() || std::any_of(list.begin(), list.end(), test);
+  };
+  const bool is_of_product =
+      choice.products.empty()
+          ? map.product != Product::best
+          : holds(choice.products, [&](Product product) { return product == map.product; });
+  return is_of_product &&
+         (!map.height ||
+          holds(choice.heights, [&](const MapHeight& height) { return isSame(height, map.height); })) &&
+         (!map.time_s || holds(choice.times_s, [&](double time_s) { return time_s == *map.time_s; }));
+}
+
+/// Index of the map that is the same; -1: none.
+std::ptrdiff_t indexOf(const CoverageFolder& folder, const CoverageMap& map) {
+  const auto found = std::find_if(folder.maps.begin(), folder.maps.end(),
+                                  [&](const CoverageMap& other) { return isSameMap(other, map); });
+  return found == folder.maps.end() ? -1 : found - folder.maps.begin();
+}
+
+/// @throws Error (bad_input) if a chosen map of one folder is not in the other
+void requireMapsOf(const CoverageFolder& one, const CoverageFolder& other, const MapChoice& choice) {
+  for (const CoverageMap& map : one.maps) {
+    if (!isChosen(map, choice) || indexOf(other, map) >= 0) continue;
+    throw Error(
+        ErrorCode::bad_input, {(other.path / "report.json").string(), 0, 0},
+        fmt::format("has no map of {}, which {} has; --products, --heights and --times choose maps that "
+                    "both have",
+                    nameOf(map), one.path.string()));
+  }
+}
+
+}  // namespace
+
+std::vector<std::pair<std::size_t, std::size_t>> pairsOf(const CoverageFolder& a, const CoverageFolder& b,
+                                                         const MapChoice& choice) {
+  requireDifferences(choice.products);
+  checkAlike(a, b);
+  requireMapsOf(a, b, choice);
+  requireMapsOf(b, a, choice);
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (std::size_t m = 0; m < a.maps.size(); ++m) {
+    const CoverageMap& map = a.maps[m];
+    if (!isChosen(map, choice)) continue;
+    const auto n = static_cast<std::size_t>(indexOf(b, map));
+    if (map.unit != b.maps[n].unit) {
+      failDiffer(a, b, "the unit of " + nameOf(map), "'" + map.unit + "'", "'" + b.maps[n].unit + "'");
+    }
+    if (map.product != Product::value && a.threshold != b.threshold) {
+      failDiffer(a, b, "the threshold of " + nameOf(map), fmt::format("{}", a.threshold),
+                 fmt::format("{}", b.threshold));
+    }
+    pairs.emplace_back(m, n);
+  }
+  if (pairs.empty()) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: has no map of these products, heights and times", a.path.string()));
+  }
+  return pairs;
+}
+
+Comparison compareFolders(const CoverageFolder& a, const CoverageFolder& b,
+                          const std::vector<std::pair<std::size_t, std::size_t>>& chosen, int areas,
+                          const std::function<void(const Map&)>& take, const ProgressSink& progress) {
+  std::vector<Product> products;
+  for (const auto& [of_a, of_b] : chosen) products.push_back(a.maps[of_a].product);
+  MapComparer comparer(*a.grid, products, areas, take);
+  for (std::size_t n = 0; n < chosen.size(); ++n) {
+    if (progress) progress("maps", static_cast<double>(n) / static_cast<double>(chosen.size()));
+    comparer.add(readMap(a, chosen[n].first), readMap(b, chosen[n].second));
+  }
+  if (progress) progress("maps", 1);
+  Comparison comparison = comparer.finish();
+  comparison.has_paths = a.has_inputs && b.has_inputs;
+  for (ChangedArea& area : comparison.changed_areas) {
+    if (comparison.has_paths) explain(area, a.quantity, {a.scenario, a.terrain}, {b.scenario, b.terrain});
+  }
+  for (const CoverageFolder* folder : {&a, &b}) {
+    if (folder->has_inputs) continue;
+    comparison.warnings.push_back(fmt::format(
+        "{}: the scenario {} or one of its files is not there or has changed: changed areas are not "
+        "explained",
+        folder->path.string(), folder->scenario->file));
+  }
+  return comparison;
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,224 @@
+#include "study/files/kmz.h"
+
+#include <cpl_conv.h>
+#include <fmt/format.h>
+#include <gdal_utils.h>
+
+#include <array>
+#include <cmath>
+
+#include "emscape/playback/scene.h"
+#include "emscape/render/image.h"
+#include "render/annotate/overlay_parts.h"
+#include "study/files/map_colors.h"
+#include "study/files/map_objects.h"
+#include "study/files/xml_text.h"
+#include "study/maps/gdal_support.h"
+
+namespace emscape::study {
+namespace {
+
+/// A picture over a box of longitudes and latitudes.
+struct Overlay {
+  render::Image8 image;
+  double north_deg = 0, south_deg = 0, east_deg = 0, west_deg = 0;
+};
+
+std::array<std::uint8_t, 4> bytesOf(const std::optional<render::Rgb>& color) {
+  if (!color) return {0, 0, 0, 0};
+  const auto level = [](float part) { return static_cast<std::uint8_t>(std::lround(255 * part)); };
+  return {level(color->r), level(color->g), level(color->b), 255};
+}
+
+Overlay overlayOf(const MapGrid& grid, const Map& map, const render::Legend& legend,
+                  const std::filesystem::path& file) {
+  const scenario::GdalMessages messages;
+  const Dataset raster = memoryRaster(grid, GDT_Byte, file);
+  for (int channel = 1; channel < 4; ++channel) raster->AddBand(GDT_Byte, nullptr);
+  std::vector<std::uint8_t> rgba;
+  for (const float value : map.values) {
+    for (const std::uint8_t byte : bytesOf(colorOf(map, legend, value))) rgba.push_back(byte);
+  }
+  if (raster->RasterIO(GF_Write, 0, 0, grid.width, grid.height, rgba.data(), grid.width, grid.height,
+                       GDT_Byte, 4, nullptr, 4, 4 * grid.width, 1, nullptr) != CE_None) {
+    failWriting(messages, file);
+  }
+  // Longitudes within half a turn of the map, so that one across the antimeridian is not torn.
+  const std::size_t middle = grid.pixels() / 2;
+  const std::string earth =
+      fmt::format("+proj=longlat +datum=WGS84 +no_defs +lon_wrap={:.6f}", grid.places[middle].longitude_deg);
+  const char* const arguments[] = {"-t_srs", earth.c_str(), "-r", "near", "-of", "MEM", nullptr};
+  GDALWarpAppOptions* const options = GDALWarpAppOptionsNew(const_cast<char**>(arguments), nullptr);
+  GDALDatasetH source = GDALDataset::ToHandle(raster.get());
+  const Dataset warped(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
+  GDALWarpAppOptionsFree(options);
+  if (warped == nullptr) failWriting(messages, file);
+
+  Overlay overlay;
+  const int width = warped->GetRasterXSize(), height = warped->GetRasterYSize();
+  overlay.image.size = {width, height};
+  overlay.image.rgba.resize(4 * static_cast<std::size_t>(width) * height);
+  double transform[6];
+  const bool is_read = warped->GetGeoTransform(transform) == CE_None &&
+                       warped->RasterIO(GF_Read, 0, 0, width, height, overlay.image.rgba.data(), width,
+                                        height, GDT_Byte, 4, nullptr, 4, 4 * width, 1, nullptr) == CE_None;
+  if (!is_read || messages.hasFailure()) failWriting(messages, file);
+  overlay.west_deg = transform[0];
+  overlay.east_deg = transform[0] + width * transform[1];
+  overlay.north_deg = transform[3];
+  overlay.south_deg = transform[3] + height * transform[5];
+  return overlay;
+}
+
+render::Image8 legendPicture(const render::Legend& legend) {
+  const render::Style style({1200, 900}, render::Theme::light);
+  const render::ImageSize size{static_cast<int>(std::ceil(render::legendWidth(style, legend))), 420};
+  render::Canvas canvas(size);
+  canvas.rectangle({0, 0, static_cast<double>(size.width), static_cast<double>(size.height)},
+                   {{1, 1, 1}, 0.85});
+  render::drawLegend(canvas, style, legend);
+  return canvas.pixels();
+}
+
+/// aabbggrr
+std::string kmlColor(const render::Rgb& color) {
+  const std::array<std::uint8_t, 4> bytes = bytesOf(color);
+  return fmt::format("ff{:02x}{:02x}{:02x}", bytes[2], bytes[1], bytes[0]);
+}
+
+class Kmz : public MapCollection {
+ public:
+  Kmz(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
+    const scenario::GdalMessages messages;
+    zip_ = CPLCreateZip(file_.temporary(), nullptr);
+    if (zip_ == nullptr) failWriting(messages, file_.file());
+  }
+
+  ~Kmz() override {
+    const scenario::GdalMessages messages;
+    if (zip_ != nullptr) CPLCloseZip(zip_);
+  }
+
+  void add(const Map& map) override {
+    Folder& folder = folderOf(map);
+    const render::Legend legend = legendOf(map);
+    const std::string name = "files/" + fileNameOf(map) + ".png";
+    const Overlay overlay = overlayOf(*study_.grid, map, legend, file_.file());
+    write(name, render::encodePng(overlay.image));
+    // The range of the colours may differ from time to time.
+    const std::string legend_name = "files/legend_" + fileNameOf(map) + ".png";
+    write(legend_name, render::encodePng(legendPicture(legend)));
+    const std::string visibility = fmt::format("<visibility>{}</visibility>", folder.is_on ? 1 : 0);
+    const std::string span = map.time_s ? spanOf(*map.time_s, endOf(study_, *map.time_s)) : "";
+    const std::string title =
+        escapedXml(map.description + (map.time_s ? fmt::format(", t = {} s", *map.time_s) : std::string()));
+    folder.content += fmt::format(
+        "<GroundOverlay><name>{}</name>{}{}<color>b8ffffff</color><Icon><href>{}</href></Icon><LatLonBox>"
+        "<north>{:.9f}</north><south>{:.9f}</south><east>{:.9f}</east><west>{:.9f}</west></LatLonBox>"
+        "</GroundOverlay>\n",
+        title, visibility, span, name, overlay.north_deg, overlay.south_deg, overlay.east_deg,
+        overlay.west_deg);
+    folder.content += fmt::format(
+        "<ScreenOverlay><name>legend</name>{}{}<Icon><href>{}</href></Icon>"
+        "<overlayXY x=\"1\" y=\"0.5\" xunits=\"fraction\" yunits=\"fraction\"/>"
+        "<screenXY x=\"0.99\" y=\"0.5\" xunits=\"fraction\" yunits=\"fraction\"/></ScreenOverlay>\n",
+        visibility, span, legend_name);
+  }
+
+  void finish() override {
+    std::string kml =
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<kml xmlns=\"http://www.opengis.net/kml/2.2\">\n"
+        "<Document><name>" +
+        escapedXml(study_.title) + "</name><open>1</open>\n" + emitters() + tracks();
+    for (const Folder& folder : folders_) {
+      kml += fmt::format("<Folder><name>{}</name><visibility>{}</visibility>\n{}</Folder>\n",
+                         escapedXml(folder.name), folder.is_on ? 1 : 0, folder.content);
+    }
+    write("doc.kml", kml + "</Document></kml>\n");
+    {
+      const scenario::GdalMessages messages;
+      const CPLErr closed = CPLCloseZip(zip_);
+      zip_ = nullptr;
+      if (closed != CE_None || messages.hasFailure()) failWriting(messages, file_.file());
+    }
+    file_.publish();
+  }
+
+ private:
+  struct Folder {
+    std::string name, content;
+    bool is_on = false;
+  };
+
+  Folder& folderOf(const Map& map) {
+    const std::string name = map.name + (map.height ? ", " + describe(*map.height) : "");
+    for (Folder& folder : folders_) {
+      if (folder.name == name) return folder;
+    }
+    folders_.push_back({name, "", folders_.empty()});
+    return folders_.back();
+  }
+
+  std::string spanOf(double begin_s, double end_s) const {
+    return fmt::format("<TimeSpan><begin>{}</begin><end>{}</end></TimeSpan>", utcOf(study_, begin_s),
+                       utcOf(study_, end_s));
+  }
+
+  void write(const std::string& name, const std::string& bytes) {
+    const scenario::GdalMessages messages;
+    const bool is_written =
+        CPLCreateFileInZip(zip_, name.c_str(), nullptr) == CE_None &&
+        CPLWriteFileInZip(zip_, bytes.data(), static_cast<int>(bytes.size())) == CE_None &&
+        CPLCloseFileInZip(zip_) == CE_None;
+    if (!is_written || messages.hasFailure()) failWriting(messages, file_.file());
+  }
+
+  std::string emitters() const {
+    std::string text = "<Folder><name>emitters</name>\n";
+    for (const MapEmitter& emitter : emittersOf(study_)) {
+      const render::Rgb color = render::colorOf(playback::markerKindOf(emitter.emitter->kind));
+      for (const MapPosition& at : emitter.positions) {
+        const std::string span =
+            emitter.positions.size() > 1 ? spanOf(at.time_s, endOf(study_, at.time_s)) : "";
+        text += fmt::format(
+            "<Placemark><name>{}</name><description>{}, {:.6g} MHz, {:.6g} W</description>{}<Style>"
+            "<IconStyle><color>{}</color><scale>0.8</scale></IconStyle></Style><Point>"
+            "<altitudeMode>absolute</altitudeMode><coordinates>{:.8f},{:.8f},{:.2f}</coordinates></Point>"
+            "</Placemark>\n",
+            escapedXml(emitter.emitter->name), scenario::toString(emitter.emitter->kind),
+            emitter.emitter->frequency_hz / 1e6, emitter.emitter->power_w, span, kmlColor(color),
+            at.position.longitude_deg, at.position.latitude_deg, at.height_msl_m);
+      }
+    }
+    return text + "</Folder>\n";
+  }
+
+  std::string tracks() const {
+    std::string text = "<Folder><name>tracks</name>\n";
+    for (const MapTrack& track : tracksOf(study_)) {
+      text += fmt::format(
+          "<Placemark><name>{}</name><Style><LineStyle><color>ff404040</color><width>2</width></LineStyle>"
+          "</Style><LineString><altitudeMode>absolute</altitudeMode><coordinates>",
+          escapedXml(track.platform));
+      for (const MapPosition& at : track.positions) {
+        text += fmt::format("{:.8f},{:.8f},{:.2f} ", at.position.longitude_deg, at.position.latitude_deg,
+                            at.height_msl_m);
+      }
+      text += "</coordinates></LineString></Placemark>\n";
+    }
+    return text + "</Folder>\n";
+  }
+
+  UnfinishedFile file_;
+  const MapStudy& study_;
+  void* zip_ = nullptr;
+  std::vector<Folder> folders_;
+};
+
+}  // namespace
+
+std::unique_ptr<MapCollection> makeKmz(const std::filesystem::path& file, const MapStudy& study) {
+  return std::make_unique<Kmz>(file, study);
+}
+
+}  // namespace emscape::study

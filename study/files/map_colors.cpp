@@ -1,0 +1,71 @@
+#include "study/files/map_colors.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace emscape::study {
+namespace {
+
+constexpr float kNoPart = 0.005f;  ///< probabilities and fractions below it leave the ground as it is
+
+/// Index of a colour of render::categoryColor().
+int categoryOf(const Map& map, int value) {
+  return value >= 0 && value < static_cast<int>(map.colors.size()) ? map.colors[value] : value;
+}
+
+}  // namespace
+
+render::Legend legendOf(const Map& map) {
+  render::Legend legend;
+  legend.quantity = render::quantityTitle(map.title, map.unit);
+  legend.unit = render::unitText(map.unit);
+  float least = INFINITY, largest = -INFINITY;
+  for (const float value : map.values) {
+    if (std::isnan(value)) continue;
+    least = std::min(least, value);
+    largest = std::max(largest, value);
+  }
+  if (isWhole(map.kind)) {
+    legend.function.categorical = true;
+    const int first = map.kind == MapKind::category ? 0 : 1;
+    int last = std::min(std::isfinite(largest) ? static_cast<int>(largest) : 0, first + 15);
+    if (map.kind == MapKind::classes) last = static_cast<int>(map.labels.size()) - 1;  // those absent too
+    for (int n = first; n <= last; ++n) {
+      const std::string label = n < static_cast<int>(map.labels.size()) ? map.labels[n] : std::to_string(n);
+      legend.categories.push_back({categoryOf(map, n), label});
+    }
+    return legend;
+  }
+  if (!(least <= largest)) least = largest = 0;
+  double low = static_cast<double>(least), high = static_cast<double>(largest);
+  if (isPart(map.kind)) {
+    low = 0;
+    high = 1;
+    legend.note = fmt::format("no colour: < {}", kNoPart);
+  } else if (map.kind == MapKind::difference) {
+    high = std::max(std::abs(low), std::abs(high));
+    low = -high;
+  }
+  if (high - low < 1e-6) high = low + 1;
+  const char* const colors = map.kind == MapKind::difference ? "diverging" : "viridis";
+  for (const render::ColorMap::Point& point : render::colorMap(colors).points) {
+    legend.function.colors.push_back({low + point.at * (high - low), point.color});
+  }
+  legend.function.opacities = {{low, 0}, {high, 0}};
+  return legend;
+}
+
+std::optional<render::Rgb> colorOf(const Map& map, const render::Legend& legend, float value) {
+  if (std::isnan(value)) return std::nullopt;
+  if (!isWhole(map.kind)) {
+    if (isPart(map.kind) && value < kNoPart) return std::nullopt;
+    return legend.function.color(static_cast<double>(value));
+  }
+  const int index = static_cast<int>(value), none = map.kind == MapKind::category ? -1 : 0;
+  if (index == none) return std::nullopt;
+  return render::categoryColor(categoryOf(map, index));
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,193 @@
+#include "study/files/map_shapes.h"
+
+#include <fmt/format.h>
+#include <gdal_alg.h>
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "emscape/base/error.h"
+#include "study/files/map_colors.h"
+#include "study/maps/gdal_support.h"
+
+namespace emscape::study {
+namespace {
+
+constexpr double kMaxLevels = 64;
+
+double logOddsOf(double probability) {
+  constexpr double kLeast = 1e-6;
+  const double clamped = std::clamp(probability, kLeast, 1 - kLeast);
+  return std::log(clamped / (1 - clamped));
+}
+
+/// 1, 2, 2.5 or 5 times a power of ten, at least a step.
+double roundStep(double step) {
+  const double power = std::pow(10, std::floor(std::log10(step)));
+  for (const double factor : {1.0, 2.0, 2.5, 5.0}) {
+    if (factor * power >= step * (1 - 1e-9)) return factor * power;
+  }
+  return 10 * power;
+}
+
+struct Range {
+  double min = INFINITY, max = -INFINITY;
+};
+Range rangeOf(const Map& map) {
+  Range range;
+  for (const float value : map.values) {
+    if (std::isnan(value)) continue;
+    range.min = std::min(range.min, static_cast<double>(value));
+    range.max = std::max(range.max, static_cast<double>(value));
+  }
+  return range;
+}
+
+/// A layer in memory that GDAL's algorithms fill.
+class Layer {
+ public:
+  explicit Layer(const std::filesystem::path& file)
+      : dataset_(driverOf("Memory")->Create("", 0, 0, 0, GDT_Unknown, nullptr)), file_(file) {
+    layer_ = dataset_ == nullptr ? nullptr : dataset_->CreateLayer("shapes");
+    if (layer_ == nullptr) failWriting(messages_, file);
+  }
+  int addField(const char* name, OGRFieldType type) {
+    OGRFieldDefn field(name, type);
+    layer_->CreateField(&field);
+    return layer_->GetLayerDefn()->GetFieldIndex(name);
+  }
+  void check(CPLErr result) const {
+    if (result != CE_None || messages_.hasFailure()) failWriting(messages_, file_);
+  }
+  OGRLayer* get() const { return layer_; }
+
+ private:
+  scenario::GdalMessages messages_;
+  Dataset dataset_;
+  std::filesystem::path file_;
+  OGRLayer* layer_ = nullptr;
+};
+
+void addContours(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
+  const std::vector<double> levels = levelsOf(map);
+  const bool by_log_odds = map.kind == MapKind::probability;
+  const auto scaled = [&](double value) { return by_log_odds ? logOddsOf(value) : value; };
+  const Dataset raster = memoryRaster(grid, GDT_Float64, file);
+  GDALRasterBand* const band = raster->GetRasterBand(1);
+  std::vector<double> values(map.values.size(), NAN);
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    if (!std::isnan(map.values[p])) values[p] = scaled(static_cast<double>(map.values[p]));
+  }
+  Layer lines(file), bands(file);
+  lines.check(band->RasterIO(GF_Write, 0, 0, grid.width, grid.height, values.data(), grid.width, grid.height,
+                             GDT_Float64, 0, 0, nullptr));
+  std::string fixed = "FIXED_LEVELS=";
+  for (const double level : levels) {
+    fixed += fmt::format("{}{:.17g}", fixed.back() == '=' ? "" : ",", scaled(level));
+  }
+  const auto nearestLevel = [&](double value) {
+    std::size_t nearest = 0;
+    for (std::size_t n = 1; n < levels.size(); ++n) {
+      if (std::abs(scaled(levels[n]) - value) < std::abs(scaled(levels[nearest]) - value)) nearest = n;
+    }
+    return nearest;
+  };
+  const int level_field = lines.addField("level", OFTReal), max_field = bands.addField("max", OFTReal);
+  if (!levels.empty()) {
+    const std::string field = fmt::format("ELEV_FIELD={}", level_field);
+    const char* const options[] = {fixed.c_str(), field.c_str(), "NODATA=nan", nullptr};
+    lines.check(GDALContourGenerateEx(band, lines.get(), options, nullptr, nullptr));
+    for (const OGRFeatureUniquePtr& feature : *lines.get()) {
+      const double level = levels[nearestLevel(feature->GetFieldAsDouble(level_field))];
+      shapes.lines.push_back({level, std::unique_ptr<OGRGeometry>(feature->StealGeometry())});
+    }
+    std::stable_sort(shapes.lines.begin(), shapes.lines.end(),
+                     [](const MapLine& a, const MapLine& b) { return a.level < b.level; });
+  } else {
+    fixed += "1e300";  // one band of all
+  }
+  const std::string field = fmt::format("ELEV_FIELD_MAX={}", max_field);
+  const char* const options[] = {fixed.c_str(), field.c_str(), "POLYGONIZE=YES", "NODATA=nan", nullptr};
+  bands.check(GDALContourGenerateEx(band, bands.get(), options, nullptr, nullptr));
+  const Range range = rangeOf(map);
+  const render::Legend legend = legendOf(map);
+  for (const OGRFeatureUniquePtr& feature : *bands.get()) {
+    // GDAL 3.6 gives the bands below the first and above the last level no limit of their own.
+    const double max = feature->GetFieldAsDouble(max_field);
+    const bool is_last = levels.empty() || max > scaled(levels.back()) + 1e-6;
+    const std::size_t above = is_last ? levels.size() : nearestLevel(max);
+    MapBand one;
+    one.min = above == 0 ? std::min(range.min, is_last ? range.max : levels[above]) : levels[above - 1];
+    one.max = is_last ? range.max : levels[above];
+    one.geometry.reset(feature->StealGeometry());
+    if (one.geometry == nullptr || one.geometry->IsEmpty()) continue;
+    const bool is_nothing = isPart(map.kind) && above == 0 && !is_last;
+    if (!is_nothing) one.color = colorOf(map, legend, static_cast<float>((one.min + one.max) / 2));
+    shapes.bands.push_back(std::move(one));
+  }
+  std::stable_sort(shapes.bands.begin(), shapes.bands.end(),
+                   [](const MapBand& a, const MapBand& b) { return a.max < b.max; });
+}
+
+void addOutlines(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
+  constexpr int kNone = -1;
+  const int nothing = map.kind == MapKind::category ? -1 : 0;
+  const Dataset raster = memoryRaster(grid, GDT_Int32, file);
+  GDALRasterBand* const band = raster->GetRasterBand(1);
+  std::vector<std::int32_t> numbers(map.values.size(), kNone);
+  for (std::size_t p = 0; p < numbers.size(); ++p) {
+    const float value = map.values[p];
+    if (!std::isnan(value) && static_cast<int>(value) != nothing) numbers[p] = static_cast<int>(value);
+  }
+  Layer outlines(file);
+  const int field = outlines.addField("value", OFTInteger);
+  outlines.check(band->RasterIO(GF_Write, 0, 0, grid.width, grid.height, numbers.data(), grid.width,
+                                grid.height, GDT_Int32, 0, 0, nullptr));
+  outlines.check(GDALPolygonize(band, nullptr, outlines.get(), field, nullptr, nullptr, nullptr));
+  std::map<int, std::unique_ptr<OGRMultiPolygon>> by_number;
+  for (const OGRFeatureUniquePtr& feature : *outlines.get()) {
+    const int number = feature->GetFieldAsInteger(field);
+    if (number == kNone) continue;
+    auto& all = by_number[number];
+    if (all == nullptr) all = std::make_unique<OGRMultiPolygon>();
+    all->addGeometryDirectly(feature->StealGeometry());
+  }
+  const render::Legend legend = legendOf(map);
+  for (auto& [number, outline] : by_number) {
+    MapBand one;
+    one.min = one.max = number;
+    one.color = colorOf(map, legend, static_cast<float>(number));
+    if (number < static_cast<int>(map.labels.size())) one.label = map.labels[number];
+    one.geometry = std::move(outline);
+    shapes.bands.push_back(std::move(one));
+  }
+}
+
+}  // namespace
+
+std::vector<double> levelsOf(const Map& map) {
+  if (isWhole(map.kind)) return {};
+  const Range range = rangeOf(map);
+  if (isPart(map.kind) && range.max <= 1) return {0.1, 0.5, 0.9};
+  if (!(range.min < range.max)) return {};
+  double step = map.unit.rfind("dB", 0) == 0 ? 10 : roundStep((range.max - range.min) / 4);
+  if ((range.max - range.min) / step > kMaxLevels) step = roundStep((range.max - range.min) / kMaxLevels);
+  std::vector<double> levels;
+  for (double n = std::floor(range.min / step) + 1; n * step < range.max; ++n) levels.push_back(n * step);
+  return levels;
+}
+
+MapShapes shapesOf(const MapGrid& grid, const Map& map, const std::filesystem::path& file) {
+  MapShapes shapes;
+  if (rangeOf(map).min > rangeOf(map).max) return shapes;  // no value anywhere
+  if (isWhole(map.kind)) {
+    addOutlines(grid, map, file, shapes);
+  } else {
+    addContours(grid, map, file, shapes);
+  }
+  return shapes;
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,277 @@
+#include "study/files/netcdf.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "emscape/base/error.h"
+#include "study/files/map_metadata.h"
+#include "study/files/map_objects.h"
+#include "study/maps/gdal_support.h"
+
+namespace emscape::study {
+namespace {
+
+using Dimension = std::shared_ptr<GDALDimension>;
+using Array = std::shared_ptr<GDALMDArray>;
+
+constexpr std::int16_t kNoNumber = -32768;
+
+/// A unit as UDUNITS writes it; logarithmic units have no symbol there.
+std::string udunitOf(const std::string& unit) {
+  static const std::map<std::string, std::string> kUnits{{"", "1"},
+                                                         {"dB", "0.1 lg(re 1)"},
+                                                         {"dBW/m2", "0.1 lg(re 1 W m-2)"},
+                                                         {"dBm", "0.1 lg(re 1 mW)"},
+                                                         {"dBuV/m", "0.05 lg(re 1e-6 V m-1)"}};
+  const auto found = kUnits.find(unit);
+  return found == kUnits.end() ? unit : found->second;
+}
+
+/// A word of flag_meanings.
+std::string flagWord(const std::string& label) {
+  std::string word;
+  for (const char c : label) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '.';
+    word += is_plain ? c : '_';
+  }
+  return word.empty() ? "_" : word;
+}
+
+class NetCdf : public MapCollection {
+ public:
+  NetCdf(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
+    const scenario::GdalMessages messages;
+    const char* const options[] = {"FORMAT=NC4", "CONVENTIONS=CF-1.8", nullptr};
+    dataset_.reset(driverOf("netCDF")->CreateMultiDimensional(file_.temporary(), nullptr, options));
+    check(messages, dataset_ != nullptr);
+    root_ = dataset_->GetRootGroup();
+    setText(*root_, "title", study.title);
+    setText(*root_, "source",
+            fmt::format("emscape {}, computed from the scenario {}", EMSCAPE_VERSION,
+                        study.scenarios.front()->name));
+    setText(*root_, "history", "emscape " + study.command);
+    setText(*root_, "comment", "Radars look at the target, wherever their scan points.");
+    for (const auto& [name, value] : metadataOf(study, {})) {
+      if (name != "EMSCAPE_PRODUCT") setText(*root_, name.c_str(), value);
+    }
+    addCoordinates(messages);
+  }
+
+  ~NetCdf() override {
+    const scenario::GdalMessages messages;
+    close();
+  }
+
+  void add(const Map& map) override {
+    const scenario::GdalMessages messages;
+    const MapGrid& grid = *study_.grid;
+    const Array variable = variableOf(messages, map);
+    std::vector<GUInt64> start;
+    std::vector<std::size_t> count;
+    if (map.time_s) start.push_back(indexIn(study_.times_s, *map.time_s));
+    if (map.height) start.push_back(indexIn(heightsOf(map.height->reference), map.height->metres));
+    count.assign(start.size(), 1);
+    start.insert(start.end(), {0, 0});
+    count.insert(count.end(), {static_cast<std::size_t>(grid.height), static_cast<std::size_t>(grid.width)});
+    bool is_written = false;
+    if (isWhole(map.kind)) {
+      std::vector<std::int16_t> numbers(map.values.size(), kNoNumber);
+      for (std::size_t p = 0; p < numbers.size(); ++p) {
+        if (!std::isnan(map.values[p])) numbers[p] = static_cast<std::int16_t>(map.values[p]);
+      }
+      is_written = variable->Write(start.data(), count.data(), nullptr, nullptr,
+                                   GDALExtendedDataType::Create(GDT_Int16), numbers.data());
+    } else {
+      is_written = variable->Write(start.data(), count.data(), nullptr, nullptr,
+                                   GDALExtendedDataType::Create(GDT_Float32), map.values.data());
+    }
+    check(messages, is_written);
+  }
+
+  void finish() override {
+    {
+      const scenario::GdalMessages messages;
+      close();
+      check(messages, true);
+    }
+    file_.publish();
+  }
+
+ private:
+  void check(const scenario::GdalMessages& messages, bool is_done) const {
+    if (!is_done || messages.hasFailure()) failWriting(messages, file_.file());
+  }
+
+  void close() {
+    variables_.clear();
+    dimensions_.clear();
+    root_.reset();
+    dataset_.reset();
+  }
+
+  template <class Holder>
+  static void setText(Holder& holder, const char* name, const std::string& text) {
+    const auto attribute = holder.CreateAttribute(name, {}, GDALExtendedDataType::CreateString());
+    if (attribute != nullptr) attribute->Write(text.c_str());
+  }
+
+  std::size_t indexIn(const std::vector<double>& values, double value) const {
+    const auto found = std::find(values.begin(), values.end(), value);
+    if (found == values.end()) {
+      throw Error(ErrorCode::other, fmt::format("{}: {} is neither a time nor a height of the study",
+                                                file_.file().string(), value));
+    }
+    return static_cast<std::size_t>(found - values.begin());
+  }
+
+  std::vector<double> heightsOf(emfield::HeightReference reference) const {
+    std::vector<double> heights_m;
+    for (const MapHeight& height : study_.heights) {
+      if (height.reference == reference) heights_m.push_back(height.metres);
+    }
+    std::sort(heights_m.begin(), heights_m.end());
+    heights_m.erase(std::unique(heights_m.begin(), heights_m.end()), heights_m.end());
+    return heights_m;
+  }
+
+  using Attributes = std::vector<std::pair<const char*, std::string>>;
+
+  void addCoordinate(const scenario::GdalMessages& messages, const std::string& name, const char* type,
+                     const std::vector<double>& values, const std::string& unit,
+                     const Attributes& attributes) {
+    if (values.empty()) return;
+    const Dimension dimension = root_->CreateDimension(name, type, "", values.size());
+    check(messages, dimension != nullptr);
+    const Array array =
+        root_->CreateMDArray(name, {dimension}, GDALExtendedDataType::Create(GDT_Float64), nullptr);
+    check(messages, array != nullptr);
+    for (const auto& [key, value] : attributes) setText(*array, key, value);
+    array->SetUnit(unit);
+    const GUInt64 start = 0;
+    const std::size_t count = values.size();
+    check(messages, array->Write(&start, &count, nullptr, nullptr, GDALExtendedDataType::Create(GDT_Float64),
+                                 values.data()));
+    dimensions_[name] = dimension;
+  }
+
+  void addCoordinates(const scenario::GdalMessages& messages) {
+    const MapGrid& grid = *study_.grid;
+    addCoordinate(
+        messages, "time", GDAL_DIM_TYPE_TEMPORAL, study_.times_s, "seconds since " + utcOf(study_, 0),
+        {{"standard_name", "time"}, {"long_name", "time"}, {"calendar", "standard"}, {"axis", "T"}});
+    addCoordinate(messages, "height_agl", GDAL_DIM_TYPE_VERTICAL, heightsOf(emfield::HeightReference::ground),
+                  "m",
+                  {{"standard_name", "height"},
+                   {"long_name", "height above ground"},
+                   {"positive", "up"},
+                   {"axis", "Z"}});
+    addCoordinate(messages, "height_msl", GDAL_DIM_TYPE_VERTICAL,
+                  heightsOf(emfield::HeightReference::mean_sea_level), "m",
+                  {{"standard_name", "altitude"},
+                   {"long_name", "height above mean sea level (EGM96)"},
+                   {"positive", "up"},
+                   {"axis", "Z"}});
+    std::vector<double> x, y;
+    for (int i = 0; i < grid.width; ++i) x.push_back(grid.left_m + (i + 0.5) * grid.cell_m);
+    for (int j = 0; j < grid.height; ++j) y.push_back(grid.top_m - (j + 0.5) * grid.cell_m);
+    addCoordinate(messages, "y", GDAL_DIM_TYPE_HORIZONTAL_Y, y, "m",
+                  {{"standard_name", "projection_y_coordinate"}, {"long_name", "northing"}, {"axis", "Y"}});
+    addCoordinate(messages, "x", GDAL_DIM_TYPE_HORIZONTAL_X, x, "m",
+                  {{"standard_name", "projection_x_coordinate"}, {"long_name", "easting"}, {"axis", "X"}});
+    // Single precision, for half the size: to 2 m. x and y are exact.
+    std::vector<float> latitudes, longitudes;
+    for (const emfield::Surface::Place& place : grid.places) {
+      latitudes.push_back(static_cast<float>(place.latitude_deg));
+      longitudes.push_back(std::isnan(place.latitude_deg) ? NAN : static_cast<float>(place.longitude_deg));
+    }
+    addPlaces(messages, "lat", "latitude", "degrees_north", latitudes);
+    addPlaces(messages, "lon", "longitude", "degrees_east", longitudes);
+  }
+
+  void addPlaces(const scenario::GdalMessages& messages, const char* name, const char* standard_name,
+                 const char* unit, const std::vector<float>& values) {
+    const char* const options[] = {"COMPRESS=DEFLATE", nullptr};
+    const Array array = root_->CreateMDArray(name, {dimensions_["y"], dimensions_["x"]},
+                                             GDALExtendedDataType::Create(GDT_Float32), options);
+    check(messages, array != nullptr);
+    array->SetNoDataValue(static_cast<double>(NAN));
+    setText(*array, "standard_name", standard_name);
+    setText(*array, "long_name", standard_name + std::string(" of the pixel's centre"));
+    array->SetUnit(unit);
+    const GUInt64 start[] = {0, 0};
+    const std::size_t count[] = {static_cast<std::size_t>(study_.grid->height),
+                                 static_cast<std::size_t>(study_.grid->width)};
+    check(messages, array->Write(start, count, nullptr, nullptr, GDALExtendedDataType::Create(GDT_Float32),
+                                 values.data()));
+  }
+
+  /// The variable of a map, made for the first map of its product and reference of height.
+  Array variableOf(const scenario::GdalMessages& messages, const Map& map) {
+    std::string name = map.name, z;
+    if (map.height) {
+      const bool is_above_ground = map.height->reference == emfield::HeightReference::ground;
+      z = is_above_ground ? "height_agl" : "height_msl";
+      name += is_above_ground ? "_agl" : "_msl";
+    }
+    Array& variable = variables_[name];
+    if (variable != nullptr) return variable;
+    std::vector<Dimension> dimensions;
+    if (map.time_s) dimensions.push_back(dimensions_.at("time"));
+    if (map.height) dimensions.push_back(dimensions_.at(z));
+    dimensions.push_back(dimensions_.at("y"));
+    dimensions.push_back(dimensions_.at("x"));
+    const bool is_whole = isWhole(map.kind);
+    const char* const options[] = {"COMPRESS=DEFLATE", nullptr};
+    variable = root_->CreateMDArray(
+        name, dimensions, GDALExtendedDataType::Create(is_whole ? GDT_Int16 : GDT_Float32), options);
+    check(messages, variable != nullptr);
+    const std::string description = map.description.substr(0, map.description.find(" at "));
+    setText(*variable, "long_name", description + (map.unit.empty() ? "" : " (" + map.unit + ")"));
+    setText(*variable, "coordinates", "lat lon");
+    if (is_whole) {
+      variable->SetRawNoDataValue(&kNoNumber);
+      addFlags(*variable, map);
+    } else {
+      variable->SetNoDataValue(static_cast<double>(NAN));
+    }
+    if (!is_whole || map.kind == MapKind::count) variable->SetUnit(udunitOf(map.unit));
+    const OGRSpatialReference reference = referenceOf(*study_.grid);
+    check(messages, variable->SetSpatialRef(&reference));
+    return variable;
+  }
+
+  /// What the numbers of classes or categories mean.
+  static void addFlags(GDALMDArray& variable, const Map& map) {
+    if (map.kind == MapKind::count) return;
+    std::vector<std::int16_t> values;
+    std::string words;
+    const auto addFlag = [&](long long value, const std::string& label) {
+      values.push_back(static_cast<std::int16_t>(value));
+      words += (words.empty() ? "" : " ") + flagWord(label);
+    };
+    if (map.kind == MapKind::category) addFlag(-1, "none");
+    for (std::size_t n = 0; n < map.labels.size(); ++n) addFlag(static_cast<long long>(n), map.labels[n]);
+    const auto attribute =
+        variable.CreateAttribute("flag_values", {values.size()}, GDALExtendedDataType::Create(GDT_Int16));
+    if (attribute != nullptr) attribute->Write(values.data(), values.size() * sizeof(std::int16_t));
+    setText(variable, "flag_meanings", words);
+  }
+
+  UnfinishedFile file_;
+  const MapStudy& study_;
+  Dataset dataset_;
+  std::shared_ptr<GDALGroup> root_;
+  std::map<std::string, Dimension> dimensions_;
+  std::map<std::string, Array> variables_;
+};
+
+}  // namespace
+
+std::unique_ptr<MapCollection> makeNetCdf(const std::filesystem::path& file, const MapStudy& study) {
+  return std::make_unique<NetCdf>(file, study);
+}
+
+}  // namespace emscape::study

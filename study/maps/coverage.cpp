@@ -1,0 +1,204 @@
+#include "emscape/study/coverage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "emscape/base/error.h"
+#include "emscape/scenario/snapshot.h"
+#include "study/maps/least_heights.h"
+#include "study/maps/surface_maps.h"
+
+namespace emscape::study {
+namespace {
+
+using emfield::FieldSolver;
+using emfield::HeightReference;
+using scenario::Quantity;
+
+bool hasChannelPerEmitter(const scenario::Scenario& scenario, const std::string& quantity) {
+  const std::vector<emfield::Channel> channels =
+      emfield::channelsOf(scenario, {quantity}, scenario::CombineMode::per_emitter);
+  return std::all_of(channels.begin(), channels.end(),
+                     [](const emfield::Channel& channel) { return channel.emitters.size() == 1; });
+}
+
+/// The scenario with the output of a map.
+std::shared_ptr<const scenario::Scenario> atTargets(const scenario::Scenario& scenario, Quantity quantity) {
+  auto at_targets = std::make_shared<scenario::Scenario>(scenario);
+  at_targets->output.quantities = {scenario::info(quantity).name};
+  at_targets->output.radar_look = scenario::RadarLook::target;
+  if (at_targets->output.combine != scenario::CombineMode::max) {
+    at_targets->output.combine = scenario::CombineMode::sum;
+  }
+  return at_targets;
+}
+
+emfield::FieldOptions withoutQuantities(emfield::FieldOptions options) {
+  options.quantities.clear();
+  return options;
+}
+
+}  // namespace
+
+std::optional<double> defaultThreshold(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::detection_probability:
+      return 0.5;
+    case Quantity::burn_through_margin_db:
+    case Quantity::intercept_margin_db:
+      return 0.0;
+    case Quantity::emitter_count:
+      return 1.0;
+    default:
+      return std::nullopt;
+  }
+}
+
+void checkRequest(const CoverageRequest& request, const scenario::Scenario& scenario) {
+  const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
+  if (request.heights.empty()) throw Error(ErrorCode::usage, "a map needs a height");
+  if (request.times_s.empty()) throw Error(ErrorCode::usage, "a map needs a time");
+  const bool in_decibels = std::string(quantity.unit).rfind("dB", 0) == 0;
+  for (const Product product : request.products) {
+    const auto refuse = [&](const std::string& why) {
+      throw Error(ErrorCode::usage, fmt::format("product '{}' {}", info(product).name, why));
+    };
+    if (product == Product::margin && !in_decibels) {
+      refuse(fmt::format("is a difference of decibels; quantity '{}' has none", quantity.name));
+    }
+    if (isOfJamming(product) && !scenario::needsJammer(request.quantity)) {
+      refuse(fmt::format("asks for a quantity that jamming changes; '{}' is none", quantity.name));
+    }
+    if (product != Product::value && quantity.categorical) {
+      refuse(fmt::format("asks for a level; quantity '{}' is an index", quantity.name));
+    }
+    if (isPerEmitter(product) && !hasChannelPerEmitter(scenario, quantity.name)) {
+      refuse(fmt::format("asks what each emitter does by itself; quantity '{}' has one value for all",
+                         quantity.name));
+    }
+    if (info(product).over_time && request.times_s.size() < 2) {
+      refuse("is over time: give two times or more");
+    }
+  }
+}
+
+struct CoverageSolver::Impl {
+  /// The field of one reference of height, with the maps of each request.
+  struct OfReference {
+    SurfaceField field;
+    std::vector<SurfaceMaps> maps;
+    std::vector<std::vector<std::string>> warnings;  ///< of each scenario after its last time
+  };
+
+  const MapGrid& grid;
+  const std::vector<CoverageRequest> requests;
+  emfield::FieldOptions options;
+  std::vector<OfReference> references;
+  std::vector<std::size_t> with_least;  ///< requests of least heights
+  std::optional<LeastHeights> least_heights;
+
+  /// @param of_maps  without quantities
+  Impl(const MapGrid& map_grid, std::vector<CoverageRequest> of_maps_requests,
+       const emfield::FieldOptions& of_maps)
+      : grid(map_grid), requests(std::move(of_maps_requests)), options(of_maps) {
+    for (const HeightReference reference : {HeightReference::ground, HeightReference::mean_sea_level}) {
+      SurfaceField field(grid, requests, reference, options);
+      if (!field.hasHeights()) continue;
+      references.push_back({std::move(field), {}, {}});
+      OfReference& of_reference = references.back();
+      for (const CoverageRequest& request : requests)
+        of_reference.maps.emplace_back(grid, request, reference, of_reference.field);
+    }
+    std::vector<double> thresholds;
+    for (std::size_t r = 0; r < requests.size(); ++r) {
+      const std::vector<Product>& products = requests[r].products;
+      if (std::count(products.begin(), products.end(), Product::min_height) == 0) continue;
+      with_least.push_back(r);
+      thresholds.push_back(requests[r].threshold);
+    }
+    if (!thresholds.empty()) least_heights.emplace(grid, std::move(thresholds), options);
+  }
+};
+
+CoverageSolver::CoverageSolver(const MapGrid& grid, std::vector<CoverageRequest> requests,
+                               const emfield::FieldOptions& options)
+    : impl_(new Impl(grid, std::move(requests), withoutQuantities(options))) {}
+
+CoverageSolver::~CoverageSolver() = default;
+
+std::vector<std::vector<std::string>> CoverageSolver::compute(
+    const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
+    const scenario::TerrainPtr& terrain, const ScenarioMapSink& take, const ProgressSink& progress) {
+  const std::vector<CoverageRequest>& requests = impl_->requests;
+  const std::vector<double>& times_s = requests.front().times_s;
+  std::vector<std::shared_ptr<const scenario::Scenario>> at_targets;
+  for (const auto& scenario : scenarios) {
+    for (const CoverageRequest& request : requests) checkRequest(request, *scenario);
+    at_targets.push_back(atTargets(*scenario, requests.front().quantity));
+  }
+  const std::size_t fields = impl_->references.size() + (impl_->least_heights ? 1 : 0);
+  const auto steps = static_cast<double>(times_s.size() * scenarios.size() * fields);
+  double done = 0;
+  const auto step = [&] {
+    if (progress) progress("maps", done++ / steps);
+  };
+  for (Impl::OfReference& of : impl_->references) {
+    of.warnings.assign(scenarios.size(), {});
+    for (SurfaceMaps& maps : of.maps) maps.begin(scenarios.size());
+  }
+  for (const double time_s : times_s) {
+    for (std::size_t s = 0; s < scenarios.size(); ++s) {
+      const auto takeOf = [&](std::size_t r) {
+        return [&take, s, r](CoverageMap map) { take(s, r, std::move(map)); };
+      };
+      for (Impl::OfReference& of : impl_->references) {
+        step();
+        const SurfaceValues values = of.field.at(at_targets[s], terrain, time_s);
+        of.warnings[s] = of.field.warnings();
+        for (std::size_t r = 0; r < requests.size(); ++r)
+          of.maps[r].addTime(s, at_targets[s], values, time_s, takeOf(r));
+      }
+      if (!impl_->least_heights) continue;
+      step();
+      std::vector<std::vector<float>> least_m = impl_->least_heights->compute(at_targets[s], terrain, time_s);
+      for (std::size_t n = 0; n < least_m.size(); ++n) {
+        const std::size_t r = impl_->with_least[n];
+        CoverageMap map = emptyMap(*at_targets[s], requests[r], Product::min_height, std::nullopt);
+        map.time_s = time_s;
+        setValues(map, impl_->grid, std::move(least_m[n]));
+        takeOf(r)(std::move(map));
+      }
+    }
+  }
+  std::vector<std::vector<std::string>> warnings(scenarios.size());
+  for (std::size_t s = 0; s < scenarios.size(); ++s) {
+    for (Impl::OfReference& of : impl_->references) {
+      for (std::size_t r = 0; r < requests.size(); ++r)
+        of.maps[r].finish(s, [&](CoverageMap map) { take(s, r, std::move(map)); });
+      for (const std::string& warning : of.warnings[s]) {
+        if (std::find(warnings[s].begin(), warnings[s].end(), warning) == warnings[s].end()) {
+          warnings[s].push_back(warning);
+        }
+      }
+    }
+  }
+  if (progress) progress("maps", 1);
+  return warnings;
+}
+
+std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::Scenario>& scenario,
+                                         const scenario::TerrainPtr& terrain, const MapGrid& grid,
+                                         const CoverageRequest& request, const emfield::FieldOptions& options,
+                                         const MapSink& take, const ProgressSink& progress) {
+  CoverageSolver solver(grid, {request}, options);
+  return solver
+      .compute(
+          {scenario}, terrain, [&](std::size_t, std::size_t, CoverageMap map) { take(std::move(map)); },
+          progress)
+      .front();
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,104 @@
+#include "study/maps/gdal_support.h"
+
+#include <fmt/format.h>
+
+#include <mutex>
+
+#include "base/whole_file.h"
+#include "emscape/base/error.h"
+
+namespace emscape::study {
+namespace {
+
+/// What a format of GDAL's cannot hold is in a file beside it.
+constexpr const char* kAuxiliary = ".aux.xml";
+
+}  // namespace
+
+GDALDriver* driverOf(const char* name) {
+  static std::once_flag once;
+  std::call_once(once, [] { GDALAllRegister(); });
+  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(name);
+  if (driver == nullptr) throw Error(ErrorCode::other, fmt::format("GDAL has no driver '{}'", name));
+  return driver;
+}
+
+Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file) {
+  static const char* const kDrivers[] = {"GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf", "KML", "LIBKML",
+                                         "GML",  "CSV",     nullptr};
+  std::error_code failure;
+  const std::filesystem::file_status status = std::filesystem::status(file, failure);
+  if (!std::filesystem::is_regular_file(status)) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0},
+                std::filesystem::exists(status) ? "not a regular file" : "no such file");
+  }
+  GDALAllRegister();
+  Dataset dataset(
+      GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, nullptr, nullptr));
+  if (dataset == nullptr) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0},
+                messages.explain("not a file of points or polygons that can be read"));
+  }
+  return dataset;
+}
+
+void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
+  throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
+}
+
+UnfinishedFile::UnfinishedFile(const std::filesystem::path& file)
+    : file_(file), temporary_(temporaryFor(file)) {
+  remove();
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  remove();
+}
+
+void UnfinishedFile::publish() {
+  const std::string auxiliary = temporary_.string() + kAuxiliary;
+  if (std::filesystem::exists(auxiliary)) emscape::publish(auxiliary, file_.string() + kAuxiliary);
+  emscape::publish(temporary_, file_);
+}
+
+void UnfinishedFile::remove() const {
+  std::error_code ignored;
+  for (const char* ending : {"", "-journal", "-wal", "-shm", kAuxiliary}) {
+    std::filesystem::remove(temporary_.string() + ending, ignored);
+  }
+}
+
+Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {
+  const scenario::GdalMessages messages;
+  Dataset dataset(driverOf("MEM")->Create("", grid.width, grid.height, 1, type, nullptr));
+  if (dataset == nullptr) failWriting(messages, file);
+  double transform[6] = {grid.left_m, grid.cell_m, 0, grid.top_m, 0, -grid.cell_m};
+  dataset->SetGeoTransform(transform);
+  dataset->SetProjection(grid.wkt.c_str());
+  return dataset;
+}
+
+std::string wkt2Of(const OGRSpatialReference& reference) {
+  static const char* const kOptions[] = {"FORMAT=WKT2_2019", nullptr};
+  char* text = nullptr;
+  reference.exportToWkt(&text, kOptions);
+  std::string wkt = text == nullptr ? "" : text;
+  CPLFree(text);
+  return wkt;
+}
+
+OGRSpatialReference referenceOf(const MapGrid& grid) {
+  OGRSpatialReference reference;
+  reference.importFromWkt(grid.wkt.c_str());
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+OGRSpatialReference wgs84Reference() {
+  OGRSpatialReference reference;
+  reference.importFromEPSG(4326);
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+}  // namespace emscape::study

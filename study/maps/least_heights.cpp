@@ -1,0 +1,115 @@
+#include "study/maps/least_heights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/parallel.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/volume/dense_volume.h"
+
+namespace emscape::study {
+namespace {
+
+constexpr int kFirstSteps = 64, kLaterSteps = 16;
+/// Voxels at a time, which bounds the memory.
+constexpr int kMostVoxels = 1 << 25;
+
+/// Some rows of a map.
+class Strip {
+ public:
+  Strip(const MapGrid& grid, int first_row, int rows) {
+    surface_.width = grid.width;
+    surface_.height = rows;
+    const auto begin = grid.places.begin() + static_cast<std::ptrdiff_t>(first_row) * grid.width;
+    surface_.places.assign(begin, begin + static_cast<std::ptrdiff_t>(rows) * grid.width);
+    surface_.offsets_m.assign(surface_.places.size(), 0.0f);
+    found_m_.assign(surface_.places.size(), NAN);
+  }
+
+  bool hasPlaces() const {
+    return std::any_of(surface_.places.begin(), surface_.places.end(),
+                       [](const auto& place) { return !std::isnan(place.latitude_deg); });
+  }
+
+  /// The places with heights of so many steps above their offsets.
+  const emfield::Surface& surfaceOf(double step_m, int steps) {
+    surface_.heights_m.clear();
+    for (int k = 0; k <= steps; ++k) surface_.heights_m.push_back(k * step_m);
+    return surface_;
+  }
+
+  /// Looks for the threshold above each place's offset, and sets the offset to the step below it. Places
+  /// without one, and those that have it at once, are left out from now on.
+  /// @param volume  over surfaceOf(step_m, steps)
+  void search(double step_m, int steps, double threshold, const volume::DenseVolume& volume) {
+    const std::size_t places = surface_.places.size();
+    parallelFor(static_cast<int>(places), 4096, [&](int begin, int end) {
+      for (int p = begin; p < end; ++p) {
+        if (std::isnan(surface_.places[p].latitude_deg)) continue;
+        int k = volume.first_valid_k.empty() ? 0 : volume.first_valid_k[p];
+        while (k <= steps && !(static_cast<double>(volume.values[k * places + p]) >= threshold)) ++k;
+        const bool is_found = k <= steps;
+        if (is_found) {
+          found_m_[p] = surface_.offsets_m[p] + static_cast<float>(k * step_m);
+          surface_.offsets_m[p] += static_cast<float>((k - 1) * step_m);
+        }
+        if (!is_found || k == 0) surface_.places[p].latitude_deg = NAN;
+      }
+    });
+  }
+
+  const std::vector<float>& found_m() const { return found_m_; }
+
+ private:
+  emfield::Surface surface_;
+  std::vector<float> found_m_;
+};
+
+}  // namespace
+
+LeastHeights::LeastHeights(const MapGrid& grid, std::vector<double> thresholds,
+                           const emfield::FieldOptions& options)
+    : grid_(grid), thresholds_(std::move(thresholds)), options_(options) {
+  options_.allow_missing_terrain = true;
+}
+
+std::vector<std::vector<float>> LeastHeights::compute(
+    const std::shared_ptr<const scenario::Scenario>& scenario, const scenario::TerrainPtr& terrain,
+    double time_s) {
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), time_s);
+  const int rows_at_once = std::max(1, kMostVoxels / (grid_.width * (kFirstSteps + 1)));
+  const bool is_kept = rows_at_once >= grid_.height;
+  const auto solve = [&](const emfield::Surface& surface, std::optional<emfield::FieldSolver>& solver) {
+    if (!solver) {
+      emfield::FieldOptions on_surface = options_;
+      on_surface.surface = std::make_shared<const emfield::Surface>(surface);
+      solver.emplace(scenario, terrain, on_surface);
+    }
+    solver->update(snapshot, terrain);
+    return solver->volumes().front().host();
+  };
+  std::vector<std::vector<float>> heights_m(thresholds_.size());
+  for (int row = 0; row < grid_.height; row += rows_at_once) {
+    Strip all(grid_, row, std::min(rows_at_once, grid_.height - row));
+    std::shared_ptr<const volume::DenseVolume> first;
+    constexpr double kFirstStep_m = kHighestSearched_m / kFirstSteps;
+    if (all.hasPlaces()) {
+      std::optional<emfield::FieldSolver> own;
+      first = solve(all.surfaceOf(kFirstStep_m, kFirstSteps), is_kept ? first_steps_ : own);
+    }
+    for (std::size_t t = 0; t < thresholds_.size(); ++t) {
+      Strip strip = all;
+      if (first) strip.search(kFirstStep_m, kFirstSteps, thresholds_[t], *first);
+      for (double step_m = kFirstStep_m; strip.hasPlaces() && step_m > kLeastHeightAccuracy_m;) {
+        step_m /= kLaterSteps;
+        std::optional<emfield::FieldSolver> own;
+        const auto volume = solve(strip.surfaceOf(step_m, kLaterSteps), own);
+        strip.search(step_m, kLaterSteps, thresholds_[t], *volume);
+      }
+      heights_m[t].insert(heights_m[t].end(), strip.found_m().begin(), strip.found_m().end());
+    }
+  }
+  return heights_m;
+}
+
+}  // namespace emscape::study

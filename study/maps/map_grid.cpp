@@ -1,0 +1,382 @@
+#include "emscape/study/map_grid.h"
+
+#include <fmt/format.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "base/fast_geodesy.h"
+#include "base/simd.h"
+#include "emscape/base/error.h"
+#include "emscape/base/geo_frame.h"
+#include "emscape/base/parallel.h"
+#include "emscape/base/units.h"
+#include "study/maps/gdal_support.h"
+
+namespace emscape::study {
+namespace {
+
+constexpr double kMaxPixels = 1 << 26;
+/// Longest side of the patches on which places are interpolated: they are within a millimetre of the
+/// projection's to 80 degrees of latitude.
+constexpr double kPatch_m = 3000;
+constexpr int kMaxPatchPixels = 64;
+
+struct Middle {
+  double latitude_deg, longitude_deg;
+};
+
+Middle middleOf(const MapArea& area) {
+  if (area.circle) return {area.circle->latitude_deg, area.circle->longitude_deg};
+  return {(area.box.south_deg + area.box.north_deg) / 2,
+          wrapLongitude_deg((area.box.west_deg + area.box.east_deg) / 2)};
+}
+
+/// @param name  receives the name by which the reference is known
+OGRSpatialReference referenceOf(const std::string& crs, const Middle& middle, std::string& name) {
+  const scenario::GdalMessages messages;
+  OGRSpatialReference reference;
+  name = crs;
+  OGRErr found = OGRERR_FAILURE;
+  if (crs == "local") {
+    const std::string text =
+        fmt::format("+proj=aeqd +lat_0={:.9f} +lon_0={:.9f} +datum=WGS84 +units=m +no_defs",
+                    middle.latitude_deg, middle.longitude_deg);
+    found = reference.importFromProj4(text.c_str());
+  } else {
+    int code = 0;
+    if (crs == "utm") {
+      const int zone = std::clamp(static_cast<int>(std::floor((middle.longitude_deg + 180) / 6)) + 1, 1, 60);
+      code = (middle.latitude_deg < 0 ? 32700 : 32600) + zone;
+      name = fmt::format("EPSG:{}", code);
+    } else if (crs.rfind("EPSG:", 0) == 0 && crs.find_first_not_of("0123456789", 5) == std::string::npos) {
+      code = std::atoi(crs.c_str() + 5);
+    }
+    if (code > 0) found = reference.importFromEPSG(code);
+  }
+  if (found != OGRERR_NONE) {
+    throw Error(ErrorCode::usage,
+                fmt::format("crs '{}': neither utm nor local nor a known EPSG:NUMBER", crs));
+  }
+  if (!reference.IsProjected() || std::abs(reference.GetLinearUnits() - 1) > 1e-9) {
+    throw Error(ErrorCode::usage,
+                fmt::format("crs '{}' is no projection in metres; pixels are squares of metres", crs));
+  }
+  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+/// Between longitude, latitude and a projection.
+class Projection {
+ public:
+  Projection(const OGRSpatialReference& from, const OGRSpatialReference& to)
+      : transform_(OGRCreateCoordinateTransformation(&from, &to)) {
+    if (transform_ == nullptr) throw Error(ErrorCode::other, "PROJ cannot make the map's projection");
+  }
+  /// @return false if a point has no image
+  bool operator()(std::vector<double>& x, std::vector<double>& y) const {
+    const scenario::GdalMessages messages;
+    std::vector<int> done(x.size());
+    transform_->Transform(static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (done[i] == 0 || !std::isfinite(x[i]) || !std::isfinite(y[i])) return false;
+    }
+    return true;
+  }
+
+ private:
+  struct Destroy {
+    void operator()(OGRCoordinateTransformation* transform) const {
+      OGRCoordinateTransformation::DestroyCT(transform);
+    }
+  };
+  std::unique_ptr<OGRCoordinateTransformation, Destroy> transform_;
+};
+
+/// Points along the border of a box, by longitude and latitude.
+void addBorder(const scenario::GeoBox& box, std::vector<double>& longitudes, std::vector<double>& latitudes) {
+  constexpr int kPerSide = 32;
+  for (int n = 0; n <= kPerSide; ++n) {
+    const double part = static_cast<double>(n) / kPerSide;
+    const double longitude = box.west_deg + part * (box.east_deg - box.west_deg);
+    const double latitude = box.south_deg + part * (box.north_deg - box.south_deg);
+    for (const double side : {box.south_deg, box.north_deg}) {
+      longitudes.push_back(longitude);
+      latitudes.push_back(side);
+    }
+    for (const double side : {box.west_deg, box.east_deg}) {
+      longitudes.push_back(side);
+      latitudes.push_back(latitude);
+    }
+  }
+}
+
+/// Square metres of the ellipsoid per square degree.
+double metres2PerDegree2(double latitude_deg) {
+  constexpr double kPerDegree2 = kPi / 180 * (kPi / 180);
+  constexpr double kA2 = kWgs84SemiMajor_m * kWgs84SemiMajor_m;
+  const double sine = std::sin(degToRad(latitude_deg)), cosine = std::cos(degToRad(latitude_deg));
+  const double root = 1 - kWgs84EccentricitySquared * sine * sine;
+  return kA2 * (1 - kWgs84EccentricitySquared) / (root * root) * cosine * kPerDegree2;
+}
+
+/// Longitudes and latitudes at the corners, the middles of the sides and the middles of square patches.
+struct Lattice {
+  int side = 2;  ///< pixels along a patch, even: every node is the centre of a pixel
+  int patches_x = 0, patches_y = 0;
+  std::vector<double> longitudes_deg, latitudes_deg;
+  std::vector<double> metres2_per_degree2;  ///< of the ellipsoid there
+
+  int nodesX() const { return 2 * patches_x + 1; }
+  /// First of a patch's nodes.
+  std::size_t node(int patch_x, int patch_y) const {
+    return static_cast<std::size_t>(2 * patch_y) * nodesX() + 2 * patch_x;
+  }
+};
+
+Lattice latticeOf(const Projection& toEarth, const MapGrid& grid) {
+  Lattice lattice;
+  lattice.side = 2 * static_cast<int>(std::clamp(kPatch_m / 2 / grid.cell_m, 1.0, kMaxPatchPixels / 2.0));
+  lattice.patches_x = (grid.width + lattice.side - 1) / lattice.side;
+  lattice.patches_y = (grid.height + lattice.side - 1) / lattice.side;
+  const int step = lattice.side / 2;
+  for (int j = 0; j <= 2 * lattice.patches_y; ++j) {
+    for (int i = 0; i <= 2 * lattice.patches_x; ++i) {
+      lattice.longitudes_deg.push_back(grid.left_m + (i * step + 0.5) * grid.cell_m);
+      lattice.latitudes_deg.push_back(grid.top_m - (j * step + 0.5) * grid.cell_m);
+    }
+  }
+  if (!toEarth(lattice.longitudes_deg, lattice.latitudes_deg)) {
+    throw Error(ErrorCode::usage, fmt::format("crs '{}' does not reach over the whole area", grid.crs));
+  }
+  for (const double latitude_deg : lattice.latitudes_deg) {
+    lattice.metres2_per_degree2.push_back(metres2PerDegree2(latitude_deg));
+  }
+  return lattice;
+}
+
+/// The parabola through three values at 0, 1/2 and 1.
+struct Parabola {
+  double c0 = 0, c1 = 0, c2 = 0;
+
+  static Parabola through(double begin, double middle, double end) {
+    return {begin, 4 * middle - 3 * begin - end, 2 * (begin + end) - 4 * middle};
+  }
+  double at(double x) const { return c0 + x * (c1 + x * c2); }
+  double slope(double x) const { return c1 + 2 * x * c2; }
+};
+
+/// The patch through 3 x 3 nodes of which each row and each column is a parabola.
+class Patch {
+ public:
+  /// @param turn  nodes are taken in the same turn of so much as the first; 0: as they are
+  Patch(const std::vector<double>& at, std::size_t node, int nodes_x, double turn) : origin_(at[node]) {
+    const auto fromOrigin = [&](int i, int j) {
+      const double difference = at[node + static_cast<std::size_t>(j) * nodes_x + i] - origin_;
+      return turn == 0 ? difference : std::remainder(difference, turn);
+    };
+    for (int i = 0; i < 3; ++i) {
+      columns_[i] = Parabola::through(fromOrigin(i, 0), fromOrigin(i, 1), fromOrigin(i, 2));
+    }
+  }
+
+  /// A row of the patch: values and their slopes to the south.
+  struct Row {
+    Parabola value, slope_south;
+  };
+  /// @param v  0..1 to the south
+  Row row(double v) const {
+    const auto across = [&](auto function) {
+      return Parabola::through((columns_[0].*function)(v), (columns_[1].*function)(v),
+                               (columns_[2].*function)(v));
+    };
+    Row row{across(&Parabola::at), across(&Parabola::slope)};
+    row.value.c0 += origin_;
+    return row;
+  }
+
+ private:
+  double origin_;
+  Parabola columns_[3];
+};
+
+/// Where the pixels of a patch are.
+enum class PatchPart { inside, outside, across };
+
+/// Whether places are in a map's area.
+class AreaTest {
+ public:
+  explicit AreaTest(const MapArea& area) : area_(area) {
+    if (area.circle) middle_ = fastGeodesy(area.circle->latitude_deg, area.circle->longitude_deg);
+  }
+  bool isInside(const emfield::Surface::Place& place) const {
+    constexpr double kMargin_deg = 1e-9;
+    if (area_.circle) return distance_m(place) <= area_.circle->radius_m;
+    const double east_deg = place.longitude_deg - area_.box.west_deg;
+    return place.latitude_deg >= area_.box.south_deg - kMargin_deg &&
+           place.latitude_deg <= area_.box.north_deg + kMargin_deg &&
+           east_deg - 360 * std::floor((east_deg + kMargin_deg) / 360) <=
+               area_.box.east_deg - area_.box.west_deg + kMargin_deg;
+  }
+  /// Of a patch.
+  /// @param radius_m  no place of it is farther from its middle
+  PatchPart partOf(const emfield::Surface::Place& middle, double radius_m) const {
+    if (!area_.circle) return PatchPart::across;
+    const double middle_m = distance_m(middle);
+    return middle_m + radius_m <= area_.circle->radius_m  ? PatchPart::inside
+           : middle_m - radius_m > area_.circle->radius_m ? PatchPart::outside
+                                                          : PatchPart::across;
+  }
+
+ private:
+  double distance_m(const emfield::Surface::Place& place) const {
+    return fastInverse(middle_, toEcef({place.latitude_deg, place.longitude_deg, 0})).distance_m;
+  }
+
+  const MapArea& area_;
+  FastGeodesy middle_{};
+};
+
+/// Farthest that a place of a patch is from its middle (m).
+double radiusOf(const Lattice& lattice, std::size_t node) {
+  const auto at = [&](int i, int j) {
+    const std::size_t n = node + static_cast<std::size_t>(j) * lattice.nodesX() + i;
+    return toEcef({lattice.latitudes_deg[n], lattice.longitudes_deg[n], 0});
+  };
+  constexpr double kMargin = 1.05;  // for bent sides
+  const Vec3d middle = at(1, 1);
+  double chord_m = 0;
+  for (const int i : {0, 2}) {
+    for (const int j : {0, 2}) chord_m = std::max(chord_m, length(at(i, j) - middle));
+  }
+  return kMargin * chord_m;
+}
+
+/// Sets the places and areas of a patch's row of pixels.
+/// @param per_degree2  m2 per square degree, over areas of the patch
+EMSCAPE_SIMD_CLONES void fillRow(const Patch::Row& latitude, const Patch::Row& longitude,
+                                 const Parabola& per_degree2, double step, int pixels,
+                                 emfield::Surface::Place* places, float* areas_m2) {
+  int beyond = 0;
+  for (int i = 0; i < pixels; ++i) {
+    const double u = i * step;
+    const double latitude_deg = latitude.value.at(u), longitude_deg = longitude.value.at(u);
+    const double degrees2 = longitude.value.slope(u) * latitude.slope_south.at(u) -
+                            longitude.slope_south.at(u) * latitude.value.slope(u);
+    places[i].latitude_deg = latitude_deg;
+    places[i].longitude_deg = longitude_deg;
+    areas_m2[i] = static_cast<float>(std::fabs(degrees2) * per_degree2.at(u));
+    beyond |= std::fabs(longitude_deg) < 180 ? 0 : 1;
+  }
+  if (beyond == 0) return;
+  for (int i = 0; i < pixels; ++i) places[i].longitude_deg = wrapLongitude_deg(places[i].longitude_deg);
+}
+
+/// Sets places and areas, on patches between the nodes of a lattice.
+void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
+  grid.places.resize(static_cast<std::size_t>(grid.width) * grid.height);
+  grid.areas_m2.resize(grid.places.size());
+  const AreaTest test(area);
+  const int side = lattice.side, nodes_x = lattice.nodesX();
+  const double step = 1.0 / side;
+  parallelFor(lattice.patches_y * lattice.patches_x, 1, [&](int begin, int end) {
+    for (int patch = begin; patch < end; ++patch) {
+      const int patch_x = patch % lattice.patches_x, patch_y = patch / lattice.patches_x;
+      const std::size_t node = lattice.node(patch_x, patch_y), middle = node + nodes_x + 1;
+      const Patch longitudes(lattice.longitudes_deg, node, nodes_x, 360);
+      const Patch latitudes(lattice.latitudes_deg, node, nodes_x, 0);
+      const Patch scales(lattice.metres2_per_degree2, node, nodes_x, 0);
+      const PatchPart part = test.partOf({lattice.latitudes_deg[middle], lattice.longitudes_deg[middle]},
+                                         radiusOf(lattice, node));
+      const int columns = std::min(side, grid.width - patch_x * side);
+      const int rows = std::min(side, grid.height - patch_y * side);
+      for (int j = 0; j < rows; ++j) {
+        const double v = j * step;
+        const std::size_t first = static_cast<std::size_t>(patch_y * side + j) * grid.width + patch_x * side;
+        emfield::Surface::Place* const places = grid.places.data() + first;
+        float* const areas_m2 = grid.areas_m2.data() + first;
+        Parabola per_degree2 = scales.row(v).value;
+        for (double* const c : {&per_degree2.c0, &per_degree2.c1, &per_degree2.c2}) *c *= step * step;
+        fillRow(latitudes.row(v), longitudes.row(v), per_degree2, step, columns, places, areas_m2);
+        if (part == PatchPart::inside) continue;
+        for (int i = 0; i < columns; ++i) {
+          if (part == PatchPart::across && test.isInside(places[i])) continue;
+          places[i].latitude_deg = NAN;
+          areas_m2[i] = 0;
+        }
+      }
+    }
+  });
+}
+
+}  // namespace
+
+long long MapGrid::pixelAt(double latitude_deg, double longitude_deg) const {
+  const OGRSpatialReference earth = wgs84Reference();
+  const OGRSpatialReference reference = study::referenceOf(*this);
+  std::vector<double> x{longitude_deg}, y{latitude_deg};
+  if (!Projection(earth, reference)(x, y)) return -1;
+  const double column = std::floor((x[0] - left_m) / cell_m), row = std::floor((top_m - y[0]) / cell_m);
+  if (!(column >= 0 && column < width && row >= 0 && row < height)) return -1;
+  return static_cast<long long>(row) * width + static_cast<long long>(column);
+}
+
+MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) {
+  if (!(cell_m > 0) || !std::isfinite(cell_m)) {
+    throw Error(ErrorCode::usage, fmt::format("cell {} m; a positive number of metres", cell_m));
+  }
+  MapGrid grid;
+  grid.cell_m = cell_m;
+  const OGRSpatialReference earth = wgs84Reference();
+  const OGRSpatialReference reference = referenceOf(crs, middleOf(area), grid.crs);
+  grid.wkt = wkt2Of(reference);
+  std::vector<double> x, y;
+  addBorder(area.box, x, y);
+  if (!Projection(earth, reference)(x, y)) {
+    throw Error(ErrorCode::usage, fmt::format("crs '{}' does not reach over the whole area", crs));
+  }
+  const auto [least_x, largest_x] = std::minmax_element(x.begin(), x.end());
+  const auto [least_y, largest_y] = std::minmax_element(y.begin(), y.end());
+  constexpr double kRounding = 1e-6;  // cells
+  const double first_column = std::floor(*least_x / cell_m + kRounding),
+               end_column = std::ceil(*largest_x / cell_m - kRounding);
+  const double first_row = std::floor(*least_y / cell_m + kRounding),
+               end_row = std::ceil(*largest_y / cell_m - kRounding);
+  const double count = (end_column - first_column) * (end_row - first_row);
+  if (!(count <= kMaxPixels)) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("a map of {:.0f} x {:.0f} pixels of {} m has more than {:.0f}: a larger cell or a "
+                    "smaller area",
+                    end_column - first_column, end_row - first_row, cell_m, kMaxPixels));
+  }
+  grid.width = static_cast<int>(end_column - first_column);
+  grid.height = static_cast<int>(end_row - first_row);
+  grid.left_m = first_column * cell_m;
+  grid.top_m = end_row * cell_m;
+  fillPlaces(latticeOf(Projection(reference, earth), grid), area, grid);
+  return grid;
+}
+
+MapGrid mapGridAt(const std::string& wkt, const std::string& crs, double cell_m, double left_m, double top_m,
+                  int width, int height) {
+  MapGrid grid;
+  grid.width = width;
+  grid.height = height;
+  grid.cell_m = cell_m;
+  grid.left_m = left_m;
+  grid.top_m = top_m;
+  grid.crs = crs;
+  grid.wkt = wkt;
+  if (!(static_cast<double>(width) * height <= kMaxPixels)) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("a map of {} x {} pixels has more than {:.0f}", width, height, kMaxPixels));
+  }
+  const MapArea everywhere{{-90, 90, -180, 180}, {}};
+  fillPlaces(latticeOf(Projection(study::referenceOf(grid), wgs84Reference()), grid), everywhere, grid);
+  return grid;
+}
+
+}  // namespace emscape::study

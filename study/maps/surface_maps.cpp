@@ -1,0 +1,258 @@
+#include "study/maps/surface_maps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/parallel.h"
+#include "emscape/scenario/snapshot.h"
+
+namespace emscape::study {
+namespace {
+
+using emfield::HeightReference;
+using scenario::Quantity;
+
+MapKind kindOf(const ProductInfo& product, Quantity quantity, const std::string& unit) {
+  if (product.product == Product::best) return MapKind::category;
+  if (!product.classes.empty()) return MapKind::classes;
+  if (product.categorical) return MapKind::count;
+  if (!unit.empty()) return MapKind::level;
+  const bool is_probability =
+      product.product == Product::value && quantity == Quantity::detection_probability;
+  return is_probability ? MapKind::probability : MapKind::part;
+}
+
+/// Colours of a product's classes: indices of render::categoryColor().
+std::vector<int> classColors(Product product) {
+  constexpr int kGreen = 2, kVermilion = 5;
+  if (product == Product::covered) return {kGreen, kGreen};
+  if (product == Product::jam_loss) return {kVermilion, kVermilion};
+  if (product == Product::burn_through) return {kVermilion, kVermilion, kGreen};
+  return {};
+}
+
+/// A value for each pixel.
+template <class Value>
+std::vector<float> valuesOfPixels(const MapGrid& grid, const Value& valueAtPixel) {
+  std::vector<float> values(grid.pixels());
+  parallelFor(static_cast<int>(grid.pixels()), 1 << 14, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) values[p] = valueAtPixel(static_cast<std::size_t>(p));
+  });
+  return values;
+}
+
+template <class Test>
+bool hasAny(const std::vector<Product>& products, const Test& test) {
+  return std::any_of(products.begin(), products.end(), test);
+}
+
+}  // namespace
+
+bool isPerEmitter(Product product) {
+  return product == Product::count || product == Product::redundancy || product == Product::best ||
+         product == Product::max_range;
+}
+
+bool isOfJamming(Product product) {
+  return product == Product::jam_loss || product == Product::burn_through;
+}
+
+CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& request, Product product,
+                     const std::optional<MapHeight>& height) {
+  const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
+  const ProductInfo& of_product = info(product);
+  CoverageMap map;
+  map.product = product;
+  map.name = of_product.name;
+  map.title = product == Product::value ? quantity.name : of_product.name;
+  map.height = height;
+  map.labels.assign(of_product.classes.begin(), of_product.classes.end());
+  map.colors = classColors(product);
+  map.area_class = of_product.area_class;
+  map.unit = of_product.unit != nullptr ? of_product.unit : quantity.unit;
+  map.kind = kindOf(of_product, request.quantity, map.unit);
+  if (product == Product::best) {
+    for (const scenario::Emitter& emitter : scenario.emitters) map.labels.push_back(emitter.name);
+  }
+  map.description = product == Product::value
+                        ? quantity.name
+                        : fmt::format("{} ({} >= {})", of_product.name, quantity.name, request.threshold);
+  if (height) map.description += " at " + describe(*height);
+  return map;
+}
+
+void setValues(CoverageMap& map, const MapGrid& grid, std::vector<float> values) {
+  map.values = std::move(values);
+  const MapSummary summary = summaryOf(grid, map);
+  map.known_area_m2 = summary.known_area_m2;
+  map.class_area_m2 = summary.class_area_m2;
+}
+
+SurfaceField::SurfaceField(const MapGrid& grid, const std::vector<CoverageRequest>& requests,
+                           HeightReference reference, const emfield::FieldOptions& options)
+    : options_(options) {
+  auto surface = std::make_shared<emfield::Surface>();
+  surface->width = grid.width;
+  surface->height = grid.height;
+  surface->places = grid.places;
+  surface->reference = reference;
+  for (const CoverageRequest& request : requests) {
+    for (const MapHeight& height : request.heights) {
+      if (height.reference == reference) surface->heights_m.push_back(height.metres);
+    }
+    options_.also_per_emitter = options_.also_per_emitter || hasAny(request.products, isPerEmitter);
+    options_.also_unjammed = options_.also_unjammed || hasAny(request.products, isOfJamming);
+  }
+  std::sort(surface->heights_m.begin(), surface->heights_m.end());
+  surface->heights_m.erase(std::unique(surface->heights_m.begin(), surface->heights_m.end()),
+                           surface->heights_m.end());
+  options_.surface = surface;
+  options_.allow_missing_terrain = true;  // masked, and reported by the maps' known area
+}
+
+std::size_t SurfaceField::layerOf(const MapHeight& height) const {
+  const std::vector<double>& heights_m = options_.surface->heights_m;
+  return static_cast<std::size_t>(std::lower_bound(heights_m.begin(), heights_m.end(), height.metres) -
+                                  heights_m.begin());
+}
+
+SurfaceValues SurfaceField::at(const std::shared_ptr<const scenario::Scenario>& scenario,
+                               const scenario::TerrainPtr& terrain, double time_s) {
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), time_s);
+  if (!solver_) solver_ = std::make_unique<emfield::FieldSolver>(scenario, terrain, options_);
+  solver_->update(snapshot, terrain);
+  const std::vector<volume::Volume>& volumes = solver_->volumes();
+  SurfaceValues values;
+  values.all = volumes.front().host();
+  if (options_.also_unjammed) values.unjammed = volumes.back().host();
+  const std::size_t end = volumes.size() - (options_.also_unjammed ? 1 : 0);
+  for (std::size_t c = 1; c < end; ++c) {
+    const int emitter = solver_->channels()[c].emitters.front();
+    const GeodeticPosition& position = snapshot.emitters[emitter].position;
+    values.each.push_back(
+        {emitter, volumes[c].host(), fastGeodesy(position.latitude_deg, position.longitude_deg)});
+  }
+  return values;
+}
+
+SurfaceMaps::SurfaceMaps(const MapGrid& grid, const CoverageRequest& request, HeightReference reference,
+                         const SurfaceField& field)
+    : request_(request), grid_(grid) {
+  for (const MapHeight& height : request.heights) {
+    if (height.reference == reference) layers_.push_back({height, field.layerOf(height)});
+  }
+  const auto isLower = [](const Layer& a, const Layer& b) { return a.k < b.k; };
+  const auto isSame = [](const Layer& a, const Layer& b) { return a.k == b.k; };
+  std::sort(layers_.begin(), layers_.end(), isLower);
+  layers_.erase(std::unique(layers_.begin(), layers_.end(), isSame), layers_.end());
+}
+
+void SurfaceMaps::begin(std::size_t scenarios) {
+  states_.assign(scenarios, {});
+  for (State& state : states_) {
+    state.figures.assign(layers_.size(), {isOverTime() ? grid_.pixels() : 0, request_.times_s});
+  }
+}
+
+void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenario::Scenario>& scenario,
+                          const SurfaceValues& values, double time_s, const MapSink& take) {
+  State& state = states_[index];
+  state.scenario = scenario;
+  state.last = isOverTime() ? values.all : nullptr;
+  for (std::size_t n = 0; n < layers_.size(); ++n) {
+    const std::size_t k = layers_[n].k;
+    if (isOverTime()) {
+      state.figures[n].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); });
+    }
+    for (const Product product : request_.products) {
+      if (info(product).over_time || !info(product).at_heights) continue;
+      CoverageMap map = emptyMap(*scenario, request_, product, layers_[n].height);
+      map.time_s = time_s;
+      setValues(map, grid_, valuesOf(product, values, k));
+      take(std::move(map));
+    }
+  }
+}
+
+void SurfaceMaps::finish(std::size_t index, const MapSink& take) {
+  const State& state = states_[index];
+  for (std::size_t n = 0; n < layers_.size(); ++n) {
+    for (const Product product : request_.products) {
+      if (!info(product).over_time) continue;
+      CoverageMap map = emptyMap(*state.scenario, request_, product, layers_[n].height);
+      setValues(map, grid_, valuesOfPixels(grid_, [&](std::size_t p) {
+                  return std::isnan(valueAt(*state.last, layers_[n].k, p))
+                             ? NAN
+                             : state.figures[n].figure(product, p);
+                }));
+      take(std::move(map));
+    }
+  }
+}
+
+std::vector<float> SurfaceMaps::valuesOf(Product product, const SurfaceValues& values, std::size_t k) const {
+  /// @param ofKnown(value, p)  of a pixel with a value
+  const auto from = [&](const auto& ofKnown) {
+    return valuesOfPixels(grid_, [&](std::size_t p) {
+      const float value = valueAt(*values.all, k, p);
+      return std::isnan(value) ? value : ofKnown(value, p);
+    });
+  };
+  const auto isCoveredUnjammed = [&](std::size_t p) { return isCovered(valueAt(*values.unjammed, k, p)); };
+  switch (product) {
+    case Product::covered:
+      return from([&](float value, std::size_t) { return isCovered(value) ? 1.0f : 0.0f; });
+    case Product::margin:
+      return from([&](float value, std::size_t) { return value - static_cast<float>(request_.threshold); });
+    case Product::jam_loss:
+      return from([&](float value, std::size_t p) {
+        return !isCovered(value) && isCoveredUnjammed(p) ? 1.0f : 0.0f;
+      });
+    case Product::burn_through:
+      return from([&](float value, std::size_t p) {
+        return isCovered(value) ? 2.0f : isCoveredUnjammed(p) ? 1.0f : 0.0f;
+      });
+    case Product::count:
+    case Product::redundancy:
+    case Product::best:
+    case Product::max_range:
+      return from([&](float, std::size_t p) { return ofEmitters(product, values.each, k, p); });
+    default:
+      return from([](float value, std::size_t) { return value; });
+  }
+}
+
+float SurfaceMaps::ofEmitters(Product product, const std::vector<SurfaceValues::OfOne>& each, std::size_t k,
+                              std::size_t p) const {
+  int count = 0, best = -1;
+  float largest = 0;
+  double farthest_m = NAN;
+  for (const SurfaceValues::OfOne& one : each) {
+    const float value = valueAt(*one.values, k, p);
+    if (!isCovered(value)) continue;
+    if (count++ == 0 || value > largest) {
+      best = one.emitter;
+      largest = value;
+    }
+    if (product == Product::max_range) {
+      const auto [latitude_deg, longitude_deg] = grid_.places[p];
+      const double distance_m =
+          fastInverse(one.geodesy, surfacePoint(latitude_deg, longitude_deg).ecef_m).distance_m;
+      farthest_m = std::fmax(farthest_m, distance_m);
+    }
+  }
+  switch (product) {
+    case Product::count:
+      return static_cast<float>(count);
+    case Product::redundancy:
+      return static_cast<float>(std::max(count - 1, 0));
+    case Product::max_range:
+      return static_cast<float>(farthest_m);
+    default:
+      return static_cast<float>(best);
+  }
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,115 @@
+/// The maps of a scenario's products at the heights of one reference.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/fast_geodesy.h"
+#include "emscape/study/coverage.h"
+#include "emscape/volume/dense_volume.h"
+#include "study/maps/time_figures.h"
+
+namespace emscape::study {
+
+/// True for products of what each emitter does by itself.
+bool isPerEmitter(Product product);
+/// True for products of what jamming changes.
+bool isOfJamming(Product product);
+
+/// A map without values.
+/// @param height  none: for all heights
+CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& request, Product product,
+                     const std::optional<MapHeight>& height);
+/// Sets the values of a map, NaN where there is none, and its areas.
+void setValues(CoverageMap& map, const MapGrid& grid, std::vector<float> values);
+
+/// A quantity on the surfaces of one reference of height at a time.
+struct SurfaceValues {
+  struct OfOne {
+    int emitter;
+    std::shared_ptr<const volume::DenseVolume> values;
+    FastGeodesy geodesy;  ///< from its position
+  };
+  std::shared_ptr<const volume::DenseVolume> all;
+  std::vector<OfOne> each;                              ///< if a product asks for them
+  std::shared_ptr<const volume::DenseVolume> unjammed;  ///< if a product asks for it
+};
+
+/// The field of one reference of height, which is kept from time to time and from scenario to scenario.
+class SurfaceField {
+ public:
+  /// @param requests  of one quantity
+  SurfaceField(const MapGrid& grid, const std::vector<CoverageRequest>& requests,
+               emfield::HeightReference reference, const emfield::FieldOptions& options);
+
+  /// False: no request has a height of the reference.
+  bool hasHeights() const { return !options_.surface->heights_m.empty(); }
+  /// Index of a height in the values' layers.
+  std::size_t layerOf(const MapHeight& height) const;
+  SurfaceValues at(const std::shared_ptr<const scenario::Scenario>& scenario,
+                   const scenario::TerrainPtr& terrain, double time_s);
+  /// Of the last time.
+  std::vector<std::string> warnings() const { return solver_->warnings(); }
+
+ private:
+  emfield::FieldOptions options_;
+  /// Its channels: all emitters together; each alone, if a product asks for it; all without jamming, if a
+  /// product asks for it.
+  std::unique_ptr<emfield::FieldSolver> solver_;
+};
+
+/// The maps of a request at the heights of one reference.
+class SurfaceMaps {
+ public:
+  /// @param grid, request  must outlive the maps
+  SurfaceMaps(const MapGrid& grid, const CoverageRequest& request, emfield::HeightReference reference,
+              const SurfaceField& field);
+
+  /// Begins with a number of scenarios.
+  void begin(std::size_t scenarios);
+  /// The maps of a scenario, by its index, at the next time.
+  void addTime(std::size_t index, const std::shared_ptr<const scenario::Scenario>& scenario,
+               const SurfaceValues& values, double time_s, const MapSink& take);
+  /// The maps of a scenario over all times.
+  void finish(std::size_t index, const MapSink& take);
+
+ private:
+  /// A height, and its index in the layers of values.
+  struct Layer {
+    MapHeight height;
+    std::size_t k;
+  };
+  /// A scenario between its times.
+  struct State {
+    std::shared_ptr<const scenario::Scenario> scenario;
+    std::vector<TimeFigures> figures;  ///< one per layer
+    std::shared_ptr<const volume::DenseVolume> last;
+  };
+
+  bool isOverTime() const {
+    return std::any_of(request_.products.begin(), request_.products.end(),
+                       [](Product product) { return info(product).over_time; });
+  }
+  bool isCovered(float value) const { return static_cast<double>(value) >= request_.threshold; }
+
+  float valueAt(const volume::DenseVolume& volume, std::size_t k, std::size_t p) const {
+    const bool is_valid = volume.first_valid_k.empty() || k >= volume.first_valid_k[p];
+    return is_valid ? volume.values[k * grid_.pixels() + p] : NAN;
+  }
+
+  /// Of a layer.
+  std::vector<float> valuesOf(Product product, const SurfaceValues& values, std::size_t k) const;
+  float ofEmitters(Product product, const std::vector<SurfaceValues::OfOne>& each, std::size_t k,
+                   std::size_t p) const;
+
+  const CoverageRequest& request_;
+  const MapGrid& grid_;
+  std::vector<Layer> layers_;
+  std::vector<State> states_;  ///< one per scenario
+};
+
+}  // namespace emscape::study

@@ -1,0 +1,203 @@
+#include "emscape/study/coverage_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "base/json_reading.h"
+#include "base/whole_file.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/scenario_file.h"
+#include "study/maps/gdal_support.h"
+#include "study/maps/surface_maps.h"
+
+namespace emscape::study {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void fail(const fs::path& file, const std::string& why) {
+  throw Error(ErrorCode::bad_input, {file.string(), 0, 0}, why);
+}
+
+/// Calls a function that takes values out of a report; what is missing or of another type is named.
+template <class Read>
+void readFrom(const fs::path& file, const Read& read) {
+  readJson<Json>(readWholeText(file), file.string(), read, ": no report of emscape coverage");
+}
+
+/// The scenario of a folder, if it and its elevation files still have their content; else one with its name
+/// alone.
+void findInputs(const Json& record, CoverageFolder& folder) {
+  auto known = std::make_shared<scenario::Scenario>();
+  const Json& of = record.at("scenarios").at(0);
+  known->name = of.at("name");
+  known->file = of.at("file");
+  known->hash = of.at("hash");
+  folder.scenario = known;
+  std::vector<scenario::Edit> edits;
+  for (const std::string text : of.at("edits")) edits.push_back(scenario::parseEdit(text));
+  std::map<std::string, std::string> digests;
+  for (const Json& file : record.at("terrain")) digests[file.at("file")] = file.at("crc32");
+  try {
+    const auto scenario = scenario::loadScenario(known->file, edits);
+    if (scenario->hash != known->hash) return;
+    if (scenario->terrain) {
+      for (const std::string& file : scenario->terrain->files) {
+        const auto digest = digests.find(fs::path(file).filename().string());
+        if (digest == digests.end() || digest->second != fmt::format("{:08x}", digestOf(file).crc32)) return;
+      }
+    }
+    MapArea area;
+    area.box = {90, -90, 0, 0};
+    scenario::GeoBox& box = area.box;
+    const double middle_deg = folder.grid->places[folder.grid->pixels() / 2].longitude_deg;
+    double west_deg = 0, east_deg = 0;
+    for (const emfield::Surface::Place& place : folder.grid->places) {
+      const double from_middle_deg = std::remainder(place.longitude_deg - middle_deg, 360.0);
+      west_deg = std::min(west_deg, from_middle_deg);
+      east_deg = std::max(east_deg, from_middle_deg);
+      box.south_deg = std::min(box.south_deg, place.latitude_deg);
+      box.north_deg = std::max(box.north_deg, place.latitude_deg);
+    }
+    box.west_deg = middle_deg + west_deg;
+    box.east_deg = middle_deg + east_deg;
+    folder.terrain = loadTerrain(*scenario, area);
+    folder.scenario = scenario;
+    folder.has_inputs = true;
+  } catch (const Error&) {
+    return;  // the folder can be read without them
+  }
+}
+
+CoverageMap mapOf(const Json& record, const CoverageFolder& folder) {
+  CoverageRequest request;
+  request.quantity = folder.quantity;
+  request.threshold = folder.threshold;
+  std::optional<MapHeight> height;
+  for (const auto& [key, reference] : {std::pair{"height_agl_m", emfield::HeightReference::ground},
+                                       std::pair{"height_msl_m", emfield::HeightReference::mean_sea_level}}) {
+    if (record.contains(key)) height = MapHeight{reference, record.at(key)};
+  }
+  CoverageMap map = emptyMap(*folder.scenario, request, productNamed(record.at("product")), height);
+  if (record.contains("time_s")) map.time_s = record.at("time_s").get<double>();
+  map.unit = record.at("unit");
+  return map;
+}
+
+Dataset openGeoTiff(const scenario::GdalMessages& messages, const fs::path& file) {
+  static const char* const kGeoTiff[] = {"GTiff", nullptr};
+  driverOf("GTiff");
+  Dataset dataset(
+      GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kGeoTiff, nullptr, nullptr));
+  if (dataset == nullptr || dataset->GetRasterCount() != 1)
+    fail(file, messages.explain("cannot be read as a map"));
+  return dataset;
+}
+
+/// Corner and cell of a GeoTIFF whose rows run to the east.
+struct Pixels {
+  double left_m = 0, top_m = 0, cell_m = 0;
+  int width = 0, height = 0;
+
+  explicit Pixels(GDALDataset& dataset) : width(dataset.GetRasterXSize()), height(dataset.GetRasterYSize()) {
+    double transform[6] = {};
+    dataset.GetGeoTransform(transform);
+    left_m = transform[0];
+    cell_m = transform[1];
+    top_m = transform[3];
+  }
+  bool operator==(const MapGrid& grid) const {
+    return left_m == grid.left_m && top_m == grid.top_m && cell_m == grid.cell_m && width == grid.width &&
+           height == grid.height;
+  }
+};
+
+std::shared_ptr<const MapGrid> gridOf(const fs::path& file, const std::string& crs) {
+  const scenario::GdalMessages messages;
+  const Dataset dataset = openGeoTiff(messages, file);
+  const Pixels pixels(*dataset);
+  const OGRSpatialReference* const reference = dataset->GetSpatialRef();
+  if (!(pixels.cell_m > 0) || reference == nullptr) fail(file, "has no projection");
+  return std::make_shared<const MapGrid>(mapGridAt(wkt2Of(*reference), crs, pixels.cell_m, pixels.left_m,
+                                                   pixels.top_m, pixels.width, pixels.height));
+}
+
+}  // namespace
+
+CoverageFolder openCoverageFolder(const fs::path& path) {
+  CoverageFolder folder;
+  folder.path = path;
+  const fs::path report = path / "report.json", study = path / "study.json";
+  for (const fs::path& file : {report, study}) {
+    if (!fs::is_regular_file(file)) {
+      fail(file, "there is no such file: the folder is none of emscape coverage, or not complete");
+    }
+  }
+  readFrom(study, [&](const Json& record) {
+    const std::string command = record.at("command");
+    if (command != "coverage") {
+      fail(study, fmt::format("the folder is of emscape {}, not of emscape coverage", command));
+    }
+  });
+  readFrom(report, [&](const Json& json) {
+    folder.quantity = scenario::quantityFromName(json.at("quantity"));
+    folder.threshold = json.at("threshold");
+    std::string first;
+    for (const Json& map : json.at("maps")) {
+      std::string geotiff;
+      for (const std::string file : map.at("files")) {
+        if (fs::path(file).extension() == ".tif") geotiff = file;
+      }
+      if (first.empty()) first = geotiff;
+      folder.geotiffs.push_back(std::move(geotiff));
+    }
+    if (first.empty()) {
+      fail(report, "the folder has no GeoTIFFs; emscape coverage writes them with --format cog");
+    }
+    folder.grid = gridOf(path / first, json.at("crs"));
+  });
+  readFrom(study, [&](const Json& record) { findInputs(record, folder); });
+  readFrom(report, [&](const Json& json) {
+    for (const Json& map : json.at("maps")) folder.maps.push_back(mapOf(map, folder));
+  });
+  return folder;
+}
+
+CoverageMap readMap(const CoverageFolder& folder, std::size_t index) {
+  CoverageMap map = folder.maps[index];
+  if (folder.geotiffs[index].empty()) {
+    fail(folder.path / "report.json", fmt::format("has no GeoTIFF of {}", nameOf(map)));
+  }
+  const fs::path file = folder.path / folder.geotiffs[index];
+  const scenario::GdalMessages messages;
+  const Dataset dataset = openGeoTiff(messages, file);
+  const MapGrid& grid = *folder.grid;
+  if (!(Pixels(*dataset) == grid)) fail(file, "its pixels are not those of the folder's other maps");
+  GDALRasterBand* const band = dataset->GetRasterBand(1);
+  std::vector<float> values(grid.pixels());
+  if (band->RasterIO(GF_Read, 0, 0, grid.width, grid.height, values.data(), grid.width, grid.height,
+                     GDT_Float32, 0, 0, nullptr) != CE_None) {
+    fail(file, messages.explain("cannot be read"));
+  }
+  if (band->GetUnitType() != map.unit) {
+    fail(file, fmt::format("its unit is '{}', not '{}' as in report.json", band->GetUnitType(), map.unit));
+  }
+  const auto none = static_cast<float>(band->GetNoDataValue());
+  for (float& value : values) {
+    if (value == none) value = NAN;
+  }
+  setValues(map, grid, std::move(values));
+  return map;
+}
+
+std::string nameOf(const CoverageMap& map) {
+  return fmt::format("{}{}{}", map.name, map.height ? " at " + describe(*map.height) : "",
+                     map.time_s ? fmt::format(", t = {:g} s", *map.time_s) : "");
+}
+
+}  // namespace emscape::study

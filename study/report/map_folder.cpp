@@ -1,0 +1,235 @@
+#include "emscape/study/map_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/quantity_text.h"
+#include "base/whole_file.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/study/geotiff.h"
+#include "emscape/study/map_picture.h"
+#include "study/files/czml.h"
+#include "study/files/geopackage.h"
+#include "study/files/kmz.h"
+#include "study/files/map_collection.h"
+#include "study/files/map_metadata.h"
+#include "study/files/netcdf.h"
+#include "study/report/map_report.h"
+
+namespace emscape::study {
+namespace {
+
+/// Pictures in report.html; each takes some hundred kilobytes.
+constexpr std::size_t kMaxPictures = 24;
+
+struct Format {
+  MapFormat info;
+  MakeCollection make;  ///< null: a file of each map
+};
+const std::vector<Format>& formatTable() {
+  static const std::vector<Format> kTable{
+      {{"cog", "cloud-optimised GeoTIFF of each map: GIS programs, GDAL"}, nullptr},
+      {{"png", "picture of each map over the shaded ground, with legend and axes"}, nullptr},
+      {{"gpkg",
+        "GeoPackage of all maps as bands and contours, with emitters and tracks: QGIS, with its colours"},
+       makeGeoPackage},
+      {{"nc", "netCDF (CF-1.8) of all maps over time and height: xarray, Panoply, QGIS"}, makeNetCdf},
+      {{"kmz", "overlays of all maps over time, with emitters and tracks: Google Earth"}, makeKmz},
+      {{"czml",
+        "outlines of classes (covered, jam_loss, burn_through) over time, with emitters and tracks: Cesium"},
+       makeCzml},
+  };
+  return kTable;
+}
+
+/// Makes a folder and those above it. Those that were not there before are removed at the end of life if
+/// they are empty: after an error before the first file.
+class MadeFolder {
+ public:
+  explicit MadeFolder(const std::filesystem::path& folder) {
+    std::error_code failed;
+    for (std::filesystem::path at = folder; !at.empty() && !std::filesystem::exists(at, failed);
+         at = at.parent_path()) {
+      made_.push_back(at);
+    }
+    std::filesystem::create_directories(folder, failed);
+    if (failed) {
+      throw Error(ErrorCode::other,
+                  fmt::format("{}: the folder cannot be made ({})", folder.string(), failed.message()));
+    }
+  }
+  ~MadeFolder() {
+    std::error_code is_not_empty;
+    for (const std::filesystem::path& folder : made_) std::filesystem::remove(folder, is_not_empty);
+  }
+  MadeFolder(const MadeFolder&) = delete;
+  MadeFolder& operator=(const MadeFolder&) = delete;
+
+ private:
+  std::vector<std::filesystem::path> made_;  // the innermost first
+};
+
+}  // namespace
+
+const std::vector<MapFormat>& mapFormats() {
+  static const std::vector<MapFormat> kFormats = [] {
+    std::vector<MapFormat> formats;
+    for (const Format& format : formatTable()) formats.push_back(format.info);
+    return formats;
+  }();
+  return kFormats;
+}
+
+struct MapFolder::State {
+  struct Collection {
+    std::string file;  ///< relative to the folder
+    std::unique_ptr<MapCollection> content;
+  };
+  struct Picture {
+    std::string caption;
+    render::Image8 image;
+  };
+
+  std::filesystem::path folder;
+  MadeFolder maps_folder;
+  FolderLock lock;
+  MapStudy study;
+  bool has_cog = false, has_png = false;
+  std::vector<float> ground_msl_m;
+  std::vector<Collection> collections;
+  std::vector<MapRecord> records;
+  std::vector<Picture> pictures;
+  std::string report_json;
+
+  State(const std::filesystem::path& path, MapStudy of)
+      : folder(path), maps_folder(path / "maps"), lock(path, ".maps.lock"), study(std::move(of)) {
+    if (study.terrain != nullptr) ground_msl_m = groundOf(*study.grid, *study.terrain);
+  }
+
+  void addFormat(const std::string& name) {
+    const auto& table = formatTable();
+    const auto format =
+        std::find_if(table.begin(), table.end(), [&](const Format& row) { return name == row.info.name; });
+    if (format == table.end()) {
+      std::string known;
+      for (const Format& row : table) known += (known.empty() ? "" : ", ") + std::string(row.info.name);
+      throw Error(ErrorCode::usage, fmt::format("unknown format '{}'; one of {}", name, known));
+    }
+    has_cog = has_cog || name == "cog";
+    has_png = has_png || name == "png";
+    if (format->make == nullptr) return;
+    const std::string file = fmt::format("maps/{}.{}", study.command, name);
+    const bool is_there = std::any_of(collections.begin(), collections.end(),
+                                      [&](const Collection& other) { return other.file == file; });
+    if (!is_there) collections.push_back({file, format->make(folder / file, study)});
+  }
+
+  render::Image8 pictureOf(const Map& map) const {
+    const scenario::Scenario& scenario = *study.scenarios.front();
+    const double time_s = map.time_s.value_or(study.times_s.front());
+    MapPictureOptions options;
+    options.title = fmt::format("{}: {}", scenario.name, map.description);
+    options.subtitle = map.time_s
+                           ? fmt::format("t = {} s", time_s)
+                           : fmt::format("t = {} to {} s", study.times_s.front(), study.times_s.back());
+    options.markers = markersOf(scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), time_s));
+    options.ground_msl_m = ground_msl_m;
+    return drawMap(*study.grid, map, options);
+  }
+
+  void writeHtml(const std::vector<std::string>& files, const std::vector<std::string>& warnings,
+                 const AddSections& addSections) const {
+    const MapGrid& grid = *study.grid;
+    const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
+    HtmlReport report(study.title, fmt::format("{} x {} pixels of {} m in {}; {} >= {}", grid.width,
+                                               grid.height, grid.cell_m, grid.crs, quantity.name,
+                                               quantityText(study.threshold, quantity.unit)));
+    report.section("Areas and ranges");
+    report.table(tableOf(records));
+    if (!warnings.empty()) report.section("Warnings");
+    for (const std::string& warning : warnings) report.paragraph(warning);
+    if (addSections) addSections(report);
+    report.section("Maps");
+    for (const Picture& picture : pictures) report.picture(picture.image, picture.caption);
+    if (records.size() > pictures.size()) {
+      report.paragraph(fmt::format("The first {} of {} maps are shown.", pictures.size(), records.size()));
+    }
+    addInputs(report, study, records);
+    report.section("Files");
+    ReportTable table{{"file"}, {}, "Relative to this report's folder."};
+    for (const std::string& file : files) table.rows.push_back({file});
+    report.table(table);
+    report.write(folder / "report.html");
+  }
+};
+
+MapFolder::MapFolder(const std::filesystem::path& folder, MapStudy study,
+                     const std::vector<std::string>& formats)
+    : state_(std::make_unique<State>(folder, std::move(study))) {
+  for (const std::string& format : formats) state_->addFormat(format);
+}
+
+MapFolder::~MapFolder() = default;
+
+const MapRecord& MapFolder::add(const Map& map) {
+  State& state = *state_;
+  MapRecord record;
+  record.summary = summaryOf(*state.study.grid, map);
+  const std::string name = "maps/" + fileNameOf(map);
+  if (state.has_cog) {
+    record.files.push_back(name + ".tif");
+    writeGeoTiff(state.folder / record.files.back(), *state.study.grid, map, metadataOf(state.study, map));
+  }
+  const bool is_in_report = state.pictures.size() < kMaxPictures;
+  if (state.has_png || is_in_report) {
+    render::Image8 picture = state.pictureOf(map);
+    if (state.has_png) {
+      record.files.push_back(name + ".png");
+      render::writePng(state.folder / record.files.back(), picture);
+    }
+    if (is_in_report) {
+      const std::string time = map.time_s ? fmt::format(", t = {} s", *map.time_s) : "";
+      state.pictures.push_back({map.description + time, std::move(picture)});
+    }
+  }
+  for (const State::Collection& collection : state.collections) collection.content->add(map);
+  record.map = map;
+  record.map.values = {};
+  state.records.push_back(std::move(record));
+  return state.records.back();
+}
+
+void MapFolder::finish(const std::vector<std::string>& warnings, const std::string& more,
+                       const AddSections& addSections) {
+  State& state = *state_;
+  std::vector<std::string> files, for_all;
+  for (const MapRecord& record : state.records) {
+    for (const std::string& file : record.files) {
+      files.push_back(file);
+      const std::string labels = file + ".aux.xml";
+      if (std::filesystem::exists(state.folder / labels)) files.push_back(labels);
+    }
+  }
+  for (const State::Collection& collection : state.collections) {
+    collection.content->finish();
+    files.push_back(collection.file);
+    for_all.push_back(collection.file);
+  }
+  state.writeHtml(files, warnings, addSections);
+  state.report_json = reportJsonOf(state.study, state.records, for_all, warnings, more);
+  const std::string inputs = studyJsonOf(state.study, state.folder, files);
+  writeWhole({{state.folder / "study.json", [&](std::ostream& out) { out << inputs; }},
+              {state.folder / "report.json", [&](std::ostream& out) { out << state.report_json; }}});
+}
+
+const std::vector<MapRecord>& MapFolder::records() const {
+  return state_->records;
+}
+
+const std::string& MapFolder::reportJson() const {
+  return state_->report_json;
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,274 @@
+#include "study/report/map_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/fast_geodesy.h"
+#include "base/quantity_text.h"
+#include "base/whole_file.h"
+#include "emscape/scenario/clock.h"
+#include "emscape/scenario/snapshot.h"
+#include "propagation/registry/model_info.h"
+
+namespace emscape::study {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+bool isAboveGround(const MapHeight& height) {
+  return height.reference == emfield::HeightReference::ground;
+}
+
+Json toJson(const MapRecord& record) {
+  const Map& map = record.map;
+  Json json{
+      {"product", map.name}, {"files", record.files}, {"description", map.description}, {"unit", map.unit}};
+  if (map.height) json[isAboveGround(*map.height) ? "height_agl_m" : "height_msl_m"] = map.height->metres;
+  if (map.time_s) json["time_s"] = *map.time_s;
+  json["min"] = number(record.summary.min);
+  json["max"] = number(record.summary.max);
+  json["known_area_km2"] = record.summary.known_area_m2 / 1e6;
+  if (map.area_class >= 0) json["area_km2"] = record.summary.class_area_m2 / 1e6;
+  const std::vector<double>& areas_m2 = record.summary.label_areas_m2;
+  for (std::size_t n = 0; n < areas_m2.size(); ++n) json["areas_km2"][map.labels[n]] = areas_m2[n] / 1e6;
+  return json;
+}
+
+std::vector<std::string> emitterNames(const scenario::Scenario& scenario) {
+  std::vector<std::string> names;
+  for (const scenario::Emitter& emitter : scenario.emitters) names.push_back(emitter.name);
+  return names;
+}
+
+std::vector<std::string> editsOf(const scenario::Scenario& scenario) {
+  std::vector<std::string> edits;
+  for (const scenario::Edit& edit : scenario.edits()) edits.push_back(scenario::toString(edit));
+  return edits;
+}
+
+/// Elevation files of all scenarios, each once.
+std::set<std::string> terrainFilesOf(const MapStudy& study) {
+  std::set<std::string> files;
+  for (const auto& scenario : study.scenarios) {
+    if (scenario->terrain) files.insert(scenario->terrain->files.begin(), scenario->terrain->files.end());
+  }
+  return files;
+}
+
+Json digestJson(const std::string& name, const std::filesystem::path& file) {
+  const FileDigest digest = digestOf(file);
+  return {{"file", name}, {"bytes", digest.bytes}, {"crc32", fmt::format("{:08x}", digest.crc32)}};
+}
+
+/// A word of a command line.
+std::string quoted(const std::string& word) {
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/") ==
+      std::string::npos) {
+    return word;
+  }
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? "'\\''" : std::string(1, c);
+  return text + "'";
+}
+
+/// The active emitter next to a place, of those that the quantity is of; -1: there is none.
+int nearestEmitter(const MapStudy& study, const scenario::Snapshot& snapshot,
+                   const emfield::Surface::Place& place) {
+  const FastGeodesy from = fastGeodesy(place.latitude_deg, place.longitude_deg);
+  int nearest = -1;
+  double nearest_m = INFINITY;
+  for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
+    const scenario::EmitterState& state = snapshot.emitters[e];
+    const bool is_radar = snapshot.scenario->emitters[e].kind == scenario::EmitterKind::radar;
+    if (!state.active || (scenario::needsRadar(study.quantity) && !is_radar)) continue;
+    const double distance_m =
+        fastInverse(from, toEcef({state.position.latitude_deg, state.position.longitude_deg, 0})).distance_m;
+    if (distance_m < nearest_m) {
+      nearest = static_cast<int>(e);
+      nearest_m = distance_m;
+    }
+  }
+  return nearest;
+}
+
+/// The command that explains the pixel with the largest value of the first map of levels at a height and a
+/// time, else of the first map; empty: there is no such map.
+std::string explainCommand(const MapStudy& study, const std::vector<MapRecord>& records) {
+  const MapRecord* shown = nullptr;
+  for (const MapRecord& record : records) {
+    if (!record.map.height || !record.map.time_s || record.summary.largest_pixel < 0) continue;
+    if (shown == nullptr || (isWhole(shown->map.kind) && !isWhole(record.map.kind))) shown = &record;
+  }
+  if (shown == nullptr) return "";
+  const Map& map = shown->map;
+  const scenario::Scenario& scenario = *study.scenarios.front();
+  const emfield::Surface::Place place = study.grid->places[shown->summary.largest_pixel];
+  const int emitter = nearestEmitter(
+      study, scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), *map.time_s), place);
+  if (emitter < 0) return "";
+  std::string command =
+      fmt::format("emscape profile {} --emitter {} --time {} --to {:.7f},{:.7f},{}{}", quoted(scenario.file),
+                  quoted(scenario.emitters[emitter].name), *map.time_s, place.latitude_deg,
+                  place.longitude_deg, map.height->metres, isAboveGround(*map.height) ? " --agl" : "");
+  for (const std::string& edit : editsOf(scenario)) command += " --set " + quoted(edit);
+  return command + " --set output.radar_look=target";
+}
+
+}  // namespace
+
+std::string reportJsonOf(const MapStudy& study, const std::vector<MapRecord>& records,
+                         const std::vector<std::string>& files, const std::vector<std::string>& warnings,
+                         const std::string& more) {
+  const scenario::Scenario& scenario = *study.scenarios.front();
+  const MapGrid& grid = *study.grid;
+  Json report{{"emscape", EMSCAPE_VERSION},
+              {"scenario", scenario.name},
+              {"file", scenario.file},
+              {"scenario_hash", scenario.hash},
+              {"quantity", scenario::info(study.quantity).name},
+              {"threshold", study.threshold},
+              {"radar_look", "target"},
+              {"crs", grid.crs},
+              {"cell_m", grid.cell_m},
+              {"pixels", {grid.width, grid.height}},
+              {"area_weights", "ellipsoid"},
+              {"emitters", emitterNames(scenario)}};
+  if (!more.empty()) report.update(Json::parse(more));
+  report["files"] = files;
+  report["maps"] = Json::array();
+  for (const MapRecord& record : records) report["maps"].push_back(toJson(record));
+  report["warnings"] = warnings;
+  return report.dump(2) + "\n";
+}
+
+std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& folder,
+                        const std::vector<std::string>& files) {
+  Json json{{"emscape", EMSCAPE_VERSION}, {"command", study.command}};
+  json["scenarios"] = Json::array();
+  for (const auto& scenario : study.scenarios) {
+    json["scenarios"].push_back({{"name", scenario->name},
+                                 {"file", scenario->file},
+                                 {"hash", scenario->hash},
+                                 {"edits", editsOf(*scenario)}});
+  }
+  json["terrain"] = Json::array();
+  for (const std::string& file : terrainFilesOf(study)) {
+    json["terrain"].push_back(digestJson(std::filesystem::path(file).filename().string(), file));
+  }
+  json["quantity"] = scenario::info(study.quantity).name;
+  json["threshold"] = study.threshold;
+  json["times_s"] = study.times_s;
+  json["crs"] = study.grid->crs;
+  json["cell_m"] = study.grid->cell_m;
+  json["models"] = Json::array();
+  for (const scenario::Emitter& emitter : study.scenarios.front()->emitters) {
+    const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+    json["models"].push_back({{"emitter", emitter.name},
+                              {"model", model.name},
+                              {"reference", model.reference},
+                              {"accuracy", model.accuracy}});
+  }
+  json["outputs"] = Json::array();
+  for (const std::string& file : files) json["outputs"].push_back(digestJson(file, folder / file));
+  return json.dump(2) + "\n";
+}
+
+ReportTable tableOf(const std::vector<MapRecord>& records) {
+  ReportTable table;
+  table.columns = {"product", "height", "time (s)", "area (km2)", "share (%)", "min", "max", "unit"};
+  table.caption =
+      "Areas are those of the ellipsoid; the share is of the area whose values are known. Min and max "
+      "are over the pixels.";
+  for (const MapRecord& record : records) {
+    const Map& map = record.map;
+    const MapSummary& summary = record.summary;
+    const auto addRow = [&](const std::string& name, std::optional<double> area_m2, bool has_range) {
+      const auto text = [&](double value) {
+        if (!has_range) return std::string();
+        return map.kind == MapKind::count && std::isfinite(value) ? fmt::format("{}", value)
+                                                                  : figureText(value, map.unit);
+      };
+      const double share = area_m2 && summary.known_area_m2 > 0 ? 100 * *area_m2 / summary.known_area_m2 : 0;
+      table.rows.push_back(
+          {name, map.height ? describe(*map.height) : "", map.time_s ? fmt::format("{}", *map.time_s) : "all",
+           area_m2 ? figureText(*area_m2 / 1e6, "km2") : "", area_m2 ? figureText(share, "percent") : "",
+           text(summary.min), text(summary.max), map.unit});
+    };
+    if (map.kind == MapKind::category) {
+      for (std::size_t n = 0; n < map.labels.size(); ++n)
+        if (summary.label_areas_m2[n] > 0)
+          addRow(map.name + ": " + map.labels[n], summary.label_areas_m2[n], false);
+      continue;
+    }
+    addRow(map.name, map.area_class >= 0 ? std::optional(summary.class_area_m2) : std::nullopt,
+           map.kind != MapKind::classes);
+  }
+  return table;
+}
+
+void addModels(HtmlReport& report, const scenario::Scenario& scenario) {
+  report.section("Models and their accuracy");
+  ReportTable models{{"emitter", "model", "reference", "accuracy (test)"}, {}, ""};
+  for (const scenario::Emitter& emitter : scenario.emitters) {
+    const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+    models.rows.push_back({emitter.name, model.name, model.reference, model.accuracy});
+  }
+  report.table(models);
+  report.paragraph(
+      "The accuracy is that of the implementation against its reference. It does not say how far the model "
+      "is "
+      "from a measurement: that depends on the terrain, the weather and the model's assumptions.");
+}
+
+void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapRecord>& records) {
+  report.section("Inputs");
+  std::vector<std::pair<std::string, std::string>> facts;
+  for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
+    const scenario::Scenario& scenario = *study.scenarios[s];
+    const std::string letter =
+        study.scenarios.size() > 1 ? std::string(" ") + static_cast<char>('A' + s) : "";
+    facts.emplace_back("scenario" + letter, fmt::format("{} ({})", scenario.name, scenario.file));
+    facts.emplace_back("hash of the scenario" + letter, scenario.hash);
+    for (const std::string& edit : editsOf(scenario)) facts.emplace_back("changed by --set" + letter, edit);
+  }
+  for (const std::string& file : terrainFilesOf(study)) {
+    facts.emplace_back("terrain", std::filesystem::path(file).filename().string());
+  }
+  const MapGrid& grid = *study.grid;
+  const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
+  facts.emplace_back("quantity", quantity.name);
+  facts.emplace_back("threshold", quantityText(study.threshold, quantity.unit));
+  facts.emplace_back("times", study.times_s.size() == 1
+                                  ? fmt::format("{} s", study.times_s.front())
+                                  : fmt::format("{}, from {} to {} s", study.times_s.size(),
+                                                study.times_s.front(), study.times_s.back()));
+  facts.emplace_back("epoch", study.scenarios.front()->clock.epoch_utc.empty()
+                                  ? "none; files that need a date take 1970-01-01T00:00:00Z as time 0"
+                                  : study.scenarios.front()->clock.epoch_utc);
+  facts.emplace_back("radars", "look at the target, wherever their scan points");
+  facts.emplace_back("projection", grid.crs);
+  facts.emplace_back("pixels", fmt::format("{} x {} of {} m", grid.width, grid.height, grid.cell_m));
+  facts.emplace_back("heights refer to", "mean sea level by EGM96 (EPSG:5773), or the ground");
+  facts.emplace_back("emscape", EMSCAPE_VERSION);
+  report.facts(facts);
+
+  addModels(report, *study.scenarios.front());
+
+  const std::string command = explainCommand(study, records);
+  if (command.empty()) return;
+  report.section("Why a pixel has its value");
+  report.paragraph(
+      "This command explains the path from the nearest emitter to the pixel with the largest value, term by "
+      "term. Other coordinates explain other pixels.");
+  report.facts({{"command", command}});
+}
+
+}  // namespace emscape::study

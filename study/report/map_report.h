@@ -1,0 +1,30 @@
+/// The reports of a folder of maps, as text.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "emscape/study/html_report.h"
+#include "emscape/study/map_folder.h"
+
+namespace emscape::study {
+
+/// report.json. @param more  as in MapFolder::finish()
+std::string reportJsonOf(const MapStudy& study, const std::vector<MapRecord>& records,
+                         const std::vector<std::string>& files, const std::vector<std::string>& warnings,
+                         const std::string& more);
+
+/// study.json: inputs with their hashes, models with their accuracy, outputs.
+/// @param folder  of the outputs  @param files  relative to it
+std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& folder,
+                        const std::vector<std::string>& files);
+
+/// The table of the maps, their areas and ranges.
+ReportTable tableOf(const std::vector<MapRecord>& records);
+/// A section on the models of a scenario's emitters and their accuracy.
+void addModels(HtmlReport& report, const scenario::Scenario& scenario);
+/// Sections on the inputs, the models and their accuracy, and the explanation of a pixel.
+void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapRecord>& records);
+
+}  // namespace emscape::study

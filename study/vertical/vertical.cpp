@@ -1,0 +1,300 @@
+#include "emscape/study/vertical.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emfield/station.h"
+#include "emscape/base/error.h"
+#include "emscape/base/units.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/volume/dense_volume.h"
+#include "study/files/contour_lines.h"
+
+namespace emscape::study {
+namespace {
+
+using emfield::HeightReference;
+using scenario::Quantity;
+
+/// Log-odds of a probability, which is nearly linear where the probability is a step.
+float logOdds(float probability) {
+  const float p = std::clamp(probability, 1e-9f, 1 - 1e-7f);
+  return std::isnan(probability) ? NAN : std::log(p / (1 - p));
+}
+
+void checkRange(double value, double lowest, double highest, const char* what) {
+  if (value >= lowest && value <= highest) return;
+  throw Error(ErrorCode::usage, fmt::format("{}: {} m; {} to {} m", what, value, lowest, highest));
+}
+
+/// @throws Error (usage)
+void checkRequest(const scenario::Scenario& scenario, const VerticalRequest& request) {
+  checkRange(request.range_m, 100, 2e6, "range");
+  checkRange(request.max_height_m, 10, 1e5, "height");
+  if (std::min(request.ranges, request.heights) < 2 || std::max(request.ranges, request.heights) > 10000) {
+    throw Error(ErrorCode::usage,
+                fmt::format("grid: {} x {}; 2 to 10000 points a side", request.ranges, request.heights));
+  }
+  const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
+  const scenario::Emitter& emitter = scenario.emitters[static_cast<std::size_t>(request.emitter)];
+  if (request.azimuths_deg.empty()) throw Error(ErrorCode::usage, "a vertical diagram needs an azimuth");
+  for (const double azimuth_deg : request.azimuths_deg) {
+    if (!(azimuth_deg >= -360 && azimuth_deg <= 360)) {
+      throw Error(ErrorCode::usage, fmt::format("azimuth: {} deg; -360 to 360 deg", azimuth_deg));
+    }
+  }
+  if (scenario::needsRadar(request.quantity) && emitter.kind != scenario::EmitterKind::radar) {
+    throw Error(ErrorCode::usage, fmt::format("quantity '{}' is one of radars; '{}' is a {}", quantity.name,
+                                              emitter.name, toString(emitter.kind)));
+  }
+  if (request.smooth_earth && request.axis == HeightReference::ground) {
+    throw Error(ErrorCode::usage, "a chart over a smooth earth has heights above mean sea level");
+  }
+}
+
+std::vector<double> evenly(double begin, double end, int count) {
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(begin + (end - begin) * i / (count - 1));
+  return values;
+}
+
+/// The field of the request over a scenario, by cut.
+struct Solved {
+  std::vector<std::vector<float>> values, ground_msl_m;
+  std::vector<std::string> warnings;
+};
+
+class Solver {
+ public:
+  Solver(const VerticalRequest& request, const VerticalDiagram& diagram, emfield::FieldOptions options)
+      : request_(request), options_(std::move(options)) {
+    auto surface = std::make_shared<emfield::Surface>();
+    surface->width = request.ranges;
+    surface->height = static_cast<int>(request.azimuths_deg.size());
+    surface->reference = request.axis;
+    surface->heights_m = diagram.heights_m;
+    for (const double azimuth_deg : request.azimuths_deg) {
+      for (const double range_m : diagram.ranges_m) {
+        const GeodeticPosition place =
+            geodesicDirect(diagram.latitude_deg, diagram.longitude_deg, degToRad(azimuth_deg), range_m);
+        surface->places.push_back({place.latitude_deg, place.longitude_deg});
+      }
+    }
+    options_.surface = surface;
+    options_.allow_missing_terrain = true;
+    options_.quantities.clear();
+  }
+
+  Solved solve(const scenario::Snapshot& snapshot, const scenario::TerrainPtr& terrain) const {
+    emfield::FieldSolver solver(snapshot.scenario, terrain, options_);
+    const std::vector<emfield::Channel>& channels = solver.channels();
+    const auto channel =
+        std::find_if(channels.begin(), channels.end(), [&](const emfield::Channel& candidate) {
+          return candidate.emitters == std::vector<int>{request_.emitter};
+        });
+    if (channel == channels.end() || scenario::info(request_.quantity).categorical) {
+      throw Error(ErrorCode::usage, fmt::format("quantity '{}' has no value of one emitter by itself",
+                                                scenario::info(request_.quantity).name));
+    }
+    solver.update(snapshot);
+    const auto volume = solver.volumes()[static_cast<std::size_t>(channel - channels.begin())].host();
+    Solved solved;
+    solved.warnings = solver.warnings();
+    const std::size_t ranges = static_cast<std::size_t>(request_.ranges);
+    const std::size_t places = ranges * request_.azimuths_deg.size();
+    for (std::size_t cut = 0; cut < request_.azimuths_deg.size(); ++cut) {
+      std::vector<float> values;
+      for (std::size_t k = 0; k < options_.surface->heights_m.size(); ++k) {
+        for (std::size_t p = cut * ranges; p < (cut + 1) * ranges; ++p) {
+          const bool is_valid = volume->first_valid_k.empty() || k >= volume->first_valid_k[p];
+          values.push_back(is_valid ? volume->values[k * places + p] : NAN);
+        }
+      }
+      solved.values.push_back(std::move(values));
+      const std::vector<float>& ground = solver.groundHeights_m();
+      const auto begin = static_cast<std::ptrdiff_t>(cut * ranges);
+      solved.ground_msl_m.emplace_back();
+      if (!ground.empty()) {
+        solved.ground_msl_m.back().assign(ground.begin() + begin,
+                                          ground.begin() + begin + static_cast<std::ptrdiff_t>(ranges));
+      }
+    }
+    return solved;
+  }
+
+ private:
+  const VerticalRequest& request_;
+  emfield::FieldOptions options_;
+};
+
+std::vector<VerticalCut::Line> contoursOf(const std::vector<float>& values, const VerticalDiagram& diagram) {
+  const VerticalRequest& request = diagram.request;
+  std::vector<float> levels = values;
+  auto level = static_cast<float>(request.threshold);
+  if (request.quantity == Quantity::detection_probability) {
+    std::transform(values.begin(), values.end(), levels.begin(), logOdds);
+    level = logOdds(level);
+  }
+  const double range_step = diagram.ranges_m[1] - diagram.ranges_m[0];
+  const double height_step = diagram.heights_m[1] - diagram.heights_m[0];
+  std::vector<VerticalCut::Line> lines;
+  for (const GridLine& of_grid : contourLines(levels, request.ranges, request.heights, level)) {
+    lines.emplace_back();
+    for (const GridPoint& point : of_grid) {
+      lines.back().push_back(
+          {diagram.ranges_m[0] + point.x * range_step, diagram.heights_m[0] + point.y * height_step});
+    }
+  }
+  return lines;
+}
+
+/// Takes the terrain away: the smooth surface comes to mean sea level, and all emitters down with it.
+/// @param station  the emitter below which the ground is the surface
+/// @return the surface's height (m) before
+double putOnSmoothEarth(scenario::Snapshot& snapshot, scenario::Scenario& scenario,
+                        const scenario::EmitterState& station, const scenario::TerrainPtr& terrain) {
+  double surface_msl_m = scenario.ground.surface_msl_m.value_or(0);
+  if (!scenario.ground.surface_msl_m && terrain != nullptr) {
+    surface_msl_m = static_cast<double>(
+        terrain->heightMsl_m(station.position.latitude_deg, station.position.longitude_deg));
+  }
+  scenario.terrain.reset();
+  scenario.ground.surface_msl_m.reset();
+  for (scenario::EmitterState& state : snapshot.emitters) {
+    state.height_msl_m -= surface_msl_m;
+    state.position.height_ellipsoid_m -= surface_msl_m;
+  }
+  return surface_msl_m;
+}
+
+/// Height (m) of the lower edge above mean sea level: the lowest ground of all cuts, on the hundred below.
+double lowestGround_m(const VerticalRequest& request, const VerticalDiagram& diagram,
+                      const scenario::Terrain* terrain) {
+  if (terrain == nullptr) return 0;
+  double lowest = INFINITY;
+  for (const double azimuth_deg : request.azimuths_deg) {
+    for (const double range_m : diagram.ranges_m) {
+      const GeodeticPosition place =
+          geodesicDirect(diagram.latitude_deg, diagram.longitude_deg, degToRad(azimuth_deg), range_m);
+      const auto ground_m =
+          static_cast<double>(terrain->heightMsl_m(place.latitude_deg, place.longitude_deg));
+      if (ground_m < lowest) lowest = ground_m;
+    }
+  }
+  return std::isfinite(lowest) ? 100 * std::floor(lowest / 100) : 0;
+}
+
+}  // namespace
+
+double defaultRange_m(const scenario::Scenario& scenario, const VerticalRequest& request) {
+  const scenario::Emitter& emitter = scenario.emitters[static_cast<std::size_t>(request.emitter)];
+  if (emitter.waveform && emitter.waveform->instrumented_range_m)
+    return *emitter.waveform->instrumented_range_m;
+  constexpr int kSteps = 500;
+  const auto [latitude_deg, longitude_deg] = [&] {
+    const scenario::SitePosition site =
+        scenario::pointAt(scenario.platforms[static_cast<std::size_t>(emitter.platform)], request.time_s)
+            .position;
+    return std::pair{site.latitude_deg, site.longitude_deg};
+  }();
+  const GeoFrame frame(scenario.region.origin);
+  const Vec3d half = scenario.region.size_m * 0.5;
+  double farthest_m = 0, range_m = 0;
+  for (const double x : {-half.x, half.x}) {
+    for (const double y : {-half.y, half.y}) {
+      const GeodeticPosition corner = frame.toGeodetic({x, y, 0});
+      farthest_m = std::max(
+          farthest_m,
+          geodesicInverse(latitude_deg, longitude_deg, corner.latitude_deg, corner.longitude_deg).distance_m);
+    }
+  }
+  for (const double azimuth_deg : request.azimuths_deg) {
+    for (int step = 1; step <= kSteps; ++step) {
+      const double at_m = farthest_m * step / kSteps;
+      const Vec3d local =
+          frame.toLocal(geodesicDirect(latitude_deg, longitude_deg, degToRad(azimuth_deg), at_m));
+      if (std::abs(local.x) > half.x || std::abs(local.y) > half.y) break;
+      range_m = std::max(range_m, at_m);
+    }
+  }
+  return std::max(range_m > 0 ? range_m : farthest_m, 100.0);
+}
+
+VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>& scenario,
+                                const scenario::TerrainPtr& terrain, const VerticalRequest& request,
+                                emfield::FieldOptions options) {
+  checkRequest(*scenario, request);
+  const auto e = static_cast<std::size_t>(request.emitter);
+  auto own = std::make_shared<scenario::Scenario>(*scenario);
+  own->output.quantities = {scenario::info(request.quantity).name};
+  own->output.radar_look = scenario::RadarLook::target;
+  own->output.combine = scenario::CombineMode::per_emitter;
+  own->output.interval = {};
+  scenario::Snapshot snapshot = scenario::instantAt(own, terrain.get(), request.time_s);
+  const scenario::EmitterState& state = snapshot.emitters[e];
+  if (!state.active) {
+    throw Error(ErrorCode::usage,
+                fmt::format("'{}' is off at t = {:g} s", own->emitters[e].name, request.time_s));
+  }
+  for (std::size_t i = 0; i < snapshot.emitters.size(); ++i) {
+    const bool jams = own->emitters[i].kind == scenario::EmitterKind::jammer;
+    if (i != e && !(jams && scenario::needsJammer(request.quantity))) snapshot.emitters[i].active = false;
+  }
+  const scenario::TerrainPtr below = request.smooth_earth ? nullptr : terrain;
+  const double surface_msl_m = request.smooth_earth ? putOnSmoothEarth(snapshot, *own, state, terrain) : 0;
+
+  VerticalDiagram diagram;
+  diagram.request = request;
+  diagram.scenario = own->name;
+  diagram.emitter = own->emitters[e].name;
+  diagram.model = toString(own->emitters[e].propagation.model);
+  diagram.unit = scenario::info(request.quantity).unit;
+  diagram.latitude_deg = state.position.latitude_deg;
+  diagram.longitude_deg = state.position.longitude_deg;
+  diagram.station_msl_m = state.height_msl_m;
+  diagram.floor = own->output.floor;
+  diagram.surface_msl_m = surface_msl_m;
+  diagram.station_agl_m = diagram.station_msl_m;
+  if (below != nullptr) {
+    diagram.station_agl_m -=
+        static_cast<double>(below->heightMsl_m(diagram.latitude_deg, diagram.longitude_deg));
+  }
+  const emfield::Station station = emfield::makeStation(state.position, state.height_msl_m, own->atmosphere);
+  diagram.effective_earth_radius_m = station.effective_earth_radius_m;
+  diagram.k_factor = station.effective_earth_radius_m / station.earth_radius_m;
+  diagram.ranges_m = evenly(request.range_m / request.ranges, request.range_m, request.ranges);
+  const double lowest_m =
+      request.axis == HeightReference::ground ? 0 : lowestGround_m(request, diagram, below.get());
+  if (lowest_m + 10 > request.max_height_m) {
+    throw Error(ErrorCode::usage,
+                fmt::format("height: {} m; the lowest ground is at {} m", request.max_height_m, lowest_m));
+  }
+  diagram.heights_m = evenly(lowest_m, request.max_height_m, request.heights);
+
+  const Solver solver(request, diagram, std::move(options));
+  Solved solved = solver.solve(snapshot, below);
+  diagram.warnings = std::move(solved.warnings);
+  for (std::size_t cut = 0; cut < request.azimuths_deg.size(); ++cut) {
+    diagram.cuts.push_back({request.azimuths_deg[cut],
+                            std::move(solved.values[cut]),
+                            std::move(solved.ground_msl_m[cut]),
+                            {},
+                            {}});
+    diagram.cuts.back().contours = contoursOf(diagram.cuts.back().values, diagram);
+  }
+  if (!request.smooth_earth) return diagram;
+
+  auto free_space = std::make_shared<scenario::Scenario>(*own);
+  free_space->emitters[e].propagation = {};
+  free_space->emitters[e].propagation.model = propagation::PropagationModel::free_space;
+  snapshot.scenario = free_space;
+  const Solved without_earth = solver.solve(snapshot, nullptr);
+  for (std::size_t cut = 0; cut < diagram.cuts.size(); ++cut) {
+    diagram.cuts[cut].free_space = contoursOf(without_earth.values[cut], diagram);
+  }
+  return diagram;
+}
+
+}  // namespace emscape::study
