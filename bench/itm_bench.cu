@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "apps/emscape/itm_cases.h"
+#include "apps/emscape/bench/itm_cases.h"
 
 namespace {
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "apps/emscape/command.h"
-#include "apps/emscape/console.h"
-#include "apps/emscape/interrupt.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
 #include "emscape/base/error.h"
 #include "emscape/emfield/reference_check.h"
 

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <memory>
 
-#include "apps/emscape/command.h"
-#include "apps/emscape/console.h"
-#include "apps/emscape/interrupt.h"
-#include "apps/emscape/map_options.h"
-#include "apps/emscape/target.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/map_options.h"
+#include "apps/emscape/common/target.h"
 #include "base/quantity_text.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"

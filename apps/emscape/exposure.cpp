@@ -7,12 +7,12 @@
 #include <cmath>
 #include <memory>
 
-#include "apps/emscape/command.h"
-#include "apps/emscape/console.h"
-#include "apps/emscape/exposure_report.h"
-#include "apps/emscape/interrupt.h"
-#include "apps/emscape/study_options.h"
-#include "apps/emscape/target.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/study_options.h"
+#include "apps/emscape/common/target.h"
+#include "apps/emscape/report/exposure_report.h"
 #include "emscape/render/image.h"
 #include "emscape/scenario/scenario_file.h"
 

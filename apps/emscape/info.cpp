@@ -8,13 +8,13 @@
 #include <memory>
 #include <set>
 
-#include "apps/emscape/choices_report.h"
-#include "apps/emscape/command.h"
-#include "apps/emscape/console.h"
-#include "apps/emscape/interrupt.h"
-#include "apps/emscape/refractivity_report.h"
-#include "apps/emscape/waveform_report.h"
-#include "apps/emscape/work_report.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/report/choices_report.h"
+#include "apps/emscape/report/refractivity_report.h"
+#include "apps/emscape/report/waveform_report.h"
+#include "apps/emscape/report/work_report.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/emfield/model_choices.h"

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <memory>
 
-#include "apps/emscape/command.h"
-#include "apps/emscape/console.h"
-#include "apps/emscape/interrupt.h"
-#include "apps/emscape/link_plot.h"
-#include "apps/emscape/link_report.h"
-#include "apps/emscape/study_options.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/study_options.h"
+#include "apps/emscape/report/link_plot.h"
+#include "apps/emscape/report/link_report.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
 #include "propagation/registry/model_info.h"

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "apps/emscape/command_line.h"
+#include "apps/emscape/common/command_line.h"
 
 int main(int argc, char** argv) {
   const int status = emscape::app::runCommandLine(argc, argv);

@@ -6,12 +6,12 @@
 #include <memory>
 #include <sstream>
 
-#include "apps/emscape/command.h"
-#include "apps/emscape/console.h"
-#include "apps/emscape/profile_plot.h"
-#include "apps/emscape/profile_report.h"
-#include "apps/emscape/section_plot.h"
-#include "apps/emscape/study_options.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/study_options.h"
+#include "apps/emscape/report/profile_plot.h"
+#include "apps/emscape/report/profile_report.h"
+#include "apps/emscape/report/section_plot.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/field_solver.h"

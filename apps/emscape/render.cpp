@@ -7,12 +7,12 @@
 #include <memory>
 #include <optional>
 
-#include "apps/emscape/command.h"
-#include "apps/emscape/console.h"
-#include "apps/emscape/interrupt.h"
-#include "apps/emscape/real_time_report.h"
-#include "apps/emscape/target.h"
-#include "apps/emscape/value_range.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/target.h"
+#include "apps/emscape/common/value_range.h"
+#include "apps/emscape/report/real_time_report.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"

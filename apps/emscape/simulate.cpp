@@ -5,11 +5,11 @@
 #include <memory>
 #include <optional>
 
-#include "apps/emscape/command.h"
-#include "apps/emscape/console.h"
-#include "apps/emscape/interrupt.h"
-#include "apps/emscape/target.h"
-#include "apps/emscape/value_range.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/target.h"
+#include "apps/emscape/common/value_range.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frame_source.h"

@@ -6,11 +6,11 @@
 #include <memory>
 #include <optional>
 
-#include "apps/emscape/choices_report.h"
-#include "apps/emscape/command.h"
-#include "apps/emscape/console.h"
-#include "apps/emscape/interrupt.h"
-#include "apps/emscape/work_report.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/report/choices_report.h"
+#include "apps/emscape/report/work_report.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/emfield/model_choices.h"

@@ -1,6 +1,6 @@
 /// emscape view: starts emscape-view, a separate program, so that this one needs no OpenGL.
-#include "apps/emscape/command.h"
-#include "apps/emscape/window_program.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/window_program.h"
 
 namespace emscape::app {
 

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "apps/emscape/command_line.h"
+#include "apps/emscape/common/command_line.h"
 #include "apps/emscape/version.h"
 #include "apps/manual/completion.h"
 #include "apps/manual/manual_page.h"

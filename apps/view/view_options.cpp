@@ -3,8 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "apps/emscape/command.h"
-#include "apps/emscape/value_range.h"
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/value_range.h"
 #include "apps/view/action.h"
 #include "apps/view/view_parser.h"
 #include "emscape/base/error.h"

@@ -1,5 +1,5 @@
 /// The command line in this process.
-#include "apps/emscape/command_line.h"
+#include "apps/emscape/common/command_line.h"
 #include "python/extension/module.h"
 
 namespace emscape::python {

@@ -1,0 +1,217 @@
+/// emscape bench cells: time of pictures of tetrahedra, marched and projected.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/emscape/bench/bench.h"
+#include "apps/emscape/bench/bench_scene.h"
+#include "apps/emscape/bench/bench_statistics.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/target.h"
+#include "base/stopwatch.h"
+#include "emscape/base/parallel.h"
+#include "emscape/playback/frame_source.h"
+#include "emscape/render/cell_renderer.h"
+
+namespace emscape::app {
+namespace {
+
+struct BenchCellsOptions {
+  playback::FrameSelection selection;
+  std::string size = "1200x900";
+  std::string camera = "orbit";
+  std::string transfer;
+  std::string picture;
+  double exaggeration = 0;
+  int frames = 5;
+  int marched_frames = 1;
+};
+
+struct CellTimes {
+  std::vector<double> ms;
+  render::ProjectionReport last;
+  std::vector<double> order_ms;
+};
+
+/// A field on tetrahedra, without ground, seen from around it.
+class CellScene {
+ public:
+  CellScene(const BenchCellsOptions& options, const GlobalOptions& global, const ComputeTarget& target)
+      : size_(render::parseImageSize(options.size)),
+        camera_(render::parseCamera(options.camera)),
+        device_(target.device()),
+        renderer_(target.choice.backend) {
+    playback::FrameSelection selection = options.selection;
+    selection.first_only = selection.times.empty();
+    frame_ = playback::openFrameSource(selection, target, progressSink(global), &stopFlag())->frame(0);
+    if (!frame_.cells) {
+      throw Error(ErrorCode::usage,
+                  selection.input + " holds no tetrahedra; with --mesh a scenario is computed on some");
+    }
+    renderer_.setField(frame_.cells->field, frame_.cells->faces);
+    renderer_.setTransferFunction(benchFunction(frame_.info(), options.transfer));
+    render::RenderSettings settings;
+    settings.vertical_exaggeration = options.exaggeration;
+    renderer_.setSettings(settings);
+    turn(0);
+  }
+
+  render::ImageSize size() const { return size_; }
+  const std::string& device() const { return device_; }
+  std::size_t tetrahedra() const { return frame_.cells->field.mesh->cells.size(); }
+  std::size_t points() const { return frame_.cells->field.values.size(); }
+
+  /// The n-th view: the camera goes on by 20 degrees.
+  void turn(int n) {
+    renderer_.setCamera(render::makeCamera(turned(camera_, 20.0 * n), renderer_.sceneBox(), size_));
+  }
+
+  CellTimes project(int frames, const render::ProjectionOptions& options) {
+    CellTimes times;
+    for (int n = -1; n < frames; ++n) {  // the first one is not measured
+      stopIfInterrupted();
+      turn(std::max(n, 0));
+      Stopwatch watch;
+      renderer_.project(size_, options, &times.last);
+      if (n < 0) continue;
+      times.ms.push_back(watch.lap_ms());
+      times.order_ms.push_back(times.last.order_ms);
+    }
+    return times;
+  }
+
+  /// The first view, and from where it is seen.
+  Json json() {
+    turn(0);
+    const render::SceneBox box = renderer_.sceneBox();
+    return {{"drawn_lower_m", triple(box.lower_m)},
+            {"drawn_upper_m", triple(box.drawnUpper_m())},
+            {"camera", cameraJson(renderer_.camera())},
+            {"transfer", transferJson(renderer_.transferFunction())}};
+  }
+  void writePicture(const std::string& file) {
+    turn(0);
+    writeOnBlack(file, renderer_.render(size_));
+  }
+
+  std::vector<double> march(int frames, render::CellReport& report) {
+    std::vector<double> ms;
+    for (int n = 0; n < frames; ++n) {
+      stopIfInterrupted();
+      turn(n);
+      renderer_.render(size_, nullptr, &report);
+      ms.push_back(report.cast_ms);
+    }
+    return ms;
+  }
+
+ private:
+  const render::ImageSize size_;
+  const render::CameraSpec camera_;
+  const std::string device_;
+  render::CellRenderer renderer_;
+  playback::Frame frame_;
+};
+
+int benchCells(const BenchCellsOptions& options, const GlobalOptions& global) {
+  const auto scene = openOnTarget(global, "float", [&](const ComputeTarget& target) {
+    return std::make_unique<CellScene>(options, global, target);
+  });
+  if (!options.picture.empty()) scene->writePicture(options.picture);
+  const auto perSecond = [&](const std::vector<double>& ms) {
+    return static_cast<double>(scene->tetrahedra()) / medianOf(ms) * 1e3;
+  };
+  Json projected = Json::array();
+  if (!global.json) {
+    print("{} tetrahedra, {} points, {} x {} pixels, {} threads\n\n", scene->tetrahedra(), scene->points(),
+          scene->size().width, scene->size().height, threadCount());
+    print("{:<32} {:>10} {:>10} {:>14} {:>8} {:>7}\n", "", "ms", "order (ms)", "tetrahedra/s", "floats",
+          "cycles");
+  }
+  using render::CellProjection;
+  using render::CellSorting;
+  std::string device;
+  for (const CellProjection projection : {CellProjection::exact, CellProjection::published}) {
+    for (const CellSorting sorting : {CellSorting::centroids, CellSorting::visibility}) {
+      const CellTimes times = scene->project(options.frames, {projection, sorting});
+      device = times.last.device;
+      const double floats = static_cast<double>(times.last.sent_bytes) / sizeof(float) /
+                            static_cast<double>(scene->tetrahedra());
+      projected.push_back({{"perspective", toString(projection)},
+                           {"order", toString(sorting)},
+                           {"ms", spreadJson(times.ms)},
+                           {"order_ms", spreadJson(times.order_ms)},
+                           {"tetrahedra_per_s", perSecond(times.ms)},
+                           {"floats_per_tetrahedron", floats},
+                           {"cycles", times.last.cycles}});
+      if (!global.json) {
+        print("{:<32} {:>10.1f} {:>10.1f} {:>14.3g} {:>8.0f} {:>7}\n",
+              fmt::format("projected, {}, {}", toString(projection), toString(sorting)), medianOf(times.ms),
+              medianOf(times.order_ms), perSecond(times.ms), floats, times.last.cycles);
+      }
+    }
+  }
+  render::CellReport report;
+  const std::vector<double> marched_ms = scene->march(options.marched_frames, report);
+  if (!global.json) {
+    print("{:<32} {:>10.1f} {:>10} {:>14.3g}\n\nprojected by {}, marched by {}\n", "marched",
+          medianOf(marched_ms), "", perSecond(marched_ms), device, scene->device());
+    return 0;
+  }
+  Json result = scene->json();
+  result.update({{"device", device},
+                 {"march_device", scene->device()},
+                 {"threads", threadCount()},
+                 {"size", {scene->size().width, scene->size().height}},
+                 {"tetrahedra", scene->tetrahedra()},
+                 {"points", scene->points()},
+                 {"frames", options.frames},
+                 {"projected", projected},
+                 {"marched",
+                  {{"ms", spreadJson(marched_ms)},
+                   {"rays", report.rays},
+                   {"cells_passed", report.cells},
+                   {"tetrahedra_per_s", perSecond(marched_ms)}}}});
+  printJson(result);
+  return 0;
+}
+
+}  // namespace
+
+void addBenchCells(CLI::App& bench, const GlobalOptions& global, Action& action) {
+  CLI::App* command = bench.add_subcommand("cells", "Time pictures of tetrahedra, projected and marched");
+  command->fallthrough();
+  command->footer(R"(
+Views around the field, without ground; each is ordered, sent and drawn anew. Floats: sent per tetrahedron and picture.
+
+Example:
+  emscape bench cells scenarios/jacksboro.yaml --mesh terrain:15,5 --set "region.dims=[107, 107, 100]" --json)");
+  auto options = std::make_shared<BenchCellsOptions>();
+  command
+      ->add_option("INPUT", options->selection.input,
+                   "Field on tetrahedra (.vtu), or a scenario with --mesh, computed for one instant")
+      ->required();
+  addSetOption(*command, options->selection.edits);
+  command->add_option("--mesh", options->selection.mesh, "As for simulate");
+  command->add_option("--size", options->size, "Picture size in pixels, WxH");
+  command->add_option("--camera", options->camera, "As for render; turned by 20 degrees per frame");
+  command->add_option("--transfer", options->transfer,
+                      "Colours and opacities (JSON); default: scenarios/transfer/paper.json");
+  command
+      ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
+      ->check(CLI::Range(0.0, 100.0));
+  command->add_option("--picture", options->picture, "NAME.png: writes the first view, marched, on black");
+  command->add_option("--quantity", options->selection.quantity, "Quantity or channel; default: the first");
+  command->add_option("--time", options->selection.times, "Instant, in seconds; default: the first");
+  command->add_option("--frames", options->frames, "Timed frames that are projected, after a warm-up")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--marched-frames", options->marched_frames, "Timed frames that are marched")
+      ->check(CLI::Range(1, 100000));
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return benchCells(*options, global); }; });
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,166 @@
+/// emscape bench coverage: the time of a map of coverage.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "apps/emscape/bench/bench.h"
+#include "apps/emscape/bench/bench_statistics.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/target.h"
+#include "base/stopwatch.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+#include "emscape/emfield/field_solver.h"
+#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/snapshot.h"
+#include "emscape/study/area.h"
+#include "emscape/study/map_grid.h"
+
+namespace emscape::app {
+namespace {
+
+struct BenchCoverageOptions {
+  std::string scenario;
+  std::vector<scenario::Edit> edits;
+  std::string area;
+  double cell_m = 100, height_m = 150, step_m = 100;
+  int further = 4, repeats = 3;
+  std::string quantity = "detection_probability";
+};
+
+/// Medians of the steps to the maps of some heights (ms).
+struct MapTimes {
+  double places_ms = 0, update_ms = 0;
+  emfield::StageTimes stages;
+};
+
+/// @param heights_m  above ground
+MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
+                 const scenario::TerrainPtr& terrain, const study::MapGrid& grid,
+                 const std::vector<double>& heights_m, int repeats, const ComputeTarget& target) {
+  auto surface = std::make_shared<emfield::Surface>();
+  surface->width = grid.width;
+  surface->height = grid.height;
+  surface->places = grid.places;
+  surface->heights_m = heights_m;
+  emfield::FieldOptions options = target.fieldOptions();
+  options.surface = surface;
+  options.allow_missing_terrain = true;
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), 0);
+  std::vector<double> places, update, columns, march, excess, combine, product;
+  for (int repeat = 0; repeat < repeats; ++repeat) {
+    stopIfInterrupted();
+    Stopwatch watch;
+    emfield::FieldSolver solver(scenario, terrain, options);
+    places.push_back(watch.lap_ms());
+    solver.update(snapshot);
+    update.push_back(watch.lap_ms());
+    const emfield::StageTimes stages = solver.stageTimes();
+    columns.push_back(stages.columns_ms);
+    march.push_back(stages.march_ms);
+    excess.push_back(stages.excess_ms);
+    combine.push_back(stages.combine_ms);
+    product.push_back(stages.product_ms);
+  }
+  return {medianOf(places),
+          medianOf(update),
+          {medianOf(columns), medianOf(march), medianOf(excess), medianOf(combine), medianOf(product)}};
+}
+
+int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& global) {
+  scenario::Scenario chosen = *scenario::loadScenario(options.scenario, options.edits);
+  chosen.output.quantities = {scenario::info(scenario::quantityFromName(options.quantity)).name};
+  chosen.output.radar_look = scenario::RadarLook::target;
+  const auto scenario = std::make_shared<const scenario::Scenario>(std::move(chosen));
+  const study::MapArea area =
+      options.area.empty() ? study::areaOf(scenario->region) : study::parseArea(options.area);
+  const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
+  Stopwatch watch;
+  const study::MapGrid grid = study::makeMapGrid(area, options.cell_m, "utm");
+  const double grid_ms = watch.lap_ms();
+  const auto pixels = std::count_if(
+      grid.places.begin(), grid.places.end(),
+      [](const emfield::Surface::Place& place) { return place.latitude_deg == place.latitude_deg; });
+
+  std::vector<double> heights_m{options.height_m};
+  MapTimes first, all;
+  const std::string device = openOnTarget(global, "float", [&](const ComputeTarget& target) {
+    first = timesOf(scenario, terrain, grid, heights_m, options.repeats, target);
+    for (int n = 1; n <= options.further; ++n) heights_m.push_back(options.height_m + n * options.step_m);
+    all = timesOf(scenario, terrain, grid, heights_m, options.repeats, target);
+    return target.device();
+  });
+  const double first_ms = grid_ms + first.places_ms + first.update_ms;
+  const double further_ms =
+      options.further == 0
+          ? 0
+          : (all.places_ms + all.update_ms - first.places_ms - first.update_ms) / options.further;
+  const double pixels_per_s = static_cast<double>(pixels) / (first_ms / 1000);
+  if (global.json) {
+    printJson({{"device", device},
+               {"threads", threadCount()},
+               {"map", {grid.width, grid.height}},
+               {"pixels", pixels},
+               {"further_heights", options.further},
+               {"first_height_ms", first_ms},
+               {"further_height_ms", further_ms},
+               {"pixels_per_s", pixels_per_s},
+               {"steps_ms",
+                {{"pixels", grid_ms},
+                 {"places", first.places_ms},
+                 {"columns", first.stages.columns_ms},
+                 {"march", first.stages.march_ms},
+                 {"excess", first.stages.excess_ms},
+                 {"combine", first.stages.combine_ms},
+                 {"product", first.stages.product_ms}}}});
+    return 0;
+  }
+  print("device {} ({} threads), map of {} x {} pixels of {:g} m, {} within the area, medians of {}\n\n",
+        device, threadCount(), grid.width, grid.height, grid.cell_m, pixels, options.repeats);
+  print("first height (ms)     {:10.2f}\n", first_ms);
+  print("  pixels              {:10.2f}\n  places              {:10.2f}\n", grid_ms, first.places_ms);
+  print("  field: columns      {:10.2f}\n  field: march        {:10.2f}\n  field: excess       {:10.2f}\n",
+        first.stages.columns_ms, first.stages.march_ms, first.stages.excess_ms);
+  print("  field: combine      {:10.2f}\n  field: product      {:10.2f}\n", first.stages.combine_ms,
+        first.stages.product_ms);
+  print("each further height   {:10.2f}  ({:.0f} % of the first; of {})\n", further_ms,
+        100 * further_ms / first_ms, options.further);
+  print("million pixels per s  {:10.2f}\n", pixels_per_s / 1e6);
+  return 0;
+}
+
+}  // namespace
+
+void addBenchCoverage(CLI::App& bench, const GlobalOptions& global, Action& action) {
+  CLI::App* command = bench.add_subcommand("coverage", "Time a map of coverage");
+  command->fallthrough();
+  command->footer(R"(
+Time of a map from its area to the values of its pixels, without reading the terrain and without writing files, and the time that each
+further height adds. pixels: their positions in the projection; places: terrain below them; field: the stages of the computation.
+
+Example:
+  emscape bench coverage scenarios/jacksboro.yaml --area 36.303,-84.246,10000 --cell 30)");
+  auto options = std::make_shared<BenchCoverageOptions>();
+  command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
+  addSetOption(*command, options->edits);
+  command->add_option(
+      "--area", options->area,
+      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: the scenario's region");
+  command->add_option("--cell", options->cell_m, "Side of a pixel (m)");
+  command->add_option("--height", options->height_m, "First height above ground (m)")
+      ->check(CLI::Range(0.0, 100e3));
+  command->add_option("--further", options->further, "Number of further heights")->check(CLI::Range(0, 100));
+  command->add_option("--height-step", options->step_m, "Distance between heights (m)")
+      ->check(CLI::Range(0.1, 1000.0));
+  command->add_option("--quantity", options->quantity, "A quantity of the field");
+  command->add_option("--repeats", options->repeats, "Computations of each kind; the median is reported")
+      ->check(CLI::Range(1, 1000));
+  command->callback([options, &global, &action] {
+    action = [options, &global] { return benchCoverage(*options, global); };
+  });
+}
+
+}  // namespace emscape::app

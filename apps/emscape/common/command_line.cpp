@@ -1,0 +1,214 @@
+#include "apps/emscape/common/command_line.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <csignal>
+#include <exception>
+#include <new>
+
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/components.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+
+namespace emscape::app {
+namespace {
+
+constexpr const char* kFooter = R"(
+Examples:
+  emscape validate scenarios/jacksboro.yaml
+  emscape simulate scenarios/jacksboro.yaml -o out --format vdb,vti --times 0:10:0.5
+  emscape render scenarios/jacksboro.yaml -o jacksboro.mp4 --size 1280x720
+  emscape info out/jacksboro_0001.vdb --json
+
+Exit status: 0 done, 1 another error, 2 usage, 3 bad input, 4 device, 5 a check failed,
+128 + N stopped by signal N (130 after Ctrl-C; finished files are kept).)";
+
+void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
+  app.add_option("--backend", global.backend, "Processor: auto, cpu or cuda")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  app.add_option("--threads", global.threads, "Threads to use; 0: one per core")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app.add_flag("--json", global.json, "The result, machine-readable, alone on standard output");
+  app.add_flag("--quiet,-q", global.quiet, "Neither progress nor messages, only warnings and errors");
+}
+
+/// After the global options: it follows --json.
+void addLicences(CLI::App& app, const GlobalOptions& global) {
+  const auto print_licences = [&global] {
+    throw CLI::CallForVersion(global.json ? billOfMaterials().dump(2) : licencesText(), 0);
+  };
+  app.add_flag_callback("--licences", print_licences,
+                        "Print the licences of Emscape and of all that is linked, and exit; with --json as a "
+                        "CycloneDX bill of materials");
+}
+
+}  // namespace
+
+std::string optionText(Hint hint) {
+  switch (hint) {
+    case Hint::none:
+      break;
+    case Hint::allow_missing_terrain:
+      return " (--allow-missing-terrain draws holes)";
+  }
+  return "";
+}
+
+namespace {
+
+int fail(ErrorCode code, const std::string& message) {
+  printMessage("emscape: error: {}\n", message);
+  return static_cast<int>(code);
+}
+
+int run(const Action& action) {
+  try {
+    const int status = action();
+    finishResult();
+    return status;
+  } catch (const playback::Stopped&) {
+    printMessage("emscape: stopped by signal {}; finished files are kept\n", caughtSignal());
+    return 128 + caughtSignal();
+  } catch (const Error& error) {
+    return fail(error.code(), error.what() + optionText(error.hint()));
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::other, "out of memory; use fewer voxels (region.dims), channels or --cache-mib");
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::other, error.what());
+  } catch (...) {
+    return fail(ErrorCode::other, "unknown exception");
+  }
+}
+
+/// The parser's message. Where CLI11 asks for a subcommand, it names the word that is none.
+std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
+  if (last->get_require_subcommand_min() == 0) return error.what();
+  for (const std::string& word : app.remaining(true)) {
+    if (!word.empty() && word.front() != '-') return "there is no subcommand '" + word + "'";
+  }
+  return error.what();
+}
+
+/// CLI11 takes 'nan' and 'inf' for numbers; no option does.
+/// @throws CLI::ValidationError naming the first such option of the program or its subcommands
+void checkNumbers(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_type_name().rfind("FLOAT", 0) != 0) continue;
+    for (const std::string& text : option->results()) {
+      double value = 0;
+      if (!CLI::detail::lexical_cast(text, value) || std::isfinite(value)) continue;
+      throw CLI::ValidationError(option->get_name(), "'" + text + "' is no number");
+    }
+  }
+  for (const CLI::App* subcommand : app.get_subcommands()) checkNumbers(*subcommand);
+}
+
+/// Parses; returns an exit status if there is nothing to run.
+int parse(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    checkNumbers(app);
+    return -1;
+  } catch (const CLI::Success& help) {
+    return run([&] { return app.exit(help); });
+  } catch (const CLI::ParseError& error) {
+    printMessage("emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n",
+                 messageOf(app, error));
+    return static_cast<int>(ErrorCode::usage);
+  }
+}
+
+/// The parser with all subcommands, and what it fills.
+struct CommandLine {
+  CLI::App app{
+      "Computes the electromagnetic environment of a scenario as a volume that changes with time, and shows "
+      "it.",
+      "emscape"};
+  GlobalOptions global;
+  Action action;
+
+  CommandLine() {
+    app.footer(kFooter);
+    app.set_version_flag("--version", std::function<std::string()>(versionText),
+                         "Print version, compiler, instruction sets and GPU, and exit");
+    app.require_subcommand(1);
+    app.option_defaults()->always_capture_default();
+
+    addGlobalOptions(app, global);
+    addLicences(app, global);
+    addValidate(app, global, action);
+    addInfo(app, global, action);
+    addSimulate(app, global, action);
+    addRender(app, global, action);
+    addView(app, global, action);
+    addProfile(app, global, action);
+    addLink(app, global, action);
+    addCoverage(app, global, action);
+    addVertical(app, global, action);
+    addExposure(app, global, action);
+    addCompare(app, global, action);
+    addStudy(app, global, action);
+    addCheck(app, global, action);
+    addBench(app, global, action);
+  }
+};
+
+std::vector<std::string> program_command;
+
+}  // namespace
+
+int runCommandLine(int argc, char** argv) {
+  openStandardStreams();
+  CommandLine line;
+  if (const int status = parse(line.app, argc, argv); status >= 0) return status;
+  installLog(line.global);
+  setThreadLimit(line.global.threads);
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as an error of the write
+  catchInterrupts();
+  return run(line.action);
+}
+
+std::shared_ptr<const CLI::App> commandLineParser() {
+  const auto line = std::make_shared<const CommandLine>();
+  return {line, &line->app};
+}
+
+CommandResult commandResult(const std::vector<std::string>& arguments, const ProgressSink& progress) {
+  CommandLine line;
+  try {
+    line.app.parse(
+        std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them reversed
+    checkNumbers(line.app);
+  } catch (const CLI::Success&) {
+    throw Error(ErrorCode::usage, "help and version are texts of the program, without a result");
+  } catch (const CLI::ParseError& error) {
+    throw Error(ErrorCode::usage, error.what());
+  }
+  line.global.json = true;
+  line.global.quiet = true;
+  line.global.progress = progress;
+  struct ThreadLimitRemoved {
+    ~ThreadLimitRemoved() { setThreadLimit(0); }
+  } at_end;
+  const CapturedResult captured;
+  const int status = line.action();
+  return {status, captured.text()};
+}
+
+void setProgramCommand(const std::vector<std::string>& words) {
+  program_command = words;
+}
+
+const std::vector<std::string>& programCommand() {
+  return program_command;
+}
+
+}  // namespace emscape::app

@@ -1,0 +1,48 @@
+/// Options and look-ups that several what-if subcommands share.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "apps/emscape/common/command.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/quantities.h"
+
+namespace emscape::app {
+
+/// Index of a named item of a scenario. @throws Error (usage) that lists the names that there are
+template <class Item>
+int namedIndex(const std::vector<Item>& items, const std::string& name, const char* option, const char* kind,
+               const std::string& file) {
+  const auto found =
+      std::find_if(items.begin(), items.end(), [&](const Item& item) { return item.name == name; });
+  if (found != items.end()) return static_cast<int>(found - items.begin());
+  std::string known;
+  for (const Item& item : items) known += (known.empty() ? "'" : ", '") + item.name + "'";
+  throw Error(ErrorCode::usage, fmt::format("{}: no {} '{}' in {}; it has {}", option, kind, name, file,
+                                            known.empty() ? "none" : known));
+}
+
+/// -o FILE.png|.svg|.csv|.json, which may be given several times.
+void addStudyOutputs(CLI::App& command, std::vector<std::string>& files);
+
+/// What is written into such files.
+struct StudyOutputs {
+  std::function<void(const std::string&file)> plot, csv;
+  std::function<std::string()> json;
+};
+/// Writes each file by its ending. @throws Error
+void writeStudyOutputs(const std::vector<std::string>& files, const StudyOutputs& outputs);
+
+/// --threshold. @param threshold  NAN: not given
+void addThresholdOption(CLI::App& command, double& threshold);
+/// The threshold, or the usual one of the quantity.
+/// @throws Error (usage) where neither is there, and for a probability beyond 0..1
+double thresholdOf(double threshold, scenario::Quantity quantity);
+
+}  // namespace emscape::app

@@ -1,0 +1,14 @@
+/// What models choose by themselves, as JSON.
+#pragma once
+
+#include <vector>
+
+#include "apps/emscape/common/console.h"
+#include "emscape/emfield/model_choices.h"
+
+namespace emscape::app {
+
+/// [{"emitter", "model", "name", "text"}]
+Json choicesJson(const std::vector<emfield::EmitterChoice>& choices);
+
+}  // namespace emscape::app

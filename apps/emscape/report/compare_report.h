@@ -1,0 +1,19 @@
+/// A comparison of two scenarios as a table, JSON and sections of a report.
+#pragma once
+
+#include <string>
+
+#include "apps/emscape/common/console.h"
+#include "emscape/study/compare.h"
+#include "emscape/study/html_report.h"
+
+namespace emscape::app {
+
+/// What report.json has beside the maps.
+Json comparisonJson(const study::Comparison& comparison, const study::ComparedScenario& a,
+                    const study::ComparedScenario& b);
+/// "Gained and lost" and "Why". @param quantity  its name
+void addSections(study::HtmlReport& report, const study::Comparison& comparison, const std::string& quantity);
+void printComparison(const study::Comparison& comparison, const std::string& quantity);
+
+}  // namespace emscape::app

@@ -1,0 +1,25 @@
+/// A vertical coverage diagram as a table, JSON and CSV.
+#pragma once
+
+#include <string>
+
+#include "apps/emscape/common/console.h"
+#include "emscape/study/vertical.h"
+
+namespace emscape::app {
+
+/// Farthest and, there, lowest point of the grid at which the threshold is reached, and the part that is.
+struct VerticalReach {
+  bool is_any = false;
+  double range_m = 0, height_m = 0;
+  double covered_part = 0;  ///< of the points with a value
+};
+VerticalReach reachOf(const study::VerticalDiagram& diagram, const study::VerticalCut& cut);
+
+/// @param with_grid  false: contours and reach alone
+Json verticalJson(const study::VerticalDiagram& diagram, bool with_grid);
+void printVertical(const study::VerticalDiagram& diagram);
+/// Rows of the grid, then of the contours. @throws Error (other) naming the file
+void writeVerticalCsv(const study::VerticalDiagram& diagram, const std::string& file);
+
+}  // namespace emscape::app

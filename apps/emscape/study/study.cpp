@@ -1,0 +1,288 @@
+/// emscape study: many variants of a scenario, measured.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/common/console.h"
+#include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/study/study_jobs.h"
+#include "apps/emscape/study/study_parts.h"
+#include "apps/emscape/study/study_plan.h"
+#include "apps/emscape/study/study_slurm.h"
+#include "apps/emscape/version.h"
+#include "base/stopwatch.h"
+#include "base/whole_file.h"
+#include "emscape/base/log.h"
+#include "emscape/base/parallel.h"
+#include "emscape/study/map.h"
+#include "emscape/study/study_folder.h"
+#include "emscape/study/study_report.h"
+
+namespace emscape::app {
+namespace {
+
+struct StudyCommand {
+  std::string study;
+  std::vector<scenario::Edit> edits;
+  std::string folder;
+  bool plan = false;
+  std::string kept;
+  int jobs = 1;
+  std::string part;
+  bool resume = false;
+  bool merge = false;
+  bool partial = false;
+  bool worker = false;
+  SlurmOptions slurm;
+};
+
+struct PartNumber {
+  int part = 0, parts = 0;
+};
+
+/// @throws Error (usage)
+PartNumber parsePart(const std::string& text) {
+  PartNumber number;
+  const char* const end = text.data() + text.size();
+  const auto part = std::from_chars(text.data(), end, number.part);
+  const bool has_slash = part.ec == std::errc() && part.ptr != end && *part.ptr == '/';
+  const auto parts = has_slash ? std::from_chars(part.ptr + 1, end, number.parts) : part;
+  if (!has_slash || parts.ec != std::errc() || parts.ptr != end || number.part < 1 ||
+      number.part > number.parts || number.parts > study::kMaxParts) {
+    throw Error(ErrorCode::usage,
+                fmt::format("--part '{}' is none; write I/N with I from 1 to N, N up to {}, or any", text,
+                            study::kMaxParts));
+  }
+  return number;
+}
+
+void checkAllThere(const study::StudyFolder& folder, const std::vector<int>& missing) {
+  if (missing.empty()) return;
+  constexpr std::size_t kNamed = 12;
+  const auto named = missing.begin() + static_cast<std::ptrdiff_t>(std::min(missing.size(), kNamed));
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format("{}: {} of {} parts are missing: {}{}; --resume computes them, --partial merges the others",
+                  folder.path().string(), missing.size(), folder.parts(),
+                  fmt::join(missing.begin(), named, ", "), missing.size() > kNamed ? ", ..." : ""));
+}
+
+int mergeParts(const LoadedStudy& loaded, study::StudyFolder& folder, bool partial,
+               const GlobalOptions& global) {
+  const std::vector<int> missing = folder.missingParts();
+  if (!partial) checkAllThere(folder, missing);
+  const study::StudyResults results = folder.read();
+  std::vector<std::string> warnings(results.warnings.begin(), results.warnings.end());
+  if (results.machines.size() > 1) {
+    std::string machines;
+    for (const std::string& machine : results.machines) machines += (machines.empty() ? "" : "; ") + machine;
+    warnings.push_back("parts were computed on different processors, which may differ in the last digit: " +
+                       machines);
+  }
+  folder.writeResults(results);
+  const auto report =
+      study::writeStudyReport(folder.path() / "report.html", loaded.spec, loaded.plan, results);
+  logWarnings(warnings);
+  if (global.json) {
+    Json json{{"study", loaded.spec.name},        {"hash", loaded.spec.hash},
+              {"folder", folder.path().string()}, {"variants", loaded.spec.variants.count()},
+              {"parts", folder.parts()},          {"missing_parts", missing}};
+    json["warnings"] = joinedWarnings(warnings);
+    json["best"] = Json::array();
+    for (const study::MeasureSummary& summary : report.measures) {
+      json["best"].push_back({{"measure", summary.name},
+                              {"unit", summary.unit},
+                              {"max", number(summary.max)},
+                              {"max_variant", summary.max_variant},
+                              {"min", number(summary.min)},
+                              {"min_variant", summary.min_variant}});
+    }
+    if (!report.sites.empty()) json["sites"] = {{"chosen", report.sites}, {"value", report.sites_value}};
+    printJson(json);
+    return 0;
+  }
+  for (const study::MeasureSummary& summary : report.measures) {
+    const std::string unit = summary.unit.empty() ? "" : " " + summary.unit;
+    print("{:<24} {} to {}{}; the largest: {}\n", summary.name, study::figureText(summary.min, summary.unit),
+          study::figureText(summary.max, summary.unit), unit,
+          study::describeVariant(loaded.spec, summary.max_variant));
+  }
+  if (!report.sites.empty()) {
+    std::string names;
+    for (const std::string& site : report.sites) names += (names.empty() ? "" : ", ") + site;
+    const std::string unit = unitOf(loaded.spec.measures[loaded.spec.sites->measure]);
+    print("sites: {}: {} {}\n", names, study::figureText(report.sites_value, unit), unit);
+  }
+  print("{}: results.csv, results.nc, report.html\n", folder.path().string());
+  return 0;
+}
+
+/// Computes the parts whose numbers come in on standard input.
+int work(const LoadedStudy& loaded, study::StudyFolder& folder, const GlobalOptions& global) {
+  PartComputer computer(loaded, folder, global);
+  for (int part; std::cin >> part;) {
+    computer.compute(part, {});
+    print("{}\n", part);
+    finishResult();
+  }
+  return 0;
+}
+
+/// What --keep asks for; none: it was not given.
+std::optional<study::KeptFiles> keptFiles(const StudyCommand& command) {
+  if (command.kept.empty()) return std::nullopt;
+  return command.kept == "maps" ? study::KeptFiles::maps : study::KeptFiles::volumes;
+}
+
+std::vector<std::string> workerArguments(const StudyCommand& command, const GlobalOptions& global,
+                                         int threads) {
+  std::vector<std::string> arguments{
+      "study",     command.study,  "-o",      command.folder, "--worker",
+      "--backend", global.backend, "--quiet", "--threads",    fmt::format("{}", threads)};
+  for (const scenario::Edit& edit : command.edits) {
+    arguments.emplace_back("--set");
+    arguments.push_back(toString(edit));
+  }
+  return arguments;
+}
+
+int runStudy(const StudyCommand& command, const GlobalOptions& global) {
+  Stopwatch watch;
+  const int threads = global.threads > 0 ? global.threads : allowedProcessors();
+  setThreadLimit(threads);
+  if (command.worker) setLogSink([](LogLevel, const std::string&) {});  // the other process tells
+  if (!command.plan && command.folder.empty()) {
+    throw Error(ErrorCode::usage, "--output is required, except with --plan");
+  }
+  const LoadedStudy loaded(command.study, command.edits, !command.worker);
+  if (command.plan) {
+    const int parts =
+        command.slurm.chunks > 0 ? command.slurm.chunks : study::usualParts(loaded.spec.variants.count());
+    return showPlan(loaded, parts, command.jobs, watch.lap_ms() / 1000, global);
+  }
+  study::StudyFolder folder(command.folder, loaded.spec, loaded.plan, kVersion);
+  const std::optional<int> planned = folder.partsOfManifest();
+  const std::size_t variants = loaded.spec.variants.count();
+  if (!command.part.empty() && command.part != "any") {
+    const PartNumber number = parsePart(command.part);
+    checkParts(number.parts, variants);
+    folder.begin(number.parts, keptFiles(command));
+    PartComputer(loaded, folder, global).compute(number.part, progressSink(global));
+    if (global.json) printJson({{"part", number.part}, {"parts", number.parts}});
+    return 0;
+  }
+  const int parts = planned                    ? *planned
+                    : command.slurm.chunks > 0 ? command.slurm.chunks
+                                               : study::usualParts(variants);
+  checkParts(parts, variants);
+  if (!command.slurm.script.empty()) {
+    folder.begin(parts, keptFiles(command));
+    return writeSlurmJobs(command.slurm, workerArguments(command, global, 0), parts, global);
+  }
+  if (command.merge && !planned) {
+    throw Error(ErrorCode::bad_input, command.folder + ": has no manifest.json: no part was computed");
+  }
+  folder.begin(parts, keptFiles(command));
+  if (command.worker) return work(loaded, folder, global);
+  if (command.part == "any") {
+    PartComputer computer(loaded, folder, global);
+    computeAnyParts(computer, folder, progressSink(global));
+    if (global.json) printJson({{"parts", parts}});
+    return 0;
+  }
+  const FolderLock lock(folder.path(), ".study.lock");
+  if (command.merge) return mergeParts(loaded, folder, command.partial, global);
+
+  const std::vector<int> missing = folder.missingParts();
+  if (!command.resume && static_cast<int>(missing.size()) < parts) {
+    throw Error(ErrorCode::usage, fmt::format("{} holds {} of {} parts of this study; {}", command.folder,
+                                              static_cast<std::size_t>(parts) - missing.size(), parts,
+                                              missing.empty() ? "--merge writes their results again"
+                                                              : "--resume computes the others"));
+  }
+  logInfo(fmt::format("{} variants of {} in {} parts, {} of them to compute", variants,
+                      loaded.spec.base->name, parts, missing.size()));
+  if (command.jobs > 1 && missing.size() > 1) {
+    const int each = std::max(1, threads / command.jobs);
+    computeInProcesses(
+        missing, command.jobs, workerArguments(command, global, each),
+        [&](int part) { return folder.journalBytes(part); }, progressSink(global));
+  } else if (!missing.empty()) {
+    PartComputer computer(loaded, folder, global);
+    computeParts(computer, missing, progressSink(global));
+  }
+  return mergeParts(loaded, folder, false, global);
+}
+
+}  // namespace
+
+void addStudy(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command = app.add_subcommand(
+      "study", "Variants, sweeps, samples and sites of a scenario, each measured on its maps of coverage");
+  command->fallthrough();
+  command->footer(R"(
+The study's file says which variants of a scenario there are and what is measured of each; docs/what-if.md describes it. Variants
+are computed in the order in which most of the field can be kept: a change of a power needs no terrain profile.
+
+DIR/results.csv and DIR/results.nc hold the measures of every variant, DIR/report.html tables and plots. The study is cut into
+parts (DIR/parts), each written when it is complete. Finished variants of a part are kept as they come: --resume computes what
+is missing, after an interruption, a kill or a full disk. With --keep, DIR/variants has the maps or volumes of each variant.
+
+Machines that share DIR compute a study together, and --merge joins the parts:
+  --part any   each process takes parts that no other works on, until all are there; it takes over those whose process has
+               ended, or has not been heard of for 5 minutes
+  --part I/N   a scheduler says which; parts may come in any order
+The results are the same bytes.
+
+Examples:
+  emscape study scenarios/study/jammer_power.yaml --plan
+  emscape study scenarios/study/jammer_power.yaml -o out --jobs 2
+  emscape study scenarios/study/jammer_power.yaml -o out --keep maps
+  emscape study scenarios/study/jammer_power.yaml -o out --part any
+  emscape study scenarios/study/jammer_power.yaml -o out --part 3/7
+  emscape study scenarios/study/jammer_power.yaml -o out --merge
+  emscape study scenarios/study/jammer_power.yaml -o out --slurm job.sh --chunks 40 --time 00:20:00)");
+  auto options = std::make_shared<StudyCommand>();
+  command->add_option("STUDY", options->study, "Study (YAML or JSON)")->required();
+  addSetOption(*command, options->edits);
+  command->add_option("-o,--output", options->folder, "Folder of the results");
+  CLI::Option* plan = command->add_flag("--plan", options->plan,
+                                        "Say how many variants there are, what each changes, and the time "
+                                        "that they need; compute one of each kind, write nothing");
+  command
+      ->add_option("--keep", options->kept,
+                   "Keep the maps of each variant (GeoTIFF) or its volumes (.vdb), in DIR/variants")
+      ->check(CLI::IsMember({"maps", "volumes"}))
+      ->default_str("");
+  CLI::Option* jobs = command->add_option("--jobs", options->jobs, "Processes that compute at the same time")
+                          ->check(CLI::Range(1, 1024));
+  CLI::Option* part = command->add_option(
+      "--part", options->part,
+      "I/N: compute what is missing of one of N parts; any: compute parts that no other process works on");
+  CLI::Option* resume = command->add_flag("--resume", options->resume, "Compute the parts that are missing");
+  CLI::Option* merge = command->add_flag("--merge", options->merge, "Join the parts; all must be there");
+  command->add_flag("--partial", options->partial, "With --merge: join those that are there")->needs(merge);
+  CLI::Option* slurm = command->add_option("--slurm", options->slurm.script,
+                                           "Write a job script of a Slurm array, and one that merges");
+  command->add_option("--chunks", options->slurm.chunks, "Number of parts; default: 16 variants in each")
+      ->check(CLI::Range(1, study::kMaxParts))
+      ->default_str("");
+  command->add_option("--time", options->slurm.time, "With --slurm: limit of a part's time, HH:MM:SS")
+      ->needs(slurm);
+  command->add_option("--gpus", options->slurm.gpus, "With --slurm: GPUs of a part")
+      ->check(CLI::Range(0, 64))
+      ->needs(slurm);
+  command->add_flag("--submit", options->slurm.submit, "With --slurm: submit both jobs")->needs(slurm);
+  command->add_flag("--worker", options->worker)->group("");
+  for (CLI::Option* option : {part, resume, merge, slurm}) option->excludes(plan);
+  for (CLI::Option* option : {resume, merge, slurm, jobs}) option->excludes(part);
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return runStudy(*options, global); }; });
+}
+
+}  // namespace emscape::app

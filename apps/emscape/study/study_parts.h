@@ -1,0 +1,38 @@
+/// Parts of a study computed in this process.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "apps/emscape/common/command.h"
+#include "apps/emscape/study/study_plan.h"
+#include "emscape/base/progress.h"
+#include "emscape/study/study_folder.h"
+
+namespace emscape::app {
+
+/// Computes parts one after another; the fields stay from part to part.
+class PartComputer {
+ public:
+  /// @param loaded, folder  must outlive the object; the folder has begun
+  PartComputer(const LoadedStudy& loaded, const study::StudyFolder& folder, const GlobalOptions& global);
+
+  /// Computes what is missing of a part.
+  /// @throws Error, playback::Stopped; finished variants are kept
+  void compute(int part, const ProgressSink& progress);
+
+ private:
+  const study::StudyFolder& folder_;
+  std::unique_ptr<study::VariantFiles> files_;
+  std::unique_ptr<study::StudyRunner> runner_;
+  std::string machine_;
+};
+
+/// Computes parts one after another. @param progress  of all of them
+void computeParts(PartComputer& computer, const std::vector<int>& parts, const ProgressSink& progress);
+
+/// Computes parts that no other process works on until all are there, and waits for those that others
+/// compute: a part whose process has ended is taken over.
+void computeAnyParts(PartComputer& computer, const study::StudyFolder& folder, const ProgressSink& progress);
+
+}  // namespace emscape::app

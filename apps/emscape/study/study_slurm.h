@@ -1,0 +1,27 @@
+/// Jobs of Slurm that compute the parts of a study.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/emscape/common/command.h"
+
+namespace emscape::app {
+
+struct SlurmOptions {
+  std::string script;  ///< file to write; empty: none
+  int chunks = 0;      ///< parts; 0: the usual number
+  std::string time = "01:00:00";
+  int gpus = 0;
+  bool submit = false;
+};
+
+/// Writes the script of an array of one task per part, and NAME.merge.sh beside it, which joins them; both
+/// work in the present folder.
+/// @param arguments  of a process that computes parts: study, FILE, -o, DIR, --worker, ...
+/// @return the exit status
+/// @throws Error (other)
+int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& arguments, int parts,
+                   const GlobalOptions& global);
+
+}  // namespace emscape::app
