@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "apps/view/theme.h"
+#include "apps/view/panels/theme.h"
 #include "base/stopwatch.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"

@@ -8,8 +8,8 @@
 
 #include "apps/view/mouse_control.h"
 #include "apps/view/picture_texture.h"
-#include "apps/view/script.h"
-#include "apps/view/session_opener.h"
+#include "apps/view/session/script.h"
+#include "apps/view/session/session_opener.h"
 #include "apps/view/window.h"
 
 namespace emscape::view {

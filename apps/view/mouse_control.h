@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/view/panels.h"
-#include "apps/view/platform_drag.h"
+#include "apps/view/panels/panels.h"
+#include "apps/view/session/platform_drag.h"
 #include "apps/view/window.h"
 
 namespace emscape::view {

@@ -1,11 +1,11 @@
-#include "apps/view/view_options.h"
+#include "apps/view/session/view_options.h"
 
 #include <CLI/CLI.hpp>
 #include <iostream>
 
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/value_range.h"
-#include "apps/view/action.h"
+#include "apps/view/session/action.h"
 #include "apps/view/view_parser.h"
 #include "emscape/base/error.h"
 

@@ -14,7 +14,7 @@
 #include <mutex>
 #include <utility>
 
-#include "apps/view/theme.h"
+#include "apps/view/panels/theme.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {

@@ -1,4 +1,4 @@
-#include "apps/view/action.h"
+#include "apps/view/session/action.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "apps/view/input_queue.h"
+#include "apps/view/session/input_queue.h"
 #include "emscape/base/error.h"
 #include "tests/support/files.h"
 

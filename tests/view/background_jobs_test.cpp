@@ -1,4 +1,4 @@
-#include "apps/view/background_jobs.h"
+#include "apps/view/session/background_jobs.h"
 
 #include <gtest/gtest.h>
 

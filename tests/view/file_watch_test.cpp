@@ -1,10 +1,10 @@
-#include "apps/view/file_watch.h"
+#include "apps/view/session/file_watch.h"
 
 #include <atomic>
 #include <filesystem>
 #include <thread>
 
-#include "apps/view/session_opener.h"
+#include "apps/view/session/session_opener.h"
 #include "emscape/scenario/scenario_file.h"
 #include "tests/view/session_sample.h"
 

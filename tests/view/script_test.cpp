@@ -1,4 +1,4 @@
-#include "apps/view/script.h"
+#include "apps/view/session/script.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

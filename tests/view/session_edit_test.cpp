@@ -1,4 +1,4 @@
-#include "apps/view/platform_drag.h"
+#include "apps/view/session/platform_drag.h"
 #include "emscape/playback/pick.h"
 #include "tests/view/session_sample.h"
 

@@ -5,9 +5,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "apps/view/opening.h"
-#include "apps/view/recent_files.h"
-#include "apps/view/session_opener.h"
+#include "apps/view/session/opening.h"
+#include "apps/view/session/recent_files.h"
+#include "apps/view/session/session_opener.h"
 #include "emscape/base/error.h"
 #include "emscape/render/image.h"
 #include "tests/view/session_sample.h"

@@ -14,7 +14,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/view/session.h"
+#include "apps/view/session/session.h"
 #include "emscape/base/backend.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"

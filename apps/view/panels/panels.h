@@ -1,0 +1,75 @@
+/// The panels around the picture, drawn with Dear ImGui. They act only through commands of the session.
+#pragma once
+
+#include <imgui.h>
+
+#include "apps/view/session/session.h"
+
+namespace emscape::view {
+
+/// A rectangle of the window, in pixels.
+struct Area {
+  float x = 0, y = 0, width = 0, height = 0;
+};
+
+/// Layout of the window.
+struct Layout {
+  float menu_height = 0;  ///< the menu bar, at the top
+  Area picture, side, timeline, status;
+};
+Layout layoutOf(const Session& session, float width, float height, float scale);
+
+/// Flags of docked panels; App fills their background.
+inline constexpr ImGuiWindowFlags kFixedPanel =
+    ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+    ImGuiWindowFlags_NoBackground;
+
+/// Context of all panels.
+struct PanelContext {
+  Session& session;
+  WindowControl& window;
+  float scale = 1;
+};
+
+/// Remaining width of the line after the last item (pixels).
+float roomInLine(float spacing);
+/// Continues in the line of the last item if the width (pixels) suffices, else in the next one.
+void sameLineIfRoom(float width, float spacing = 0);
+
+/// Runs the command of an action, as its key would.
+void perform(PanelContext& context, const char* command);
+
+void drawMenuBar(PanelContext& context);
+void drawScenarioPanel(PanelContext& context);
+/// Colours and opacities: transfer_panel.cpp.
+void drawColorsPanel(PanelContext& context);
+void drawPlanesPanel(PanelContext& context);
+/// Colours, planes and scenario, one above the other.
+void drawSidePanel(PanelContext& context, const Area& area);
+void drawTimeline(PanelContext& context, const Area& area);
+/// Height that its rows need (pixels).
+float timelineHeight(const Session& session, float scale);
+/// Its buttons: transport_panel.cpp.
+void drawTransport(PanelContext& context);
+void drawStatusBar(PanelContext& context, const Area& area);
+/// Shown in place of the picture while nothing is open.
+void drawStart(PanelContext& context, const Area& picture);
+/// A list of recently opened inputs to choose from. @param max_count  largest number of entries
+void drawRecentFiles(PanelContext& context, std::size_t max_count);
+/// The notice, and the message before the first picture.
+void drawNotice(PanelContext& context, const Area& picture);
+void drawProbe(PanelContext& context, const Area& picture);
+/// The probe's locked point, over the picture.
+void drawProbeMarker(const PanelContext& context, const Area& picture);
+void drawHelp(PanelContext& context);
+void drawGoToTime(PanelContext& context);
+void drawFileBrowser(PanelContext& context);
+/// The running recording, at the top of the picture, and the dialog of a new one.
+void drawRecording(PanelContext& context, const Area& picture);
+void drawRestoreQuestion(PanelContext& context);
+void drawUnsavedQuestion(PanelContext& context);
+/// Message about files that have changed on the disk, at the top of the picture.
+void drawChangedFiles(PanelContext& context, const Area& picture);
+
+}  // namespace emscape::view

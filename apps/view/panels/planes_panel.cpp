@@ -1,0 +1,101 @@
+/// Cutting planes: position and kept side.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/view/panels/panels.h"
+#include "apps/view/panels/theme.h"
+
+namespace emscape::view {
+namespace {
+
+using render::CutPlane;
+
+/// A number that is dragged between limits; Ctrl + click types it. @return whether it was changed
+bool slide(const char* id, double& value, double min, double max, const char* format) {
+  const double low = std::min(min, value), high = std::max(max, value);
+  ImGui::SetNextItemWidth(-1);
+  return ImGui::SliderScalar(id, ImGuiDataType_Double, &value, &low, &high, format);
+}
+
+/// @return true if the plane was changed
+bool drawHorizontal(CutPlane& plane, const render::SceneBox& box) {
+  return slide("##altitude", plane.altitude_m, box.lower_m.z, box.upper_m.z, "altitude %.0f m");
+}
+
+bool drawVertical(CutPlane& plane, const render::SceneBox& box) {
+  const Vec3d size_m = box.upper_m - box.lower_m;
+  const double reach_m = 0.5 * std::hypot(size_m.x, size_m.y);
+  const bool turned = slide("##bearing", plane.bearing_deg, 0, 360, "bearing %.0f°");
+  const bool moved = slide("##offset", plane.offset_m, -reach_m, reach_m, "offset %.0f m");
+  return turned || moved;
+}
+
+const char* keptText(const CutPlane& plane) {
+  switch (plane.keep) {
+    case CutPlane::Side::below:
+      return "keeps what is below";
+    case CutPlane::Side::above:
+      return "keeps what is above";
+    case CutPlane::Side::left:
+      return "keeps the left";
+    case CutPlane::Side::right:
+      break;
+  }
+  return "keeps the right";
+}
+
+void drawPlane(PanelContext& context, std::size_t index, const render::SceneBox& box) {
+  Session& session = context.session;
+  std::vector<CutPlane> planes = session.settings().planes;
+  CutPlane& plane = planes[index];
+  const auto number = static_cast<double>(index + 1);
+  const bool horizontal = plane.kind == CutPlane::Kind::horizontal;
+  bool on = plane.on;
+  if (ImGui::Checkbox(horizontal ? "horizontal" : "vertical", &on)) {
+    session.perform({"plane", {{"index", number}, {"on", on}}});
+  }
+  ImGui::SameLine();
+  if (ImGui::SmallButton(keptText(plane))) session.perform({"plane", {{"index", number}, {"flip", true}}});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("keeps the other side");
+  const float remove_width = ImGui::CalcTextSize("remove").x + 2 * ImGui::GetStyle().FramePadding.x;
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - remove_width);
+  if (ImGui::SmallButton("remove")) {
+    session.perform({"plane", {{"index", number}, {"remove", true}}});
+    return;
+  }
+  if (horizontal ? drawHorizontal(plane, box) : drawVertical(plane, box)) {
+    plane.on = true;
+    session.setPlanes(planes);
+  }
+}
+
+}  // namespace
+
+void drawPlanesPanel(PanelContext& context) {
+  Session& session = context.session;
+  ImGui::TextColored(accentColor(session.theme()), "Cutting planes");
+  if (!session.picture()) {
+    ImGui::TextDisabled("no picture yet");
+    return;
+  }
+  const std::size_t count = session.settings().planes.size();
+  for (std::size_t index = 0; index < count && index < session.settings().planes.size(); ++index) {
+    ImGui::PushID(static_cast<int>(index));
+    drawPlane(context, index, session.picture()->box);
+    ImGui::PopID();
+    ImGui::Spacing();
+  }
+  ImGui::BeginDisabled(session.settings().planes.size() >= static_cast<std::size_t>(render::kMaxCutPlanes));
+  for (const CutPlane::Kind kind : {CutPlane::Kind::horizontal, CutPlane::Kind::vertical}) {
+    const bool horizontal = kind == CutPlane::Kind::horizontal;
+    if (!horizontal) ImGui::SameLine();
+    if (ImGui::Button(horizontal ? "+ horizontal" : "+ vertical")) {
+      session.perform({"plane", {{"spec", toString(session.newPlane(kind))}}});
+    }
+  }
+  ImGui::EndDisabled();
+}
+
+}  // namespace emscape::view

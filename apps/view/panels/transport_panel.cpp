@@ -1,0 +1,138 @@
+/// Buttons of playing, rate, and the requested time.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/view/panels/panels.h"
+#include "apps/view/panels/theme.h"
+#include "emscape/scenario/clock.h"
+
+namespace emscape::view {
+namespace {
+
+enum class Symbol { first, back, play, pause, forward, last };
+
+/// A button with a drawn symbol: not all fonts have them.
+bool symbolButton(const char* id, Symbol symbol, const char* tip, float scale) {
+  const float side = ImGui::GetFrameHeight();
+  const bool pressed = ImGui::Button(id, {1.35F * side, side});
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", tip);
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const ImVec2 c{(low.x + high.x) / 2, (low.y + high.y) / 2};
+  const float r = 5.5F * scale;
+  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto triangle = [&](float x, float direction) {
+    list.AddTriangleFilled({x - direction * r * 0.8F, c.y - r}, {x + direction * r * 0.9F, c.y},
+                           {x - direction * r * 0.8F, c.y + r}, ink);
+  };
+  const auto bar = [&](float x) { list.AddRectFilled({x - scale, c.y - r}, {x + scale, c.y + r}, ink); };
+  switch (symbol) {
+    case Symbol::first:
+      bar(c.x - r);
+      triangle(c.x + 1.5F * scale, -1);
+      break;
+    case Symbol::back:
+      triangle(c.x, -1);
+      break;
+    case Symbol::play:
+      triangle(c.x, 1);
+      break;
+    case Symbol::pause:
+      bar(c.x - 3 * scale);
+      bar(c.x + 3 * scale);
+      break;
+    case Symbol::forward:
+      triangle(c.x, 1);
+      bar(c.x - r);
+      break;
+    case Symbol::last:
+      triangle(c.x - 1.5F * scale, 1);
+      bar(c.x + r);
+      break;
+  }
+  return pressed;
+}
+
+void drawButtons(PanelContext& context) {
+  const float s = context.scale;
+  const bool playing = context.session.timeline().playing();
+  if (symbolButton("##first", Symbol::first, "First step (Home)", s)) perform(context, R"({"do":"first"})");
+  ImGui::SameLine(0, 4 * s);
+  if (symbolButton("##back", Symbol::back, "Step back (Left)", s))
+    perform(context, R"({"do":"step","steps":-1})");
+  ImGui::SameLine(0, 4 * s);
+  if (symbolButton("##play", playing ? Symbol::pause : Symbol::play, "Play or pause (Space)", s)) {
+    perform(context, R"({"do":"play"})");
+  }
+  ImGui::SameLine(0, 4 * s);
+  if (symbolButton("##forward", Symbol::forward, "Step forward (Right)", s)) {
+    perform(context, R"({"do":"step","steps":1})");
+  }
+  ImGui::SameLine(0, 4 * s);
+  if (symbolButton("##last", Symbol::last, "Last step (End)", s)) perform(context, R"({"do":"last"})");
+}
+
+/// Any rate can be typed; the arrow next to it lists the usual ones.
+void drawRate(PanelContext& context) {
+  Session& session = context.session;
+  const float s = context.scale;
+  const double rate = session.timeline().rate();
+  double typed = rate;
+  ImGui::SetNextItemWidth(64 * s);
+  ImGui::InputDouble("##rate", &typed, 0, 0, "× %.4g", ImGuiInputTextFlags_AutoSelectAll);
+  if (ImGui::IsItemDeactivatedAfterEdit()) session.perform({"rate", {{"value", typed}}});
+  if (ImGui::IsItemHovered()) {
+    ImGui::SetTooltip("Scenario seconds per second, negative: backwards (J lower, L higher)");
+  }
+  ImGui::SameLine(0, 2 * s);
+  if (ImGui::BeginCombo("##rates", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_HeightLargest)) {
+    for (const double usual : playback::playRates()) {
+      if (ImGui::Selectable(fmt::format("× {:g}", usual).c_str(), usual == std::abs(rate))) {
+        session.perform({"rate", {{"value", std::copysign(usual, rate)}}});
+      }
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::SameLine(0, 10 * s);
+  bool backwards = rate < 0;
+  if (ImGui::Checkbox("backwards", &backwards)) perform(context, R"({"do":"reverse"})");
+  ImGui::SameLine(0, 10 * s);
+  bool loop = session.timeline().loop();
+  if (ImGui::Checkbox("loop", &loop)) session.perform({"loop", {{"on", loop}}});
+}
+
+/// The requested time, and the one on screen while it differs; as far as there is room.
+void drawTimes(const PanelContext& context) {
+  const Session& session = context.session;
+  const playback::Timeline& timeline = session.timeline();
+  const float spacing = 18 * context.scale;
+  const double asked_s = timeline.step_s();
+  const auto draw = [&](const std::string& text, const ImVec4& color) {
+    if (roomInLine(spacing) < ImGui::CalcTextSize(text.c_str()).x) return;
+    ImGui::SameLine(0, spacing);
+    ImGui::TextColored(color, "%s", text.c_str());
+  };
+  const ImVec4 ink = ImGui::GetStyleColorVec4(ImGuiCol_Text), muted = mutedColor(session.theme());
+  draw(fmt::format("t = {:g} s", asked_s), ink);
+  if (session.picture() && session.status().shown_s != asked_s) {
+    draw(fmt::format("shown {:g} s", session.status().shown_s), stateColor(render::ControllerState::busy));
+  }
+  if (!timeline.times_s().empty()) {
+    draw(fmt::format("step {} of {}", timeline.step() + 1, timeline.times_s().size()), ink);
+  }
+  if (const auto scenario = session.scenario(); scenario && !scenario->clock.epoch_utc.empty()) {
+    draw(scenario::utcAt(scenario->clock, asked_s), muted);
+  }
+}
+
+}  // namespace
+
+void drawTransport(PanelContext& context) {
+  drawButtons(context);
+  ImGui::SameLine(0, 14 * context.scale);
+  drawRate(context);
+  drawTimes(context);
+}
+
+}  // namespace emscape::view

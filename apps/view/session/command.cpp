@@ -1,0 +1,132 @@
+#include "apps/view/session/command.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "apps/view/session/session.h"
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+namespace {
+
+std::string allVerbs() {
+  std::vector<std::string> names;
+  for (const Verb& verb : verbs()) names.emplace_back(verb.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+bool fits(const Json& value, ArgumentType type) {
+  switch (type) {
+    case ArgumentType::number:
+      return value.is_number();
+    case ArgumentType::text:
+      return value.is_string();
+    case ArgumentType::boolean:
+      return value.is_boolean();
+    case ArgumentType::texts:
+      return value.is_array() &&
+             std::all_of(value.begin(), value.end(), [](const Json& text) { return text.is_string(); });
+    case ArgumentType::any:
+      return value.is_primitive();
+  }
+  return false;
+}
+
+const char* nameOf(ArgumentType type) {
+  switch (type) {
+    case ArgumentType::number:
+      return "a number";
+    case ArgumentType::text:
+      return "a text";
+    case ArgumentType::boolean:
+      return "true or false";
+    case ArgumentType::texts:
+      return "a list of texts";
+    case ArgumentType::any:
+      return "a number, a text, true or false";
+  }
+  return "";
+}
+
+}  // namespace
+
+const std::vector<Verb>& verbs() {
+  static const std::vector<Verb> all = [] {
+    std::vector<Verb> list = Session::verbs();
+    const std::vector<Verb> of_scripts{
+        {"wait_s", {{"seconds"}}, "The script waits"},
+        {"wait_state",
+         {{"state", kText}, {"timeout_s", kNumber, false}, {"must", kBoolean, false}},
+         "The script waits until the picture is BUSY, RESTORE, IDLE or exact, or a recording is `recorded`; "
+         "default: at most 60 s. `must` false: continues if that takes longer"},
+        {"wait_frame", {{"timeout_s", kNumber, false}}, "The script waits for the first picture"},
+        {"mark",
+         {{"text", kText}},
+         "Writes a line with this text into the log, with the values of a `frame`"},
+        {"key", {{"key", kText}}, "Presses and releases a key"},
+        {"mouse",
+         {{"x"},
+          {"y"},
+          {"button", kText, false},
+          {"to_x", kNumber, false},
+          {"to_y", kNumber, false},
+          {"wheel", kNumber, false}},
+         "Moves the cursor; with `button` (left, middle, right) clicks, or drags to `to_x`, `to_y`"},
+        {"expect",
+         {{"key", kText}, {"op", kText}, {"value", ArgumentType::any}},
+         "Compares a value of the log (== != < <= > >=); the program ends with status 5 if it is another"}};
+    list.insert(list.end(), of_scripts.begin(), of_scripts.end());
+    return list;
+  }();
+  return all;
+}
+
+const Verb& verbNamed(const std::string& name) {
+  for (const Verb& verb : verbs()) {
+    if (name == verb.name) return verb;
+  }
+  throw Error(ErrorCode::bad_input, fmt::format("unknown verb '{}': expected {}", name, allVerbs()));
+}
+
+Command parseCommand(const Json& object) {
+  if (!object.is_object() || !object.contains("do") || !object["do"].is_string()) {
+    throw Error(ErrorCode::bad_input, "expected an object with \"do\": \"VERB\"");
+  }
+  const Verb& verb = verbNamed(object["do"].get<std::string>());
+  Command command{verb.name, Json::object()};
+  for (const auto& [name, value] : object.items()) {
+    if (name == "do" || name == "at_s") continue;
+    const auto argument = std::find_if(verb.arguments.begin(), verb.arguments.end(),
+                                       [&n = name](const Argument& known) { return n == known.name; });
+    if (argument == verb.arguments.end()) {
+      throw Error(ErrorCode::bad_input, fmt::format("{}: unknown argument '{}'", verb.name, name));
+    }
+    if (!fits(value, argument->type)) {
+      throw Error(ErrorCode::bad_input, fmt::format("{}: {} is {}: expected {}", verb.name, name,
+                                                    value.dump(), nameOf(argument->type)));
+    }
+    command.arguments[name] = value;
+  }
+  for (const Argument& argument : verb.arguments) {
+    if (argument.required && !command.has(argument.name)) {
+      throw Error(ErrorCode::bad_input, fmt::format("{}: {} is missing", verb.name, argument.name));
+    }
+  }
+  return command;
+}
+
+Command parseCommand(const std::string& text) {
+  const Json object = Json::parse(text, nullptr, false);
+  if (object.is_discarded()) throw Error(ErrorCode::bad_input, fmt::format("'{}' is not JSON", text));
+  return parseCommand(object);
+}
+
+std::string toString(const Command& command) {
+  Json object{{"do", command.verb}};
+  object.update(command.arguments);
+  return object.dump();
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,35 @@
+/// Log of the window's events, as JSON lines.
+#pragma once
+
+#include <chrono>
+#include <fstream>
+#include <string>
+
+#include "apps/view/session/command.h"
+
+namespace emscape::view {
+
+/// One line per frame and one per event, each with the time since the start. One thread uses it.
+class EventLog {
+ public:
+  EventLog();
+  /// @throws Error (other) if the file cannot be written
+  explicit EventLog(const std::string& file);
+
+  bool open() const { return out_.is_open(); }
+  /// Seconds since the program started.
+  double now_s() const;
+  /// Writes {"t_s", "event", ...}; no effect if no file is open.
+  void write(const char* event, const Json& fields = Json::object());
+
+ private:
+  std::chrono::steady_clock::time_point start_;
+  std::ofstream out_;
+};
+
+/// Resident memory of this process (MiB).
+double residentMemory_mib();
+/// CPU time of this process (s).
+double processorTime_s();
+
+}  // namespace emscape::view

@@ -1,0 +1,94 @@
+#include "apps/view/session/input_queue.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+namespace {
+
+struct NamedKey {
+  const char* name;
+  int code;
+};
+/// Of two rows with the same name the first is the one that scripts press.
+constexpr NamedKey kKeys[] = {{"Space", GLFW_KEY_SPACE},
+                              {"Right", GLFW_KEY_RIGHT},
+                              {"Left", GLFW_KEY_LEFT},
+                              {"Up", GLFW_KEY_UP},
+                              {"Down", GLFW_KEY_DOWN},
+                              {"Home", GLFW_KEY_HOME},
+                              {"End", GLFW_KEY_END},
+                              {"Tab", GLFW_KEY_TAB},
+                              {"Esc", GLFW_KEY_ESCAPE},
+                              {"Enter", GLFW_KEY_ENTER},
+                              {"F1", GLFW_KEY_F1},
+                              {"F5", GLFW_KEY_F5},
+                              {"F12", GLFW_KEY_F12},
+                              {"+", GLFW_KEY_EQUAL},
+                              {"+", GLFW_KEY_KP_ADD},
+                              {"-", GLFW_KEY_MINUS},
+                              {"-", GLFW_KEY_KP_SUBTRACT},
+                              {".", GLFW_KEY_PERIOD},
+                              {",", GLFW_KEY_COMMA},
+                              {"[", GLFW_KEY_LEFT_BRACKET},
+                              {"]", GLFW_KEY_RIGHT_BRACKET},
+                              {"?", GLFW_KEY_SLASH},
+                              {"Backspace", GLFW_KEY_BACKSPACE},
+                              {"Delete", GLFW_KEY_DELETE}};
+
+bool isCharacter(int code, char first, char last) {
+  return code >= first && code <= last;
+}
+
+}  // namespace
+
+std::vector<InputEvent> InputQueue::takeFrame() {
+  std::vector<InputEvent> frame;
+  std::set<std::pair<InputEvent::Kind, int>> changed;
+  bool has_cursor = false, has_button = false;
+  while (!events_.empty()) {
+    const InputEvent& event = events_.front();
+    has_cursor = has_cursor || event.kind == InputEvent::Kind::cursor;
+    has_button = has_button || event.kind == InputEvent::Kind::button;
+    if (has_cursor && has_button) break;
+    const bool is_switch = (event.kind == InputEvent::Kind::key || event.kind == InputEvent::Kind::button) &&
+                           event.action != GLFW_REPEAT;
+    if (is_switch && !changed.insert({event.kind, event.code}).second) break;
+    frame.push_back(event);
+    events_.pop_front();
+  }
+  return frame;
+}
+
+KeyChord chordOf(const InputEvent& event) {
+  KeyChord chord;
+  chord.control = (event.modifiers & GLFW_MOD_CONTROL) != 0;
+  chord.shift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
+  if (isCharacter(event.code, 'A', 'Z') || isCharacter(event.code, '0', '9')) {
+    chord.key = std::string(1, static_cast<char>(event.code));
+  }
+  for (const NamedKey& key : kKeys) {
+    if (key.code == event.code) chord.key = key.name;
+  }
+  // These need Shift on some keyboards and not on others.
+  if (chord.key == "+" || chord.key == "?") chord.shift = false;
+  return chord;
+}
+
+std::array<InputEvent, 2> eventsOf(const KeyChord& chord) {
+  int code = GLFW_KEY_UNKNOWN;
+  if (chord.key.size() == 1 && (isCharacter(chord.key[0], 'A', 'Z') || isCharacter(chord.key[0], '0', '9'))) {
+    code = chord.key[0];
+  }
+  for (const NamedKey& key : kKeys) {
+    if (code == GLFW_KEY_UNKNOWN && chord.key == key.name) code = key.code;
+  }
+  if (code == GLFW_KEY_UNKNOWN) throw Error(ErrorCode::bad_input, fmt::format("unknown key '{}'", chord.key));
+  const int modifiers = (chord.control ? GLFW_MOD_CONTROL : 0) | (chord.shift ? GLFW_MOD_SHIFT : 0);
+  return {InputEvent{InputEvent::Kind::key, code, 0, GLFW_PRESS, modifiers, 0, 0},
+          InputEvent{InputEvent::Kind::key, code, 0, GLFW_RELEASE, modifiers, 0, 0}};
+}
+
+}  // namespace emscape::view

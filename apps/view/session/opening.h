@@ -1,0 +1,25 @@
+/// Preparation of a file to open: its kind, and the view with which it is shown.
+#pragma once
+
+#include <string>
+
+#include "apps/view/session/files.h"
+#include "apps/view/session/view_options.h"
+
+namespace emscape::view {
+
+/// Result of a request.
+struct Opening {
+  ViewOptions options;  ///< of the new session
+  std::string colors;   ///< a transfer function for the present session; else empty
+  /// The edits that do not apply any more, each with the reason; empty if all do.
+  std::string left_out;
+};
+
+/// Examines the file: its kind by name and content, the faults of a scenario, the edits that still apply.
+/// Reads files: to be called on a background thread.
+/// @param present  options of the present session; new inputs are shown with its `view`
+/// @throws Error (bad_input) that lists the faults
+Opening prepareOpening(const OpenRequest& request, const ViewOptions& present);
+
+}  // namespace emscape::view

@@ -1,0 +1,21 @@
+/// The command that draws a view into a file.
+#pragma once
+
+#include <string>
+
+#include "apps/view/session/view_options.h"
+#include "emscape/playback/shown_field.h"
+
+namespace emscape::view {
+
+/// `emscape render INPUT --state FILE -o picture.png`.
+std::string renderCommand(const ViewOptions& options, const std::string& state_file);
+
+/// The same with the options that describe the view, and --set for its edits. Colours that `render` would not
+/// fit itself are written to a file in stateFolder()/copied.
+/// @param shown  the field on screen
+/// @throws Error (other) if that file cannot be written
+std::string renderCommand(const ViewOptions& options, const playback::ViewState& view,
+                          const playback::ShownField& shown);
+
+}  // namespace emscape::view

@@ -1,0 +1,233 @@
+#include "apps/view/session/session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "emscape/base/error.h"
+#include "emscape/render/annotate/overlay.h"
+#include "emscape/render/cell_renderer.h"
+
+namespace emscape::view {
+namespace {
+
+playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::ComputeTarget& target) {
+  constexpr std::size_t kCacheBytes = std::size_t{512} << 20;
+  constexpr int kNiceness = 5;  // the window has priority
+  playback::LiveOptions live;
+  live.target = target;
+  live.controller = options.controller;
+  live.cache_bytes = kCacheBytes;
+  live.allow_missing_terrain = options.allow_missing_terrain;
+  live.quantity = options.view.quantity;
+  live.edits = options.view.edits;
+  live.mesh = options.mesh;
+  live.compare = options.view.compare;
+  live.time_s = options.view.time_s;
+  live.niceness = kNiceness;
+  return live;
+}
+
+/// Nothing is drawn before the window has set the picture's size.
+playback::PictureStyle styleOf(const ViewOptions& options) {
+  playback::PictureStyle style = playback::pictureStyleOf(options.view);
+  style.transfer = options.transfer;
+  style.cells = options.cells;
+  style.size = {};
+  return style;
+}
+
+}  // namespace
+
+Session::Session(const ViewOptions& options, const playback::ComputeTarget& target, WindowControl& window,
+                 EventLog& log, std::function<void()> wake, std::shared_ptr<Files> files)
+    : options_(options),
+      window_(window),
+      log_(log),
+      target_(target),
+      wake_(std::move(wake)),
+      live_(options.input, options.scenario, styleOf(options), liveOptionsOf(options, target), wake_),
+      pattern_(options.controller.pattern),
+      edit_queue_(wake_),
+      prober_(wake_),
+      files_(files ? std::move(files) : std::make_shared<Files>()),
+      opened_unsaved_(options.unsaved_edits),
+      has_kept_(options.unsaved_edits),
+      file_watch_(wake_),
+      jobs_(wake_) {
+  watchFiles();
+  showView(options.view);
+  if (options.view.range && !options.view.transfer && options.transfer.empty()) {
+    live_.setRange(*options.view.range);
+  }
+}
+
+std::vector<Verb> Session::verbs() {
+  std::vector<Verb> all;
+  for (const auto& topic :
+       {timeVerbs(), cameraVerbs(), scenarioVerbs(), probeVerbs(), pictureVerbs(), planeVerbs(),
+        transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(), recordVerbs()}) {
+    all.insert(all.end(), topic.begin(), topic.end());
+  }
+  return all;
+}
+
+void Session::perform(const Command& command) {
+  Json fields{{"do", command.verb}};
+  fields.update(command.arguments);
+  log_.write("command", fields);
+  touched_ = true;
+  const Verb& verb = verbNamed(command.verb);
+  if (!verb.run) throw Error(ErrorCode::bad_input, command.verb + ": only a script can do that");
+  try {
+    verb.run(*this, command);
+  } catch (const Error& error) {
+    tell(error.what(), true);
+  }
+  noteSteps();
+}
+
+void Session::tell(const std::string& text, bool is_error) {
+  notice_ = {text, is_error, log_.now_s()};
+  log_.write(is_error ? "error" : "notice", {{"text", text}});
+}
+
+// --- time, pictures, scenario ---
+
+void Session::askTime() {
+  if (timeline_.times_s().empty() || asked_s_ == timeline_.step_s()) return;
+  asked_s_ = timeline_.step_s();
+  live_.seek(*asked_s_);
+}
+
+void Session::takeScenario() {
+  std::vector<double> times_s = live_.times_s();
+  if (times_s.empty() || times_s == timeline_.times_s()) return;
+  const bool is_first = timeline_.times_s().empty();
+  timeline_.setSteps(std::move(times_s));
+  if (is_first) {
+    timeline_.seek(options_.view.time_s);
+    if (const auto& part = options_.view.play_range) timeline_.setPlayRange(part->begin_s, part->end_s);
+    if (const auto& part = options_.view.visible_time) timeline_.setVisible(part->begin_s, part->end_s);
+    asked_s_ = timeline_.step_s();
+    if (live_.scenario()) {
+      edits_.emplace(live_.scenario());
+      shown_scenario_ = edits_->scenario();
+      watchFiles();
+      shown_quantity_ = quantity_.empty() ? shown_scenario_->output.quantities.front() : quantity_;
+    }
+  }
+  if (edits_) timeline_.setScenario(*edits_->scenario());
+}
+
+void Session::takePicture() {
+  const std::shared_ptr<const playback::LivePicture> next = live_.picture();
+  if (!next || next == picture_) return;
+  const bool is_first = !picture_;
+  picture_ = next;
+  takeScenario();
+  if (takes_colors_) takeColors();
+  if (is_first) log_.write("first_picture", {{"device", picture_->status.device}});
+  if (is_first && !options_.state.empty()) noteSavedView(options_.state);
+}
+
+void Session::finishJobs() {
+  try {
+    while (jobs_.finish()) touched_ = true;
+  } catch (const std::exception& error) {
+    tell(error.what(), true);
+  }
+  noteSteps();
+}
+
+bool Session::update() {
+  const double now_s = log_.now_s();
+  timeline_.advance(now_s - advanced_at_s_);
+  advanced_at_s_ = now_s;
+  askTime();
+  if (timeline_.times_s().empty()) takeScenario();
+  takeEdits();
+  const playback::LiveStatus before = status_;
+  status_ = live_.status();
+  const auto old_picture = picture_;
+  takePicture();
+  countValues();
+  if (fit_) fitColors();
+  finishJobs();
+  if (touched_) status_ = live_.status();  // a pending request is not shown yet
+  for (const playback::StateChange& change : live_.takeStateChanges()) {
+    log_.write("state", {{"from", render::toString(logged_state_)}, {"to", render::toString(change.to)}});
+    logged_state_ = change.to;
+  }
+  if (status_.error != told_error_) {
+    told_error_ = status_.error;
+    if (!told_error_.empty()) tell(told_error_, true);
+  }
+  if (const auto recorded = files_->recorder.takeOutcome()) tell(recorded->text, recorded->is_error);
+  takeChangedFiles();
+  writePendingPicture();
+  keepEdits(now_s);
+  const bool notice_ends = !notice_.text.empty() && now_s - notice_.since_s > (notice_.is_error ? 12 : 4);
+  if (notice_ends) notice_ = {};
+  prober_.turnOn(panels.probe && !panels.hidden);
+  const bool is_read = prober_.update(picture_);
+  const bool touched = std::exchange(touched_, false);
+  return touched || is_read || notice_ends || picture_ != old_picture || status_.state != before.state ||
+         status_.computing != before.computing || status_.cached_steps != before.cached_steps ||
+         timeline_.playing();
+}
+
+std::optional<double> Session::nextUpdate_s() const {
+  constexpr double kRedraw_s = 1.0 / 30;
+  if (timeline_.playing()) return std::min(kRedraw_s, timeline_.untilNextStep_s().value_or(kRedraw_s));
+  if (!notice_.text.empty()) return 0.5;
+  if (files_->recorder.running() || files_->browser.reading()) return 0.1;
+  if (keep_at_s_) return std::max(0.0, *keep_at_s_ - log_.now_s());
+  return std::nullopt;
+}
+
+void Session::setPictureSize(render::ImageSize size) {
+  if (size == picture_size_ || size.width < 1 || size.height < 1) return;
+  picture_size_ = size;
+  live_.resize(size);
+}
+
+bool Session::exact() const {
+  return picture_ && status_.exact;
+}
+
+bool Session::settled() const {
+  return isPictureSettled() && !working();
+}
+
+bool Session::isPictureSettled() const {
+  return picture_ && !edit_queue_.isBusy() && status_.isSettled() && !fit_ &&
+         picture_->status.frame == status_.frame && picture_->size == picture_size_;
+}
+
+std::optional<Viewport> Session::viewport() const {
+  if (!picture_) return std::nullopt;
+  return Viewport{picture_->box, picture_->size,
+                  render::overlayMargins(picture_->size, picture_->annotations)};
+}
+
+// --- requests ---
+
+void Session::cameraMoved() {
+  live_.setCamera(camera_.spec());
+}
+
+void Session::setSettings(const render::RenderSettings& settings) {
+  if (picture_ && picture_->cells) {
+    try {
+      render::checkCellSettings(settings);
+    } catch (const Error& error) {
+      return tell(error.what(), true);
+    }
+  }
+  settings_ = settings;
+  if (settings.mode != render::CompositingMode::iso) fog_mode_ = settings.mode;
+  live_.setSettings(settings);
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,284 @@
+/// The state and commands of the window, without drawing and input. No OpenGL, no ImGui.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/view/session/background_jobs.h"
+#include "apps/view/session/camera_control.h"
+#include "apps/view/session/command.h"
+#include "apps/view/session/event_log.h"
+#include "apps/view/session/file_watch.h"
+#include "apps/view/session/files.h"
+#include "apps/view/session/open_panels.h"
+#include "apps/view/session/prober.h"
+#include "apps/view/session/undo_order.h"
+#include "apps/view/session/value_summary.h"
+#include "apps/view/session/view_options.h"
+#include "apps/view/session/window_control.h"
+#include "emscape/playback/autosave.h"
+#include "emscape/playback/edit_history.h"
+#include "emscape/playback/live_view.h"
+#include "emscape/playback/timeline.h"
+#include "emscape/playback/transfer_editor.h"
+#include "playback/edit_queue.h"
+
+namespace emscape::view {
+
+/// A line that reports the result of a command to the user.
+struct Notice {
+  std::string text;
+  bool is_error = false;
+  double since_s = 0;
+};
+
+/// Edits that were refused.
+struct Rejection {
+  std::vector<scenario::Edit> edits;
+  std::string message;
+};
+
+/// The first emscape-NNNN.png that does not exist.
+std::string newPictureName();
+
+/// Runs commands on a LiveView and holds the requested state. The thread of the window uses it.
+class Session {
+ public:
+  /// @param wake   called from any thread when there is something new to show
+  /// @param files  shared by the sessions of a window; null: not shared
+  Session(const ViewOptions& options, const playback::ComputeTarget& target, WindowControl& window,
+          EventLog& log, std::function<void()> wake, std::shared_ptr<Files> files = nullptr);
+  /// Waits until the files are written.
+  ~Session() = default;
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// The verbs of perform(): one table per topic, session_TOPIC.cpp.
+  static std::vector<Verb> verbs();
+  /// Executes a command. Errors become the notice. Waiting, keys, mouse and expect belong to the script.
+  void perform(const Command& command);
+  /// Changes values of the scenario while a control or a platform is dragged: one undo step.
+  void drag(const std::vector<scenario::Edit>& edits);
+  void dragValue(const std::string& path, const std::string& value) { drag({{path, value}}); }
+  /// Changes colours and opacities while a control is dragged: one undo step.
+  void dragTransfer(const std::function<void(playback::TransferEditor&)>& change);
+  /// The same as a separate step.
+  void changeTransfer(const std::function<void(playback::TransferEditor&)>& change);
+  /// Ends a drag of either kind.
+  void endDrag();
+  /// Restores the values before the drag.
+  void cancelDrag();
+  bool isDragging() const { return edit_queue_.isDragging(); }
+
+  /// Advances time and takes new results. @return true if the window must be drawn
+  bool update();
+  /// Seconds until update() must be called again; none: not before an event.
+  std::optional<double> nextUpdate_s() const;
+  /// The part of the window that the picture fills.
+  void setPictureSize(render::ImageSize size);
+  render::ImageSize pictureSize() const { return picture_size_; }
+  /// True if busy pictures that a GPU casts are left there; see LivePicture::on_device.
+  void keepOnDevice(bool keep) { live_.keepOnDevice(keep); }
+
+  // --- state on screen ---
+  const playback::LivePicture* picture() const { return picture_.get(); }
+  const playback::LiveStatus& status() const { return status_; }
+  bool exact() const;
+  /// True if requested edits or readings are pending: scripts wait for them.
+  bool isAnswering() const { return edit_queue_.isBusy() || prober_.isBusy(); }
+  /// True if the picture is exact and no request is pending.
+  bool settled() const;
+  /// True if its files are being read or written, or will be when it is settled, or another session is being
+  /// opened.
+  bool working() const;
+  /// True if files are being read or written.
+  bool writing() const { return jobs_.busy(); }
+  /// For mouse movements; none before the first picture.
+  std::optional<Viewport> viewport() const;
+  /// Report of a frame, for the log and for script comparisons.
+  Json report() const;
+
+  // --- files: session_state.cpp, session_files.cpp ---
+  const ViewOptions& options() const { return options_; }
+  /// True if an input is open or is being opened; else the window offers the start panel.
+  bool hasInput() const { return !options_.input.empty(); }
+  Files& files() { return *files_; }
+  const Files& files() const { return *files_; }
+  /// The requested state, as a view for a file.
+  playback::ViewState viewState() const;
+  bool hasUnsavedEdits() const;
+  /// The autosave of an earlier run that did not end regularly.
+  const std::optional<playback::AutosavedView>& keptView() const { return kept_view_; }
+  /// Files of the input that have changed on the disk since they were read.
+  const std::vector<std::string>& changedFiles() const { return changed_files_; }
+  /// Ends this session. @param keeps_edits  true: unsaved edits are offered when the input is opened again
+  void leave(bool keeps_edits);
+  /// Called when the session comes on screen. @param left_out  edits that did not apply; may be empty
+  void shown(const std::string& left_out);
+  void record(const RecordRange& range, const std::string& output);
+
+  CameraControl& camera() { return camera_; }
+  void cameraMoved();
+  const playback::Timeline& timeline() const { return timeline_; }
+  const render::RenderSettings& settings() const { return settings_; }
+  /// Those that the field on screen does not have become a notice.
+  void setSettings(const render::RenderSettings& settings);
+  /// A plane through the middle of the box; a vertical one faces the viewer.
+  render::CutPlane newPlane(render::CutPlane::Kind kind) const;
+  /// @throws Error (bad_input) for too many, or values out of their range
+  void setPlanes(const std::vector<render::CutPlane>& planes);
+  /// True if the difference to the reference is requested instead of the field.
+  bool compares() const { return compares_; }
+  /// Colours and opacities; null before the first picture, and for categories, which have fixed colours.
+  const playback::TransferEditor* transfer() const { return transfer_ ? &*transfer_ : nullptr; }
+  /// Statistics of the values of the picture's volume, or of the previous one while they are computed; null
+  /// before the first. Computed while the colour panel is open.
+  const ValueSummary* values() const { return values_.get(); }
+  render::Theme theme() const { return theme_; }
+  const std::string& quantity() const { return quantity_; }
+  std::optional<render::Pattern> pattern() const { return pattern_; }
+  bool showsTerrain() const { return show_terrain_; }
+  bool showsEmitters() const { return show_emitters_; }
+  /// As edited; null for volumes alone, and before the input is open.
+  playback::ScenarioPtr scenario() const { return edits_ ? edits_->scenario() : nullptr; }
+  /// The last edits, if they were refused.
+  const std::optional<Rejection>& rejection() const { return rejection_; }
+  Prober& prober() { return prober_; }
+  const Prober& prober() const { return prober_; }
+  /// True if there is a change of the scenario or of the colours.
+  bool canUndo() const { return undo_order_.canUndo() || dragging_ || isDragging(); }
+  bool canRedo() const { return undo_order_.canRedo() && !dragging_ && !isDragging(); }
+  const std::vector<std::optional<playback::Bookmark>>& bookmarks() const { return bookmarks_; }
+  const Notice& notice() const { return notice_; }
+  void tell(const std::string& text, bool is_error = false);
+  Panels panels;
+  EventLog& log() { return log_; }
+
+ private:
+  static std::vector<Verb> timeVerbs();
+  static std::vector<Verb> cameraVerbs();
+  static std::vector<Verb> scenarioVerbs();
+  static std::vector<Verb> probeVerbs();
+  static std::vector<Verb> pictureVerbs();
+  static std::vector<Verb> planeVerbs();
+  static std::vector<Verb> transferVerbs();
+  static std::vector<Verb> windowVerbs();
+  static std::vector<Verb> stateVerbs();
+  static std::vector<Verb> fileVerbs();
+  static std::vector<Verb> recordVerbs();
+
+  void switchPlanes(const Command& command);
+  void changePlane(const Command& command);
+  void browse(FileBrowser::Purpose purpose);
+  void ask(OpenRequest request);
+  /// @throws Error (bad_input) if nothing is open
+  void requireInput() const;
+  void showView(const playback::ViewState& view);
+  void noteSavedView(const std::string& file);
+  std::optional<render::TransferFunction> colorsInUse() const;
+  void saveScenario(const std::string& file, bool then_quits);
+  void saveView(const std::string& file);
+  void copyCommand();
+  void writePendingPicture();
+  void lookForKeptView();
+  void watchFiles();
+  void takeChangedFiles();
+  void keepEdits(double now_s);
+  void keepView();
+  void dropKeptView();
+  bool isPictureSettled() const;
+  std::string recordTimes(const RecordRange& range) const;
+  void finishJobs();
+  void askTime();
+  void takeScenario();
+  void takePicture();
+  void showScenario();
+  /// Takes effect with one of the next updates.
+  void changeScenario(const std::vector<scenario::Edit>& edits);
+  void takeEdits();
+  void focusEmitter(const std::optional<std::string>& name);
+  void focusGround(double x, double y);
+  /// Report of the probe for the log.
+  Json probeReport() const;
+  void tellRate();
+  /// Runs after the edits that were requested before.
+  void askUndo(bool undo);
+  void undoOrRedo(bool undo);
+  void noteSteps();
+
+  // Colours: session_transfer.cpp
+  enum class Fit { step, series, anew };
+  void takeColors();
+  void countValues();
+  void fitColors();
+  /// @throws Error (bad_input) if there are no editable colours
+  playback::TransferEditor& requireTransfer();
+  void readTransfer(const std::string& file);
+  void saveTransfer(std::string file);
+  Json transferReport() const;
+
+  const ViewOptions options_;
+  WindowControl& window_;
+  EventLog& log_;
+  const playback::ComputeTarget target_;
+  const std::function<void()> wake_;
+  playback::LiveView live_;
+
+  std::shared_ptr<const playback::LivePicture> picture_;
+  playback::LiveStatus status_;
+  std::string told_error_;
+  render::ControllerState logged_state_ = render::ControllerState::idle;
+  CameraControl camera_;
+  playback::Timeline timeline_;
+  std::optional<double> asked_s_;
+  double advanced_at_s_ = 0;
+  render::ImageSize picture_size_;
+  render::RenderSettings settings_;
+  render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // that the key I returns to
+  std::optional<playback::TransferEditor> transfer_;
+  bool takes_colors_ = true;  // from the next pictures, whose colours are fitted again
+  std::shared_ptr<const ValueSummary> values_;
+  bool counting_ = false;
+  std::optional<Fit> fit_;  // requested, but its data are not known yet
+  render::Theme theme_;
+  std::string quantity_;
+  std::optional<render::Pattern> pattern_;
+  bool show_terrain_, show_emitters_;
+  bool compares_;
+  std::size_t focused_ = 0;
+  std::vector<std::optional<playback::Bookmark>> bookmarks_{9};
+
+  std::optional<playback::EditHistory> edits_;
+  playback::EditQueue edit_queue_;
+  playback::ScenarioPtr shown_scenario_;  // the scenario of the live view
+  std::string shown_quantity_;            // the same
+  std::optional<Rejection> rejection_;
+  Prober prober_;
+  UndoOrder undo_order_;
+  bool dragging_ = false;  // the colours
+  bool touched_ = false;   // by a command since the last update()
+  std::shared_ptr<Files> files_;
+  std::string saved_file_;    // view file that ...
+  std::string saved_text_;    // ... holds this view
+  std::string copied_;        // the command that was copied last
+  std::string picture_file_;  // to be written when the picture is settled
+  bool opened_unsaved_;       // with unsaved edits
+  std::string kept_hash_;     // of the scenario in the autosave, or of one that needs none
+  std::optional<double> keep_at_s_;
+  bool has_kept_;  // true: there is an autosave, which a regular end removes
+  std::optional<playback::AutosavedView> kept_view_;
+  FileWatch file_watch_;
+  std::vector<std::string> changed_files_;
+  Notice notice_;
+  BackgroundJobs jobs_;  // destroyed first
+};
+
+/// The edits that move a platform.
+/// @throws Error (bad_input) if there is no such platform, or it moves along a track
+std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const std::string& platform,
+                                    double latitude_deg, double longitude_deg);
+
+}  // namespace emscape::view

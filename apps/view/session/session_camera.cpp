@@ -1,0 +1,140 @@
+/// Verbs of the camera and its bookmarks.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "apps/view/session/session.h"
+#include "emscape/base/error.h"
+#include "emscape/playback/pick.h"
+
+namespace emscape::view {
+namespace {
+
+constexpr double kFocus_diagonals = 0.45;  // distance of the target
+
+/// 1..9. @throws Error (bad_input)
+int bookmarkNumber(const Command& command) {
+  const double number = command.number("number");
+  if (!(number >= 1 && number <= 9))
+    throw Error(ErrorCode::bad_input, fmt::format("{}: number {:g}: expected 1..9", command.verb, number));
+  return static_cast<int>(number);
+}
+
+}  // namespace
+
+void Session::focusEmitter(const std::optional<std::string>& name) {
+  const std::vector<render::Marker>& markers = picture_->annotations.markers;
+  if (markers.empty()) return;
+  std::size_t index = focused_ % markers.size();
+  if (name) {
+    const auto named = std::find_if(markers.begin(), markers.end(),
+                                    [&](const render::Marker& marker) { return marker.label == *name; });
+    if (named == markers.end()) {
+      throw Error(ErrorCode::bad_input, fmt::format("focus: there is no emitter '{}'", *name));
+    }
+    index = static_cast<std::size_t>(named - markers.begin());
+  }
+  focused_ = index + 1;
+  camera_.focus(markers[index].position_m, kFocus_diagonals, *viewport());
+  cameraMoved();
+  tell(markers[index].label);
+}
+
+void Session::focusGround(double x, double y) {
+  const playback::LivePicture& picture = *picture_;
+  const std::optional<Vec3d> ground_m =
+      picture.ground
+          ? playback::pickGround(picture.camera, picture.box, picture.size, x, y, *picture.ground,
+                                 picture.settings.planes)
+          : playback::pickLevel(picture.camera, picture.box, picture.size, x, y, picture.box.lower_m.z);
+  if (!ground_m) return;
+  camera_.focus(*ground_m, std::min(kFocus_diagonals, camera_.spec().distance.value_or(kFocus_diagonals)),
+                *viewport());
+  cameraMoved();
+}
+
+std::vector<Verb> Session::cameraVerbs() {
+  return {
+      {"orbit",
+       {{"azimuth_deg", kNumber, false}, {"elevation_deg", kNumber, false}},
+       "Turns the camera about its target by these angles",
+       [](Session& session, const Command& command) {
+         const std::optional<Viewport> view = session.viewport();
+         if (!view) return;
+         session.camera_.orbit(command.number("azimuth_deg"), command.number("elevation_deg"), *view);
+         session.cameraMoved();
+       }},
+      {"pan",
+       {{"right_px"}, {"down_px"}},
+       "Moves the scene with the cursor",
+       [](Session& session, const Command& command) {
+         const std::optional<Viewport> view = session.viewport();
+         if (!view) return;
+         session.camera_.pan(command.number("right_px"), command.number("down_px"), *view);
+         session.cameraMoved();
+       }},
+      {"dolly",
+       {{"factor"}},
+       "Multiplies the distance to the target",
+       [](Session& session, const Command& command) {
+         const std::optional<Viewport> view = session.viewport();
+         if (!view || !(command.number("factor") > 0)) return;
+         session.camera_.dolly(command.number("factor"), view->size.width / 2.0, view->size.height / 2.0,
+                               *view);
+         session.cameraMoved();
+       }},
+      {"camera",
+       {{"spec", kText}},
+       "Sets the camera, as `emscape render --camera` does",
+       [](Session& session, const Command& command) {
+         session.camera_.set(render::parseCamera(command.text("spec")));
+         session.cameraMoved();
+       }},
+      {"reset_view",
+       {},
+       "Back to the camera of the start",
+       [](Session& session, const Command&) {
+         session.camera_.set(session.options_.view.camera);
+         session.cameraMoved();
+       }},
+      {"focus",
+       {{"emitter", kText, false}, {"x", kNumber, false}, {"y", kNumber, false}},
+       "Looks at an emitter, or at the ground under a pixel of the picture; without either at the next "
+       "emitter",
+       [](Session& session, const Command& command) {
+         if (!session.picture_) return;
+         if (command.has("x") && command.has("y")) {
+           session.focusGround(command.number("x"), command.number("y"));
+         } else {
+           session.focusEmitter(command.has("emitter") ? std::optional(command.text("emitter"))
+                                                       : std::nullopt);
+         }
+       }},
+      {"bookmark",
+       {{"number"}},
+       "Stores camera and time under a number, 1..9",
+       [](Session& session, const Command& command) {
+         const int number = bookmarkNumber(command);
+         session.bookmarks_[static_cast<std::size_t>(number - 1)] =
+             playback::Bookmark{std::to_string(number), session.camera_.spec(), session.timeline_.step_s()};
+         session.tell(fmt::format("bookmark {} stored", number));
+       }},
+      {"recall",
+       {{"number"}},
+       "Shows a bookmark",
+       [](Session& session, const Command& command) {
+         const int number = bookmarkNumber(command);
+         if (!session.bookmarks_[static_cast<std::size_t>(number - 1)]) {
+           throw Error(ErrorCode::bad_input,
+                       fmt::format("bookmark {} is empty: Ctrl+{} stores it", number, number));
+         }
+         const playback::Bookmark& stored = *session.bookmarks_[static_cast<std::size_t>(number - 1)];
+         session.camera_.set(stored.camera);
+         session.cameraMoved();
+         if (stored.time_s) session.timeline_.seek(*stored.time_s);
+         session.askTime();
+       }},
+  };
+}
+
+}  // namespace emscape::view

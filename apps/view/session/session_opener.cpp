@@ -1,0 +1,71 @@
+#include "apps/view/session/session_opener.h"
+
+#include <utility>
+
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+
+bool SessionOpener::update(std::unique_ptr<Session>& session) {
+  if (files_->request && !task_.active()) {
+    OpenRequest request = *std::exchange(files_->request, std::nullopt);
+    endBeside(std::move(next_));  // there is a newer request
+    ViewOptions present = session->options();
+    present.view = session->viewState();
+    // A new input is shown with the options of the start, but with the present window.
+    playback::ViewState fresh;
+    fresh.theme = present.view.theme;
+    fresh.open_panels = present.view.open_panels;
+    present.view = fresh;
+    task_.start([request = std::move(request), present] { return prepareOpening(request, present); });
+  }
+  if (task_.done()) take(*session);
+  if (!next_) return false;
+  next_->setPictureSize(session->pictureSize());
+  next_->update();
+  if (next_->picture()) {
+    replace(session);
+    return true;
+  }
+  if (!next_->status().error.empty()) giveUp(*session, next_->status().error);
+  return false;
+}
+
+void SessionOpener::take(Session& session) {
+  try {
+    opening_ = task_.take();
+    if (files_->request) return;  // there is a newer request
+    if (!opening_.colors.empty()) {
+      files_->is_opening = false;
+      session.perform({"transfer", {{"file", opening_.colors}}});
+      return;
+    }
+    next_ = make_(opening_.options);
+  } catch (const std::exception& error) {
+    giveUp(session, error.what());
+  }
+}
+
+void SessionOpener::replace(std::unique_ptr<Session>& session) {
+  const bool takes_edits_along =
+      opening_.options.unsaved_edits && session->options().input == opening_.options.input;
+  session->leave(!takes_edits_along);
+  endBeside(std::move(session));
+  session = std::move(next_);
+  files_->is_opening = files_->request.has_value();
+  session->shown(opening_.left_out);
+}
+
+void SessionOpener::giveUp(Session& session, const std::string& why) {
+  endBeside(std::move(next_));
+  files_->is_opening = files_->request.has_value();
+  session.tell(why, true);
+}
+
+/// Destroys a session on a background thread, since it waits for its running field.
+void SessionOpener::endBeside(std::unique_ptr<Session> session) {
+  if (!session) return;
+  old_sessions_.push([old = std::shared_ptr<Session>(std::move(session))]() mutable { old.reset(); });
+}
+
+}  // namespace emscape::view

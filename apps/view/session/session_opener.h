@@ -1,0 +1,45 @@
+/// Replaces the session on screen by another one, without blocking the window.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "apps/view/session/opening.h"
+#include "apps/view/session/session.h"
+#include "emscape/playback/async_task.h"
+#include "playback/background_writer.h"
+
+namespace emscape::view {
+
+/// Serves the request of Files: examines the file and opens it, both in the background; when the first
+/// picture is ready, the new session replaces the old one. If it cannot be opened, the error is reported and
+/// the old session stays. The thread of the window uses it.
+class SessionOpener {
+ public:
+  using Make = std::function<std::unique_ptr<Session>(const ViewOptions&)>;
+
+  /// @param make  a session that shares `files`
+  SessionOpener(std::shared_ptr<Files> files, Make make) : files_(std::move(files)), make_(std::move(make)) {}
+
+  /// @param session  replaced when the new one is ready
+  /// @return true if it was
+  bool update(std::unique_ptr<Session>& session);
+  /// True if update() is to be called often.
+  bool active() const { return task_.active() || files_->request || next_; }
+
+ private:
+  void take(Session& session);
+  void replace(std::unique_ptr<Session>& session);
+  void giveUp(Session& session, const std::string& why);
+  void endBeside(std::unique_ptr<Session> session);
+
+  std::shared_ptr<Files> files_;
+  const Make make_;
+  playback::Event event_;
+  playback::AsyncTask<Opening> task_{event_};
+  Opening opening_;
+  std::unique_ptr<Session> next_;
+  playback::BackgroundWriter old_sessions_{1000};
+};
+
+}  // namespace emscape::view

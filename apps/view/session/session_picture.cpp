@@ -1,0 +1,125 @@
+/// Verbs of the picture: mode, quantity, what is drawn.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "apps/view/session/session.h"
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+
+std::vector<Verb> Session::pictureVerbs() {
+  return {
+      {"mode",
+       {{"mode", kText, false}},
+       "dvr, mida, mip or iso; without a name the next one",
+       [](Session& session, const Command& command) {
+         constexpr render::CompositingMode kModes[] = {
+             render::CompositingMode::dvr, render::CompositingMode::mida, render::CompositingMode::mip,
+             render::CompositingMode::iso};
+         render::RenderSettings settings = session.settings_;
+         settings.mode = command.has("mode") ? render::parseCompositingMode(command.text("mode"))
+                                             : kModes[(static_cast<int>(session.settings_.mode) + 1) % 4];
+         session.setSettings(settings);
+       }},
+      {"iso",
+       {{"value", kNumber, false}},
+       "Value of the isosurface; without one: shows it, or returns to the mode before",
+       [](Session& session, const Command& command) {
+         render::RenderSettings settings = session.settings_;
+         const bool shown = settings.mode == render::CompositingMode::iso;
+         settings.mode = shown && !command.has("value") ? session.fog_mode_ : render::CompositingMode::iso;
+         if (command.has("value")) settings.iso_value = command.number("value");
+         session.setSettings(settings);
+       }},
+      {"shading",
+       {{"on", kBoolean, false}},
+       "Shading of dvr and mida; iso is always shaded",
+       [](Session& session, const Command& command) {
+         render::RenderSettings settings = session.settings_;
+         settings.shading = command.boolean("on", !settings.shading);
+         session.setSettings(settings);
+       }},
+      {"exaggeration",
+       {{"factor"}},
+       "Vertical exaggeration; 0: chosen from the box",
+       [](Session& session, const Command& command) {
+         const double factor = command.number("factor");
+         if (!(factor >= 0 && factor <= 100))
+           throw Error(ErrorCode::bad_input,
+                       fmt::format("exaggeration {:g}: expected a number 0..100", factor));
+         render::RenderSettings settings = session.settings_;
+         settings.vertical_exaggeration = factor;
+         session.setSettings(settings);
+       }},
+      {"step_voxels",
+       {{"value"}},
+       "Distance of samples in voxels, 0.05..10",
+       [](Session& session, const Command& command) {
+         const double value = command.number("value");
+         if (!(value >= 0.05 && value <= 10))
+           throw Error(ErrorCode::bad_input,
+                       fmt::format("step_voxels {:g}: expected a number 0.05..10", value));
+         render::RenderSettings settings = session.settings_;
+         settings.step_voxels = value;
+         session.setSettings(settings);
+       }},
+      {"quantity",
+       {{"name", kText}},
+       "Shows another quantity",
+       [](Session& session, const Command& command) {
+         session.quantity_ = command.text("name");
+         session.shown_quantity_ = session.quantity_;
+         session.takes_colors_ = true;
+         session.live_.setQuantity(session.quantity_);
+       }},
+      {"pattern",
+       {{"pattern", kText, false}},
+       "auto or a pattern of rays; without a name the next one",
+       [](Session& session, const Command& command) {
+         const std::vector<render::Pattern>& all = render::allPatterns();
+         if (command.has("pattern")) {
+           session.pattern_.reset();
+           if (command.text("pattern") != "auto")
+             session.pattern_ = render::parsePattern(command.text("pattern"));
+         } else if (!session.pattern_) {
+           session.pattern_ = all.front();
+         } else {
+           const auto next = std::next(std::find(all.begin(), all.end(), *session.pattern_));
+           session.pattern_ = next == all.end() ? std::optional<render::Pattern>() : *next;
+         }
+         session.live_.setPattern(session.pattern_);
+         session.tell(
+             fmt::format("rays: {}", session.pattern_ ? render::toString(*session.pattern_) : "auto"));
+       }},
+      {"terrain",
+       {{"on", kBoolean, false}},
+       "Draws the ground",
+       [](Session& session, const Command& command) {
+         session.show_terrain_ = command.boolean("on", !session.show_terrain_);
+         session.live_.showTerrain(session.show_terrain_);
+       }},
+      {"emitters",
+       {{"on", kBoolean, false}},
+       "Draws the emitters",
+       [](Session& session, const Command& command) {
+         session.show_emitters_ = command.boolean("on", !session.show_emitters_);
+         session.live_.showEmitters(session.show_emitters_);
+       }},
+      {"theme",
+       {{"theme", kText, false}},
+       "dark or light; without a name the other one",
+       [](Session& session, const Command& command) {
+         if (command.has("theme")) {
+           session.theme_ = render::parseTheme(command.text("theme"));
+         } else {
+           session.theme_ =
+               session.theme_ == render::Theme::dark ? render::Theme::light : render::Theme::dark;
+         }
+         session.live_.setTheme(session.theme_);
+       }},
+  };
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,80 @@
+/// Report of a frame, for the log and for script comparisons.
+#include <algorithm>
+#include <cmath>
+
+#include "apps/view/session/session.h"
+
+namespace emscape::view {
+namespace {
+
+double rounded(double value, double unit) {
+  return std::round(value / unit) * unit;
+}
+
+}  // namespace
+
+Json Session::report() const {
+  const render::CameraSpec& camera = camera_.spec();
+  Json report{{"frame", status_.frame},
+              {"state", render::toString(status_.state)},
+              {"pattern", render::toString(status_.pattern)},
+              {"rays_fraction", rounded(status_.rays_fraction, 1e-4)},
+              {"cells", status_.cells},
+              {"cast_ms", rounded(status_.cast_ms, 1e-2)},
+              {"labels_ms", rounded(status_.labels_ms, 1e-2)},
+              {"field_ms", rounded(status_.field_ms, 1e-2)},
+              {"input_to_picture_ms", rounded(status_.input_to_picture_ms, 1e-2)},
+              {"input_to_frame_ms", rounded(status_.input_to_frame_ms, 1e-2)},
+              {"fields_computed", status_.fields_computed},
+              {"asked_s", timeline_.step_s()},
+              {"shown_s", status_.shown_s},
+              {"exact", exact()},
+              {"settled", settled()},
+              {"computing", status_.computing},
+              {"cached_steps", status_.cached_steps.size()},
+              {"device", status_.device},
+              {"error", notice_.is_error ? notice_.text : std::string()},
+              {"playing", timeline_.playing()},
+              {"rate", timeline_.rate()},
+              {"loop", timeline_.loop()},
+              {"play_from_s", timeline_.playRange().begin_s},
+              {"play_to_s", timeline_.playRange().end_s},
+              {"visible_from_s", timeline_.visible().begin_s},
+              {"visible_to_s", timeline_.visible().end_s},
+              {"azimuth_deg", rounded(camera.azimuth_deg, 1e-6)},
+              {"elevation_deg", rounded(camera.elevation_deg, 1e-6)},
+              {"distance", camera.distance.value_or(0)},
+              {"mode", render::toString(settings_.mode)},
+              {"iso_value", std::isnan(settings_.iso_value) ? Json() : Json(settings_.iso_value)},
+              {"theme", theme_ == render::Theme::dark ? "dark" : "light"},
+              {"terrain", show_terrain_},
+              {"emitters", show_emitters_},
+              {"planes", std::count_if(settings_.planes.begin(), settings_.planes.end(),
+                                       [](const render::CutPlane& plane) { return plane.on; })},
+              {"compare", compares_},
+              {"edits", edits_ ? edits_->edits().size() : 0},
+              {"unsaved", hasUnsavedEdits()},
+              {"input", options_.input},
+              {"working", working()},
+              {"kept", kept_view_.has_value()},
+              {"changed_on_disk", changed_files_.size()},
+              {"copied", copied_},
+              {"recording", files_->recorder.running()},
+              {"can_undo", canUndo()},
+              {"can_redo", canRedo()},
+              {"picture_width", picture_ ? picture_->size.width : 0},
+              {"picture_height", picture_ ? picture_->size.height : 0},
+              {"scale", window_.scale()}};
+  if (picture_) {
+    report["range_min"] = picture_->transfer.lowest();
+    report["quantity"] = picture_->info().quantity;
+    report["range_max"] = picture_->transfer.highest();
+  }
+  report.update(probeReport());
+  report.update(transferReport());
+  report["rss_mib"] = rounded(residentMemory_mib(), 0.1);
+  report["cpu_s"] = rounded(processorTime_s(), 1e-3);
+  return report;
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,161 @@
+/// The scenario: its edits, undo, and the verbs of both.
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "apps/view/session/session.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/parameters.h"
+
+namespace emscape::view {
+namespace {
+
+const scenario::Platform& platformNamed(const scenario::Scenario& scenario, const std::string& name) {
+  std::string known;
+  for (const scenario::Platform& platform : scenario.platforms) {
+    if (platform.name == name) return platform;
+    known += (known.empty() ? "'" : ", '") + platform.name + "'";
+  }
+  throw Error(ErrorCode::bad_input,
+              fmt::format("there is no platform '{}'; the scenario has {}", name, known));
+}
+
+/// {"edits": ["PATH=VALUE", ..]}
+std::vector<scenario::Edit> editsOf(const Json& list) {
+  std::vector<scenario::Edit> edits;
+  for (const Json& edit : list) edits.push_back(scenario::parseEdit(edit.get<std::string>()));
+  return edits;
+}
+
+}  // namespace
+
+std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const std::string& platform,
+                                    double latitude_deg, double longitude_deg) {
+  const scenario::Platform& moved = platformNamed(scenario, platform);
+  if (!moved.track_file.empty()) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("'{}' cannot be put elsewhere: it moves along {}", platform, moved.track_file));
+  }
+  const std::string path = "platforms." + scenario::pathStep(platform) + ".position.";
+  return {{path + "latitude_deg", fmt::format("{:.7f}", latitude_deg)},
+          {path + "longitude_deg", fmt::format("{:.7f}", longitude_deg)}};
+}
+
+void Session::changeScenario(const std::vector<scenario::Edit>& edits) {
+  if (!edits_) throw Error(ErrorCode::bad_input, "there is no scenario to change");
+  edit_queue_.set(edits);
+}
+
+void Session::drag(const std::vector<scenario::Edit>& edits) {
+  if (edits_) edit_queue_.drag(edits);
+}
+
+void Session::endDrag() {
+  edit_queue_.endDrag();
+  if (!std::exchange(dragging_, false)) return;
+  if (transfer_) transfer_->endDrag();
+  noteSteps();
+}
+
+void Session::cancelDrag() {
+  edit_queue_.cancelDrag();
+}
+
+void Session::takeEdits() {
+  if (!edits_) return;
+  for (const playback::EditQueue::Outcome& outcome : edit_queue_.update(*edits_)) {
+    touched_ = true;
+    if (!outcome.error.empty()) {
+      rejection_ = Rejection{outcome.edits, outcome.error};
+      tell(outcome.error, true);
+      continue;
+    }
+    rejection_.reset();
+    for (const scenario::Edit& edit : outcome.edits) {
+      log_.write("edit", {{"path", edit.path}, {"value", edit.value}});
+    }
+  }
+  noteSteps();
+  if (edits_->scenario() != shown_scenario_) showScenario();
+}
+
+void Session::noteSteps() {
+  if (edits_) undo_order_.note(History::scenario, edits_->stepsMade());
+  if (transfer_) undo_order_.note(History::transfer, transfer_->stepsMade());
+}
+
+void Session::askUndo(bool undo) {
+  endDrag();
+  if (edit_queue_.isBusy()) {
+    edit_queue_.then([this, undo] { undoOrRedo(undo); });
+  } else {
+    undoOrRedo(undo);
+  }
+}
+
+void Session::undoOrRedo(bool undo) {
+  noteSteps();
+  const std::optional<History> history = undo ? undo_order_.undo() : undo_order_.redo();
+  if (history == History::scenario) {
+    undo ? edits_->undo() : edits_->redo();
+    showScenario();
+  } else if (history == History::transfer) {
+    changeTransfer([undo](playback::TransferEditor& editor) { undo ? editor.undo() : editor.redo(); });
+  }
+}
+
+void Session::showScenario() {
+  touched_ = true;
+  shown_scenario_ = edits_->scenario();
+  watchFiles();
+  timeline_.setScenario(*shown_scenario_);
+  live_.setScenario(shown_scenario_);
+  // Without a choice of the user the first quantity of the scenario is shown, as `render` does.
+  const std::string quantity = quantity_.empty() ? shown_scenario_->output.quantities.front() : quantity_;
+  if (std::exchange(shown_quantity_, quantity) == quantity) return;
+  takes_colors_ = true;
+  live_.setQuantity(quantity);
+}
+
+std::vector<Verb> Session::scenarioVerbs() {
+  return {
+      {"set",
+       {{"path", kText}, {"value", kText}},
+       "Changes a value of the scenario, as `--set PATH=VALUE` does",
+       [](Session& session, const Command& command) {
+         session.changeScenario({{command.text("path"), command.text("value")}});
+       }},
+      {"set_together",
+       {{"edits", ArgumentType::texts}},
+       "Changes several values, a list of PATH=VALUE, in one step and checked together",
+       [](Session& session, const Command& command) {
+         session.changeScenario(editsOf(command.arguments["edits"]));
+       }},
+      {"choose",
+       {{"path", kText}, {"value", kText}},
+       "Chooses another antenna pattern, scan or propagation model, with common values for what it needs",
+       [](Session& session, const Command& command) {
+         if (!session.edits_) throw Error(ErrorCode::bad_input, "there is no scenario to change");
+         session.changeScenario(
+             scenario::editsForChoice(*session.scenario(), command.text("path"), command.text("value")));
+       }},
+      {"move",
+       {{"platform", kText}, {"latitude_deg"}, {"longitude_deg"}},
+       "Moves a platform; its height is kept",
+       [](Session& session, const Command& command) {
+         if (!session.edits_) throw Error(ErrorCode::bad_input, "there is no scenario to change");
+         session.changeScenario(movesOf(*session.scenario(), command.text("platform"),
+                                        command.number("latitude_deg"), command.number("longitude_deg")));
+       }},
+      {"undo",
+       {},
+       "Takes the last change of the scenario or of the colours back",
+       [](Session& session, const Command&) { session.askUndo(true); }},
+      {"redo",
+       {},
+       "Makes the change that was taken back again",
+       [](Session& session, const Command&) { session.askUndo(false); }},
+  };
+}
+
+}  // namespace emscape::view

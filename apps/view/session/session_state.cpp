@@ -1,0 +1,177 @@
+/// The view as a whole: its file, the picture alone, the command that draws it.
+#include <filesystem>
+#include <utility>
+
+#include "apps/view/session/render_command.h"
+#include "apps/view/session/session.h"
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+namespace {
+
+/// The view of the picture alone: without values that do not change it.
+std::string pictureText(playback::ViewState view) {
+  view.bookmarks.clear();
+  view.open_panels.clear();
+  view.rate = 1;
+  view.loop = false;
+  view.play_range.reset();
+  view.visible_time.reset();
+  return playback::viewStateText(view);
+}
+
+std::string besideInput(const std::string& input, const std::string& ending) {
+  const std::filesystem::path path = std::filesystem::path(input).lexically_normal();
+  const std::filesystem::path named = path.has_filename() ? path : path.parent_path();
+  return (named.parent_path() / (named.stem().string() + ending)).string();
+}
+
+}  // namespace
+
+/// None: for categories, or if they will be fitted to a quantity that is not on screen yet.
+std::optional<render::TransferFunction> Session::colorsInUse() const {
+  if (!picture_) return options_.view.transfer;
+  if (!transfer_ || takes_colors_) return std::nullopt;
+  return transfer_->function();
+}
+
+playback::ViewState Session::viewState() const {
+  playback::ViewState view;
+  view.camera = camera_.spec();
+  for (const auto& bookmark : bookmarks_) {
+    if (bookmark) view.bookmarks.push_back(*bookmark);
+  }
+  const bool is_open = !timeline_.times_s().empty();
+  view.time_s = is_open ? timeline_.step_s() : options_.view.time_s;
+  view.rate = timeline_.rate();
+  view.loop = timeline_.loop();
+  view.play_range = is_open ? timeline_.playPart() : options_.view.play_range;
+  view.visible_time = is_open ? timeline_.visiblePart() : options_.view.visible_time;
+  view.quantity = quantity_;
+  view.transfer = colorsInUse();
+  view.range = picture_ ? picture_->range : options_.view.range;
+  view.settings = settings_;
+  view.theme = theme_;
+  view.show_terrain = show_terrain_;
+  view.show_emitters = show_emitters_;
+  view.size = picture_size_.count() > 0 ? picture_size_ : options_.view.size;
+  view.edits = edits_ ? edits_->edits() : options_.view.edits;
+  if (compares_) view.compare = options_.view.compare.empty() ? playback::kOriginal : options_.view.compare;
+  if (panels.hidden) view.open_panels.emplace_back("hidden");
+  for (const PanelName& panel : panelNames()) {
+    if (panel.stays && panels.*panel.open) view.open_panels.emplace_back(panel.name);
+  }
+  return view;
+}
+
+/// Applies the parts of a view that the session holds; the live view gets its parts from the options.
+void Session::showView(const playback::ViewState& view) {
+  camera_.set(view.camera);
+  std::size_t next = 0;
+  for (const playback::Bookmark& bookmark : view.bookmarks) {
+    const bool is_number = bookmark.name.size() == 1 && bookmark.name[0] >= '1' && bookmark.name[0] <= '9';
+    if (is_number) {
+      bookmarks_[static_cast<std::size_t>(bookmark.name[0] - '1')] = bookmark;
+      continue;
+    }
+    while (next < bookmarks_.size() && bookmarks_[next]) ++next;
+    if (next < bookmarks_.size()) bookmarks_[next] = bookmark;
+  }
+  timeline_.setRate(view.rate);
+  timeline_.setLoop(view.loop);
+  quantity_ = view.quantity;
+  settings_ = view.settings;
+  if (settings_.mode != render::CompositingMode::iso) fog_mode_ = settings_.mode;
+  theme_ = view.theme;
+  show_terrain_ = view.show_terrain;
+  show_emitters_ = view.show_emitters;
+  compares_ = !view.compare.empty();
+  if (view.open_panels.empty()) return;  // a picture's view has no panels
+  panels = Panels{};
+  for (const PanelName& panel : panelNames()) panels.*panel.open = false;
+  for (const std::string& name : view.open_panels) {
+    if (name == "hidden") panels.hidden = true;
+    for (const PanelName& panel : panelNames()) {
+      if (panel.stays && name == panel.name) panels.*panel.open = true;
+    }
+  }
+}
+
+void Session::noteSavedView(const std::string& file) {
+  saved_file_ = file;
+  playback::ViewState view = viewState();
+  if (file == options_.state) view.size = options_.view.size;  // the window's may not be the file's
+  saved_text_ = pictureText(view);
+}
+
+void Session::saveView(const std::string& given_file) {
+  requireInput();
+  const std::string file = given_file.empty() ? besideInput(options_.input, ".view.json") : given_file;
+  jobs_.run([this, file, view = viewState()]() -> BackgroundJobs::Finish {
+    playback::writeViewState(file, view);
+    return [this, file, text = pictureText(view)] {
+      saved_file_ = file;
+      saved_text_ = text;
+      tell("written: " + file);
+    };
+  });
+}
+
+void Session::copyCommand() {
+  if (!picture_) throw Error(ErrorCode::bad_input, "there is no picture yet");
+  const auto copy = [this](const std::string& text) {
+    window_.setClipboard(text);
+    copied_ = text;
+    tell("copied: " + text);
+  };
+  const playback::ViewState view = viewState();
+  if (!saved_file_.empty() && pictureText(view) == saved_text_) {
+    return copy(renderCommand(options_, saved_file_));
+  }
+  jobs_.run([copy, view, options = options_, picture = picture_]() -> BackgroundJobs::Finish {
+    const std::string text = renderCommand(options, view, *picture);
+    return [copy, text] { copy(text); };
+  });
+}
+
+void Session::writePendingPicture() {
+  if (picture_file_.empty() || !isPictureSettled()) return;
+  jobs_.run([this, file = std::exchange(picture_file_, ""), picture = picture_]() -> BackgroundJobs::Finish {
+    render::writePng(file, picture->finished);
+    return [this, file] { tell("written: " + file); };
+  });
+}
+
+std::vector<Verb> Session::stateVerbs() {
+  return {
+      {"save_state",
+       {{"file", kText, false}},
+       "Writes the view: camera, colours, time, edits and the rest; default: NAME.view.json next to the "
+       "input",
+       [](Session& session, const Command& command) { session.saveView(command.text("file")); }},
+      {"load_state",
+       {{"file", kText, false}},
+       "Shows the view of a file; without one: asks for it",
+       [](Session& session, const Command& command) {
+         if (command.has("file")) {
+           session.ask({command.text("file"), "", std::nullopt, false});
+         } else {
+           session.browse(FileBrowser::Purpose::view);
+         }
+       }},
+      {"picture",
+       {{"file", kText, false}},
+       "Writes the picture alone as `emscape render` draws it, as soon as it is exact; default: a new "
+       "emscape-NNNN.png",
+       [](Session& session, const Command& command) {
+         session.requireInput();
+         session.picture_file_ = command.has("file") ? command.text("file") : newPictureName();
+       }},
+      {"copy_command",
+       {},
+       "Puts the command that draws this picture on the clipboard",
+       [](Session& session, const Command&) { session.copyCommand(); }},
+  };
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,142 @@
+/// Verbs of time: playing, stepping, seeking.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/view/session/session.h"
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+
+std::vector<Verb> Session::timeVerbs() {
+  return {
+      {"play",
+       {{"on", kBoolean, false}},
+       "Plays or pauses; without `on` the other of the two",
+       [](Session& session, const Command& command) {
+         if (command.boolean("on", !session.timeline_.playing())) {
+           session.advanced_at_s_ = session.log_.now_s();
+           session.timeline_.play();
+           session.askTime();
+         } else {
+           session.timeline_.pause();
+         }
+       }},
+      {"pause", {}, "Pauses", [](Session& session, const Command&) { session.timeline_.pause(); }},
+      {"step",
+       {{"steps"}},
+       "Moves by so many steps of the series, backwards if negative; pauses",
+       [](Session& session, const Command& command) {
+         constexpr double kMost = 1e9;
+         session.timeline_.stepBy(static_cast<int>(std::clamp(command.number("steps"), -kMost, kMost)));
+         session.askTime();
+       }},
+      {"seek",
+       {{"time_s", kNumber, false}, {"time", kText, false}},
+       "Shows the step nearest to a time, or to one written as seconds or hh:mm:ss in UTC; playing goes on "
+       "from "
+       "there",
+       [](Session& session, const Command& command) {
+         if (command.has("time_s") == command.has("time")) {
+           throw Error(ErrorCode::bad_input, "seek: expected either time_s or time");
+         }
+         session.timeline_.seek(command.has("time") ? session.timeline_.parseTime_s(command.text("time"))
+                                                    : command.number("time_s"));
+         session.askTime();
+       }},
+      {"first",
+       {},
+       "Shows the first step; pauses",
+       [](Session& session, const Command&) {
+         session.timeline_.goToFirst();
+         session.askTime();
+       }},
+      {"last",
+       {},
+       "Shows the last step; pauses",
+       [](Session& session, const Command&) {
+         session.timeline_.goToLast();
+         session.askTime();
+       }},
+      {"rate",
+       {{"value", kNumber, false}, {"change", kNumber, false}},
+       "Scenario seconds per second, backwards if negative; or `change`, 1 or -1: the next usual rate above "
+       "or below, below the slowest backwards",
+       [](Session& session, const Command& command) {
+         constexpr double kLimit = 1e4;
+         if (command.has("value")) {
+           const double rate = command.number("value");
+           if (rate == 0 || !(std::abs(rate) <= kLimit)) {
+             throw Error(ErrorCode::bad_input,
+                         fmt::format("rate {:g}: expected a number -10000..10000 other than 0", rate));
+           }
+           session.timeline_.setRate(rate);
+         } else {
+           session.timeline_.changeRate(command.number("change", 1) < 0 ? -1 : 1);
+         }
+         session.tellRate();
+       }},
+      {"reverse",
+       {},
+       "Plays in the other direction",
+       [](Session& session, const Command&) {
+         session.timeline_.reverse();
+         session.tellRate();
+       }},
+      {"loop",
+       {{"on", kBoolean, false}},
+       "Playing continues at the other end of the playing range",
+       [](Session& session, const Command& command) {
+         session.timeline_.setLoop(command.boolean("on", !session.timeline_.loop()));
+       }},
+      {"play_from",
+       {{"time_s", kNumber, false}},
+       "Playing stays after this time; without one after the present",
+       [](Session& session, const Command& command) {
+         session.timeline_.setPlayBegin(command.number("time_s", session.timeline_.step_s()));
+       }},
+      {"play_to",
+       {{"time_s", kNumber, false}},
+       "Playing stays before this time; without one before the present",
+       [](Session& session, const Command& command) {
+         session.timeline_.setPlayEnd(command.number("time_s", session.timeline_.step_s()));
+       }},
+      {"play_all",
+       {},
+       "Plays the whole series again",
+       [](Session& session, const Command&) { session.timeline_.playAll(); }},
+      {"timeline",
+       {{"from_s", kNumber, false},
+        {"to_s", kNumber, false},
+        {"zoom", kNumber, false},
+        {"about_s", kNumber, false},
+        {"pan_s", kNumber, false}},
+       "What the time line shows: from one time to another; or `zoom` times as much, about a time; or later "
+       "by "
+       "`pan_s`; without arguments all",
+       [](Session& session, const Command& command) {
+         playback::Timeline& timeline = session.timeline_;
+         if (command.arguments.empty()) timeline.showAll();
+         const scenario::TimeInterval seen = timeline.visible();
+         if (command.has("from_s") || command.has("to_s")) {
+           timeline.setVisible(command.number("from_s", seen.begin_s), command.number("to_s", seen.end_s));
+         }
+         if (command.has("zoom")) {
+           const double factor = command.number("zoom");
+           if (!(factor > 0))
+             throw Error(ErrorCode::bad_input,
+                         fmt::format("timeline: zoom {:g}: expected a number above 0", factor));
+           timeline.zoom(factor, command.number("about_s", timeline.step_s()));
+         }
+         if (command.has("pan_s")) timeline.pan(command.number("pan_s"));
+       }},
+  };
+}
+
+void Session::tellRate() {
+  const double rate = timeline_.rate();
+  tell(fmt::format("{:g} times real time{}", std::abs(rate), rate < 0 ? ", backwards" : ""));
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,282 @@
+/// Verbs of colours and opacities, and their source.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include "apps/view/session/session.h"
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+namespace {
+
+double finite(const Command& command, const char* name) {
+  const double value = command.number(name);
+  if (std::isfinite(value)) return value;
+  throw Error(ErrorCode::bad_input, fmt::format("{}: {}: expected a finite number", command.verb, name));
+}
+
+double opacityOf(const Command& command) {
+  const double opacity = command.number("opacity");
+  if (opacity >= 0 && opacity <= 1) return opacity;
+  throw Error(ErrorCode::bad_input,
+              fmt::format("{}: opacity {:g}: expected a number 0..1", command.verb, opacity));
+}
+
+/// Selects the point that a command names; without a name the selection is kept.
+void selectPoint(playback::TransferEditor& editor, const Command& command) {
+  if (!command.has("index")) return;
+  const auto count = static_cast<double>(editor.function().opacities.size());
+  const double index = command.number("index");
+  if (!(index >= 0 && index < count && index == std::floor(index))) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: index {:g}: there are the points 0..{:g}", command.verb, index, count - 1));
+  }
+  editor.select(static_cast<int>(index));
+}
+
+void setPoint(playback::TransferEditor& editor, const Command& command) {
+  if (!command.has("index")) {
+    if (!command.has("value") || !command.has("opacity")) {
+      throw Error(ErrorCode::bad_input,
+                  "opacity_point: expected value and opacity of a new point, or the index of one");
+    }
+    editor.add(finite(command, "value"), opacityOf(command));
+    return;
+  }
+  selectPoint(editor, command);
+  const auto& point = editor.function().opacities[static_cast<std::size_t>(*editor.selected())];
+  editor.moveSelected(command.has("value") ? finite(command, "value") : point.at,
+                      command.has("opacity") ? opacityOf(command) : point.opacity);
+}
+
+}  // namespace
+
+// --- source of the colours ---
+
+void Session::takeColors() {
+  takes_colors_ = picture_->status.computing;  // the picture is of an earlier request
+  const playback::OpacityAxis axis = transfer_ ? transfer_->axis : playback::OpacityAxis{};
+  undo_order_.forget(History::transfer);
+  transfer_.reset();
+  if (picture_->transfer.categorical) return;
+  transfer_.emplace(picture_->transfer);
+  transfer_->axis = axis;
+}
+
+playback::TransferEditor& Session::requireTransfer() {
+  if (!picture_) throw Error(ErrorCode::bad_input, "there is no picture yet");
+  if (!transfer_) throw Error(ErrorCode::bad_input, "categories have their own colours");
+  return *transfer_;
+}
+
+void Session::changeTransfer(const std::function<void(playback::TransferEditor&)>& change) {
+  playback::TransferEditor& editor = requireTransfer();
+  const long long before = editor.changes();
+  change(editor);
+  touched_ = true;
+  if (editor.changes() == before) return;
+  takes_colors_ = false;
+  live_.setTransferFunction(editor.function());
+}
+
+void Session::dragTransfer(const std::function<void(playback::TransferEditor&)>& change) {
+  if (!transfer_) return;
+  if (!dragging_) transfer_->beginDrag();
+  dragging_ = true;
+  changeTransfer(change);
+}
+
+void Session::countValues() {
+  const bool wanted = (fit_ && fit_ != Fit::series) || (panels.colors && !panels.hidden);
+  if (!wanted || counting_ || !picture_ || picture_->info().categorical) return;
+  if (values_ && sameValues(values_->field, *picture_)) return;
+  counting_ = true;
+  jobs_.run([this, field = playback::ShownField(*picture_)]() -> BackgroundJobs::Finish {
+    try {
+      auto values = std::make_shared<const ValueSummary>(summaryOf(field));
+      return [this, values] {
+        counting_ = false;
+        values_ = values;
+      };
+    } catch (const Error& error) {
+      return [this, error] {
+        counting_ = false;
+        fit_.reset();
+        throw error;
+      };
+    }
+  });
+}
+
+void Session::fitColors() {
+  if (!transfer_) {
+    fit_.reset();
+    return;
+  }
+  if (*fit_ == Fit::series) {
+    if (status_.searching) return;
+    fit_.reset();
+    if (!status_.series_range) return tell("fit_series: no step of the series holds a value", true);
+    changeTransfer([&](playback::TransferEditor& editor) { editor.fit(*status_.series_range); });
+  } else {
+    if (!values_ || !sameValues(values_->field, *picture_)) return;
+    const bool anew = *fit_ == Fit::anew;
+    fit_.reset();
+    changeTransfer([&](playback::TransferEditor& editor) {
+      if (anew) {
+        editor.setFunction(values_->fitted);
+      } else {
+        editor.setInterval(values_->fitted.lowest(), values_->fitted.highest());
+      }
+    });
+  }
+  noteSteps();
+}
+
+// --- files ---
+
+void Session::readTransfer(const std::string& file) {
+  requireTransfer();
+  jobs_.run([this, file, info = picture_->info()]() -> BackgroundJobs::Finish {
+    const render::TransferFunction function = render::readTransferFunction(file, info);
+    return [this, file, function] {
+      changeTransfer([&](playback::TransferEditor& editor) { editor.setFunction(function); });
+      tell("colours read: " + file);
+    };
+  });
+}
+
+void Session::saveTransfer(std::string file) {
+  if (file.empty()) file = std::filesystem::path(options_.input).stem().string() + ".transfer.json";
+  jobs_.run([this, file, function = requireTransfer().function()]() -> BackgroundJobs::Finish {
+    render::writeTransferFunction(file, function);
+    return [this, file] { tell("written: " + file); };
+  });
+}
+
+Json Session::transferReport() const {
+  Json report{{"opacity_points", 0}, {"selected_point", -1}, {"color_map", ""}};
+  if (!transfer_) return report;
+  const std::vector<render::TransferFunction::OpacityPoint>& points = transfer_->function().opacities;
+  report["opacity_points"] = points.size();
+  report["color_map"] = transfer_->colorMap();
+  report["asked_range_min"] = transfer_->function().lowest();
+  report["asked_range_max"] = transfer_->function().highest();
+  if (!transfer_->selected()) return report;
+  report["selected_point"] = *transfer_->selected();
+  report["selected_value"] = points[static_cast<std::size_t>(*transfer_->selected())].at;
+  report["selected_opacity"] = points[static_cast<std::size_t>(*transfer_->selected())].opacity;
+  return report;
+}
+
+// --- verbs ---
+
+std::vector<Verb> Session::transferVerbs() {
+  using playback::TransferEditor;
+  return {
+      {"transfer",
+       {{"colors", kText, false}, {"file", kText, false}},
+       "Colour map by name, or colours and opacities from a file",
+       [](Session& session, const Command& command) {
+         if (command.has("colors") == command.has("file")) {
+           throw Error(ErrorCode::bad_input, "transfer: expected either colors or file");
+         }
+         if (command.has("file")) return session.readTransfer(command.text("file"));
+         session.changeTransfer([&](TransferEditor& editor) { editor.setColorMap(command.text("colors")); });
+       }},
+      {"save_transfer",
+       {{"file", kText, false}},
+       "Writes colours and opacities, for `--transfer`; default: NAME.transfer.json",
+       [](Session& session, const Command& command) { session.saveTransfer(command.text("file")); }},
+      {"reset_transfer",
+       {},
+       "Fits colours and opacities to the histogram of the step on screen",
+       [](Session& session, const Command&) {
+         session.requireTransfer();
+         session.fit_ = Fit::anew;
+       }},
+      {"opacity_point",
+       {{"index", kNumber, false}, {"value", kNumber, false}, {"opacity", kNumber, false}},
+       "Adds a point of the opacity curve; with `index` (0, 1, ...) selects one and moves it between its "
+       "neighbours",
+       [](Session& session, const Command& command) {
+         session.changeTransfer([&](TransferEditor& editor) { setPoint(editor, command); });
+       }},
+      {"remove_point",
+       {{"index", kNumber, false}},
+       "Removes a point of the opacity curve; without `index` the selected one. Two stay",
+       [](Session& session, const Command& command) {
+         session.changeTransfer([&](TransferEditor& editor) {
+           selectPoint(editor, command);
+           editor.removeSelected();
+         });
+       }},
+      {"opacity_preset",
+       {{"name", kText}, {"value", kNumber, false}},
+       "Opacity curve by name: ramp, late ramp, threshold, shell, bands, opaque; a threshold or shell is "
+       "at "
+       "`value`, else in the middle",
+       [](Session& session, const Command& command) {
+         std::optional<double> value;
+         if (command.has("value")) value = finite(command, "value");
+         session.changeTransfer(
+             [&](TransferEditor& editor) { editor.setOpacityPreset(command.text("name"), value); });
+       }},
+      {"opacity",
+       {{"factor"}},
+       "Multiplies the opacity of all points, 0.001..1000; at most 1 comes of it",
+       [](Session& session, const Command& command) {
+         const double factor = command.number("factor");
+         if (!(factor >= 1e-3 && factor <= 1e3)) {
+           throw Error(ErrorCode::bad_input,
+                       fmt::format("opacity: factor {:g}: expected a number 0.001..1000", factor));
+         }
+         session.changeTransfer([&](TransferEditor& editor) { editor.scaleOpacities(factor); });
+       }},
+      {"log_opacity",
+       {{"on", kBoolean, false}},
+       "The axis of the opacity curve is logarithmic, or linear",
+       [](Session& session, const Command& command) {
+         session.changeTransfer([&](TransferEditor& editor) {
+           editor.axis.logarithmic = command.boolean("on", !editor.axis.logarithmic);
+         });
+       }},
+      {"range",
+       {{"min", kNumber, false}, {"max", kNumber, false}},
+       "Range of colours and opacities, or one end of it; without numbers as fit_step",
+       [](Session& session, const Command& command) {
+         const render::TransferFunction& function = session.requireTransfer().function();
+         if (!command.has("min") && !command.has("max")) {
+           session.fit_ = Fit::step;
+           return;
+         }
+         const double min = command.has("min") ? finite(command, "min") : function.lowest();
+         const double max = command.has("max") ? finite(command, "max") : function.highest();
+         if (!(min < max)) {
+           throw Error(ErrorCode::bad_input,
+                       fmt::format("range {:g}..{:g}: expected min below max", min, max));
+         }
+         session.changeTransfer([&](TransferEditor& editor) { editor.setInterval(min, max); });
+       }},
+      {"fit_step",
+       {},
+       "Fits the range of colours and opacities to the step on screen",
+       [](Session& session, const Command&) {
+         session.requireTransfer();
+         session.fit_ = Fit::step;
+       }},
+      {"fit_series",
+       {},
+       "Fits the range of colours and opacities to the values of the whole series",
+       [](Session& session, const Command&) {
+         session.requireTransfer();
+         session.fit_ = Fit::series;
+         session.live_.searchSeriesRange();
+       }},
+  };
+}
+
+}  // namespace emscape::view

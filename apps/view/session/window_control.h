@@ -1,0 +1,37 @@
+/// Operations of the window that commands use.
+#pragma once
+
+#include <string>
+
+#include "apps/view/session/action.h"
+
+namespace emscape::view {
+
+/// One event of keyboard or mouse, in the window's pixels.
+struct InputEvent {
+  enum class Kind { key, text, button, cursor, wheel, left_window };
+  Kind kind = Kind::cursor;
+  int code = 0;         ///< GLFW's key or button; text: the Unicode code point
+  int scancode = 0;     ///< key
+  int action = 0;       ///< key, button: GLFW_PRESS, GLFW_RELEASE or GLFW_REPEAT
+  int modifiers = 0;    ///< key, button: GLFW_MOD_...
+  double x = 0, y = 0;  ///< cursor: position; wheel: offsets
+};
+
+class WindowControl {
+ public:
+  virtual ~WindowControl() = default;
+  virtual void resize(int width, int height) = 0;
+  /// Size of texts and controls; the present one, and another.
+  virtual double scale() const = 0;
+  virtual void setScale(double factor) = 0;
+  /// Writes the next frame. @param file  empty: a new name
+  virtual void screenshot(const std::string& file) = 0;
+  virtual void setClipboard(const std::string& text) = 0;
+  virtual void quit() = 0;
+  /// Injects an event as if from the user.
+  virtual void press(const KeyChord& chord) = 0;
+  virtual void inject(const InputEvent& event) = 0;
+};
+
+}  // namespace emscape::view
