@@ -30,7 +30,7 @@ struct CoverageCommand {
 void printRow(const study::MapRecord& record) {
   const study::Map& map = record.map;
   const study::MapSummary& summary = record.summary;
-  const std::string time = map.time_s ? fmt::format("{}", *map.time_s) : "all";
+  const std::string time = map.time_s ? fmt::format("{} s", *map.time_s) : "all";
   const std::string area =
       map.area_class < 0 ? ""
                          : fmt::format("{:.1f} km2, {:.1f} %", summary.class_area_m2 / 1e6,

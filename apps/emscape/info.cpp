@@ -248,6 +248,11 @@ Json describeMeshFiles(const std::string& path) {
   return json;
 }
 
+/// To 12 digits: the quotient of a width and a count of posts has no more.
+double twelveDigits(double value) {
+  return std::stod(fmt::format("{:.12g}", value));
+}
+
 Json describeElevation(const std::string& file) {
   const scenario::TerrainFileInfo info = scenario::Terrain::describe(file);
   return {{"kind", "elevation"},
@@ -257,8 +262,8 @@ Json describeElevation(const std::string& file) {
           {"columns", info.columns},
           {"rows", info.rows},
           {"box", toJson(info.box)},
-          {"post_spacing_lat_deg", info.post_spacing_lat_deg},
-          {"post_spacing_lon_deg", info.post_spacing_lon_deg},
+          {"post_spacing_lat_deg", twelveDigits(info.post_spacing_lat_deg)},
+          {"post_spacing_lon_deg", twelveDigits(info.post_spacing_lon_deg)},
           {"lowest_m", info.lowest_m},
           {"highest_m", info.highest_m},
           {"void_posts", info.void_posts}};
