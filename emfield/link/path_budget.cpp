@@ -336,11 +336,11 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   budget.boresight_dbwm2 = boresightDensity_dbwm2(emitter, budget);
   budget.warnings = budget.excess.warnings;
   if (geometry.slant_range_m < geometry.far_field_m) {
-    budget.warnings.push_back(
-        fmt::format("the point is {:.0f} m from the antenna, nearer than its far field (2 D^2 / lambda = "
-                    "{:.0f} m): the "
-                    "far field's formula is taken all the same",
-                    geometry.slant_range_m, geometry.far_field_m));
+    budget.warnings.push_back(fmt::format(
+        "the point is {:.0f} m from the antenna, closer than the far-field distance (2 D^2 / lambda = "
+        "{:.0f} m): the "
+        "far field's formula is taken all the same",
+        geometry.slant_range_m, geometry.far_field_m));
   }
   if (with_detection && emitter.waveform) {
     for (std::string& warning : rangeWarnings(*emitter.waveform, geometry.slant_range_m))

@@ -65,7 +65,7 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   }
   if (geometry_result.near_voxels > 0) {
     ++cache.warnings[fmt::format(
-        "emitter '{}': voxels nearer than its far field (2 D^2 / lambda = {:.0f} m) hold the far "
+        "emitter '{}': voxels closer than the far-field distance (2 D^2 / lambda = {:.0f} m) hold the far "
         "field's formula",
         emitter.name, setup.far_field_m[e])];
   }

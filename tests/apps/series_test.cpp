@@ -202,9 +202,10 @@ TEST(Simulate, WarningsThatSayTheSameOfSeveralEmittersAreOneLine) {
   const ProgramResult result = run(
       {"simulate", shippedScenario("jacksboro.yaml"), "-o", folder / "s", "--times", "0", "--format", "raw"});
   ASSERT_EQ(result.status, 0) << result.err;
-  const std::size_t first = result.err.find("nearer than its far field");
+  const std::size_t first = result.err.find("closer than the far-field distance");
   ASSERT_NE(first, std::string::npos) << result.err;
-  EXPECT_EQ(result.err.find("nearer than its far field", first + 1), std::string::npos) << result.err;
+  EXPECT_EQ(result.err.find("closer than the far-field distance", first + 1), std::string::npos)
+      << result.err;
 }
 
 TEST(Simulate, AHangUpStopsItLikeCtrlC) {

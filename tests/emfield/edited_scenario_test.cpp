@@ -612,7 +612,7 @@ TEST_F(EditedOnce, WarningsThatWereEditedAwayAreGone) {
     s.emitters[3].antenna = scenario::makeSinc(45, 0.3, 0.3, -60);
   });
   EXPECT_THAT(solver_->warnings(),
-              ::testing::Contains(HasSubstr("'radio': voxels nearer than its far field")));
+              ::testing::Contains(HasSubstr("'radio': voxels closer than the far-field distance")));
   after([](Scenario& s) { s.emitters[3].antenna = scenario::makeIsotropic(); });
   EXPECT_THAT(solver_->warnings(), ::testing::Not(::testing::Contains(HasSubstr("'radio'"))));
 }

@@ -258,7 +258,7 @@ TEST(FieldSolver, CountsAndMarksTheNearField) {
   addEmitter(*scenario, {0, 0, 500}, emitter);
   FieldSolver solver(scenario, nullptr, {});
   solver.update(scenario::snapshotAt(scenario, nullptr, 0));
-  EXPECT_THAT(solver.warnings(), ElementsAre(HasSubstr("'dish': voxels nearer than its far field")));
+  EXPECT_THAT(solver.warnings(), ElementsAre(HasSubstr("'dish': voxels closer than the far-field distance")));
   EXPECT_THAT(solver.volumes().front().host()->info.extra.at("near_field"), HasSubstr("dish: "));
 }
 

@@ -86,7 +86,7 @@ TEST(Traps, TheNearFieldIsMarkedAndStaysFinite) {
   scenario->emitters[0].antenna = scenario::makeGaussian(45, 0.8, 0.8, -60);
   const PathBudget near = budgetTo(scenario, pointAt(50.0001, 8, 20));
   ASSERT_LT(near.geometry.slant_range_m, near.geometry.far_field_m);
-  EXPECT_THAT(near.warnings, ::testing::Contains(::testing::HasSubstr("nearer than its far field")));
+  EXPECT_THAT(near.warnings, ::testing::Contains(::testing::HasSubstr("closer than the far-field distance")));
   EXPECT_TRUE(std::isfinite(near.find("power_density_dbwm2")->value));
   const PathBudget far = budgetTo(scenario, pointAt(50.2, 8, 20));
   EXPECT_THAT(far.warnings, ::testing::IsEmpty());
