@@ -697,6 +697,9 @@ TEST(ParabolicField, AnEnsembleHasTheMeanPowerOrAQuantile) {
   const double mean =
       10 * std::log10((std::pow(10, low / 10) + std::pow(10, middle / 10) + std::pow(10, high / 10)) / 3);
   EXPECT_NEAR(valueOf(duct({6, 10, 14})), mean, 0.3);
+  const auto one = duct({10});
+  one->members.push_back(one->air);
+  EXPECT_EQ(valueOf(one), middle) << "an ensemble of one";
   const auto median = duct({6, 10, 14});
   median->quantile = 0.5;
   EXPECT_NEAR(valueOf(median), middle, 0.3);
@@ -713,6 +716,8 @@ TEST(ParabolicField, RefusesWhatIsOutsideItsLimits) {
       {"frequency", [](auto& s) { s.emitters[0].frequency_hz = 20e6; },
        "frequency 20 MHz is outside 30..40000"},
       {"top", [](auto& s) { s.emitters[0].propagation.parabolic_equation.top_m = 25; }, "'top_m' is 25 m"},
+      {"antenna on the ground", [](auto& s) { s.platforms[0].track[0].position.height_msl_m = 0; },
+       "antenna 0 m above the ground; expected above 0, up to "},
       {"step", [](auto& s) { s.emitters[0].propagation.parabolic_equation.range_step_m = 2000; },
        "'range_step_m' is 2000 m; the absorber allows at most"},
       {"distance",
@@ -800,6 +805,32 @@ TEST(ParabolicField, WarnsBeyondWhatWasMeasured) {
               ::testing::HasSubstr("frequency, of measurements 25000 MHz is outside 30..20000"));
   EXPECT_THAT(warningsOf([](auto& s) { s.ground.roughness_m = 3; }),
               ::testing::HasSubstr("roughness (rms) 3 m"));
+}
+
+// An antenna above the heights that are wanted raises the domain.
+TEST(ParabolicField, HoldsAnAntennaAboveTheField) {
+  const auto scenario = around(1e9, 3000, {20e3, 300, 200}, {20, 3, 10});
+  EXPECT_GT(Made(*scenario, nullptr).plan.top_m, 3000);
+  const auto volume = solve(scenario);
+  for (const float power_dbwm2 : volume->values) EXPECT_TRUE(std::isfinite(power_dbwm2));
+}
+
+// Planes hold the field over free space: power is a factor in the combination, and over a smooth earth all
+// azimuths are one.
+TEST(ParabolicField, DoesNotDependOnPowerAndAzimuth) {
+  const auto scenario = around(1e9, 30, {20e3, 20e3, 200}, {21, 21, 10});
+  const auto volume = solve(scenario);
+  for (const int i : {0, 3, 8}) {
+    for (int k = 0; k < 10; ++k) {
+      const float west = testing::valueAt(*volume, i, 10, k), south = testing::valueAt(*volume, 10, i, k);
+      EXPECT_NEAR(west, testing::valueAt(*volume, 20 - i, 10, k), 0.02) << i << ", " << k;
+      EXPECT_NEAR(west, south, 0.1) << i << ", " << k;  // the earth is not a sphere
+    }
+  }
+  scenario->emitters[0].power_w *= 100;
+  const auto stronger = solve(scenario);
+  for (std::size_t v = 0; v < volume->values.size(); ++v)
+    EXPECT_NEAR(stronger->values[v] - volume->values[v], 20, 0.01);
 }
 
 TEST(ParabolicField, CountsGroundThatIsTooSteep) {
