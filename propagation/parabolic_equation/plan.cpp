@@ -316,8 +316,12 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   requireWithinLimit(kPeCells, cells);
   plan.choices.push_back(
       {"cost",
-       fmt::format("{:.3g} million steps of a height, about {:.2g} s on one core; {:.0f} MiB of cells",
+       fmt::format("{:.3g} million steps of a height, about {:.2g} s on one core{}; {:.0f} MiB of cells",
                    points / 1e6, points * secondsPerPoint(radials.has_terrain),
+                   plan.grid.intervals > kMaxBlockIntervals
+                       ? fmt::format(", which marches also beside a GPU: more than {} height steps",
+                                     kMaxBlockIntervals)
+                       : "",
                    cells * sizeof(float) / (1 << 20))});
   return plan;
 }
