@@ -129,6 +129,7 @@ void setHeights(const GridColumns& columns, const propagation::PathExtent& exten
     radials.lowest_m = extent.lowest_msl_m;
     radials.highest_m = extent.highest_msl_m;
     radials.height_step_m = step_m > 0 ? step_m : kOfOneLayer_m;
+    radials.are_level = !columns.tilted;
     return;
   }
   // Maps: the lowest height is in the middle of the second cell above the ground, where the mean over a cell

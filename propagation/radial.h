@@ -22,6 +22,7 @@ struct RadialInputs {
   bool above_ground = false;
   double lowest_m = 0, highest_m = 0;
   double height_step_m = 0;  ///< between them, > 0
+  bool are_level = false;    ///< the places of a layer have the same height
 
   bool has_terrain = false;                                  ///< false: a smooth earth at mean sea level
   double site_ground_msl_m = 0;                              ///< at the emitter

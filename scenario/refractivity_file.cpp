@@ -183,9 +183,9 @@ class CsvProfiles {
 
   void finishProfile() const {
     if (levels_.empty() || (levels_.back().size() >= 2 && levels_.back().size() <= 256)) return;
-    throw Error(
-        ErrorCode::bad_input, {file_, row_.line, 0},
-        fmt::format("the profile that ends here has {} levels; expected 2 .. 256", levels_.back().size()));
+    throw Error(ErrorCode::bad_input, {file_, row_.line, 0},
+                fmt::format("the profile that ends here has {} level{}; expected 2 .. 256",
+                            levels_.back().size(), levels_.back().size() == 1 ? "" : "s"));
   }
 
   std::string file_, text_;

@@ -154,7 +154,7 @@ void AzimuthMarchCuda::start(const AzimuthMarch& march, BlockInput input, float*
   start_.send(input_.start, stream);
   states_.send(input_.states, stream);
   column_steps_.send(columns_at_, stream);
-  const std::size_t cells = azimuths * std::size_t(march.cells.heights);
+  const std::size_t cells = azimuths * std::size_t(input_.tasks.front().sumsOfCells());
   const std::size_t columns = azimuths * columns_at.size();
   fields_.atLeast(azimuths * pitch);
   tables_.atLeast(16 * 9 * (pitch / 128 + 1) + 5 * pitch + 8);

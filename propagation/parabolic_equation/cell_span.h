@@ -10,16 +10,17 @@ struct CellSpan {
   double z1_m, z2_m;
 };
 
-/// @param bottom_m       of the lowest cell, above the ground
-/// @param cell_m         height of a cell
+/// @param bottom_m       half of cell_m below the lowest cell's middle, above the ground
+/// @param cell_m         from the middle of a cell to that of the next
+/// @param mean_m         height of a cell
 /// @param is_point       only half of a height step about the cell's middle
 /// @param height_step_m  of the march
 /// @param top_m          above it no field is read
-EMSCAPE_HD inline CellSpan cellSpan(double bottom_m, double cell_m, int cell, bool is_point,
+EMSCAPE_HD inline CellSpan cellSpan(double bottom_m, double cell_m, double mean_m, int cell, bool is_point,
                                     double height_step_m, double top_m) {
-  const double middle_m = bottom_m + (cell + 0.5) * cell_m, quarter_m = height_step_m / 4;
-  const double z1_m = is_point ? middle_m - quarter_m : bottom_m + cell * cell_m;
-  const double z2_m = is_point ? middle_m + quarter_m : bottom_m + (cell + 1) * cell_m;
+  const double middle_m = bottom_m + (cell + 0.5) * cell_m,
+               half_m = is_point ? height_step_m / 4 : mean_m / 2;
+  const double z1_m = middle_m - half_m, z2_m = middle_m + half_m;
   return {z1_m > 0 ? z1_m : 0, z2_m < top_m ? z2_m : top_m};
 }
 

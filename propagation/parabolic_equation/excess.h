@@ -38,8 +38,8 @@ struct PeExcess {
   bool is_around = false;  ///< the last azimuth's neighbour is the first
   bool above_ground = false;
   double first_azimuth_rad = 0, azimuth_step_rad = 0;
-  /// A cell holds the mean of the march's steps in it, the last of which is at its end, or that one: the
-  /// first cell's is of first_range_m.
+  /// A cell holds the mean of the march's steps in it, the last of which is at its end, or that one: that of
+  /// the first cell, if it were as long as the others, is of first_range_m.
   float first_range_m = 0, range_step_m = 0;
   float bottom_m = 0, height_step_m = 0;
   float top_m = 0;  ///< as the cells' heights; above: along the ray from there

@@ -147,9 +147,10 @@ struct MarchBlockTask {
   const StoredComplex* weights = nullptr;  ///< of v[j] in the surface wave of the field that v[j] leaves
 
   int cell_heights = 0, cell_ranges = 0;
-  double cell_bottom_msl_m = 0, cell_height_m = 0;
+  double cell_bottom_msl_m = 0, cell_height_m = 0, cell_mean_height_m = 0;
   bool cells_above_ground = false;  ///< the bottom counts from the ground
   bool cells_are_points = false;    ///< RadialCells::are_points
+  bool cells_overlap = false;       ///< RadialCells::overlap
   const int* cell_end = nullptr;    ///< steps at the end of each range of cells
   float* excess_db = nullptr;       ///< azimuths x cell_ranges x cell_heights
 
@@ -162,8 +163,11 @@ struct MarchBlockTask {
   MarchState* states = nullptr;
   std::size_t pitch = 0;            ///< of fields and amplitudes
   StoredComplex* fields = nullptr;  ///< azimuths x pitch, by height
-  float* sums = nullptr;            ///< azimuths x cell_heights, of the unfinished range of cells
+  /// azimuths x sumsOfCells(): of the unfinished range of cells, then of the one before, if they overlap
+  float* sums = nullptr;
   int* counts = nullptr;
+
+  EMSCAPE_HD int sumsOfCells() const { return cells_overlap ? 2 * cell_heights : cell_heights; }
 };
 
 /// Memory that the threads of a block share.
@@ -190,8 +194,8 @@ struct BlockMemory {
     take(base, used, starts, mixed * Shape::kRuns);
     take(base, used, start_groups, mixed * Shape::kGroups);
     take(base, used, power, task.cell_heights > 0 ? Shape::powerIndex(Shape::kIntervals) + 1 : 0);
-    take(base, used, sums, task.cell_heights);
-    take(base, used, counts, task.cell_heights);
+    take(base, used, sums, task.sumsOfCells());
+    take(base, used, counts, task.sumsOfCells());
     take(base, used, level_m, task.max_levels);
     take(base, used, level_units, task.max_levels);
     take(base, used, level_gradient, task.max_levels);

@@ -119,7 +119,9 @@ MarchBlockTask taskOf(const AzimuthMarch& march, const BlockInput& input, int in
   task.cell_bottom_msl_m = march.cells.bottom_msl_m;
   task.cells_above_ground = march.cells.above_ground;
   task.cells_are_points = march.cells.are_points;
+  task.cells_overlap = march.cells.overlap;
   task.cell_height_m = march.cells.height_step_m;
+  task.cell_mean_height_m = march.cells.meanHeight_m();
   return task;
 }
 

@@ -121,9 +121,10 @@ class BlockMarch {
         x.base_below = power(16.0 * t - 1);
         x.lead = power(16.0 * (t % 16));
       }
-      for (int h = t; h < task_.cell_heights; h += Shape::kThreads) {
-        memory_.sums[h] = task_.sums[std::size_t(azimuth_) * task_.cell_heights + h];
-        memory_.counts[h] = task_.counts[std::size_t(azimuth_) * task_.cell_heights + h];
+      const int sums = task_.sumsOfCells();
+      for (int i = t; i < sums; i += Shape::kThreads) {
+        memory_.sums[i] = task_.sums[std::size_t(azimuth_) * sums + i];
+        memory_.counts[i] = task_.counts[std::size_t(azimuth_) * sums + i];
       }
     });
   }
@@ -138,9 +139,10 @@ class BlockMarch {
         if (!halve) field[j] = u;
         if (halve && j % 2 == 0) field[j / 2] = u;
       });
-      for (int h = t; h < task_.cell_heights; h += Shape::kThreads) {
-        task_.sums[std::size_t(azimuth_) * task_.cell_heights + h] = memory_.sums[h];
-        task_.counts[std::size_t(azimuth_) * task_.cell_heights + h] = memory_.counts[h];
+      const int sums = task_.sumsOfCells();
+      for (int i = t; i < sums; i += Shape::kThreads) {
+        task_.sums[std::size_t(azimuth_) * sums + i] = memory_.sums[i];
+        task_.counts[std::size_t(azimuth_) * sums + i] = memory_.counts[i];
       }
       if (t == 0) {
         task_.states[azimuth_] = state_;
@@ -435,8 +437,8 @@ class BlockMarch {
     const double below_m = task_.cell_bottom_msl_m - ground_m, per_step = 1 / task_.height_step_m;
     team_.eachFree([&](int t, BlockThread&) {
       for (int h = t; h < task_.cell_heights; h += Shape::kThreads) {
-        const auto [z1_m, z2_m] = cellSpan(below_m, task_.cell_height_m, h, task_.cells_are_points,
-                                           task_.height_step_m, task_.usable_top_m);
+        const auto [z1_m, z2_m] = cellSpan(below_m, task_.cell_height_m, task_.cell_mean_height_m, h,
+                                           task_.cells_are_points, task_.height_step_m, task_.usable_top_m);
         float sum = memory_.sums[h];
         int count = memory_.counts[h];
         if (z2_m > z1_m) {
@@ -446,7 +448,18 @@ class BlockMarch {
         if (ends) {
           const std::size_t at =
               (std::size_t(azimuth_) * task_.cell_ranges + state_.cell) * task_.cell_heights + h;
-          task_.excess_db[at] = count > 0 ? -10.0F * log10f(sum / float(count)) : nanf("");
+          float sum_of_cell = sum;
+          int count_of_cell = count;
+          if (task_.cells_overlap) {
+            float& before = memory_.sums[task_.cell_heights + h];
+            int& count_before = memory_.counts[task_.cell_heights + h];
+            sum_of_cell += before;
+            count_of_cell += count_before;
+            before = sum;
+            count_before = count;
+          }
+          task_.excess_db[at] =
+              count_of_cell > 0 ? -10.0F * log10f(sum_of_cell / float(count_of_cell)) : nanf("");
           sum = 0;
           count = 0;
         }

@@ -23,9 +23,13 @@ std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const
   }
   std::array<std::vector<float>, kLanes> excess_db;
   excess_db.fill(std::vector<float>(std::size_t(cells.ranges) * cells.heights));
-  std::vector<double> sums(std::size_t(cells.heights) * kLanes);
-  std::vector<int> counts(sums.size());
+  std::vector<double> sums(std::size_t(cells.heights) * kLanes), before(sums.size());
+  std::vector<int> counts(sums.size()), before_counts(sums.size());
   for (int i = 0; i < cells.ranges; ++i) {
+    if (cells.overlap) {
+      before = sums;
+      before_counts = counts;
+    }
     std::fill(sums.begin(), sums.end(), 0.0);
     std::fill(counts.begin(), counts.end(), 0);
     // steps in (begin, end]
@@ -38,7 +42,8 @@ std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const
         const double below_m = cells.bottom_msl_m - ground_m, top_m = march.grid().usableTop_m();
         const double step_m = march.grid().top_m / march.intervals();
         for (int j = 0; j < cells.heights; ++j) {
-          const auto [z1, z2] = cellSpan(below_m, cells.height_step_m, j, cells.are_points, step_m, top_m);
+          const auto [z1, z2] = cellSpan(below_m, cells.height_step_m, cells.meanHeight_m(), j,
+                                         cells.are_points, step_m, top_m);
           if (z2 <= z1) continue;
           sums[std::size_t(j) * kLanes + l] += march.meanSquaredFactor(l, z1, z2);
           ++counts[std::size_t(j) * kLanes + l];
@@ -48,9 +53,10 @@ std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const
     for (int l = 0; l < kLanes; ++l) {
       for (int j = 0; j < cells.heights; ++j) {
         const std::size_t of = std::size_t(j) * kLanes + l;
+        const int count = before_counts[of] + counts[of];
         excess_db[l][std::size_t(i) * cells.heights + j] =
-            counts[of] > 0 ? float(-10 * std::log10(sums[of] / counts[of]))
-                           : std::numeric_limits<float>::quiet_NaN();
+            count > 0 ? float(-10 * std::log10((before[of] + sums[of]) / count))
+                      : std::numeric_limits<float>::quiet_NaN();
       }
     }
   }

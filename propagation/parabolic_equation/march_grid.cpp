@@ -21,14 +21,13 @@ constexpr double kSlopePart = 0.9 - kPeEvenBand;
 
 void require(const ModelLimit& limit, double value) {
   if (!limit.holds(value)) {
-    throw Error(ErrorCode::bad_input, "parabolic_equation: " + outsideMessage(limit, value));
+    throw Error(ErrorCode::bad_input, outsideMessage(limit, value));
   }
 }
 
 void requirePositive(const char* what, double value, const char* unit) {
   if (value > 0 && std::isfinite(value)) return;
-  throw Error(ErrorCode::bad_input,
-              fmt::format("parabolic_equation: {} {} {} is not above 0", what, value, unit));
+  throw Error(ErrorCode::bad_input, fmt::format("{} {} {} is not above 0", what, value, unit));
 }
 
 /// Least height of the domain whose absorber is eight vertical wavelengths thick for the ray that grazes the
@@ -58,16 +57,13 @@ void checkGrid(const MarchGrid& grid) {
   const int n = grid.intervals;
   if (n < 8 || n > kPeMaxIntervals || (n & (n - 1)) != 0) {
     throw Error(ErrorCode::bad_input,
-                fmt::format("parabolic_equation: {} height steps; expected a power of two in 8 .. {}", n,
-                            kPeMaxIntervals));
+                fmt::format("{} height steps; expected a power of two in 8 .. {}", n, kPeMaxIntervals));
   }
   if (!(grid.absorber_m >= 0 && grid.absorber_m < grid.top_m && grid.absorber_per_m >= 0)) {
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format(
-            "parabolic_equation: absorber of {} m and {} / m; expected less than the domain's {} m, and "
-            "no growth",
-            grid.absorber_m, grid.absorber_per_m, grid.top_m));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("absorber of {} m and {} / m; expected less than the domain's {} m, and "
+                            "no growth",
+                            grid.absorber_m, grid.absorber_per_m, grid.top_m));
   }
 }
 
@@ -91,13 +87,11 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
   if (wanted_intervals > kPeMaxIntervals) {
     const double affordable =
         radToDeg(std::asin(std::min(1.0, kPeEvenBand * wavelength * kPeMaxIntervals / (2 * wanted_top_m))));
-    throw Error(
-        ErrorCode::bad_input,
-        fmt::format(
-            "parabolic_equation: {:.0f} height steps for {:.4g} m at {:.4g} degrees; at most {}, which "
-            "afford {:.3g} degrees",
-            wanted_intervals, needs.max_height_m, radToDeg(needs.max_angle_rad), kPeMaxIntervals,
-            affordable));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{:.0f} height steps for {:.4g} m at {:.4g} degrees; at most {}, which "
+                            "afford {:.3g} degrees",
+                            wanted_intervals, needs.max_height_m, radToDeg(needs.max_angle_rad),
+                            kPeMaxIntervals, affordable));
   }
   found.wanted_intervals = wanted_intervals;
   grid.intervals = 1 << std::max(8, int(std::ceil(std::log2(wanted_intervals))));

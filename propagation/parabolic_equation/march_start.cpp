@@ -80,16 +80,16 @@ void checkSource(const MarchGrid& grid, const PeSource& source, const PeSurface&
   const bool radiates = surface.perfect ? height_m > 0 : height_m >= 0;
   if (radiates && height_m <= grid.usableTop_m()) return;
   throw Error(ErrorCode::bad_input,
-              fmt::format("parabolic_equation: antenna {} m above the ground; expected {} 0, up to {} m",
-                          height_m, surface.perfect ? "above" : "at least", grid.usableTop_m()));
+              fmt::format("antenna {:.4g} m above the ground; expected {} 0, up to {:.4g} m", height_m,
+                          surface.perfect ? "above" : "at least", grid.usableTop_m()));
 }
 
 template <class Height>
 void checkGround(const MarchGrid& grid, const Height* ground_m, std::size_t steps) {
   const auto hole = std::find_if(ground_m, ground_m + steps, [](Height h) { return !std::isfinite(h); });
   if (hole == ground_m + steps) return;
-  throw Error(ErrorCode::bad_input, fmt::format("parabolic_equation: no terrain {} m from the antenna",
-                                                double(hole - ground_m) * grid.range_step_m));
+  throw Error(ErrorCode::bad_input,
+              fmt::format("no terrain {} m from the antenna", double(hole - ground_m) * grid.range_step_m));
 }
 
 template void checkGround<float>(const MarchGrid&, const float*, std::size_t);
@@ -98,12 +98,10 @@ template void checkGround<double>(const MarchGrid&, const double*, std::size_t);
 Cx checkedRatio(const MarchGrid& grid, const PeSurface& surface, double height_step_m) {
   const Cx ratio = surfaceRatio(surface, grid.frequency_hz, height_step_m);
   if (std::abs(ratio) <= kMaxSurfaceRatio) return ratio;
-  throw Error(
-      ErrorCode::bad_input,
-      fmt::format(
-          "parabolic_equation: |r| of the surface is {:.6g} at {:.4g} degrees and height steps of {:.4g} "
-          "m; the mixed transform holds up to {}",
-          std::abs(ratio), radToDeg(surface.grazing_rad), height_step_m, kMaxSurfaceRatio));
+  throw Error(ErrorCode::bad_input,
+              fmt::format("|r| of the surface is {:.6g} at {:.4g} degrees and height steps of {:.4g} "
+                          "m; the mixed transform holds up to {}",
+                          std::abs(ratio), radToDeg(surface.grazing_rad), height_step_m, kMaxSurfaceRatio));
 }
 
 }  // namespace emscape::propagation

@@ -298,8 +298,8 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   if (radials.has_terrain) endBehindSteepGround(excess.others, plan, field);
   excess.others.min_range_m = static_cast<float>(plan.min_range_m);
   if (!cells.are_points) {
-    excess.others.cell_range_m = static_cast<float>(cells.range_step_m);
-    excess.others.cell_height_m = static_cast<float>(cells.height_step_m);
+    excess.others.cell_range_m = static_cast<float>(cells.meanRange_m());
+    excess.others.cell_height_m = static_cast<float>(cells.meanHeight_m());
   }
   excess.azimuths = plan.azimuths;
   excess.ranges = cells.ranges;
@@ -309,7 +309,8 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   excess.first_azimuth_rad = plan.first_azimuth_rad;
   excess.azimuth_step_rad = plan.azimuth_step_rad;
   excess.first_range_m = static_cast<float>(
-      cells.are_points ? cells.range_step_m : (cells.range_step_m + plan.grid.range_step_m) / 2);
+      cells.are_points ? cells.range_step_m
+                       : cells.range_step_m + (plan.grid.range_step_m - cells.meanRange_m()) / 2);
   excess.range_step_m = static_cast<float>(cells.range_step_m);
   excess.bottom_m = static_cast<float>(cells.bottom_msl_m);
   excess.height_step_m = static_cast<float>(cells.height_step_m);

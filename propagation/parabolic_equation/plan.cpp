@@ -20,7 +20,9 @@ constexpr int kPlainIntervals = 4096, kTerrainIntervals = 2048;  // the domain i
 constexpr int kDearIntervals = 8192;                             // for a larger angle no more than this
 /// Of the largest angle, over terrain: no more of it is given up for half of the height steps.
 constexpr double kWorthwhileAngle = 0.75;
-constexpr int kMaxAzimuths = 1584;
+/// Up to the first number of azimuths, which a GPU marches at the same time (three on each of its 132
+/// processors), they are one place apart, else two.
+constexpr int kFewAzimuths = 396, kMaxAzimuths = 1584;
 constexpr double kFinestStep_m = 50;  // over places that are closer
 constexpr int kMaxHeights = 1024, kMaxRanges = 2000;
 constexpr double kUsablePart = 0.8;  // of the height below the absorber
@@ -74,10 +76,16 @@ bool areSameAir(const std::vector<RefractivityAlongPath>& air) {
 
 void planAzimuths(const PathInputs& inputs, const RadialInputs& radials, PePlan& plan) {
   const double given = inputs.emitter.settings.parabolic_equation.azimuths;
-  const double arc_rad = 2 * std::max(radials.spacing_m, plan.grid.range_step_m) / radials.farthest_m;
+  const double place_rad = std::max(radials.spacing_m, plan.grid.range_step_m) / radials.farthest_m;
+  const double one_apart = std::ceil(radials.azimuth_span_rad / place_rad);
+  const double two_apart = std::ceil(radials.azimuth_span_rad / (2 * place_rad));
   const double automatic =
-      std::clamp(std::ceil(radials.azimuth_span_rad / arc_rad), 8.0, double(kMaxAzimuths));
-  std::string why = "two places apart at the far end, at most " + std::to_string(kMaxAzimuths) + " around";
+      std::clamp(std::max(std::min(one_apart, double(kFewAzimuths)), two_apart), 8.0, double(kMaxAzimuths));
+  std::string why = fmt::format("{} at the far end, at most {} around",
+                                one_apart <= kFewAzimuths  ? "one place apart"
+                                : two_apart > kFewAzimuths ? "two places apart"
+                                                           : "at most two places apart",
+                                kMaxAzimuths);
   plan.is_around = radials.isAround();
   plan.azimuths = int(given > 0 ? given : automatic);
   if (given > 0) why = "given";
@@ -106,19 +114,27 @@ void planCells(const RadialInputs& radials, PeCells kept, PePlan& plan) {
   cells.above_ground = radials.above_ground;
   cells.are_points = kept == PeCells::point;
   const double spacing_m = std::max(radials.spacing_m, radials.farthest_m / kMaxRanges);
-  cells.range_step_m = plan.grid.range_step_m * std::max(1.0, std::round(spacing_m / plan.grid.range_step_m));
+  const double steps = std::round(spacing_m / plan.grid.range_step_m);
+  cells.overlap = steps >= 2 && !cells.are_points;
+  cells.range_step_m = plan.grid.range_step_m * std::max(1.0, std::floor(steps / 2));
   cells.ranges = int(std::ceil(radials.farthest_m / cells.range_step_m)) + 1;
   const double lowest_m = radials.above_ground ? 0 : radials.lowest_ground_msl_m;
   plan.top_m = lowest_m + kUsablePart * plan.grid.usableTop_m();
   const double highest_m = std::min(radials.highest_m, plan.top_m);
   const double bottom_m = std::min(radials.lowest_m, plan.top_m - radials.height_step_m);
-  cells.height_step_m = std::max(radials.height_step_m, (highest_m - bottom_m) / (kMaxHeights - 2));
+  const double least_m = (highest_m - bottom_m) / (kMaxHeights - 2);
+  const bool are_between = !radials.above_ground && !radials.are_level;
+  cells.height_step_m = std::max(radials.height_step_m / (are_between ? 5 : 1), least_m);
+  cells.mean_height_m = std::max(radials.height_step_m, least_m);
   cells.bottom_msl_m = bottom_m - cells.height_step_m / 2;
   cells.heights = int(std::ceil((highest_m - bottom_m) / cells.height_step_m)) + 2;
   plan.choices.push_back(
-      {"cells", fmt::format("{:.4g} m in range, {:.4g} m in height ({} x {}), above {}: the places' spacing",
-                            cells.range_step_m, cells.height_step_m, cells.ranges, cells.heights,
-                            cells.above_ground ? "the ground" : "mean sea level")});
+      {"cells",
+       fmt::format(
+           "{:.4g} m in range, {:.4g} m in height, above {}: the places' spacing; {} x {}, {:.4g} m and "
+           "{:.4g} m apart",
+           cells.meanRange_m(), cells.meanHeight_m(), cells.above_ground ? "the ground" : "mean sea level",
+           cells.ranges, cells.heights, cells.range_step_m, cells.height_step_m)});
 }
 
 /// Of each azimuth the cells up to the farthest place that is interpolated from it.
@@ -210,11 +226,20 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
     }
     found.grid.range_step_m = settings.range_step_m;
     found.choices.back().text = fmt::format("{:.4g} m: given", settings.range_step_m);
-  } else if (const double places_m = std::max(needs.spacing_m, kFinestStep_m);
-             needs.spacing_m > 0 && places_m < found.grid.range_step_m) {
-    found.grid.range_step_m = places_m;
-    found.choices.back().text =
-        fmt::format("{:.4g} m: the places' spacing, at least {:g} m", places_m, kFinestStep_m);
+  } else if (needs.spacing_m > 0) {
+    double& step_m = found.grid.range_step_m;
+    std::string& text = found.choices.back().text;
+    const bool has_posts = needs.post_spacing_m > 0;
+    const double places_m = std::max(has_posts ? needs.spacing_m : needs.spacing_m / 2, kFinestStep_m);
+    if (places_m < step_m) {
+      step_m = places_m;
+      text = fmt::format("{:.4g} m: {} the places' spacing, at least {:g} m", step_m,
+                         has_posts ? "as" : "half of", kFinestStep_m);
+    } else if (!has_posts) {
+      text += fmt::format(" (at most {:.4g} m), a whole number in half of the places' spacing", step_m);
+      step_m = places_m / std::ceil(places_m / step_m * (1 - 1e-12));
+      text = fmt::format("{:.4g} m", step_m) + text.substr(text.find(':'));
+    }
   }
   requireWithinLimit(kPeDistance, needs.farthest_m);
   requireWithinLimit(kPeSteps, std::ceil(needs.farthest_m / found.grid.range_step_m));
@@ -274,7 +299,7 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   planAzimuths(inputs, radials, plan);
   planRanges(radials, plan);
   plan.min_range_m = std::max({2 * plan.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz),
-                               2 * plan.cells.range_step_m});
+                               2 * plan.cells.meanRange_m()});
   plan.choices.push_back(
       {"extent",
        fmt::format("from {:.4g} m, to {:.4g} m above {}: nearer, higher and above the largest angle "
@@ -291,8 +316,12 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   requireWithinLimit(kPeCells, cells);
   plan.choices.push_back(
       {"cost",
-       fmt::format("{:.3g} million steps of a height, about {:.2g} s on one core; {:.0f} MiB of cells",
+       fmt::format("{:.3g} million steps of a height, about {:.2g} s on one core{}; {:.0f} MiB of cells",
                    points / 1e6, points * secondsPerPoint(radials.has_terrain),
+                   plan.grid.intervals > kMaxBlockIntervals
+                       ? fmt::format(", which marches also beside a GPU: more than {} height steps",
+                                     kMaxBlockIntervals)
+                       : "",
                    cells * sizeof(float) / (1 << 20))});
   return plan;
 }

@@ -279,6 +279,29 @@ TEST_F(CudaField, MarchesAreTheCpus) {
   }
 }
 
+// Columns that lean have places between the layers.
+TEST_F(CudaField, MarchesThroughLeaningColumnsAreTheCpus) {
+  const auto scenario = marchedScenario(propagation::Polarization::horizontal);
+  scenario->region.origin.kind = FrameKind::enu;
+  Pair pair(scenario, gentleHills(false));
+  pair.update(pair.start());
+  pair.difference().expectSmall(0.05);
+}
+
+// More heights than a block of threads holds: the CPU marches.
+TEST_F(CudaField, MarchesOfManyHeightsAreTheCpus) {
+  const auto scenario = marchedScenario(propagation::Polarization::horizontal);
+  scenario->region.size_m = {6e3, 6e3, 1500};
+  scenario->region.dims = {12, 12, 20};
+  for (scenario::Emitter& emitter : scenario->emitters) {
+    emitter.frequency_hz = 5e9;
+    emitter.propagation.parabolic_equation.max_angle_deg = 5;
+  }
+  Pair pair(scenario, gentleHills(false));
+  pair.update(pair.start());
+  pair.difference().expectSmall(0.05);
+}
+
 TEST_F(CudaField, MarchesOfAnEnsembleAreTheCpus) {
   for (const std::optional<double> quantile : {std::optional<double>(), std::optional<double>(0.7)}) {
     const auto scenario = marchedScenario(propagation::Polarization::horizontal);

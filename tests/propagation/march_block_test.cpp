@@ -40,7 +40,7 @@ struct HostTeam {
 std::vector<float> marchBlocks(const AzimuthMarch& march, MarchNotes* notes = nullptr) {
   BlockInput input = blockInput(march);
   const std::size_t pitch = std::size_t(march.grid.intervals), azimuths = std::size_t(march.azimuths);
-  std::vector<float> excess_db(march.cellCount()), sums(azimuths * std::size_t(march.cells.heights));
+  std::vector<float> excess_db(march.cellCount()), sums(2 * azimuths * std::size_t(march.cells.heights));
   std::vector<int> counts(sums.size());
   std::vector<StoredComplex> fields;
   for (std::size_t a = 0; a < azimuths; ++a)
@@ -111,8 +111,10 @@ AzimuthMarch marchOf(double frequency_hz, double height_step_m, int intervals, d
   return march;
 }
 
-/// Hills, different at each azimuth.
+/// Hills, different at each azimuth, and cells that overlap.
 void addHills(AzimuthMarch& march, double height_m) {
+  march.cells.overlap = true;
+  march.cells.mean_height_m = 1.5 * march.cells.height_step_m;
   march.ground_steps = std::size_t(march.cells.ranges) * 5 + 1;
   for (int a = 0; a < march.azimuths; ++a) {
     for (std::size_t i = 0; i < march.ground_steps; ++i) {

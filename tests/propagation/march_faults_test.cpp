@@ -180,5 +180,36 @@ TEST(RadialMarch, ConvergesWithTheSquareOfTheRangeStep) {
   EXPECT_LT(first / second, 4.5);
 }
 
+// M is read at the heights of the steps: in the steep gradient of an evaporation duct the error is of second
+// order from 0.25 m on, and up to 0.2 dB with steps of 1 m (10 GHz, 14 m, 100 km).
+TEST(RadialMarch, ConvergesWithTheSquareOfTheHeightStep) {
+  const auto factorsDb = [](int intervals) {
+    MarchGrid finer = grid();
+    finer.intervals = intervals;
+    finer.top_m = 512;
+    finer.range_step_m = 200;
+    setAbsorber(finer);
+    RadialPath path;
+    path.source.height_agl_m = 10;
+    path.air = evaporationDuct(14);
+    RadialMarch<double, 1> march(finer, {path});
+    while (march.range_m() < 100e3 - 1e-3) march.advance();
+    std::vector<double> factors_db;
+    for (double height_m = 2; height_m < 40; height_m += 2) factors_db.push_back(march.factorDb(0, height_m));
+    return factors_db;
+  };
+  const std::vector<double> coarsest = factorsDb(512), coarse = factorsDb(2048), middle = factorsDb(4096),
+                            fine = factorsDb(8192);
+  double worst = 0, first = 0, second = 0;
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    worst = std::max(worst, std::fabs(coarsest[i] - fine[i]));
+    first += std::fabs(coarse[i] - middle[i]);
+    second += std::fabs(middle[i] - fine[i]);
+  }
+  EXPECT_LT(worst, 0.2);
+  EXPECT_GT(first / second, 3.5);
+  EXPECT_LT(first / second, 4.5);
+}
+
 }  // namespace
 }  // namespace emscape::propagation

@@ -511,6 +511,24 @@ TEST(MarchCells, HoldMeansOverHeightsAndRangeSteps) {
   EXPECT_TRUE(std::isnan(excess_db[19 * 30 + 1]));   // below the ground
   EXPECT_TRUE(std::isnan(excess_db[19 * 30 + 29]));  // in the absorber
   EXPECT_FALSE(std::isnan(excess_db[19 * 30 + 2]));
+
+  // Cells of 200 m and 50 m, 100 m and 25 m apart.
+  RadialCells overlapping{100, 20, -50, 25, 30};
+  overlapping.overlap = true;
+  overlapping.mean_height_m = 50;
+  RadialMarch<float, 1> finer(grid, {pathOf(20)}), of_steps(grid, {pathOf(20)});
+  const std::vector<float> overlapping_db = marchCells(finer, overlapping)[0];
+  double before = 0;
+  for (int i = 0; i < 20; ++i) {
+    of_steps.advance();
+    const double here = of_steps.meanSquaredFactor(0, 37.5, 87.5);
+    EXPECT_NEAR(overlapping_db[std::size_t(i * 30 + 4)],
+                -10 * std::log10(i == 0 ? here : (before + here) / 2), 1e-5)
+        << i;
+    before = here;
+  }
+  EXPECT_FALSE(std::isnan(overlapping_db[19 * 30 + 1]));  // a quarter of it is above the ground
+
   RadialCells points = cells;
   points.are_points = true;
   RadialMarch<float, 1> once_more(grid, {pathOf(20)});

@@ -62,7 +62,7 @@ TEST_F(RefractivityFiles, TellWhereTheyAreWrong) {
               HasSubstr("air.csv:1:14: second column 'height_msl_m'"));
   EXPECT_THAT(errorOf("height_msl_m,m_units,n_units\n"), HasSubstr("air.csv:1:1: the header has"));
   EXPECT_THAT(errorOf("height_msl_m,m_units\n"), HasSubstr("no levels; expected 2 .. 256"));
-  EXPECT_THAT(errorOf("height_msl_m,m_units\n0,330\n"), HasSubstr("has 1 levels; expected 2 .. 256"));
+  EXPECT_THAT(errorOf("height_msl_m,m_units\n0,330\n"), HasSubstr("has 1 level; expected 2 .. 256"));
   EXPECT_THAT(errorOf("height_msl_m,m_units\n0,330\n5\n"), HasSubstr("air.csv:3:1: 1 values"));
   EXPECT_THAT(errorOf("height_msl_m,m_units\n0,330\nnan,331\n"),
               HasSubstr("air.csv:3:1: height_msl_m is 'nan'"));

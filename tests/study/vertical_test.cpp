@@ -43,6 +43,43 @@ VerticalRequest small(int emitter, HeightReference axis) {
   return request;
 }
 
+// The diagram reads the cells of the marches on both sides of each azimuth; `profile` marches to each point.
+TEST(Vertical, OfTheParabolicEquationIsNearThatOfProfile) {
+  auto scenario = std::make_shared<scenario::Scenario>(*jacksboro());
+  constexpr int kMast = 2;
+  propagation::ModelSettings& settings = scenario->emitters[kMast].propagation;
+  settings.model = propagation::PropagationModel::parabolic_equation;
+  settings.parabolic_equation.max_angle_deg = 10;
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
+  const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain.get(), 80);
+  VerticalRequest request = small(kMast, HeightReference::mean_sea_level);
+  request.quantity = scenario::Quantity::power_density_dbwm2;
+  request.threshold = -40;
+  request.max_height_m = 1200;
+  const VerticalDiagram diagram = computeVertical(scenario, terrain, request, {});
+  std::vector<double> differences_db;
+  std::mt19937 random(3);
+  for (int n = 0; n < 150; ++n) {
+    const VerticalCut& cut = diagram.cuts[random() % 2];
+    const std::size_t i = random() % 50, k = random() % 40;
+    const auto value = static_cast<double>(cut.values[k * 50 + i]);
+    if (std::isnan(value)) continue;
+    const GeodeticPosition place = geodesicDirect(diagram.latitude_deg, diagram.longitude_deg,
+                                                  degToRad(cut.azimuth_deg), diagram.ranges_m[i]);
+    const double height_m = diagram.heights_m[k];
+    const emfield::PathEnd end{{place.latitude_deg, place.longitude_deg,
+                                height_m + geoidUndulation_m(place.latitude_deg, place.longitude_deg)},
+                               height_m};
+    const emfield::PathBudget budget =
+        emfield::pathBudget(snapshot, kMast, end, settings.model, terrain.get());
+    differences_db.push_back(std::abs(value - std::max(budget.find("power_density_dbwm2")->value, -120.0)));
+  }
+  ASSERT_GT(differences_db.size(), 50u);
+  std::sort(differences_db.begin(), differences_db.end());
+  EXPECT_LT(differences_db[differences_db.size() / 2], 1.0);
+  EXPECT_LT(differences_db[differences_db.size() * 9 / 10], 4.0);  // nulls
+}
+
 TEST(Vertical, AValueIsThatOfProfile) {
   const auto scenario = jacksboro();
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
