@@ -32,6 +32,7 @@ constexpr double kLineTolerance_posts = 0.01;
 constexpr long long kStripPosts = 1 << 21;
 /// Limits of a plausible georeference. Coordinates: metres or feet of a projection; angles are much smaller.
 constexpr double kMaxCrsCoordinate = 1e9;
+constexpr double kMinCrsStep = 1e-9;
 constexpr double kMaxLongitude_deg = 1080;
 constexpr int kMaxPostsPerAxis = 1 << 22;  ///< the whole earth in a third of an arc second
 
@@ -221,6 +222,11 @@ void TerrainFile::Impl::placePosts(GDALDataset& dataset) {
   if (reach > kMaxCrsCoordinate) {
     fail("its posts are not on the earth: a coordinate is " + shortText(reach) + ", more than the allowed " +
          shortText(kMaxCrsCoordinate));
+  }
+  const double step = std::min(std::hypot(g[1], g[4]), std::hypot(g[2], g[5]));
+  if (step < kMinCrsStep) {
+    fail("its posts are " + shortText(step) + " apart, less than the allowed " + shortText(kMinCrsStep) +
+         " of the coordinates' unit");
   }
   const char* meaning = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
   is_area = meaning == nullptr || !EQUAL(meaning, GDALMD_AOP_POINT);

@@ -223,6 +223,8 @@ TerrainFileInfo Terrain::describe(const std::string& name, bool read_heights) {
                         lattice.x(column)};
   std::vector<double> y{lattice.y(row), lattice.y(row), lattice.y(row - 0.5), lattice.y(row + 0.5)};
   file.toGeographic(x, y);
+  if (!std::isfinite(x[2]) || !std::isfinite(y[2]))
+    throw Error(ErrorCode::bad_input, "elevation file " + name + ": its posts are not on the earth");
   info.post_spacing_lon_deg = std::abs(wrapLongitude_deg(x[1] - x[0]));
   info.post_spacing_lat_deg = std::abs(y[3] - y[2]);
   info.lowest_m = info.highest_m = std::numeric_limits<double>::quiet_NaN();

@@ -195,7 +195,9 @@ void StudyFolder::readPart(int part, StudyResults& results) const {
   const std::size_t pixels = readRecord(partFile(part, "json"), [&](const Json& record) {
     for (const auto& machine : record.value("machines", Json::array())) results.machines.insert(machine);
     for (const auto& warning : record.value("warnings", Json::array())) results.warnings.insert(warning);
-    return record.value("pixels", std::size_t{0});
+    const Json count = record.value("pixels", Json(0u));
+    if (!count.is_number_unsigned()) throw Error(ErrorCode::bad_input, "'pixels' is no whole number");
+    return count.get<std::size_t>();
   });
   const fs::path file = partFile(part, "csv");
   const std::string text = readWholeText(file);
@@ -224,7 +226,8 @@ void StudyFolder::readPart(int part, StudyResults& results) const {
   if (!study_.sites) return;
   const std::size_t bytes = (pixels + 7) / 8;
   const std::string bits = readWholeText(partFile(part, "bits"));
-  if (bits.size() != bytes * variants.size()) fail(0, "the .bits file beside it has the wrong size");
+  if (pixels > 8 * bits.size() || bits.size() != bytes * variants.size())
+    fail(0, "the .bits file beside it has the wrong size");
   for (std::size_t row = 0; row < variants.size(); ++row) {
     results.pixels[variants[row]] = unpackedPixels(std::string_view(bits).substr(row * bytes, bytes), pixels);
   }

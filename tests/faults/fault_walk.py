@@ -6,12 +6,15 @@ inputs or outputs, and that call fails (strace --inject). After each run:
 - no file is torn: each one under its final name is as without the fault, or an older whole state of the bookkeeping;
 - no temporary file is left;
 - the command again (with --resume where it has it) completes to the same bytes.
+Once every write to a file writes half of its bytes only: the files are as without that.
 
-usage: fault_walk.py EMSCAPE SCENARIO_FOLDER [--all] [COMMAND...]
+usage: fault_walk.py EMSCAPE SHORT_WRITES SCENARIO_FOLDER [--all] [COMMAND...]
+  SHORT_WRITES  the library of short_writes.cpp
   --all   every occurrence of every call; otherwise the first two, the last two and the middle one
 """
 
 import argparse
+import contextlib
 import hashlib
 import os
 import re
@@ -20,6 +23,9 @@ import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "bench"))
+from virtual_display import virtual_display
 
 SKIPPED = 77
 # What a call can fail with.
@@ -35,6 +41,25 @@ FAULTS = {
     "read": ["EIO", "EINTR"],
     "mmap": ["ENOMEM"],
 }
+# Of the window, whose threads also speak with the display: calls that are those of its files.
+WINDOW_FAULTS = {call: FAULTS[call] for call in ("write", "fsync", "rename", "openat")}
+# What the window saves; each is waited for, and an error ends it with status 5.
+SAVES = """
+{{"do": "wait_frame"}}
+{{"do": "set", "path": "emitters.radar.power_w", "value": "500"}}
+{wait}
+{{"do": "save", "file": "{out}/changed.yaml"}}
+{wait}
+{{"do": "save_state", "file": "{out}/view.json"}}
+{wait}
+{{"do": "save_transfer", "file": "{out}/colors.json"}}
+{wait}
+{{"do": "picture", "file": "{out}/picture.png"}}
+{wait}
+{{"do": "quit", "edits": "discard"}}
+"""
+WAIT = """{"do": "wait_state", "state": "exact"}
+{"do": "expect", "key": "error", "op": "==", "value": ""}"""
 # Files that are rewritten on the way, volumes for the range of the whole series: an earlier state may stay.
 VOLUMES = re.compile(r"\.(vdb|nvdb|vti|raw)$")  # `emscape info` reads them
 BOOKKEEPING = re.compile(r"series\.(json|steps)|\.pvd|\.(raw|nvdb)\.json|study\.json|manifest\.json|parts/part_\d+\.(rows|json|csv)$")
@@ -62,6 +87,7 @@ class Commands:
                  "--cell", "2000", "--format", "cog,png,gpkg,nc,kmz,czml", "-o", "{out}/map"],
                 [],
             ),
+            "window": (["view", quick, *small, "-q", "--size", "320x240", "--backend", "cpu", "--script", "{out}/../script.jsonl"], []),
             "study": (["-q", "study", str(scenarios / "study" / "jammer_power.yaml"), "-o", "{out}/study"], ["--resume"]),
         }
 
@@ -75,8 +101,11 @@ def files_of(folder):
     return found
 
 
-def run(command, out, inject=None, log=None):
+def run(command, out, inject=None, log=None, preload=None):
     arguments = [part.format(out=out) for part in command]
+    environment = dict(os.environ, XDG_STATE_HOME=str(out.parent / "state"), XDG_CONFIG_HOME=str(out.parent / "config"))
+    if preload:
+        environment["LD_PRELOAD"] = str(preload)
     if inject or log:
         calls = ",".join(FAULTS)
         tracing = ["strace", "-f", "-qq", "-y", "-e", "signal=none", "-o", str(log or "/dev/null")]
@@ -84,16 +113,16 @@ def run(command, out, inject=None, log=None):
         # Calls that are not traced run at full speed.
         tracing += ["--seccomp-bpf", "-e", f"trace={inject.split(':')[0] if inject else calls}"]
         arguments = tracing + arguments
-    done = subprocess.run(arguments, capture_output=True, text=True, timeout=120, errors="replace")
+    done = subprocess.run(arguments, capture_output=True, text=True, timeout=120, errors="replace", env=environment)
     return done.returncode, done.stderr
 
 
-def occurrences(log, touched):
+def occurrences(log, touched, faults):
     """For each call the numbers, per thread as strace counts them, at which it touches one of the folders."""
     counts, found, loaded = {}, {}, {}
     for line in log.read_text(errors="replace").splitlines():
         match = CALL.match(line)
-        if not match or match[2] not in FAULTS:
+        if not match or match[2] not in faults:
             continue
         thread, call, rest = match.groups()
         counts[thread, call] = counts.get((thread, call), 0) + 1
@@ -118,8 +147,11 @@ def some_of(numbers, all_of_them):
 
 
 class Walk:
-    def __init__(self, name, command, resume):
-        self.name, self.command, self.resume = name, command, resume
+    def __init__(self, name, command, resume, short_writes):
+        self.name, self.command, self.resume, self.short_writes = name, command, resume, short_writes
+        is_window = name == "window"
+        self.kinds = WINDOW_FAULTS if is_window else FAULTS
+        self.statuses = (1, 3, 5) if is_window else (1, 3)
         self.faults = self.findings = 0
 
     def report(self, inject, problem, stderr):
@@ -150,7 +182,7 @@ class Walk:
             missing = [name for name in expected if name not in found]
             if missing:
                 self.report(inject, f"status 0, but files are missing: {missing[:5]}", stderr)
-        elif status not in (1, 3):
+        elif status not in self.statuses:
             self.report(inject, f"status {status}", stderr)
         elif "error:" not in stderr and inject.startswith("write:"):
             pass  # the message itself could not be written
@@ -177,7 +209,13 @@ class Walk:
         if files_of(out) != expected:
             unequal = [n for n, d in files_of(out).items() if expected.get(n) != d]
             self.report("no fault", f"two runs differ: {unequal[:5]}", "")
-        for call, numbers in occurrences(log, [str(out), str(scenarios)]).items():
+        fresh()
+        status, stderr = run(self.command, out, preload=self.short_writes)
+        self.faults += 1
+        if status != 0 or files_of(out) != expected:
+            unequal = [n for n, d in expected.items() if files_of(out).get(n) != d]
+            self.report("short writes", f"status {status}, unequal: {unequal[:5]}", stderr)
+        for call, numbers in occurrences(log, [str(out), str(scenarios)], self.kinds).items():
             for number in some_of(numbers, all_of_them):
                 for error in FAULTS[call]:
                     inject = f"{call}:error={error}:when={number}"
@@ -199,6 +237,7 @@ class Walk:
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("emscape", type=Path)
+    parser.add_argument("short_writes", type=Path)
     parser.add_argument("scenarios", type=Path)
     parser.add_argument("--all", action="store_true")
     parser.add_argument("commands", nargs="*")
@@ -214,8 +253,14 @@ def main():
     for name, (command, resume) in table.items():
         if options.commands and name not in options.commands:
             continue
-        with tempfile.TemporaryDirectory(prefix="emscape-faults-") as root:
-            walk = Walk(name, [str(options.emscape), *command], resume)
+        with tempfile.TemporaryDirectory(prefix="emscape-faults-") as root, contextlib.ExitStack() as stack:
+            if name == "window":
+                if not shutil.which("Xvfb"):
+                    print("window: skipped: Xvfb is missing")
+                    continue
+                stack.enter_context(virtual_display())
+                Path(root, "script.jsonl").write_text(SAVES.format(out=Path(root, "out"), wait=WAIT))
+            walk = Walk(name, [str(options.emscape), *command], resume, options.short_writes.resolve())
             findings += walk.walk(Path(root), options.scenarios.resolve(), options.all)
             faults += walk.faults
             print(f"{name}: {walk.faults} faults, {walk.findings} findings", flush=True)

@@ -1,4 +1,4 @@
-// Program of the targets of a module, for libFuzzer:
+// Program of the targets for libFuzzer:
 //   PROGRAM --list                   names of the targets
 //   PROGRAM TARGET --seeds FOLDER    writes FOLDER/TARGET/seed-N and FOLDER/TARGET.dict
 //   PROGRAM TARGET ARGUMENT...       libFuzzer, with its own arguments

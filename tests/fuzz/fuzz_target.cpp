@@ -86,8 +86,11 @@ void checkFuzzMessage(const std::string& message) {
 }
 
 void runFuzzInput(const FuzzTarget& target, const std::string& bytes) {
-  const std::filesystem::path file = workingFolder(target) / target.file;
-  writeFile(file, bytes);
+  std::filesystem::path file;
+  if (!target.file.empty()) {
+    file = workingFolder(target) / target.file;
+    writeFile(file, bytes);
+  }
   input = &bytes;
   try {
     target.read(file, bytes);

@@ -11,7 +11,7 @@ namespace emscape::test {
 /// A reader. Each input is written into a file of a working folder and read from there.
 struct FuzzTarget {
   std::string name;  ///< in lower case; also the folder of its seeds and regressions
-  std::string file;  ///< name of the input in the working folder
+  std::string file;  ///< name of the input in the working folder; empty: the text itself is read
   /// Reads the input. May throw Error, nothing else. @param bytes  contents of the file
   std::function<void(const std::filesystem::path& file, const std::string& bytes)> read;
   /// Valid inputs, made by the project's own writers or shipped with it.
@@ -21,7 +21,7 @@ struct FuzzTarget {
   std::function<std::string()> vocabulary = {};  ///< a text of further words for the dictionary
 };
 
-/// Targets of the modules that this program links, by name.
+/// All targets, by name.
 const std::vector<FuzzTarget>& fuzzTargets();
 /// @throws std::invalid_argument that lists the names
 const FuzzTarget& fuzzTarget(const std::string& name);

@@ -26,21 +26,19 @@ const FuzzTargetsAdded added({
          seeds.push_back(readFile(sourceFile(std::string("scenarios/transfer/") + name + ".json")));
        return seeds;
      }},
-    {"camera", "input.txt",
-     [](const std::filesystem::path&, const std::string& text) { render::parseCamera(text); },
+    {"camera", "", [](const std::filesystem::path&, const std::string& text) { render::parseCamera(text); },
      [] {
        return std::vector<std::string>{
            "orbit:azimuth_deg=225,elevation_deg=30,distance=1.8,fov_deg=35,projection=perspective",
            "orbit:target_x_m=1,target_y_m=2,target_z_m=3,projection=orthographic",
            "lookat:eye_x_m=1,eye_y_m=2,eye_z_m=3,target_x_m=4,target_y_m=5,target_z_m=6"};
      }},
-    {"plane", "input.txt",
-     [](const std::filesystem::path&, const std::string& text) { render::parseCutPlane(text); },
+    {"plane", "", [](const std::filesystem::path&, const std::string& text) { render::parseCutPlane(text); },
      [] {
        return std::vector<std::string>{"horizontal:altitude_m=500,keep=below",
                                        "vertical:bearing_deg=30,x_m=1,y_m=-2,offset_m=3,keep=left"};
      }},
-    {"image_size", "input.txt",
+    {"image_size", "",
      [](const std::filesystem::path&, const std::string& text) { render::parseImageSize(text); },
      [] { return std::vector<std::string>{"1280x720"}; }},
 });

@@ -84,7 +84,7 @@ const FuzzTargetsAdded added({
      },
      scenarioSeeds, copyScenarios, scenario::scenarioJsonSchema},
     {"set",
-     "input.txt",
+     "",
      [](const fs::path&, const std::string& bytes) { readEdits(bytes); },
      [] {
        return std::vector<std::string>{
@@ -102,6 +102,13 @@ const FuzzTargetsAdded added({
      },
      {},
      scenario::scenarioJsonSchema},
+    {"times", "",
+     [](const fs::path&, const std::string& text) {
+       scenario::parseTimes(text, {"2026-06-01T06:00:00Z", 120, 0.5});
+     },
+     [] {
+       return std::vector<std::string>{"0:120:0.5", "1:4", "2.5"};
+     }},
     {"track_csv", "input.csv",
      [](const fs::path& file, const std::string&) {
        readNamed(file, {{"platforms.mast.position", "null"}, {"platforms.mast.track", "{file: input.csv}"}});

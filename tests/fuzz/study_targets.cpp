@@ -1,8 +1,16 @@
-// Studies, and texts of the options of maps.
+// Studies, what is read again of their folders and of folders of maps, and texts of the options of maps.
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <map>
+
+#include "apps/emscape/common/command_line.h"
 #include "emscape/study/area.h"
+#include "emscape/study/coverage_folder.h"
 #include "emscape/study/part_journal.h"
 #include "emscape/study/products.h"
-#include "emscape/study/study_file.h"
+#include "emscape/study/study_folder.h"
+#include "emscape/study/study_runner.h"
 #include "study/sweep/candidate_sites.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
@@ -26,6 +34,91 @@ std::vector<std::string> journals() {
   return {readFile(folder / "a")};
 }
 
+/// Checksum and content, as a line of a journal: a checksum of arbitrary bytes is hardly ever right.
+void readPartRecord(const fs::path& file, const std::string& bytes) {
+  const std::string content = bytes.substr(0, bytes.find('\n'));
+  const auto* const data = reinterpret_cast<const Bytef*>(content.data());
+  const std::uint32_t checksum = crc32_z(0, data, content.size());
+  writeFile(file, fmt::format("{:08x} {}\n", checksum, content));
+  study::PartJournal(file, {0, 1}, 1);
+}
+
+/// What `emscape coverage` writes of a small map into FOLDER/map.
+void writeMaps(const fs::path& folder) {
+  app::commandResult({"coverage", shippedScenario("quick.yaml"), "--quantity", "power_density_dbwm2",
+                      "--threshold", "-60", "--cell", "5000", "--format", "cog", "-o", folder / "map"},
+                     {});
+}
+
+void readMaps(const fs::path& file, const std::string&) {
+  fs::path folder = file.parent_path();
+  if (folder.filename() == "maps") folder = folder.parent_path();
+  const study::CoverageFolder maps = study::openCoverageFolder(folder);
+  for (std::size_t map = 0; map < maps.maps.size(); ++map) study::readMap(maps, map);
+}
+
+std::vector<std::string> mapSeed(const std::string& file) {
+  const TemporaryFolder folder;
+  writeMaps(folder.path());
+  return {readFile(folder / ("map/" + file))};
+}
+
+/// A search for sites of a folder, in one part.
+class SmallStudy {
+ public:
+  /// @param folder  with study.yaml; the results are in FOLDER/out
+  explicit SmallStudy(const fs::path& folder)
+      : spec_(study::loadStudy(folder / "study.yaml", {}, "test", false)),
+        plan_(study::planStudy(spec_, nullptr)),
+        folder_(folder / "out") {}
+
+  void compute() const {
+    study::StudyFolder files(folder_, spec_, plan_, "test");
+    files.begin(1);
+    const auto journal = files.journal(1);
+    study::StudyRunner(spec_, plan_, nullptr, {})
+        .run(journal->unfinished(),
+             [&](study::VariantResult result) { journal->add(std::move(result), {}, "cpu"); });
+    files.writePart(1, *journal);
+  }
+
+  /// Reads the folder as a process that continues the study.
+  void read() const {
+    study::StudyFolder files(folder_, spec_, plan_, "test");
+    files.begin(files.partsOfManifest().value_or(1));
+    files.missingParts();
+    files.read();
+  }
+
+ private:
+  study::StudySpec spec_;
+  study::StudyPlan plan_;
+  fs::path folder_;
+};
+
+void writeStudy(const fs::path& folder) {
+  writeFile(folder / "study.yaml", "schema_version: 1\nscenario: " + shippedScenario("quick.yaml") + R"(
+times: 0
+cell_m: 5000
+sites: {platform: mast, grid_m: 10000, choose: 1}
+measures: [{name: lit, quantity: power_density_dbwm2, threshold: -60, height: "agl:100"}]
+)");
+  SmallStudy(folder).compute();
+}
+
+void readStudy(const fs::path& file, const std::string&) {
+  static std::map<fs::path, SmallStudy> studies;
+  fs::path folder = file.parent_path().parent_path();
+  if (folder.filename() == "out") folder = folder.parent_path();
+  studies.try_emplace(folder, folder).first->second.read();
+}
+
+std::vector<std::string> studySeed(const std::string& file) {
+  const TemporaryFolder folder;
+  writeStudy(folder.path());
+  return {readFile(folder / ("out/" + file))};
+}
+
 const FuzzTargetsAdded added({
     {"study", "study/input.yaml",
      [](const fs::path& file, const std::string&) { study::loadStudy(file, {}, "0", false); },
@@ -39,6 +132,22 @@ const FuzzTargetsAdded added({
        study::PartJournal(file, {0, 1}, 1);
      },
      journals},
+    {"part_record", "part.journal", readPartRecord,
+     [] {
+       std::vector<std::string> records;
+       for (const std::string& journal : journals()) records.push_back(journal.substr(journal.find('{')));
+       records.push_back(R"({"row":"1,3.5","machine":"cpu","warnings":[],"pixels":11,"bits":"ff07"})");
+       return records;
+     }},
+    {"map_report", "map/report.json", readMaps, [] { return mapSeed("report.json"); }, writeMaps},
+    {"map_record", "map/study.json", readMaps, [] { return mapSeed("study.json"); }, writeMaps},
+    {"map_tif", "map/maps/covered_agl150m_t0s.tif", readMaps,
+     [] { return mapSeed("maps/covered_agl150m_t0s.tif"); }, writeMaps},
+    {"study_manifest", "out/manifest.json", readStudy, [] { return studySeed("manifest.json"); }, writeStudy},
+    {"study_part_json", "out/parts/part_00001.json", readStudy,
+     [] { return studySeed("parts/part_00001.json"); }, writeStudy},
+    {"study_part_csv", "out/parts/part_00001.csv", readStudy,
+     [] { return studySeed("parts/part_00001.csv"); }, writeStudy},
     {"candidates", "input.geojson",
      [](const fs::path& file, const std::string&) { study::readCandidates(file); },
      [] {
@@ -47,12 +156,12 @@ const FuzzTargetsAdded added({
 "geometry": {"type": "Point", "coordinates": [5.1, 52.1]}}, {"type": "Feature", "properties": {},
 "geometry": {"type": "Point", "coordinates": [5.2, 52.2]}}]})"};
      }},
-    {"map_area", "input.txt", [](const fs::path&, const std::string& text) { study::parseArea(text); },
+    {"map_area", "", [](const fs::path&, const std::string& text) { study::parseArea(text); },
      [] {
        return std::vector<std::string>{"36.3,-84.2,8000", "bbox:-84.3,36.2,-84.1,36.4",
                                        "bbox:179,10,-179,11"};
      }},
-    {"map_heights", "input.txt", [](const fs::path&, const std::string& text) { study::parseHeights(text); },
+    {"map_heights", "", [](const fs::path&, const std::string& text) { study::parseHeights(text); },
      [] {
        return std::vector<std::string>{"agl:300", "agl:100,msl:1500", "agl:50:300:50"};
      }},

@@ -60,6 +60,8 @@ const FuzzTargetsAdded added({
     {"terrain_tif", "input.tif", readElevation, geotiffs},
     {"terrain_asc", "input.asc", readElevation,
      [] { return std::vector<std::string>{converted("AAIGrid", "a.asc", "a.asc")}; }},
+    {"terrain_dem", "input.dem", readElevation,
+     [] { return std::vector<std::string>{converted("USGSDEM", "a.dem", "a.dem")}; }},
     {"terrain_bil_header", "input.hdr",
      [](const fs::path& file, const std::string& bytes) {
        readElevation(fs::path(file).replace_extension(".bil"), bytes);

@@ -113,7 +113,7 @@ WholeExtent="2 3 0 1 0 0" Origin="10 20 30" Spacing="1 2 3"><Piece Extent="2 3 0
     {"nvdb", "input.nvdb", readVolumeFile, [] { return seedsOf("nvdb"); }},
     {"nvdb_json", "input.nvdb.json", readBySidecar, [] { return seedsOf("nvdb", true); }, volumeOf("nvdb")},
     {"raw_json", "input.raw.json", readBySidecar, [] { return seedsOf("raw", true); }, volumeOf("raw")},
-    {"raw_name", "input.txt",
+    {"raw_name", "",
      [](const fs::path&, const std::string& bytes) {
        if (bytes.find('\0') == std::string::npos) volume::rawLayoutFromName(bytes);
      },

@@ -320,6 +320,19 @@ TEST_F(TerrainFileTest, AbsurdPositionsAreRefused) {
   file.transform[0] = 10;
   file.transform[1] = 1e300;
   EXPECT_THAT(problemOf(write("wide.tif", file)), HasSubstr("its posts are not on the earth"));
+  file.transform[1] = 0.1;
+  file.transform[5] = -5e-315;
+  EXPECT_THAT(problemOf(write("flat.tif", file)),
+              HasSubstr("its posts are 5e-315 apart, less than the allowed 1e-09 of the coordinates' unit"));
+}
+
+TEST_F(TerrainFileTest, DescribeRefusesPostsThatAreNotOnTheEarth) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.crs = "EPSG:32632";
+  file.transform = {4e8, 30, 0, 4e8, 0, -30};
+  const std::string name = write("off.tif", file);
+  EXPECT_EQ(errorOf([&] { Terrain::describe(name); }),
+            "elevation file " + name + ": its posts are not on the earth");
 }
 
 TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {

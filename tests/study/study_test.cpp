@@ -264,6 +264,15 @@ TEST(Study, SitesAreChosenFromCandidates) {
   ASSERT_EQ(summary.sites.size(), 2u);
   EXPECT_GE(summary.sites_value, summary.measures[0].max);
   EXPECT_LE(summary.sites_value, 100);
+
+  const std::filesystem::path record = folder.path() / "parts" / "part_00002.json";
+  const std::string text = test::readFile(record);
+  const std::size_t value = text.find(':', text.find("\"pixels\"")) + 1;
+  for (const char* const pixels : {"18446744073709551615", "1e30"}) {
+    test::writeFile(record, text.substr(0, value) + pixels + text.substr(text.find_first_of(",\n", value)));
+    EXPECT_THAT(test::errorOf([&] { files.read(); }, ErrorCode::bad_input),
+                testing::AnyOf(HasSubstr("wrong size"), HasSubstr("'pixels' is no whole number")));
+  }
 }
 
 TEST(Study, TheShippedStudiesHaveNoFault) {

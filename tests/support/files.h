@@ -6,7 +6,9 @@
 
 namespace emscape::test {
 
-/// @param path  below the root of the source tree, such as "scenarios/quick.yaml"
+/// @param path  below the root of the source tree, such as "scenarios/quick.yaml"; $EMSCAPE_SOURCE_DIR is
+/// another root,
+///              for test programs that were copied to another machine
 std::string sourceFile(const std::string& path);
 /// scenarios/NAME of the source tree.
 std::string shippedScenario(const std::string& name);

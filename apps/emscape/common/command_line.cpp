@@ -126,6 +126,19 @@ int parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
+/// Parses for a host program, whose own texts are help and version.
+/// @throws Error (usage)
+void parse(CLI::App& app, const std::vector<std::string>& arguments) {
+  try {
+    app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them reversed
+    checkNumbers(app);
+  } catch (const CLI::Success&) {
+    throw Error(ErrorCode::usage, "help and version are texts of the program, without a result");
+  } catch (const CLI::ParseError& error) {
+    throw Error(ErrorCode::usage, messageOf(app, error));
+  }
+}
+
 /// The parser with all subcommands, and what it fills.
 struct CommandLine {
   CLI::App app{
@@ -181,17 +194,14 @@ std::shared_ptr<const CLI::App> commandLineParser() {
   return {line, &line->app};
 }
 
+void checkCommandLine(const std::vector<std::string>& arguments) {
+  CommandLine line;
+  parse(line.app, arguments);
+}
+
 CommandResult commandResult(const std::vector<std::string>& arguments, const ProgressSink& progress) {
   CommandLine line;
-  try {
-    line.app.parse(
-        std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them reversed
-    checkNumbers(line.app);
-  } catch (const CLI::Success&) {
-    throw Error(ErrorCode::usage, "help and version are texts of the program, without a result");
-  } catch (const CLI::ParseError& error) {
-    throw Error(ErrorCode::usage, error.what());
-  }
+  parse(line.app, arguments);
   line.global.json = true;
   line.global.quiet = true;
   line.global.progress = progress;

@@ -22,6 +22,11 @@ int runCommandLine(int argc, char** argv);
 /// The parser of the command line, to be described.
 std::shared_ptr<const CLI::App> commandLineParser();
 
+/// Parses a command line and runs nothing.
+/// @param arguments  subcommand and its options, without the program's name
+/// @throws Error (usage) for arguments that cannot be parsed, and for those that ask for help or version
+void checkCommandLine(const std::vector<std::string>& arguments);
+
 /// Result of a subcommand.
 struct CommandResult {
   int status = 0;    ///< exit status, 0 or that of a check that failed

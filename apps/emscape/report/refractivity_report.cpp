@@ -203,8 +203,8 @@ void plotRefractivity(const Refractivity& refractivity, const std::string& title
                                panel_height};
       PlotPanel panel(canvas, frame, unit, {lowest, highest, 6, is_n ? "N-units" : "M-units"},
                       {heights_m.first, heights_m.second, 10, is_n ? "" : "height above sea level (m)"});
-      const auto band = [&](double from_m, double to_m, const render::Ink& ink) {
-        const double upper = panel.at(lowest, to_m).y, lower = panel.at(lowest, from_m).y;
+      const auto band = [&, left = lowest](double from_m, double to_m, const render::Ink& ink) {
+        const double upper = panel.at(left, to_m).y, lower = panel.at(left, from_m).y;
         canvas.rectangle({frame.x, upper, frame.width, lower - upper}, ink);
       };
       for (const Duct& duct : ducts) {

@@ -1,0 +1,57 @@
+// The command line: parsed, not run.
+#include <algorithm>
+
+#include "apps/emscape/common/command_line.h"
+#include "apps/emscape/common/value_range.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace emscape::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Arguments, one per line, as a shell hands them over: without zero bytes.
+std::vector<std::string> argumentsOf(const std::string& bytes) {
+  std::string text = bytes;
+  std::replace(text.begin(), text.end(), '\0', '\n');
+  std::vector<std::string> arguments;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    arguments.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return arguments;
+}
+
+const FuzzTargetsAdded added({
+    {"command_line", "",
+     [](const fs::path&, const std::string& bytes) { app::checkCommandLine(argumentsOf(bytes)); },
+     [] {
+       return std::vector<std::string>{
+           "validate\na.yaml\n--set\nregion.dims.2=10\n--json",
+           "info\na.vti",
+           "simulate\na.yaml\n-o\nout\n--format\nvdb,nvdb,vti,raw\n--quantity\nsnr_db,occupancy\n--times\n"
+           "0:10:0.5\n--resume\n--mesh\nterrain:12,5\n--threads\n2\n-q",
+           "render\na.yaml\n-o\na.png\n-o\na.mp4\n--size\n640x480\n--mode\nmida\n--rays\nadaptive\n--camera\n"
+           "orbit:azimuth_deg=20\n--plane\nhorizontal:altitude_m=500\n--range\n-120:0\n--fps\n25\n--realtime",
+           "view\na.yaml\n--scale\n2\n--script\na.jsonl",
+           "profile\na.yaml\n--emitter\nradar\n--to\n52,5,100",
+           "link\na.yaml\n--times\n0:4",
+           "coverage\na.yaml\n-o\nout\n--heights\nagl:30,150;msl:500\n--products\ncovered,margin\n--cell\n200"
+           "\n--area\nbbox:5,52,6,53\n--crs\nutm\n--format\ncog,png,gpkg,nc,kmz,czml\n--threshold\n0.5",
+           "vertical\na.yaml\n--emitter\nradar\n--azimuth\n10\n-o\na.png",
+           "exposure\na.yaml\n--platform\nhelicopter",
+           "compare\na\nb\n-o\nout",
+           "study\na.yaml\n-o\nout\n--jobs\n2\n--parts\n4\n--resume",
+           "check\nreference\n--backend\ncpu",
+           "bench\nfield\na.yaml\n--frames\n3",
+           "--version"};
+     }},
+    {"value_range", "", [](const fs::path&, const std::string& text) { app::parseRange(text); },
+     [] {
+       return std::vector<std::string>{"-120:0", "1e-3:2.5"};
+     }},
+});
+
+}  // namespace
+}  // namespace emscape::test
