@@ -136,6 +136,7 @@ int benchCells(const BenchCellsOptions& options, const GlobalOptions& global) {
   std::string device;
   for (const CellProjection projection : {CellProjection::exact, CellProjection::published}) {
     for (const CellSorting sorting : {CellSorting::centroids, CellSorting::visibility}) {
+      if (options.frames == 0) continue;
       const CellTimes times = scene->project(options.frames, {projection, sorting});
       device = times.last.device;
       const double floats = static_cast<double>(times.last.sent_bytes) / sizeof(float) /
@@ -157,8 +158,9 @@ int benchCells(const BenchCellsOptions& options, const GlobalOptions& global) {
   render::CellReport report;
   const std::vector<double> marched_ms = scene->march(options.marched_frames, report);
   if (!global.json) {
-    print("{:<32} {:>10.1f} {:>10} {:>14.3g}\n\nprojected by {}, marched by {}\n", "marched",
-          medianOf(marched_ms), "", perSecond(marched_ms), device, scene->device());
+    print("{:<32} {:>10.1f} {:>10} {:>14.3g}\n\nmarched by {}: {} rays passed {} cells\n", "marched",
+          medianOf(marched_ms), "", perSecond(marched_ms), scene->device(), report.rays, report.cells);
+    if (!device.empty()) print("projected by {}\n", device);
     return 0;
   }
   Json result = scene->json();
@@ -206,8 +208,10 @@ Example:
   command->add_option("--picture", options->picture, "NAME.png: writes the first view, marched, on black");
   command->add_option("--quantity", options->selection.quantity, "Quantity or channel; default: the first");
   command->add_option("--time", options->selection.times, "Instant, in seconds; default: the first");
-  command->add_option("--frames", options->frames, "Timed frames that are projected, after a warm-up")
-      ->check(CLI::Range(1, 100000));
+  command
+      ->add_option("--frames", options->frames,
+                   "Timed frames that are projected, after a warm-up; 0: none is, and OpenGL is not needed")
+      ->check(CLI::Range(0, 100000));
   command->add_option("--marched-frames", options->marched_frames, "Timed frames that are marched")
       ->check(CLI::Range(1, 100000));
   command->callback(
