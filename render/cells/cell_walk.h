@@ -69,7 +69,11 @@ class RayFrame {
 /// Twice the area that two positions span with the ray, positive where they turn counter-clockwise about it
 /// as seen against its direction. Exactly the negative for exchanged arguments.
 EMSCAPE_HD inline double spanned(const RayFrame::Position& a, const RayFrame::Position& b) {
+#if defined(__CUDA_ARCH__)
+  return __dmul_rn(a.u, b.v) - __dmul_rn(a.v, b.u);  // never one instruction with the difference
+#else
   return a.u * b.v - a.v * b.u;
+#endif
 }
 
 /// volume::kFaceVertices, which device code cannot read.
