@@ -30,14 +30,20 @@ int cellAt(const CellMesh& mesh, const Vec3d& position) {
   return found.load() < cells ? found.load() : -1;
 }
 
-void marchAll(const CellMeshView& mesh, const RayFrame& frame, std::vector<EntryHit>& entries,
-              const MarchLimits& limits, RayIntegral& integral, long long& cells) {
-  std::sort(entries.begin(), entries.end());
-  double been = -std::numeric_limits<double>::infinity();
-  for (const EntryHit& entry : entries) {
-    if (entry.distance >= limits.distance || integral.through() < limits.through) return;
-    been = march(mesh, frame, entry, been, limits, integral, cells);
+long long marchInTurn(const CellMeshView& mesh, const IntervalsView& transfer, const PsiLookup& psi,
+                      MarchTask* tasks, int count) {
+  long long cells = 0;
+  for (MarchTask* task = tasks; task < tasks + count; ++task) {
+    RayIntegral integral(transfer, psi);
+    const MarchLimits& limits = task->limits;
+    double been = -std::numeric_limits<double>::infinity();
+    for (const EntryHit& entry : task->entries) {
+      if (entry.distance >= limits.distance || integral.through() < limits.through) break;
+      been = march(mesh, task->frame, entry, been, limits, integral, cells);
+    }
+    task->color = integral.color();
   }
+  return cells;
 }
 
 }  // namespace emscape::render

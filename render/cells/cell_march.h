@@ -11,10 +11,18 @@ namespace emscape::render {
 /// The cell that holds a position (index space); -1 if none does. Looks at all cells, in parallel.
 int cellAt(const CellMesh& mesh, const Vec3d& position);
 
-/// Marches from every entry, in ascending order, and counts what the ray has not passed yet: a mesh that is
-/// not convex is left and entered again.
-/// @param entries  sorted here
-void marchAll(const CellMeshView& mesh, const RayFrame& frame, std::vector<EntryHit>& entries,
-              const MarchLimits& limits, RayIntegral& integral, long long& cells);
+/// A ray that is to be marched.
+struct MarchTask {
+  RayFrame frame;
+  MarchLimits limits;
+  std::vector<EntryHit> entries;  ///< ascending
+  Rgba color{};                   ///< what it gathers; the march sets it
+};
+
+/// Marches rays one after another, each from every entry, and counts what it has not passed yet: a mesh that
+/// is not convex is left and entered again.
+/// @return the number of cells that were passed
+long long marchInTurn(const CellMeshView& mesh, const IntervalsView& transfer, const PsiLookup& psi,
+                      MarchTask* tasks, int count);
 
 }  // namespace emscape::render

@@ -132,6 +132,7 @@ Image CellRenderer::project(ImageSize size, const ProjectionOptions& options, Pr
   drawCells(impl.cells, order.cells, view, rasterizer, done);
   Image image;
   rasterizer.fetch(image);
+  if (!projectsOnCpu()) done.device_ms = rasterizer.drawMs();
   for (std::size_t pixel = 0; pixel < ground.size(); ++pixel) {
     if (ground[pixel].found) image.pixels[pixel] = over(image.pixels[pixel], ground[pixel].color);
   }

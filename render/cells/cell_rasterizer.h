@@ -67,6 +67,8 @@ class CellRasterizer {
 
   /// Floats sent since begin().
   std::size_t sentFloats() const;
+  /// Time that the device spent on drawing the batches of the last picture fetched, by its own clock.
+  double drawMs() const;
 
  private:
   struct Impl;

@@ -8,6 +8,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "render/cells/cell_march.h"
+#include "render/cells/cell_packets.h"
 #include "render/cells/cell_renderer_impl.h"
 #include "render/cells/face_tiles.h"
 
@@ -106,15 +107,18 @@ bool CellRenderer::isHidden(const Vec3d& frame_m) const {
 }
 
 CellReport CellRenderer::Impl::castTile(const RaycastTask& task, const FaceTiles& tiles, int tile,
-                                        int start_cell, Image& image) const {
+                                        int start_cell, const CellPackets& packets, Image& image) const {
   const PixelBox box = tiles.pixelsOf(tile);
   std::vector<std::vector<EntryHit>> entries = tiles.entriesOf(tile, cells, task.camera);
   const CellMeshView view = cells.view();
+  const bool exact = scene.settings().exact;
   CellReport report;
+  std::vector<GroundHit> ground;
+  std::vector<MarchTask> rays;
   for (int y = box.first_y; y < box.end_y; ++y) {
     for (int x = box.first_x; x < box.end_x; ++x) {
       std::vector<EntryHit>& hits = entries[box.index(x, y)];
-      const GroundHit ground = task.groundAt(x, y);
+      ground.push_back(task.groundAt(x, y));
       const RayFrame frame(task.camera.ray(x, y));
       if (start_cell >= 0) {
         // The eye is in the mesh: the line enters this cell behind it.
@@ -123,13 +127,21 @@ CellReport CellRenderer::Impl::castTile(const RaycastTask& task, const FaceTiles
         start.distance = std::min(start.distance, 0.0);
         hits.push_back(start);
       }
-      const bool exact = scene.settings().exact;
-      const MarchLimits limits{ground.found ? ground.distance : std::numeric_limits<double>::infinity(),
-                               exact ? 0 : 1 - static_cast<double>(kOpaqueEnough)};
-      RayIntegral integral(transfer->view(), exact ? PsiLookup{} : PsiTable::shared().lookup());
       if (!hits.empty()) ++report.rays;
-      marchAll(view, frame, hits, limits, integral, report.cells);
-      image.at(x, y) = ground.found ? over(integral.color(), ground.color) : integral.color();
+      std::sort(hits.begin(), hits.end());
+      const double end =
+          ground.back().found ? ground.back().distance : std::numeric_limits<double>::infinity();
+      rays.push_back({frame, {end, exact ? 0 : 1 - static_cast<double>(kOpaqueEnough)}, std::move(hits), {}});
+    }
+  }
+  const int count = static_cast<int>(rays.size());
+  report.cells =
+      exact ? marchInTurn(view, transfer->view(), {}, rays.data(), count) : packets.march(rays.data(), count);
+  for (int y = box.first_y; y < box.end_y; ++y) {
+    for (int x = box.first_x; x < box.end_x; ++x) {
+      const GroundHit& behind = ground[box.index(x, y)];
+      const Rgba color = rays[box.index(x, y)].color;
+      image.at(x, y) = behind.found ? over(color, behind.color) : color;
     }
   }
   return report;
@@ -185,10 +197,11 @@ Image CellRenderer::render(ImageSize size, const StopFlag* stop, CellReport* rep
   }
   Image image(size);
   std::atomic<long long> rays{0}, passed{0};
+  const CellPackets packets(impl.cells.view(), impl.transfer->view(), PsiTable::shared().lookup());
   const auto isStopped = [stop] { return stop != nullptr && stop->load(std::memory_order_relaxed); };
   parallelFor(tiles.count(), 1, [&](int begin, int end) {
     for (int tile = begin; tile < end && !isStopped(); ++tile) {
-      const CellReport of_tile = impl.castTile(task, tiles, tile, start_cell, image);
+      const CellReport of_tile = impl.castTile(task, tiles, tile, start_cell, packets, image);
       rays += of_tile.rays;
       passed += of_tile.cells;
     }

@@ -8,6 +8,7 @@
 #include "emscape/render/cell_renderer.h"
 #include "render/cells/cell_caster.h"
 #include "render/cells/cell_mesh.h"
+#include "render/cells/cell_packets.h"
 #include "render/cells/cell_rasterizer.h"
 #include "render/cells/face_tiles.h"
 #include "render/cells/linear_transfer.h"
@@ -25,9 +26,10 @@ struct CellRenderer::Impl {
   /// The ground's first points on all rays; empty: there is none.
   std::vector<GroundHit> ground(const RaycastTask& task) const;
   Image castOnDevice(const RaycastTask& task, const FaceTiles& tiles, int start_cell, CellReport& report);
-  /// The tile's pixels into the image. @return the rays that met the mesh and the cells that they passed
+  /// The tile's pixels into the image; `exact` is marched in turn, all else by packets.
+  /// @return the rays that met the mesh and the cells that they passed
   CellReport castTile(const RaycastTask& task, const FaceTiles& tiles, int tile, int start_cell,
-                      Image& image) const;
+                      const CellPackets& packets, Image& image) const;
 };
 
 }  // namespace emscape::render

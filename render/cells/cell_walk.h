@@ -36,6 +36,22 @@ class RayFrame {
     return {to.x - slope_u_ * to.z, to.y - slope_v_ * to.z, to.z * per_w_};
   }
 
+  /// The same as numbers: what operator() takes from each axis, across, across and along.
+  struct Parts {
+    int axis[3];  ///< 0..2: x, y, z
+    double origin[3];
+    double slope_u, slope_v, per_w;
+  };
+  Parts parts() const {
+    const int u = (w_ + 1) % 3, v = (w_ + 2) % 3;
+    const Vec3d origin = turnedTo(origin_);
+    return {{is_mirrored_ ? v : u, is_mirrored_ ? u : v, w_},
+            {origin.x, origin.y, origin.z},
+            slope_u_,
+            slope_v_,
+            per_w_};
+  }
+
  private:
   EMSCAPE_HD double along(const Vec3d& v) const { return w_ == 0 ? v.x : w_ == 1 ? v.y : v.z; }
   /// Components across, across and along the ray's largest one.
@@ -53,7 +69,11 @@ class RayFrame {
 /// Twice the area that two positions span with the ray, positive where they turn counter-clockwise about it
 /// as seen against its direction. Exactly the negative for exchanged arguments.
 EMSCAPE_HD inline double spanned(const RayFrame::Position& a, const RayFrame::Position& b) {
+#if defined(__CUDA_ARCH__)
+  return __dmul_rn(a.u, b.v) - __dmul_rn(a.v, b.u);  // never one instruction with the difference
+#else
   return a.u * b.v - a.v * b.u;
+#endif
 }
 
 /// volume::kFaceVertices, which device code cannot read.
@@ -77,6 +97,9 @@ struct MarchLimits {
   double distance = 0;  ///< of the ground, or infinite
   double through = 0;   ///< least part of the light that is worth following, 0..1
 };
+
+/// Only a ray along an edge can pass so many cells and come no farther.
+constexpr int kMaxStanding = 10000;
 
 struct Corner {
   std::int32_t point = 0;
@@ -177,8 +200,6 @@ EMSCAPE_HD inline volume::FaceId entryFaceOf(const CellMeshView& mesh, const Ray
 EMSCAPE_HD inline double march(const CellMeshView& mesh, const RayFrame& frame, const EntryHit& entry,
                                double been, const MarchLimits& limits, RayIntegral& integral,
                                long long& cells) {
-  // Only a ray along an edge can pass so many cells and come no farther.
-  constexpr int kMaxStanding = 10000;
   Crossing crossing = entryOf(mesh, frame, entry.face);
   int cell = entry.face >> 2;
   Corner fourth = cornerOf(mesh, frame, mesh.vertex(cell, entry.face & 3));

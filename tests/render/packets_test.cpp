@@ -1,38 +1,19 @@
 /// Packets of rays on every instruction set that they are built for.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <cstdint>
 #include <random>
 
 #include "emscape/render/renderer.h"
+#include "tests/render/instruction_sets.h"
 #include "tests/render/random_scene.h"
 
 namespace emscape::render {
 namespace {
 
-/// Packets use the instruction set of the parameter (HWY_AVX3 is AVX-512) until the test ends.
-class Packets : public ::testing::TestWithParam<std::int64_t> {
- protected:
-  void SetUp() override {
-    const std::int64_t target = GetParam();
-    if (target != HWY_SCALAR && (hwy::SupportedTargets() & target) == 0) {
-      GTEST_SKIP() << "the processor has no " << hwy::TargetName(target);
-    }
-    use(target);
-  }
-  void TearDown() override { use(0); }
+class Packets : public test::OnInstructionSet {};
 
- private:
-  /// @param target  0: the best
-  static void use(std::int64_t target) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  }
-};
-
-INSTANTIATE_TEST_SUITE_P(InstructionSets, Packets, ::testing::Values(HWY_AVX3, HWY_AVX2, HWY_SCALAR),
-                         [](const auto& test) { return hwy::TargetName(test.param); });
+EMSCAPE_ON_INSTRUCTION_SETS(Packets);
 
 TEST_P(Packets, AreWithinOneLevelOfThePlainForm) {
   std::mt19937 random(5);

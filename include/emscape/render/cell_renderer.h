@@ -69,6 +69,7 @@ struct ProjectionReport {
   long long cycles = 0;  ///< faces across which the order is wrong; not counted by centroids
   std::size_t sent_bytes = 0;
   double order_ms = 0, draw_ms = 0;
+  double device_ms = 0;  ///< of draw_ms: what the GPU spent, by OpenGL's clock; 0 where OpenGL is a program
 };
 
 /// Draws fields on tetrahedra by emission and absorption (dvr). The field, linear in each cell, is integrated

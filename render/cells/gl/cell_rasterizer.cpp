@@ -48,6 +48,9 @@ void deleteFramebuffer(GLuint name) {
 void deleteVertexArray(GLuint name) {
   glDeleteVertexArrays(1, &name);
 }
+void deleteQuery(GLuint name) {
+  glDeleteQueries(1, &name);
+}
 void deleteProgram(GLuint name) {
   glDeleteProgram(name);
 }
@@ -55,6 +58,7 @@ using Buffer = Name<deleteBuffer>;
 using Texture = Name<deleteTexture>;
 using Framebuffer = Name<deleteFramebuffer>;
 using VertexArray = Name<deleteVertexArray>;
+using Query = Name<deleteQuery>;
 using Program = Name<deleteProgram>;
 
 template <class Named, class Generate>
@@ -167,6 +171,9 @@ struct CellRasterizer::Impl {
   CellProjection projection = CellProjection::exact;
   int batch = 0;
   std::size_t sent = 0;
+  std::vector<Query> timers;  ///< of each batch
+  std::size_t drawn = 0;      ///< batches
+  double draw_ms = 0;
 
   GLint placeOf(const char* name) const { return glGetUniformLocation(program, name); }
 
@@ -257,6 +264,9 @@ const std::string& CellRasterizer::device() const {
 std::size_t CellRasterizer::sentFloats() const {
   return impl_->sent;
 }
+double CellRasterizer::drawMs() const {
+  return impl_->draw_ms;
+}
 
 void CellRasterizer::setTransfer(const LinearTransfer& transfer) {
   std::vector<float> texels;
@@ -282,7 +292,7 @@ void CellRasterizer::setTransfer(const LinearTransfer& transfer) {
 void CellRasterizer::begin(const CellView& view) {
   Impl& impl = *impl_;
   impl.setSize(view.camera.size);
-  impl.sent = 0;
+  impl.sent = impl.drawn = 0;
   impl.projection = view.projection;
   const bool is_published = view.projection == CellProjection::published;
   glUseProgram(impl.program);
@@ -356,7 +366,10 @@ void CellRasterizer::draw(std::size_t cells) {
   glActiveTexture(GL_TEXTURE0 + kCellNumbers);
   glBindTexture(GL_TEXTURE_BUFFER, impl.cell_numbers[impl.batch].texture);
   glBindVertexArray(impl.arrays[impl.batch]);
+  if (impl.drawn == impl.timers.size()) impl.timers.push_back(made<Query>(glGenQueries));
+  glBeginQuery(GL_TIME_ELAPSED, impl.timers[impl.drawn++]);
   glDrawElements(GL_TRIANGLE_STRIP, static_cast<GLsizei>(7 * cells), GL_UNSIGNED_INT, nullptr);
+  glEndQuery(GL_TIME_ELAPSED);
   impl.sent += cells * static_cast<std::size_t>(floatsOfCell(impl.projection));
 }
 
@@ -377,6 +390,12 @@ void CellRasterizer::fetch(Image& image) {
   glReadPixels(0, 0, image.size.width, image.size.height, GL_RGBA, GL_FLOAT, rows.data());
   if (const GLenum fault = glGetError(); fault != GL_NO_ERROR) {
     throw Error(ErrorCode::device, fmt::format("OpenGL: error 0x{:04x} while cells were drawn", fault));
+  }
+  impl_->draw_ms = 0;
+  for (std::size_t n = 0; n < impl_->drawn; ++n) {
+    GLuint64 elapsed_ns = 0;
+    glGetQueryObjectui64v(impl_->timers[n], GL_QUERY_RESULT, &elapsed_ns);
+    impl_->draw_ms += 1e-6 * static_cast<double>(elapsed_ns);
   }
   for (std::size_t y = 0; y < static_cast<std::size_t>(image.size.height); ++y) {
     std::copy_n(rows.end() - static_cast<std::ptrdiff_t>((y + 1) * width), width,

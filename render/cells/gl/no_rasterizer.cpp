@@ -27,5 +27,8 @@ void CellRasterizer::fetch(Image&) {}
 std::size_t CellRasterizer::sentFloats() const {
   return 0;
 }
+double CellRasterizer::drawMs() const {
+  return 0;
+}
 
 }  // namespace emscape::render::gl
