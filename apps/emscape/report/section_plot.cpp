@@ -92,7 +92,7 @@ class SectionPlot {
       line.points.push_back({level.m_units, level.height_msl_m, true});
     panel.drawLine(line);
     outline(frame);
-    panel.drawTitle("Refractivity at the emitter");
+    panel.drawTitle("Air at the emitter");
   }
 
   void drawLoss(const Rect& frame) {
