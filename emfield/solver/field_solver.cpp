@@ -28,6 +28,14 @@ bool sameTerrainFiles(const scenario::Scenario& a, const scenario::Scenario& b) 
   return a.terrain->files == b.terrain->files && a.terrain->vertical_datum == b.terrain->vertical_datum;
 }
 
+/// Columns come before the estimate of all else, and a grid of many of them takes gigabytes.
+void requireColumnsMemory(Dims dims, const std::string& file) {
+  const auto columns = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
+  requireMemory({fmt::format("a field of {} x {} x {} voxels, without its values,", dims.x, dims.y, dims.z),
+                 columns * sizeof(GridColumn), "fewer voxels (region.dims) take less"},
+                {file});
+}
+
 }  // namespace
 
 volume::Grid gridOf(const scenario::Region& region) {
@@ -53,6 +61,7 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
     setup.grid.spacing_m = {1, 1, 1};
   } else {
     setup.grid = gridOf(setup.scenario->region);
+    requireColumnsMemory(setup.grid.dims, setup.scenario->file);
     setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
   }
   checkHoles();

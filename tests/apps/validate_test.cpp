@@ -79,6 +79,14 @@ TEST_F(Validate, RefusesAFieldThatDoesNotFitIntoTheMemory) {
   EXPECT_EQ(result.status, 3) << result.err;
   EXPECT_THAT(result.out, testing::HasSubstr("the field of 512 x 512 x 256 voxels"));
   EXPECT_THAT(result.out, testing::HasSubstr("fewer voxels (region.dims)"));
+  // 4096 x 4096 columns alone are 2 GiB
+  const ProgramResult wide =
+      run({"validate", shippedScenario("quick.yaml"), "--set", "region.dims=[4096, 4096, 2]"},
+          "ulimit -v 1500000;");
+  EXPECT_EQ(wide.status, 3) << wide.err;
+  EXPECT_THAT(wide.out,
+              testing::HasSubstr("quick.yaml: error: a field of 4096 x 4096 x 2 voxels, without its values, "
+                                 "needs up to "));
 }
 
 TEST_F(Validate, TellsPlaceAndSeverityOfEveryProblem) {

@@ -331,7 +331,7 @@ TEST_F(TerrainFileTest, DescribeRefusesPostsThatAreNotOnTheEarth) {
   file.crs = "EPSG:32632";
   file.transform = {4e8, 30, 0, 4e8, 0, -30};
   const std::string name = write("off.tif", file);
-  EXPECT_EQ(errorOf([&] { Terrain::describe(name); }),
+  EXPECT_EQ(test::errorOf([&] { Terrain::describe(name); }),
             "elevation file " + name + ": its posts are not on the earth");
 }
 
