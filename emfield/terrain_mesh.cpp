@@ -93,6 +93,7 @@ std::vector<Foot> feetOf(const volume::Grid& grid, const scenario::Terrain* terr
 
 TerrainMeshSpec parseTerrainMesh(const std::string& text) {
   const std::string kind = "terrain:";
+  if (text == "terrain") refuse(text, "LAYERS is missing");
   if (text.rfind(kind, 0) != 0) refuse(text, "the only kind is terrain");
   std::vector<std::string> numbers{""};
   for (const char character : text.substr(kind.size())) {

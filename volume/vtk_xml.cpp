@@ -127,6 +127,11 @@ std::vector<std::uint8_t> VtkXmlFile::inflate(ByteReader& reader, std::uint64_t 
 }
 
 /// The bytes of an array in the file, decoded from base64.
+std::string arrayName(const pugi::xml_node& array) {
+  const pugi::xml_attribute name = array.attribute("Name");
+  return name ? name.value() : std::string("of ") + array.parent().name();
+}
+
 std::vector<std::uint8_t> VtkXmlFile::storedBytes(const pugi::xml_node& array,
                                                   std::uint64_t expected_bytes) const {
   // Compression and its tables cannot make an array much longer.
@@ -138,7 +143,7 @@ std::vector<std::uint8_t> VtkXmlFile::storedBytes(const pugi::xml_node& array,
     return fromBase64(begin, begin + text.size(), max_bytes);
   }
   if (format != "appended") {
-    fail("array " + std::string(array.attribute("Name").value()) + " is stored as \"" + std::string(format) +
+    fail("array " + arrayName(array) + " is stored as \"" + std::string(format) +
          "\"; appended, binary and ascii can be read");
   }
   if (appended_ == 0) fail("damaged: there are no appended data");
@@ -158,7 +163,7 @@ std::vector<std::uint8_t> VtkXmlFile::storedBytes(const pugi::xml_node& array,
 template <class Number>
 std::vector<std::uint8_t> VtkXmlFile::spelledNumbers(const pugi::xml_node& array, std::uint64_t count) const {
   using Parsed = std::conditional_t<std::is_floating_point_v<Number>, double, Number>;
-  const std::string name = array.attribute("Name").value(), type = array.attribute("type").value();
+  const std::string name = arrayName(array), type = array.attribute("type").value();
   const std::string_view text = array.child_value();
   std::vector<std::uint8_t> bytes;
   bytes.reserve(std::min<std::uint64_t>(count, text.size()) * sizeof(Number));
@@ -224,8 +229,8 @@ std::vector<std::uint8_t> VtkXmlFile::arrayBytes(const pugi::xml_node& array,
   if (!compressor.empty()) return inflate(reader, expected_bytes);
   const std::uint64_t bytes = headerValue(reader);
   if (bytes != expected_bytes) {
-    fail("array " + std::string(array.attribute("Name").value()) + ": expected " +
-         std::to_string(expected_bytes) + " bytes, found " + std::to_string(bytes));
+    fail("array " + arrayName(array) + ": expected " + std::to_string(expected_bytes) + " bytes, found " +
+         std::to_string(bytes));
   }
   const std::uint8_t* begin = reader.take(bytes, "array");
   return {begin, begin + bytes};

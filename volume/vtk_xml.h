@@ -50,6 +50,9 @@ class VtkXmlFile {
   std::uint64_t appended_ = 0;  ///< offset of the appended data, behind the underscore; 0: there are none
 };
 
+/// What errors call a DataArray: its Name; `of Points` and the like, by its parent, if it has none.
+std::string arrayName(const pugi::xml_node& array);
+
 /// The text that an array of character numbers spells, up to its zero.
 std::string spelledText(const std::string& numbers_text);
 

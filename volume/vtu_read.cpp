@@ -159,8 +159,7 @@ class VtuFile {
       if (type == "Float32") return copied<float, To>(bytes(4), big);
       if (type == "Float64") return copied<double, To>(bytes(8), big);
     }
-    file_.fail("array " + std::string(array.attribute("Name").value()) + " is of type \"" + type +
-               "\", which cannot be read here");
+    file_.fail("array " + arrayName(array) + " is of type \"" + type + "\", which cannot be read here");
   }
   std::vector<double> floats(const pugi::xml_node& array, std::uint64_t count) const {
     return numbers<double>(array, count);

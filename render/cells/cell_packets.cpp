@@ -64,6 +64,9 @@ HWY_INLINE L chosen(M mask, L yes, L no) {
 HWY_INLINE D chosen(M mask, D yes, D no) {
   return hn::IfThenElse(mask, yes, no);
 }
+HWY_INLINE M chosen(M mask, M yes, M no) {
+  return hn::Or(hn::And(mask, yes), hn::AndNot(mask, no));
+}
 HWY_INLINE M isSame(L a, L b) {
   return hn::RebindMask(kD, hn::Eq(a, b));
 }
@@ -80,11 +83,13 @@ struct alignas(64) Wholes {
   HWY_INLINE void operator=(L value) { hn::Store(value, kL, of); }
 };
 
+/// See Corner.
 struct LaneCorner {
   Reals u, v, distance, value;
   Wholes point;
 };
 
+/// The same in registers.
 struct CornerV {
   D u, v, distance, value;
   L point;
@@ -106,6 +111,7 @@ HWY_INLINE CornerV chosen(M mask, const CornerV& yes, const CornerV& no) {
 HWY_INLINE D spanned(const CornerV& a, const CornerV& b) {
   return a.u * b.v - a.v * b.u;
 }
+/// See Crossing::mean().
 HWY_INLINE D mean(const D* area, D sum, M is_face, D a, D b, D c) {
   const D weighed = area[0] * a + area[1] * b + area[2] * c;
   const D inside = weighed / sum;
@@ -130,6 +136,7 @@ class IntegralLanes {
   HWY_INLINE D through() const { return through_(); }
   double through(int lane) const { return through_.of[lane]; }
 
+  /// See RayIntegral::add(). @param on  lanes that have a segment
   HWY_INLINE void add(M on, D front, D back, D length) {
     const L one = hn::Set(kL, 1);
     L interval = interval_();
@@ -168,10 +175,6 @@ class IntegralLanes {
   }
 
  private:
-  static HWY_INLINE M chosen(M mask, M yes, M no) { return hn::Or(hn::And(mask, yes), hn::AndNot(mask, no)); }
-  static HWY_INLINE L chosen(M mask, L yes, L no) { return HWY_NAMESPACE::chosen(mask, yes, no); }
-  static HWY_INLINE D chosen(M mask, D yes, D no) { return hn::IfThenElse(mask, yes, no); }
-
   HWY_INLINE D field(L interval, double CellPackets::Interval::*member) const {
     static_assert(sizeof(CellPackets::Interval) == 16 * sizeof(double));
     return hn::GatherIndex(kD, &(scene_.intervals->*member), hn::ShiftLeft<4>(interval));
@@ -180,6 +183,7 @@ class IntegralLanes {
     return hn::GatherIndex(kD, &(scene_.intervals->*member)[n], hn::ShiftLeft<4>(interval));
   }
 
+  /// The interval in which the value of some lanes lies; that of the others is as before.
   HWY_NOINLINE L found(M lanes, D front, L interval) const {
     Wholes to;
     Reals value;
@@ -318,6 +322,7 @@ class MarchLanes {
     cell_.of[lane] = fourth_.of[lane] = 0;
   }
 
+  /// @return false if the ray has no further entry that counts
   bool enter(int lane) {
     const MarchTask& task = *task_[lane];
     if (entry_[lane] == task.entries.size()) return false;

@@ -33,6 +33,7 @@ TEST(TerrainMeshSpec, IsParsed) {
     return errorOf([&] { parseTerrainMesh(text); }, ErrorCode::usage);
   };
   EXPECT_THAT(errorAt("grid:8"), HasSubstr("mesh 'grid:8': the only kind is terrain"));
+  EXPECT_THAT(errorAt("terrain"), HasSubstr("mesh 'terrain': LAYERS is missing; expected terrain:LAYERS"));
   EXPECT_THAT(errorAt("terrain:0"), HasSubstr("LAYERS '0' must be a number 1..4096"));
   EXPECT_THAT(errorAt("terrain:2.5"), HasSubstr("LAYERS '2.5' is not whole"));
   EXPECT_THAT(errorAt("terrain:8,-1"), HasSubstr("FIRST_M '-1' must be a number 0.01..10000"));

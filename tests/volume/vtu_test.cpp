@@ -203,6 +203,10 @@ TEST(Vtu, ReadsTextOfOthers) {
   folder.write("a.vtu", text);
   EXPECT_THAT(errorOf([&] { readMesh(folder / "a.vtu"); }, ErrorCode::bad_input),
               HasSubstr("a.vtu: array connectivity: value 3: \"?\": must be a number of type Int64"));
+  text.replace(text.find("1 0 0\n"), 5, "1 0 x");
+  folder.write("a.vtu", text);
+  EXPECT_THAT(errorOf([&] { readMesh(folder / "a.vtu"); }, ErrorCode::bad_input),
+              HasSubstr("a.vtu: array of Points: value 5: \"x\": must be a number of type Float32"));
 }
 
 TEST(Vtu, ZeroIsAValueInFilesOfOthers) {

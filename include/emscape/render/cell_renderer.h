@@ -105,7 +105,8 @@ class CellRenderer {
   bool isHidden(const Vec3d& frame_m) const;
 
   /// The picture, premultiplied, without background: every ray is followed from cell to cell. It does not
-  /// depend on the number of threads; pictures of a GPU differ by rounding (1e-5).
+  /// depend on the number of threads; pictures of a GPU and of other instruction sets differ by rounding
+  /// (1e-5).
   /// @param stop  set from elsewhere: returns soon, incomplete; without effect on a GPU. May be null
   Image render(ImageSize size, const StopFlag* stop = nullptr, CellReport* report = nullptr);
   /// Prepares project(), which otherwise does so at the first call.
@@ -115,9 +116,8 @@ class CellRenderer {
   /// @throws Error (device) as prepareProjection()
   bool projectsOnCpu();
   /// The same by projection of the cells with OpenGL, without a window.
-  /// @accuracy exact, visibility: within 1e-5 of render() in 99 % of the pixels, 2e-6 in the mean; 2e-2 at
-  /// most, where a face is seen on edge or a ray passes within 1/256 pixel of an edge: rasterisers round to
-  /// that
+  /// @accuracy exact, visibility: within 1e-5 of render() in 98 % of the pixels, 2e-6 in the mean; 2e-4 at
+  /// most where no edge of a cell is within 1/32 pixel, else 2e-2: rasterisers round to 1/256 pixel
   /// @throws Error (device) as prepareProjection()
   Image project(ImageSize size, const ProjectionOptions& options = {}, ProjectionReport* report = nullptr);
 
