@@ -1,4 +1,4 @@
-#include "base/unset_vector.h"
+#include "emscape/base/unset_vector.h"
 
 #include <sys/mman.h>
 

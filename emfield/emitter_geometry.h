@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "base/unset_vector.h"
 #include "emfield/clutter_map.h"
 #include "emfield/column_geometry.h"
 #include "emfield/terrain_bounds.h"
+#include "emscape/base/unset_vector.h"
 #include "emscape/scenario/emitter.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/scenario/terrain.h"

@@ -127,8 +127,9 @@ void setOutlineOfGrid(GridColumns& columns) {
 struct PlacesPart {
   Vec3d feet{0, 0, 0};  ///< sum
   double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;
-  double farthest2_m2 = 0;  ///< of a foot from the middle, in a straight line
-  double beyond_m = 0;      ///< the same along the ground
+  double farthest2_m2 = 0;               ///< of a foot from the middle, in a straight line
+  double beyond_m = 0;                   ///< the same along the ground
+  long long holes = 0, first_hole = -1;  ///< places without ground
 };
 
 /// Places that a thread visits together. Their sums are added in order, whatever thread computes them.
@@ -288,15 +289,18 @@ GridColumns makeGridColumns(const Surface& surface, const scenario::Terrain* ter
         }
         result.first_valid_k[c] = static_cast<std::uint16_t>(k);
       }
-      if (std::isnan(ground_msl_m)) continue;
+      if (std::isnan(ground_msl_m)) {
+        if (part.holes++ == 0) part.first_hole = c;
+        continue;
+      }
       part.feet = part.feet + column.foot_ecef_m;
       addHeights(column, result.t_m, part);
     }
   });
   setOutlineOfPlaces(surface, parts, result);
-  for (int c = 0; c < places && terrain != nullptr; ++c) {
-    const bool is_place = !std::isnan(surface.places[c].latitude_deg);
-    if (is_place && std::isnan(result.ground_msl_m[c])) countHole(c, result);
+  for (const PlacesPart& part : parts) {
+    if (part.holes > 0 && result.hole_columns == 0) result.first_hole = part.first_hole;
+    result.hole_columns += part.holes;
   }
   return result;
 }

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/fast_geodesy.h"
-#include "base/unset_vector.h"
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/host_device.h"
+#include "emscape/base/unset_vector.h"
 #include "emscape/base/vec.h"
 #include "emscape/emfield/surface.h"
 #include "emscape/scenario/terrain.h"

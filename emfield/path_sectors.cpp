@@ -55,7 +55,7 @@ PathSectors::PathSectors(const Station& station, const ExcessGrid& grid, int cou
     : per_quadrant_((count + 3) / 4) {
   const int columns = static_cast<int>(grid.column_count), sectors = this->count();
   const int parts = (columns + kPart - 1) / kPart;
-  std::vector<int> sector_of(grid.column_count);  // -1: none
+  UnsetVector<int> sector_of(grid.column_count);  // -1: none
   // Number of paths of each part to each sector; then where the next of these goes.
   std::vector<std::size_t> next(static_cast<std::size_t>(parts) * sectors);
   const auto inParts = [&](const auto& visit) {

@@ -8,6 +8,7 @@
 #include "emfield/sector_terrain.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "propagation/diffraction/bullington_lanes.h"
 
 namespace emscape::emfield {
 namespace {
@@ -30,6 +31,8 @@ struct SectorBounds {
   std::vector<float> tx_slope;   ///< largest slope from the transmitter to a lowered obstacle
   /// The largest over this block and all before it, and a lower bound of that.
   std::vector<float> highest_tx_slope, least_tx_slope;
+  /// The last block before this one that may hold the largest slope of those before this one; -1: none.
+  std::vector<int> steep_before;
   /// The same of groups.
   std::vector<float> group_lowered_m, group_tx_slope;
 };
@@ -43,15 +46,22 @@ struct Posts {
   double last_step_m;                         ///< between the farthest posts
   const float *first_m, *last_m;              ///< per block: range of its first and last obstacle
   const float *group_first_m, *group_last_m;  ///< per group
+  /// Of the obstacles in groups (SectorPosts): the earth's bulge r^2 / (2 a), and 1 / r.
+  const float *lowering_m, *per_range;
 };
 
 /// Work of one thread.
 struct PathMemory {
-  std::vector<float> height_m;            ///< of the posts of the blocks that were read
-  std::vector<int> read_for;              ///< per block: number of the path for which it was read
-  std::vector<float> height_msl_m, rx_m;  ///< of the receivers: as they are, and as the model takes them
-  std::vector<int> rx_block, nu_block;    ///< per height: the blocks that decided on the path before
+  std::vector<float> height_m;          ///< of the posts of the blocks that were read
+  std::vector<int> read_for;            ///< per block: number of the path for which it was read
+  std::vector<float> rx_m;              ///< heights of the receivers as the model takes them
+  std::vector<int> rx_block, nu_block;  ///< per height: the blocks that decided on the path before
   int tx_block = 0;
+  bool is_unknown = false;  ///< a void was read
+  /// Paths of the sector that were searched, and of their receivers, path by path: nu and distance of the
+  /// edge, and the loss.
+  std::vector<const SectorPath*> searched;
+  std::vector<float> nu, distance_m, loss_db;
 };
 
 /// A search for a maximum of the posts of a path.
@@ -99,6 +109,19 @@ class Search {
     for (int of_groups = groupsOf(groups) - 1; of_groups >= 0; --of_groups) {
       descend(of_groups, groups, bounds_.group_lowered_m.data(), bounds_.group_tx_slope.data(),
               posts_.group_first_m, posts_.group_last_m, clipped, boundOf, most, visitGroup);
+    }
+  }
+
+  /// Finds the largest slope from the transmitter.
+  /// @param slopeOf(range_m, height_m)  of an obstacle
+  /// @param most                        as above
+  template <class SlopeOf>
+  void findSteepest(const SlopeOf& slopeOf, Maximum& most) const {
+    const int guess = std::min(most.block, path_.blocks - 1);
+    visit(guess, slopeOf, most);
+    for (int block = path_.blocks - 1; block >= 0 && bounds_.highest_tx_slope[block] > most.value;
+         block = bounds_.steep_before[block]) {
+      if (block != guess && bounds_.tx_slope[block] > most.value) visit(block, slopeOf, most);
     }
   }
 
@@ -175,6 +198,9 @@ class Search {
     } else {
       read(count);
     }
+    if (!(terrain_.slack_m()[block] < HUGE_VALF)) {
+      for (int i = 0; i < count; ++i) memory_.is_unknown = memory_.is_unknown || std::isnan(height_m[i]);
+    }
     return height_m;
   }
 
@@ -185,10 +211,10 @@ class Search {
   const Path& path_;
 };
 
-/// Losses of receivers clear of the smooth earth, lowest first.
+/// Finds nu of Bullington's edge for receivers clear of the smooth earth, lowest first.
 /// @param rx_m  heights, relative to the base
-inline void findLosses(const Posts& posts, const SectorBounds& bounds, const Path& path, const Search& search,
-                       const float* rx_m, int count, PathMemory& memory, float* loss_db) {
+inline void findEdges(const Posts& posts, const SectorBounds& bounds, const Path& path, const Search& search,
+                      const float* rx_m, int count, PathMemory& memory, float* nu_of) {
   const float d = path.distance_m, tx_m = bounds.tx_m;
   const float k = posts.model.half_curvature, bulge = k * d;
   const int last = path.blocks - 1;
@@ -198,11 +224,9 @@ inline void findLosses(const Posts& posts, const SectorBounds& bounds, const Pat
   for (int n = 0; n < count; ++n) {
     const float rx = rx_m[n], slope = (rx - tx_m) / d;
     if (!is_found && steepest + bulge >= slope) {
-      const float least = last > 0 ? bounds.least_tx_slope[last - 1] : -HUGE_VALF;
       Maximum most{-HUGE_VALF, memory.tx_block};
-      search([=](float, float tx_slope, float, float) { return tx_slope >= least ? tx_slope : -HUGE_VALF; },
-             [=](float range, float height) { return (height - k * range * range - tx_m) * (1 / range); },
-             most);
+      search.findSteepest(
+          [=](float range, float height) { return (height - k * range * range - tx_m) * (1 / range); }, most);
       memory.tx_block = most.block;
       steepest = most.value;
       is_found = true;
@@ -237,52 +261,66 @@ inline void findLosses(const Posts& posts, const SectorBounds& bounds, const Pat
       memory.nu_block[n] = most.block;
       nu = most.value;
       if (nu <= propagation::kKnifeEdgeClear<float>) {  // and so are those above
-        for (; n < count; ++n) loss_db[n] = 0;
+        for (; n < count; ++n) nu_of[n] = nu;
         return;
       }
     }
-    loss_db[n] = propagation::bullingtonLossDb(nu, d);
+    nu_of[n] = nu;
   }
 }
 
 /// Bounds the blocks of a sector from the heights in its middle.
 EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terrain, float tx_msl_m,
                                    SectorBounds& bounds) {
-  const float* const height_msl_m = terrain.height_msl_m();
-  const float* const slack_m = terrain.slack_m();
-  const float* const range_m = posts.range_m;
-  const float base = height_msl_m[0], k = posts.model.half_curvature;
-  const float tx = posts.model.raised_m(tx_msl_m - base, 0);
+  const float base = terrain.base_msl_m(), tx = posts.model.raised_m(tx_msl_m - base, 0);
   bounds.base_msl_m = base;
   bounds.tx_m = tx;
-  for (std::vector<float>* const padded :
-       {&bounds.lowered_m, &bounds.tx_slope, &bounds.group_lowered_m, &bounds.group_tx_slope}) {
-    std::fill(padded->begin(), padded->end(), -HUGE_VALF);
-  }
+  const int blocks = terrain.blocks(), groups = groupsOf(blocks);
+  float least[kGroup];
   float highest_slope = -HUGE_VALF, least_slope = -HUGE_VALF;
-  for (int b = 0; b < terrain.blocks(); ++b) {
-    const int begin = std::max(b * kBlock, 1), end = std::min((b + 1) * kBlock, terrain.posts());
-    const float slack = slack_m[b];
-    float lowered = -HUGE_VALF, steepest = -HUGE_VALF, least = -HUGE_VALF;
-#pragma omp simd reduction(max : lowered, steepest, least)
-    for (int i = begin; i < end; ++i) {
-      const float here = height_msl_m[i] - base - k * range_m[i] * range_m[i], inverse = 1 / range_m[i];
-      const float slope = (here - tx) * inverse, between = slack * inverse;
-      lowered = here > lowered ? here : lowered;
-      steepest = slope + between > steepest ? slope + between : steepest;
-      least = slope - between > least ? slope - between : least;
+  int steep = -1;  // the last block that may hold the largest slope so far
+  for (int g = 0; g < groups; ++g) {
+    const int begin = g * kGroup;
+    const float* const slack_m = terrain.slack_m() + begin;
+    float *const lowered = bounds.lowered_m.data() + begin, *const steepest = bounds.tx_slope.data() + begin;
+#pragma omp simd
+    for (int n = 0; n < kGroup; ++n) lowered[n] = steepest[n] = least[n] = -HUGE_VALF;
+    for (int j = 0; j < kBlock; ++j) {
+      const int first = (g * kBlock + j) * kGroup;
+      const float* const height_msl_m = terrain.height_msl_m() + first;
+      const float *const lowering_m = posts.lowering_m + first, *const per_range = posts.per_range + first;
+#pragma omp simd
+      for (int n = 0; n < kGroup; ++n) {
+        const float here = height_msl_m[n] - base - lowering_m[n];
+        const float slope = (here - tx) * per_range[n], between = slack_m[n] * per_range[n];
+        lowered[n] = here > lowered[n] ? here : lowered[n];
+        steepest[n] = slope + between > steepest[n] ? slope + between : steepest[n];
+        least[n] = slope - between > least[n] ? slope - between : least[n];
+      }
     }
-    lowered += slack;
-    highest_slope = std::max(highest_slope, steepest);
-    least_slope = std::max(least_slope, least);
-    bounds.lowered_m[b] = lowered;
-    bounds.tx_slope[b] = steepest;
-    bounds.highest_tx_slope[b] = highest_slope;
-    bounds.least_tx_slope[b] = least_slope;
-    float& of_group = bounds.group_lowered_m[b / kGroup];
-    of_group = std::max(of_group, lowered);
-    float& slope_of_group = bounds.group_tx_slope[b / kGroup];
-    slope_of_group = std::max(slope_of_group, steepest);
+    float group_lowered = -HUGE_VALF, group_steepest = -HUGE_VALF;
+    const int count = std::min(kGroup, blocks - begin);
+    for (int n = 0; n < kGroup; ++n) {
+      lowered[n] = n < count ? lowered[n] + slack_m[n] : -HUGE_VALF;
+      steepest[n] = n < count ? steepest[n] : -HUGE_VALF;
+      group_lowered = std::max(group_lowered, lowered[n]);
+      group_steepest = std::max(group_steepest, steepest[n]);
+    }
+    bounds.group_lowered_m[g] = group_lowered;
+    bounds.group_tx_slope[g] = group_steepest;
+    for (int n = 0; n < count; ++n) {
+      const int block = begin + n;
+      while (steep >= 0 && bounds.tx_slope[steep] < least_slope) steep = bounds.steep_before[steep];
+      bounds.steep_before[block] = steep;
+      steep = block;
+      highest_slope = std::max(highest_slope, steepest[n]);
+      least_slope = std::max(least_slope, least[n]);
+      bounds.highest_tx_slope[block] = highest_slope;
+      bounds.least_tx_slope[block] = least_slope;
+    }
+  }
+  for (int g = groups; g < groupsOf(groups) * kGroup; ++g) {
+    bounds.group_lowered_m[g] = bounds.group_tx_slope[g] = -HUGE_VALF;
   }
 }
 
@@ -294,6 +332,33 @@ struct SectorTask {
   const ExcessOutput& out;
   char* is_left;
 };
+
+/// Sets the excess of the paths that were searched.
+inline void setLosses(const SectorTask& sector, PathMemory& memory) {
+  const ExcessGrid& grid = sector.task.grid;
+  const int receivers = static_cast<int>(memory.searched.size()) * grid.layers;
+  const float *const nu = memory.nu.data(), *const distance_m = memory.distance_m.data();
+  float* const loss_db = memory.loss_db.data();
+#pragma omp simd
+  for (int i = 0; i < receivers; ++i) {
+    loss_db[i] = propagation::bullingtonLossInLoopDb(nu[i], distance_m[i]);
+  }
+  float* of_path_db = loss_db;
+  for (const SectorPath* const to : memory.searched) {
+    const auto column = static_cast<std::size_t>(to->column);
+    if (!sector.task.air.isClear()) {
+      const propagation::AirColumn above(sector.task.air, static_cast<float>(to->distance_m));
+      for (int n = 0; n < grid.layers; ++n) {
+        of_path_db[n] += above.lossDb(static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n])));
+      }
+    }
+    for (int n = 0; n < grid.layers; ++n) {
+      sector.out.excess.set(n * grid.column_count + column, of_path_db[n]);
+    }
+    sector.is_left[column] = 0;
+    of_path_db += grid.layers;
+  }
+}
 
 /// Last post nearer than a range. Most posts are equally far apart.
 inline int lastBefore(const Posts& posts, double distance_m) {
@@ -307,12 +372,18 @@ inline int lastBefore(const Posts& posts, double distance_m) {
 
 EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_posts,
                                     const SectorTerrain& terrain, const SectorBounds& bounds,
-                                    PathMemory& memory, float* loss_db) {
+                                    PathMemory& memory) {
   constexpr int kMinPosts = 16;  // shorter paths are read as fast
   const Posts posts = all_posts;
   const ExcessGrid& grid = sector.task.grid;
   const DiffractionModel<float>& model = posts.model;
   const float per_rad = static_cast<float>(1 / sector.half_width_rad);
+  const auto layers = static_cast<std::size_t>(grid.layers);
+  const std::size_t receivers = static_cast<std::size_t>(sector.end - sector.begin) * layers;
+  memory.searched.clear();
+  for (std::vector<float>* const array : {&memory.nu, &memory.distance_m, &memory.loss_db}) {
+    if (array->size() < receivers) array->resize(receivers);
+  }
   Path path{};
   for (const SectorPath* to = sector.begin; to < sector.end; ++to) {
     path.distance_m = static_cast<float>(to->distance_m);
@@ -323,8 +394,8 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
     if (path.before < kMinPosts || path.before >= terrain.posts()) continue;
     const float ground_m = to->ground_msl_m - bounds.base_msl_m;
     for (int n = 0; n < grid.layers; ++n) {
-      memory.height_msl_m[n] = static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n]));
-      const float here_m = sector.task.modelHeight_m(to->distance_m, memory.height_msl_m[n]);
+      const auto height_msl_m = static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n]));
+      const float here_m = sector.task.modelHeight_m(to->distance_m, height_msl_m);
       memory.rx_m[n] = model.raised_m(here_m - bounds.base_msl_m, ground_m);
     }
     // The antennas are at least as high above the smooth earth as above their ground.
@@ -333,16 +404,15 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
                            sightLine(model.earth, path.distance_m, bounds.tx_m, rx_agl_m))) {
       continue;
     }
-    findLosses(posts, bounds, path, Search(posts, terrain, bounds, memory, path), memory.rx_m.data(),
-               grid.layers, memory, loss_db);
-    const auto column = static_cast<std::size_t>(to->column);
-    if (!sector.task.air.isClear()) {
-      const propagation::AirColumn above(sector.task.air, path.distance_m);
-      for (int n = 0; n < grid.layers; ++n) loss_db[n] += above.lossDb(memory.height_msl_m[n]);
-    }
-    for (int n = 0; n < grid.layers; ++n) sector.out.excess.set(n * grid.column_count + column, loss_db[n]);
-    sector.is_left[column] = 0;
+    memory.is_unknown = false;
+    const std::size_t first = memory.searched.size() * layers;
+    findEdges(posts, bounds, path, Search(posts, terrain, bounds, memory, path), memory.rx_m.data(),
+              grid.layers, memory, memory.nu.data() + first);
+    if (memory.is_unknown) continue;
+    memory.searched.push_back(to);
+    std::fill_n(memory.distance_m.begin() + static_cast<std::ptrdiff_t>(first), layers, path.distance_m);
   }
+  setLosses(sector, memory);
 }
 
 /// Number of sectors: none wider than a part of the posts' spacing, and not more than paths are worth it.
@@ -380,11 +450,26 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
   const int padded_groups = groupsOf(groups) * kGroup;
   group_first_m.resize(padded_groups, group_first_m.back());
   group_last_m.resize(padded_groups, group_last_m.back());
+  std::vector<float> lowering_m, per_range;
+  for (const int post : sector_posts.postsInGroups()) {
+    const float range_m = sector_posts.range_m()[post];
+    lowering_m.push_back(task.model.model.half_curvature * range_m * range_m);
+    per_range.push_back(1 / range_m);
+  }
   const int count = task.ground.range_count;
   const double last_step_m = task.ground.ranges_m[count - 1] - task.ground.ranges_m[count - 2];
-  const Posts posts{
-      task.model.model, task.ground.ranges_m, sector_posts.range_m(), sector_posts.part(), count, last_step_m,
-      first_m.data(),   last_m.data(),        group_first_m.data(),   group_last_m.data()};
+  const Posts posts{task.model.model,
+                    task.ground.ranges_m,
+                    sector_posts.range_m(),
+                    sector_posts.part(),
+                    count,
+                    last_step_m,
+                    first_m.data(),
+                    last_m.data(),
+                    group_first_m.data(),
+                    group_last_m.data(),
+                    lowering_m.data(),
+                    per_range.data()};
   parallelFor(sectors.count(), 16, [&](int begin, int end) {
     SectorTerrain terrain(task.station, task.ground, bounds, sector_posts);
     SectorBounds of_sector;
@@ -392,15 +477,14 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
                               &of_sector.least_tx_slope}) {
       array->resize(groups * kGroup);
     }
+    of_sector.steep_before.resize(groups * kGroup);
     of_sector.group_lowered_m.resize(padded_groups);
     of_sector.group_tx_slope.resize(padded_groups);
     PathMemory memory;
     memory.height_m.resize(blocks * kBlock);
-    memory.height_msl_m.resize(task.grid.layers);
     memory.rx_m.resize(task.grid.layers);
     memory.rx_block.resize(task.grid.layers);
     memory.nu_block.resize(task.grid.layers);
-    std::vector<float> loss_db(task.grid.layers);
     for (int sector = begin; sector < end; ++sector) {
       double farthest_m = 0;
       for (const SectorPath* to = sectors.begin(sector); to < sectors.end(sector); ++to) {
@@ -414,7 +498,7 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
       memory.read_for.assign(blocks, 0);
       fillSector({task, sectors.begin(sector), sectors.end(sector), sectors.halfWidth_rad(sector), out,
                   is_left.data()},
-                 posts, terrain, of_sector, memory, loss_db.data());
+                 posts, terrain, of_sector, memory);
     }
   });
   return is_left;

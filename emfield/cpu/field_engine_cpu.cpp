@@ -1,6 +1,7 @@
 // The field's stages on the host.
 
 #include <algorithm>
+#include <atomic>
 #include <optional>
 
 #include "base/memory.h"
@@ -8,14 +9,15 @@
 #include "emfield/cpu/kept_looks.h"
 #include "emfield/solver/field_engine.h"
 #include "emfield/solver/kept_power.h"
+#include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
 namespace {
 
 /// Buffers of one channel.
 struct ChannelBuffers {
-  std::vector<float> value, second;                ///< accumulator over all emitters
-  std::vector<float> static_value, static_second;  ///< accumulator over the static emitters alone
+  UnsetVector<float> value, second;                ///< accumulator over all emitters
+  UnsetVector<float> static_value, static_second;  ///< accumulator over the static emitters alone
   std::vector<std::shared_ptr<volume::DenseVolume>> pool;
 };
 
@@ -90,10 +92,16 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     const ColumnGeometryView view = geometry.view();
     const std::vector<float>& t_m = setup_.columns.t_m;
     const double far_m = setup_.far_field_m[request.emitter];
-    for (std::size_t c = 0; c < setup_.columns.count(); ++c) {
-      found.near_voxels +=
-          nearVoxels(view, c, t_m.data(), static_cast<int>(t_m.size()), static_cast<float>(far_m * far_m));
-    }
+    std::atomic<long long> near_voxels{0};
+    parallelFor(static_cast<int>(setup_.columns.count()), 1 << 14, [&](int begin, int end) {
+      long long of_part = 0;
+      for (int c = begin; c < end; ++c) {
+        of_part += nearVoxels(view, static_cast<std::size_t>(c), t_m.data(), static_cast<int>(t_m.size()),
+                              static_cast<float>(far_m * far_m));
+      }
+      near_voxels += of_part;
+    });
+    found.near_voxels = near_voxels;
     all.push_back(std::move(found));
   }
   return all;
@@ -128,7 +136,7 @@ void CpuEngine::combine(const CombinePass& pass) {
     ChannelBuffers& buffers = buffers_[c];
     auto& value = pass.into_static_sums ? buffers.static_value : buffers.value;
     auto& second = pass.into_static_sums ? buffers.static_second : buffers.second;
-    const auto orNull = [](std::vector<float>& array) { return array.empty() ? nullptr : array.data(); };
+    const auto orNull = [](UnsetVector<float>& array) { return array.empty() ? nullptr : array.data(); };
     task.reductions.push_back(setup_.channel_plans[c].reduction);
     task.accumulators.push_back(pass.channels[c] ? Accumulator{orNull(value), orNull(second)}
                                                  : Accumulator{});

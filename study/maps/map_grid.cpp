@@ -220,6 +220,22 @@ class AreaTest {
            east_deg - 360 * std::floor((east_deg + kMargin_deg) / 360) <=
                area_.box.east_deg - area_.box.west_deg + kMargin_deg;
   }
+  /// Marks those of a patch's row of places that are inside. A circle is convex.
+  void markInside(const emfield::Surface::Place* row, int count, bool* is_inside) const {
+    const auto isIn = [&](int i) { return isInside(row[i]); };
+    const bool begin_is_in = isIn(0), end_is_in = isIn(count - 1);
+    if (!area_.circle || !(begin_is_in || end_is_in)) {
+      for (int i = 0; i < count; ++i) is_inside[i] = isIn(i);
+      return;
+    }
+    int low = 0, high = count - 1;  // if one of them is inside: also so from step to step
+    while (begin_is_in != end_is_in && high - low > 1) {
+      const int middle = low + (high - low) / 2;
+      (isIn(middle) == begin_is_in ? low : high) = middle;
+    }
+    std::fill(is_inside, is_inside + high, begin_is_in);
+    std::fill(is_inside + high, is_inside + count, end_is_in);
+  }
   /// Of a patch.
   /// @param radius_m  no place of it is farther from its middle
   PatchPart partOf(const emfield::Surface::Place& middle, double radius_m) const {
@@ -301,8 +317,10 @@ void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
         for (double* const c : {&per_degree2.c0, &per_degree2.c1, &per_degree2.c2}) *c *= step * step;
         fillRow(latitudes.row(v), longitudes.row(v), per_degree2, step, columns, places, areas_m2);
         if (part == PatchPart::inside) continue;
+        bool is_inside[kMaxPatchPixels] = {};
+        if (part == PatchPart::across) test.markInside(places, columns, is_inside);
         for (int i = 0; i < columns; ++i) {
-          if (part == PatchPart::across && test.isInside(places[i])) continue;
+          if (is_inside[i]) continue;
           places[i].latitude_deg = NAN;
           areas_m2[i] = 0;
         }

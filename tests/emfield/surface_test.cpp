@@ -11,6 +11,7 @@
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_budget.h"
+#include "tests/emfield/made_terrain.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/files.h"
 #include "tests/support/on_backends.h"
@@ -138,6 +139,40 @@ TEST_P(SurfaceField, IsThatOfThePathsAtManyPlaces) {
   scenario->atmosphere.refraction = propagation::RefractionProfile::exponential;
   scenario->output.quantities = {"power_density_dbwm2"};
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
+}
+
+// Few places are computed from their whole profiles, many by a search that reads parts of them.
+TEST_P(SurfaceField, ManyPlacesAroundAVoidAreThoseOfFew) {
+  terrain_ = std::make_shared<MadeTerrain>(36.303, -84.246, 0.3, 0.04);
+  const auto scenario = radarOnRidge(PropagationModel::diffraction);
+  const auto many = places(HeightReference::ground, {5, 150}, 300, 200);
+  auto few = std::make_shared<Surface>(*many);
+  few->width = 10;
+  few->height = 100;
+  few->places.clear();
+  for (std::size_t p = 0; p < many->places.size(); p += 60) few->places.push_back(many->places[p]);
+  FieldOptions options;
+  options.backend = GetParam();
+  options.allow_missing_terrain = true;
+  options.surface = many;
+  const auto of_many = solve(scenario, terrain_, options);
+  options.surface = few;
+  const auto of_few = solve(scenario, terrain_, options);
+  int behind = 0;
+  for (std::size_t p = 0; p < few->places.size(); ++p) {
+    ASSERT_EQ(of_many->first_valid_k[60 * p], of_few->first_valid_k[p]);
+    const auto [latitude_deg, longitude_deg] = few->places[p];
+    if (of_few->first_valid_k[p] > 0) {
+      behind += std::isnan(terrain_->heightMsl_m(latitude_deg, longitude_deg)) ? 0 : 1;
+      continue;
+    }
+    for (std::size_t k = 0; k < 2; ++k) {
+      ASSERT_NEAR(of_many->values[k * many->places.size() + 60 * p],
+                  of_few->values[k * few->places.size() + p], 0.01);
+    }
+  }
+  EXPECT_GT(behind, 5);
+  EXPECT_LT(behind, 200);
 }
 
 TEST_P(SurfaceField, AboveSeaLevelIsMaskedBelowGround) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "propagation/diffraction/bullington_lanes.h"
 #include "propagation/diffraction/edges.h"
 #include "tests/emfield/random_profile.h"
 
@@ -37,6 +38,19 @@ ProfileData flatProfile(double length_m, int posts, float height_msl_m = 0) {
 TEST(KnifeEdge, AtGrazingIsSixDecibels) {
   EXPECT_NEAR(knifeEdgeExactDb(0), 20 * std::log10(2), 1e-9);
   EXPECT_NEAR(knifeEdgeDb(0.0), 6.03, 0.01);
+}
+
+TEST(Bullington, FormForVectorLoopsIsThePlainOne) {
+  for (const double distance_m : {100.0, 5e3, 50e3, 500e3}) {
+    for (double nu = -2; nu < 100; nu += 0.0137) {
+      const double rounded = static_cast<float>(nu);
+      ASSERT_NEAR(bullingtonLossInLoopDb(static_cast<float>(nu), static_cast<float>(distance_m)),
+                  bullingtonLossDb(rounded, distance_m), 5e-5)
+          << nu;
+    }
+  }
+  EXPECT_EQ(bullingtonLossInLoopDb(kKnifeEdgeClear<float>, 1e3f), 0);
+  EXPECT_TRUE(std::isnan(bullingtonLossInLoopDb(NAN, 1e3f)));
 }
 
 TEST(KnifeEdge, ExactLossFarInShadowIsItsAsymptote) {

@@ -4,6 +4,8 @@
 
 #include <vector>
 
+#include "emscape/base/unset_vector.h"
+
 namespace emscape::emfield {
 
 /// Zero of a surface's heights.
@@ -16,7 +18,7 @@ struct Surface {
     double latitude_deg = 0, longitude_deg = 0;
   };
   int width = 0, height = 0;
-  std::vector<Place> places;  ///< rows one after another
+  UnsetVector<Place> places;  ///< rows one after another
   HeightReference reference = HeightReference::ground;
   std::vector<double> heights_m;  ///< rising; above ground >= 0
   /// Lowest height of each place, added to heights_m; empty: 0. For searches with a bracket of its own at

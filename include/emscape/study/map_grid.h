@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/unset_vector.h"
 #include "emscape/emfield/surface.h"
 #include "emscape/study/area.h"
 
@@ -16,7 +17,7 @@ struct MapGrid {
   double left_m = 0, top_m = 0;                 ///< outer corner of the first pixel
   std::string crs;                              ///< "EPSG:32616", or "local"
   std::string wkt;                              ///< WKT2
-  std::vector<emfield::Surface::Place> places;  ///< the pixels' centres; latitude NaN: left out
+  UnsetVector<emfield::Surface::Place> places;  ///< the pixels' centres; latitude NaN: left out
   std::vector<float> areas_m2;                  ///< of the pixels, on the ellipsoid
 
   std::size_t pixels() const { return places.size(); }
