@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 
 #include "emfield/elevation_cut.h"
 #include "emfield/foot_inverse.h"
 #include "emfield/ground_posts.h"
 #include "emfield/radials.h"
 #include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "propagation/registry/model_info.h"
 
@@ -43,6 +46,24 @@ double smoothSurface_msl_m(const Scenario& scenario, const Emitter& emitter, con
                             emitter.name, model.name));
   }
   return ground_m;
+}
+
+/// The points of a surface as seen from a station.
+propagation::PathPoints pathPoints(const Station& station, const GridColumns& columns) {
+  propagation::PathPoints points;
+  points.range_m.resize(columns.count());
+  points.base_msl_m.resize(columns.count());
+  points.above_base_m = columns.t_m;
+  const auto layers = static_cast<std::uint16_t>(columns.t_m.size());
+  parallelFor(static_cast<int>(columns.count()), 4096, [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      const PlaceColumn& column = columns.of_surface[c];
+      const bool is_left_out = columns.first_valid_k[c] >= layers;
+      points.range_m[c] = is_left_out ? NAN : fastInverse(station.geodesy, column.foot_ecef_m).distance_m;
+      points.base_msl_m[c] = column.base_msl_m;
+    }
+  });
+  return points;
 }
 
 }  // namespace
@@ -115,12 +136,17 @@ bool hasExcess(const Scenario& scenario, const Emitter& emitter) {
   return propagation::hasExcess(emitterInputs(scenario, emitter));
 }
 
-EmitterExcess planExcess(const PathInputs& inputs, const propagation::RadialInputs* radials) {
+EmitterExcess planExcess(const PathInputs& inputs, const propagation::RadialInputs* radials,
+                         const propagation::PathPoints* points) {
   const ModelInfo& model = propagation::modelInfo(inputs.emitter.settings.model);
   const auto model_tables = std::make_shared<std::vector<float>>();
   const auto air_tables = std::make_shared<std::vector<float>>();
   EmitterExcess excess;
-  if (model.excess != nullptr) excess.model = model.excess(inputs, *model_tables);
+  if (points != nullptr && model.excess_at != nullptr) {
+    excess.model = model.excess_at(inputs, *points, *model_tables);
+  } else if (model.excess != nullptr) {
+    excess.model = model.excess(inputs, *model_tables);
+  }
   if (model.radial != nullptr) {
     propagation::RadialExcess planned = model.radial(inputs, *radials);
     excess.model = planned.model;
@@ -140,8 +166,11 @@ EmitterExcess planExcess(const Scenario& scenario, const Emitter& emitter, const
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   const bool needs_extent = propagation::needsExtent(emitterInputs(scenario, emitter));
   if (model.radial == nullptr) {
+    std::optional<propagation::PathPoints> points;
+    if (columns.every_height && model.excess_at != nullptr) points = pathPoints(station, columns);
     return planExcess(pathInputs(scenario, emitter, beam, station, terrain,
-                                 needs_extent ? pathExtent(station, columns) : PathExtent{}));
+                                 needs_extent ? pathExtent(station, columns) : PathExtent{}),
+                      nullptr, points ? &*points : nullptr);
   }
   EmitterExcess excess;
   inModel(emitter, [&] {

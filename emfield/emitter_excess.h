@@ -62,8 +62,10 @@ bool hasExcess(const scenario::Scenario& scenario, const scenario::Emitter& emit
 
 /// The excess of an emitter that has one.
 /// @param radials  for models with ModelInfo::radial
+/// @param points   of a surface, for models with ModelInfo::excess_at; null: those interpolate
 EmitterExcess planExcess(const propagation::PathInputs& inputs,
-                         const propagation::RadialInputs* radials = nullptr);
+                         const propagation::RadialInputs* radials = nullptr,
+                         const propagation::PathPoints* points = nullptr);
 /// The same over the columns of a grid.
 /// @throws as pathInputs()
 EmitterExcess planExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,

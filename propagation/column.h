@@ -11,6 +11,7 @@ namespace emscape::propagation {
 
 /// A column, or the segment of a tilted one above one point of the ground.
 struct ExcessColumn {
+  std::size_t place = 0;   ///< index of the column in its grid
   double range_m = 0;      ///< along the ground from the emitter
   double azimuth_rad = 0;  ///< from the emitter, clockwise from north, -pi .. pi
   float ground_msl_m = 0;  ///< NaN over missing terrain

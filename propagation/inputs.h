@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "emscape/propagation/settings.h"
 
@@ -45,6 +46,13 @@ struct PathInputs {
   PathExtent extent;
   double post_spacing_m = 0;  ///< of terrain profiles far from the emitter
   ElevationPattern elevation_pattern;
+};
+
+/// Places with the same heights above a base at each: a path to every point of a surface.
+struct PathPoints {
+  std::vector<double> range_m;      ///< to each place along the ground; NaN: left out
+  std::vector<double> base_msl_m;   ///< of each place
+  std::vector<float> above_base_m;  ///< heights
 };
 
 /// True if the polarisation is horizontal or vertical.

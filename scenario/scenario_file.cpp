@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 
 #include "base/whole_file.h"
 #include "document/schema_check.h"
@@ -306,8 +307,15 @@ bool showsScans(const OutputSpec& output) {
          });
 }
 
-/// Beams that sweep further in a time step than they are wide, so that the series never shows some azimuths.
+/// Beams that sweep further in a time step than they are wide, so that the series never shows some azimuths;
+/// those of the same width and rate together, at the first.
 void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseContext& context) {
+  struct Beams {
+    SourceLocation first;
+    std::string names;
+    int count = 0;
+  };
+  std::map<std::string, Beams> beams;  // by what they do
   const std::vector<Section> sections = root.sections("emitters");
   for (std::size_t i = 0; i < sections.size() && showsScans(scenario.output); ++i) {
     const Emitter& emitter = scenario.emitters[i];
@@ -315,14 +323,22 @@ void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseConte
     const auto sampling = scanSampling(emitter.scan, width_deg, scenario.clock);
     if (!sampling || !leavesGaps(*sampling, width_deg)) continue;
     const bool rotates = emitter.scan.kind == ScanKind::rotate;
+    Beams& alike = beams[fmt::format(
+        "{:.3g} deg wide, {{}} {:.4g} deg in a step of {} s: of {{}} azimuths {:.0f} % are ever lit. A "
+        "smaller "
+        "step_s, or a rate whose steps fall between those of earlier turns, lights the others; an 'interval' "
+        "of the output shows what is lit between the steps",
+        width_deg, sampling->step_deg, scenario.clock.step_s, 100 * sampling->lit_share)];
+    if (alike.count++ == 0)
+      alike.first = sections[i].section("scan").locationOf(rotates ? "rate_rpm" : "rate_deg_s");
+    alike.names += fmt::format("{}'{}'", alike.count > 1 ? ", " : "", emitter.name);
+  }
+  for (const auto& [sweep, alike] : beams) {
+    const bool is_one = alike.count == 1;
     context.problems.addWarning(
-        sections[i].section("scan").locationOf(rotates ? "rate_rpm" : "rate_deg_s"),
-        fmt::format(
-            "the beam of '{}', {:.3g} deg wide, sweeps {:.4g} deg in a step of {} s: of its azimuths {:.0f} "
-            "% "
-            "are ever lit. A smaller step_s, or a rate whose steps fall between those of earlier turns, "
-            "lights the others; an 'interval' of the output shows what is lit between the steps",
-            emitter.name, width_deg, sampling->step_deg, scenario.clock.step_s, 100 * sampling->lit_share));
+        alike.first,
+        fmt::format("the {} of {}, {}", is_one ? "beam" : "beams", alike.names,
+                    fmt::format(fmt::runtime(sweep), is_one ? "sweeps" : "sweep", is_one ? "its" : "their")));
   }
 }
 

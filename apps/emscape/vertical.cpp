@@ -126,6 +126,7 @@ not have by itself.)");
                    "Distance of the diagram's right edge from the emitter (m); default: the instrumented "
                    "range, else the "
                    "region's edge")
+      ->check(CLI::Range(10.0, 1.99e6))
       ->default_str("");
   command
       ->add_option("--max-height", options->max_height_m,

@@ -34,7 +34,8 @@ void checkTerrain(const PathProfile& profile, const scenario::Terrain& terrain) 
   throw Error(
       ErrorCode::bad_input,
       fmt::format("terrain is missing on the path, {:.2f} km from the emitter at latitude {:.5f}, longitude "
-                  "{:.5f} deg; the files cover latitude {:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg",
+                  "{:.5f} deg; the elevation data that is loaded covers latitude {:.5f}..{:.5f}, longitude "
+                  "{:.5f}..{:.5f} deg",
                   range_m / 1000, position.latitude_deg, position.longitude_deg, box.south_deg, box.north_deg,
                   box.west_deg, box.east_deg));
 }

@@ -131,14 +131,13 @@ void FieldSolver::Impl::checkHoles() const {
   const GridColumns& columns = setup.columns;
   if (columns.hole_columns == 0 || options.allow_missing_terrain) return;
   const scenario::GeoBox box = setup.terrain->coverage();
-  throw Error(
-      ErrorCode::bad_input, {setup.scenario->file},
-      fmt::format(
-          "terrain is missing below {} of {} columns of the region, first at {}; the files cover latitude "
-          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts",
-          columns.hole_columns, columns.count(), placeOf(columns.first_hole), box.south_deg, box.north_deg,
-          box.west_deg, box.east_deg, setup.terrain->voidPosts()),
-      Hint::allow_missing_terrain);
+  throw Error(ErrorCode::bad_input, {setup.scenario->file},
+              fmt::format("terrain is missing below {} of {} columns of the region, first at {}; the "
+                          "elevation data that is loaded covers latitude "
+                          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts",
+                          columns.hole_columns, columns.count(), placeOf(columns.first_hole), box.south_deg,
+                          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts()),
+              Hint::allow_missing_terrain);
 }
 
 /// True if an edited scenario can be computed with the present grid, slots and choice of cached emitters.

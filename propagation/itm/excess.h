@@ -1,6 +1,8 @@
 /// Excess of the model `itm`: ITM within its limits, `diffraction` elsewhere.
 #pragma once
 
+#include <cmath>
+
 #include "emscape/base/host_device.h"
 #include "propagation/diffraction/excess.h"
 #include "propagation/height_bisection.h"
@@ -60,7 +62,7 @@ struct ItmExcess {
     ItmProfile<float> even;
     even.heights_msl_m = scratch.even_ground_msl_m;
     even.intervals = evenIntervals(column.profile);
-    even.step_m = column.range_m / even.intervals;
+    even.step_m = evenStep_m(column.range_m, even.intervals);
     int in_zone = part.begin;  // heights below this one, of those that the bisection reaches
     const int most = part.begin + part.reach(column.count);
     while (in_zone < most && itmHeightWeight(heightAgl(column, in_zone)) > 0) ++in_zone;
@@ -111,6 +113,13 @@ struct ItmExcess {
     int intervals = static_cast<int>(profile.range_m[last] / step_m) + 1;
     intervals = intervals < last ? intervals : last;
     return intervals > 2 ? intervals : 2;
+  }
+  /// Distance between the posts of a path. It has so few digits that multiples and tenths of it are exact:
+  /// the method truncates such distances to whole posts, and in the last digit of a path's length two
+  /// computations of it may differ.
+  static EMSCAPE_HD double evenStep_m(double range_m, int intervals) {
+    constexpr double kParts = 1 << 24;  // of a metre
+    return std::floor(range_m / intervals * kParts + 0.5) / kParts;
   }
   EMSCAPE_HD void spaceEvenly(const TerrainProfile& profile, float* heights_msl_m) const {
     const int last = profile.count - 1;

@@ -1,7 +1,9 @@
-/// Excess of the model `p528`, from curves computed once for an emitter's height.
+/// Excess of the model `p528`: in volumes from curves computed once for an emitter's height, over surfaces
+/// computed at every point.
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <vector>
 
 #include "emscape/base/host_device.h"
@@ -24,10 +26,17 @@ struct P528Excess {
   float lowest_root = 0, heights_per_root = 0;
   float farthest_ratio = 0;  ///< of range to the horizon's
   double surface_msl_m = 0;
+  /// Of a surface: the tables are the excess (dB) of each point, places x heights, place fastest; 0: as
+  /// above.
+  std::size_t place_count = 0;
 
   /// @accuracy see docs/models.md
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch&, float* excess) const {
     for (int k = 0; k < column.count; ++k) {
+      if (place_count > 0) {
+        excess[k] = tables[static_cast<std::size_t>(k) * place_count + column.place];
+        continue;
+      }
       excess[k] = at(static_cast<float>(column.range_m),
                      static_cast<float>(static_cast<double>(column.height_msl_m[k]) - surface_msl_m));
     }
@@ -70,5 +79,7 @@ struct P528Excess {
 
 /// @param tables  receives the tables that the result points to
 P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables);
+/// The same over a surface, every point by its own curve.
+P528Excess p528ExcessAt(const PathInputs& inputs, const PathPoints& points, std::vector<float>& tables);
 
 }  // namespace emscape::propagation

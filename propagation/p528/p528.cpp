@@ -48,16 +48,44 @@ double diffractionHeightGain_db(double x, double k) {
   return std::max(low_db, -117.0);
 }
 
-/// Root of a rising function of the grazing angle, 0..pi/2.
+/// Root of a rising function of the grazing angle, 0..pi/2; the nearer end where it has none.
+/// @accuracy 1e-15
+/// @see Chandrupatla 1997, Advances in Engineering Software 28: inverse quadratic interpolation where that is
+/// known to converge, else halves
 template <class Rising>
-double grazingAngleWhere(Rising passes) {
-  double low = 0;
-  double high = kPi / 2;
-  for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
-    const double middle = (low + high) / 2;
-    (passes(middle) ? high : low) = middle;
+double grazingAngleWhere(Rising rising) {
+  constexpr double kWithin_rad = 1e-15;
+  struct Point {
+    double angle_rad;
+    double value;
+  };
+  const auto at = [&](double angle_rad) { return Point{angle_rad, rising(angle_rad)}; };
+  Point a = at(kWithin_rad / 2), b = at(kPi / 2);
+  if (a.value > 0) return a.angle_rad;
+  if (!(b.value > 0)) return b.angle_rad;
+  double part = 0.5;
+  for (int i = 0; i < 100; ++i) {
+    const Point next = at(a.angle_rad + part * (b.angle_rad - a.angle_rad));
+    Point c = a;
+    if ((next.value > 0) != (a.value > 0)) {
+      c = b;
+      b = a;
+    }
+    a = next;
+    const Point& best = std::fabs(a.value) < std::fabs(b.value) ? a : b;
+    const double least = kWithin_rad / std::fabs(b.angle_rad - a.angle_rad);
+    if (best.value == 0 || least > 0.5) return best.angle_rad;
+    const double xi = (a.angle_rad - b.angle_rad) / (c.angle_rad - b.angle_rad);
+    const double phi = (a.value - b.value) / (c.value - b.value);
+    part = 0.5;
+    if (phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi) {
+      part = a.value / (b.value - a.value) * c.value / (b.value - c.value) +
+             (c.angle_rad - a.angle_rad) / (b.angle_rad - a.angle_rad) * a.value / (c.value - a.value) *
+                 b.value / (c.value - b.value);
+    }
+    part = std::clamp(part, least, 1 - least);
   }
-  return (low + high) / 2;
+  return a.angle_rad;
 }
 
 }  // namespace
@@ -171,12 +199,12 @@ P528Curve::TwoRays P528Curve::raysAt(double grazing_rad) const {
 }
 
 P528Curve::TwoRays P528Curve::raysAtDistance(double distance_km) const {
-  return raysAt(grazingAngleWhere([&](double angle) { return raysAt(angle).distance_km < distance_km; }));
+  return raysAt(grazingAngleWhere([&](double angle) { return distance_km - raysAt(angle).distance_km; }));
 }
 
 P528Curve::TwoRays P528Curve::raysAtDelay(double path_difference_km) const {
   return raysAt(
-      grazingAngleWhere([&](double angle) { return raysAt(angle).difference_km > path_difference_km; }));
+      grazingAngleWhere([&](double angle) { return raysAt(angle).difference_km - path_difference_km; }));
 }
 
 /// Field of the reflected ray relative to the direct one, without the phase of the path difference [8, 9].

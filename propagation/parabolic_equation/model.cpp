@@ -384,7 +384,9 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
                     double(loss.loss_db() - loss.withoutScatter_db()));
   const bool scatters = loss.mechanism(has_terrain) == Mechanism::troposcatter;
   explanation.why = fmt::format(
-      "{} applies; launch angle {:.2f} of {:.3g} degrees, {}",
+      "{} applies; launch angle {:.2f} of {:.3g} degrees, {}; maps and volumes have the mean over cells "
+      "between "
+      "marched azimuths instead",
       scatters                  ? "troposcatter"
       : loss.equation_part >= 1 ? "the parabolic equation"
       : loss.equation_part <= 0 ? other_name

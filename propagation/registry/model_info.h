@@ -76,6 +76,9 @@ struct ModelInfo {
   Explanation (*explain)(const PathInputs&, PathColumn&) = nullptr;
   /// Makes the excess model; null: there is none. `tables` receives the data that the result points to.
   ExcessModel (*excess)(const PathInputs&, std::vector<float>& tables) = nullptr;
+  /// The same over a surface, of a model whose `excess` interpolates where the surface's points must equal
+  /// `explain`; null: `excess` does not.
+  ExcessModel (*excess_at)(const PathInputs&, const PathPoints&, std::vector<float>& tables) = nullptr;
   /// The same of a model that marches outwards, in place of `excess`. @throws Error (bad_input) for what
   /// `choices` refuses
   RadialExcess (*radial)(const PathInputs&, const RadialInputs&) = nullptr;

@@ -130,6 +130,10 @@ ModelInfo p528Row() {
   row.excess = [](const PathInputs& inputs, std::vector<float>& tables) -> ExcessModel {
     return p528Excess(inputs, tables);
   };
+  row.excess_at = [](const PathInputs& inputs, const PathPoints& points,
+                     std::vector<float>& tables) -> ExcessModel {
+    return p528ExcessAt(inputs, points, tables);
+  };
   return row;
 }
 

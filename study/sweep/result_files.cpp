@@ -46,7 +46,7 @@ class NetcdfWriter {
 
   std::shared_ptr<GDALDimension> dimension(const std::string& name, std::size_t size) {
     if (fail_) return nullptr;
-    auto made = root_->CreateDimension(known(name), "", "", size);
+    auto made = root_->CreateDimension(unique(name, dimensions_), "", "", size);
     fail_ = made == nullptr;
     return made;
   }
@@ -62,24 +62,28 @@ class NetcdfWriter {
     array(name, dimensions, GDALExtendedDataType::CreateString(), pointers.data(), long_name, "");
   }
 
-  /// A name that netCDF allows.
-  static std::string known(const std::string& name) {
-    std::string allowed = name;
-    for (char& c : allowed) {
-      const bool is_plain =
-          std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.' || c == '-';
-      if (!is_plain) c = '_';
-    }
-    return std::isalpha(static_cast<unsigned char>(allowed[0])) != 0 ? allowed : "v_" + allowed;
+ private:
+  static bool isPlain(char c, bool is_first) {
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+    return is_letter || (!is_first && ((c >= '0' && c <= '9') || c == '_'));
   }
 
- private:
+  /// A name of letters, digits and underscores, as CF wants it, that is not among those before; a coordinate
+  /// gets that of its dimension.
+  static std::string unique(const std::string& name, std::set<std::string>& before) {
+    std::string own = name;
+    for (char& c : own) {
+      if (!isPlain(c, false)) c = '_';
+    }
+    if (own.empty() || !isPlain(own[0], true)) own = "v_" + own;
+    while (!before.insert(own).second) own += "_";
+    return own;
+  }
+
   void array(const std::string& name, const Dimensions& dimensions, const GDALExtendedDataType& type,
              const void* values, const std::string& long_name, const std::string& unit) {
     if (fail_) return;
-    std::string own = known(name);
-    while (!names_.insert(own).second) own += "_";
-    const auto made = root_->CreateMDArray(own, dimensions, type);
+    const auto made = root_->CreateMDArray(unique(name, names_), dimensions, type);
     fail_ = made == nullptr;
     if (fail_) return;
     std::vector<GUInt64> starts;
@@ -98,13 +102,35 @@ class NetcdfWriter {
 
   std::unique_ptr<GDALDataset> dataset_;
   std::shared_ptr<GDALGroup> root_;
-  std::set<std::string> names_;
+  std::set<std::string> names_, dimensions_;
   bool fail_ = false;
 };
 
 /// The unit of a measure as UDUNITS writes it.
 std::string udunit(const std::string& unit) {
   return unit == "km2" ? "km2" : unit.empty() ? "1" : unit;
+}
+
+/// The unit of a parameter as UDUNITS writes it, from the end of its path, such as power_w.
+std::string unitOfPath(const std::string& path) {
+  constexpr std::pair<const char*, const char*> kUnits[] = {{"hz", "Hz"},
+                                                            {"w", "W"},
+                                                            {"m", "m"},
+                                                            {"m2", "m2"},
+                                                            {"s", "s"},
+                                                            {"k", "K"},
+                                                            {"deg", "degree"},
+                                                            {"hpa", "hPa"},
+                                                            {"db", "0.1 lg(re 1)"},
+                                                            {"dbi", "0.1 lg(re 1)"},
+                                                            {"rpm", "rpm"},
+                                                            {"percent", "percent"},
+                                                            {"mps", "m s-1"}};
+  const std::string ending = path.substr(path.find_last_of("_.") + 1);
+  for (const auto& [suffix, unit] : kUnits) {
+    if (ending == suffix) return unit;
+  }
+  return "1";
 }
 
 /// A parameter's values: numbers where all that are given are.
@@ -116,7 +142,7 @@ void writeParameter(NetcdfWriter& writer, const std::string& path, const NetcdfW
     if (!number && !value.empty()) return writer.texts(path, dimensions, values, path);
     numbers.push_back(number.value_or(NAN));
   }
-  writer.numbers(path, dimensions, numbers, path, "");
+  writer.numbers(path, dimensions, numbers, path, unitOfPath(path));
 }
 
 }  // namespace
@@ -165,6 +191,7 @@ void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& stud
   writer.note("Conventions", "CF-1.8");
   writer.note("title", study.name);
   writer.note("source", "emscape study " + study.hash);
+  writer.note("history", "written by emscape study");
   const bool is_grid =
       std::all_of(variants.factors().begin(), variants.factors().end(),
                   [](const VariantFactor& factor) { return factor.kind == VariantFactor::Kind::sweep; });

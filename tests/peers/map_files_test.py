@@ -1,6 +1,7 @@
 """What emscape coverage wrote, as GIS programs read it: GDAL's COG validator, GDAL, QGIS, and the conventions CF and CZML.
 
-    map_files_test.py DIR cog|gdal|qgis|cf|czml     DIR: output of emscape coverage, in all formats
+    map_files_test.py DIR cog|gdal|qgis|cf|czml     DIR: output of emscape coverage, in all formats; cf and cog: of compare
+                                                    and study too
 """
 
 import json
@@ -94,7 +95,13 @@ def check_cf():
     programs = ROOT / ".cache" / "peers" / "bin"
     if not (programs.parent / "installed.txt").exists():
         leave_out("compliance-checker and cfchecker are not installed; scripts/setup --peers does it with pip")
-    file = MAPS / "coverage.nc"
+    files = sorted(FOLDER.rglob("*.nc"))
+    series.check(files, "no netCDF file")
+    for file in files:
+        check_cf_of(programs, file)
+
+
+def check_cf_of(programs, file):
     report = subprocess.run([programs / "compliance-checker", "--test=cf:1.8", "--criteria=strict", file],
                             capture_output=True, text=True)
     series.check(report.returncode == 0 and "All tests passed" in report.stdout, report.stdout + report.stderr)

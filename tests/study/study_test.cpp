@@ -1,9 +1,11 @@
 // Studies: the file, the order of the variants, and what each of them is measured at.
+#include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/study/study_folder.h"
@@ -167,6 +169,12 @@ measures:
   EXPECT_NEAR(values[1] / values[2] * 100, 421, 25) << "half of 842 km2";
 }
 
+std::vector<std::string> arraysOf(const std::filesystem::path& file) {
+  GDALAllRegister();
+  const std::unique_ptr<GDALDataset> dataset(GDALDataset::Open(file.c_str(), GDAL_OF_MULTIDIM_RASTER));
+  return dataset != nullptr ? dataset->GetRootGroup()->GetMDArrayNames() : std::vector<std::string>{};
+}
+
 TEST(Study, PartsOfAnyNumberJoinToTheSameResults) {
   const Study study(R"(
 sweep:
@@ -189,6 +197,9 @@ sweep:
     writeStudyReport(folder.path() / "report.html", study.spec(), study.plan(), results);
     csv.push_back(test::readFile(folder.path() / "results.csv"));
     netcdf.push_back(test::readFile(folder.path() / "results.nc"));
+    EXPECT_THAT(arraysOf(folder.path() / "results.nc"),
+                ::testing::UnorderedElementsAre("emitters_jammer_power_w", "emitters_search_radar_propagation",
+                                                "covered", "mean"));
     html.push_back(test::readFile(folder.path() / "report.html"));
   }
   EXPECT_THAT(csv[0], HasSubstr("variant,name,emitters.jammer.power_w,emitters.search radar.propagation,"
