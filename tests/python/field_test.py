@@ -132,6 +132,23 @@ def test_masked_voxels_are_those_below_ground(jamming):
     assert np.all(field.numpy("detection_probability")[mask] == field.info("detection_probability")["floor"])
 
 
+def test_dlpack_of_a_field_on_a_gpu_is_device_memory(jamming):
+    cupy = pytest.importorskip("cupy")
+    try:
+        field = em.Solver(jamming, "cuda").at(0)
+    except em.DeviceError as missing:
+        pytest.skip(str(missing))
+    for name in field.quantities:
+        values = cupy.from_dlpack(field.dlpack(name))
+        assert field.dlpack(name).__dlpack_device__() == (2, 0)
+        assert values.data.ptr == cupy.from_dlpack(field.dlpack(name)).data.ptr, "no copy at later calls"
+        assert np.array_equal(cupy.asnumpy(values), field.numpy(name)), "the floor in masked voxels, too"
+    assert cupy.from_dlpack(field).data.ptr == cupy.from_dlpack(field.dlpack()).data.ptr
+    kept = cupy.asnumpy(values)
+    del field
+    assert np.array_equal(cupy.asnumpy(values), kept), "the array keeps the field's memory"
+
+
 def test_memory_does_not_grow(quick):
     def resident_kb():
         with open("/proc/self/statm") as statm:
