@@ -12,7 +12,7 @@ import pytest
 from conftest import SCENARIOS
 
 import emscape as em
-from emscape import _emscape
+from emscape._native import native as _emscape
 
 
 def test_an_array_is_a_read_only_view_with_the_field_as_owner(quick):
