@@ -1,15 +1,16 @@
 #include "base/geoid_grid.h"
 
 #include <cpl_conv.h>
-#include <gdal_priv.h>
-#include <ogr_srs_api.h>
+#include <cpl_error.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <memory>
 
+#include "base/gdal.h"
 #include "emscape/base/error.h"
 
 namespace emscape {
@@ -78,9 +79,10 @@ GeoidGrid::GeoidGrid(const std::string& file, const GeoidArea& area) {
 }
 
 void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
-  const std::unique_ptr<GDALDataset> dataset(
-      GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
-  const int columns = dataset ? dataset->GetRasterXSize() : 0, rows = dataset ? dataset->GetRasterYSize() : 0;
+  const gdal::Dataset dataset(GDALOpenEx(
+      file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, nullptr, nullptr));
+  const int columns = dataset ? GDALGetRasterXSize(dataset.get()) : 0;
+  const int rows = dataset ? GDALGetRasterYSize(dataset.get()) : 0;
   double west_deg = 0;  // of the file's first post; PGM files, which say nothing, begin at Greenwich
   PgmScale scale{0, 1};
   double transform[6];
@@ -88,7 +90,7 @@ void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
   if (endsWith(file, ".pgm")) {
     scale = readPgmScale(file);
     is_placed = is_placed && scale.scale_m > 0;
-  } else if (is_placed && dataset->GetGeoTransform(transform) == CE_None) {
+  } else if (is_placed && GDALGetGeoTransform(dataset.get(), transform) == CE_None) {
     west_deg = transform[0] + 0.5 * transform[1];
   } else {
     is_placed = false;
@@ -117,8 +119,8 @@ void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
       row = row < 0 ? -row : 2 * (rows - 1) - row;
       turn = columns / 2;
     }
-    if (dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, rows - 1 - row, columns, 1, line.data(), columns, 1,
-                                            GDT_Float32, 0, 0, nullptr) != CE_None) {
+    if (GDALRasterIO(GDALGetRasterBand(dataset.get(), 1), GF_Read, 0, rows - 1 - row, columns, 1, line.data(),
+                     columns, 1, GDT_Float32, 0, 0) != CE_None) {
       throw Error(ErrorCode::bad_input, SourceLocation{file}, CPLGetLastErrorMsg());
     }
     int at = wrapped(first_column_ + turn - file_first, columns);

@@ -4,6 +4,7 @@ import subprocess
 import sys
 import threading
 import time
+import zlib
 
 import emscape as em
 
@@ -37,6 +38,18 @@ def tell_gpu(scenario):
     copy = min(copy_s)
     print(f"Solver.at() on a GPU                 {min(update_s) * 1e3:8.2f} ms (is_on_gpu: {field.is_on_gpu})")
     print(f"first Field.numpy(), from a GPU      {copy * 1e3:8.2f} ms: {megabytes:.1f} MB, {megabytes / copy / 1e3:.1f} GB/s")
+    begin = time.perf_counter()
+    array = field.dlpack()
+    print(f"first Field.dlpack(), on a GPU       {(time.perf_counter() - begin) * 1e3:8.2f} ms")
+    print(f"Field.dlpack() again                 {microseconds(field.dlpack, 20000):8.2f} us")
+    try:
+        import cupy
+    except ImportError:
+        print("cupy.from_dlpack(): no cupy")
+    else:
+        pointers = {cupy.from_dlpack(field).data.ptr for _ in range(3)} | {cupy.from_dlpack(array).data.ptr}
+        print(f"cupy.from_dlpack(), pointers of 4    {len(pointers):8d}")
+        print(f"cupy.from_dlpack()                   {microseconds(lambda: cupy.from_dlpack(array), 5000):8.2f} us")
     device_type, number = field.__dlpack_device__()
     print(f"device of Field.dlpack()             {DLPACK_DEVICES.get(device_type, device_type)} {number}")
 
@@ -78,17 +91,21 @@ def main():
 
     from emscape import datasets
 
-    for backend in ("cpu", "cuda"):
-        data = datasets.VolumeDataset(64, 1, backend=backend)
+    for backend, count in (("cpu", 64), ("cuda", 1000)):
+        data = datasets.VolumeDataset(count, 1, backend=backend)
         try:
             data.field(0)
         except em.DeviceError as error:
             print(f"labelled volumes of 64^3, {backend}: {error}")
             continue
-        begin = time.perf_counter()
-        for i in range(64):
-            data[i]
-        print(f"labelled volumes of 64^3, {backend:4}       {64 / (time.perf_counter() - begin):8.1f} per second")
+        digests, begin = [], time.perf_counter()
+        for volume, label in data:
+            digests.append(zlib.crc32(label.tobytes(), zlib.crc32(volume.tobytes())))
+        seconds = time.perf_counter() - begin
+        again = datasets.VolumeDataset(count, 1, backend=backend)
+        same = sum(digests[i] == zlib.crc32(again[i][1].tobytes(), zlib.crc32(again[i][0].tobytes())) for i in range(0, count, 8))
+        print(f"labelled volumes of 64^3, {backend:4}       {count / seconds:8.1f} per second: {count} in {seconds:.1f} s; "
+              f"{same} of {len(range(0, count, 8))} are the same bytes when made again")
 
 
 if __name__ == "__main__":

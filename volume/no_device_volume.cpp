@@ -30,5 +30,8 @@ void DeviceVolume::upload(const DenseVolume& /*volume*/) {
 DenseVolume DeviceVolume::download() const {
   refuse();
 }
+std::shared_ptr<const float> DeviceVolume::linearCopy() const {
+  refuse();
+}
 
 }  // namespace emscape::volume

@@ -110,8 +110,11 @@ class Field:
         return self._handle.array(self._name(quantity))
 
     def dlpack(self, quantity: str | None = None) -> Any:
-        """The values as an object with ``__dlpack__``, for ``numpy.from_dlpack``, ``torch.from_dlpack`` and the like: (z, y, x)
-        float32, read-only, without a copy, in the host's memory.
+        """The values as an object with ``__dlpack__``, for ``torch.from_dlpack``, ``cupy.from_dlpack`` and the like: (z, y, x)
+        float32, read-only, kept alive by the array.
+
+        In the host's memory that of ``numpy``. On a GPU the values are brought into its linear memory once per field, by a copy on
+        the GPU: every call gives the same pointer.
         """
         return self._handle.dlpack(self._name(quantity))
 

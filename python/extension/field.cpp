@@ -35,6 +35,13 @@ const std::shared_ptr<const volume::DenseVolume>& Field::host(std::size_t index)
   return kept;
 }
 
+const std::shared_ptr<const float>& Field::device(std::size_t index) const {
+  const std::lock_guard<std::mutex> one_at_a_time(mutex);
+  std::shared_ptr<const float>& kept = on_device[index];
+  if (kept == nullptr) kept = volumes[index].device()->linearCopy();
+  return kept;
+}
+
 Dict describeGrid(const volume::Grid& grid) {
   Dict result;
   result["dims"] = std::tuple(grid.dims.x, grid.dims.y, grid.dims.z);
@@ -56,6 +63,7 @@ std::shared_ptr<Field> fieldOf(std::vector<std::string> names, std::vector<volum
   auto field = std::make_shared<Field>();
   field->names = std::move(names);
   field->on_host.resize(volumes.size());
+  field->on_device.resize(volumes.size());
   field->volumes = std::move(volumes);
   field->time_s = time_s;
   return field;
@@ -158,11 +166,10 @@ std::vector<std::size_t> shapeOf(const volume::Grid& grid) {
           static_cast<std::size_t>(grid.dims.x)};
 }
 
-/// The values as a read-only array of (z, y, x) that keeps the field alive.
+/// The values in host memory as a read-only array of (z, y, x) that keeps the field alive.
 template <class Kind>
-nb::object arrayOf(const nb::handle_t<Field>& self, const std::string& quantity) {
+nb::object hostArray(const nb::handle_t<Field>& self, std::size_t index) {
   const Field& field = nb::cast<const Field&>(self);
-  const std::size_t index = field.indexOf(quantity);
   if (field.on_host[index] == nullptr && field.volumes[index].isOnDevice()) {
     const nb::gil_scoped_release unlocked;
     field.host(index);
@@ -171,6 +178,25 @@ nb::object arrayOf(const nb::handle_t<Field>& self, const std::string& quantity)
   const std::vector<std::size_t> shape = shapeOf(volume.grid);
   return nb::cast(nb::ndarray<Kind, const float, nb::ndim<3>, nb::c_contig, nb::device::cpu>(
       volume.values.data(), 3, shape.data(), self));
+}
+
+nb::object numpyOf(const nb::handle_t<Field>& self, const std::string& quantity) {
+  return hostArray<nb::numpy>(self, nb::cast<const Field&>(self).indexOf(quantity));
+}
+
+/// The values where they are: in host memory, or in a GPU's. Keeps the field alive.
+nb::object dlpackOf(const nb::handle_t<Field>& self, const std::string& quantity) {
+  const Field& field = nb::cast<const Field&>(self);
+  const std::size_t index = field.indexOf(quantity);
+  const volume::Volume& volume = field.volumes[index];
+  if (!volume.isOnDevice()) return hostArray<nb::array_api>(self, index);
+  {
+    const nb::gil_scoped_release unlocked;
+    field.device(index);
+  }
+  const std::vector<std::size_t> shape = shapeOf(volume.grid());
+  return nb::cast(nb::ndarray<nb::array_api, const float, nb::ndim<3>, nb::c_contig, nb::device::cuda>(
+      field.device(index).get(), 3, shape.data(), self));
 }
 
 Dict infoOf(const Field& field, const std::string& quantity) {
@@ -235,10 +261,9 @@ void bindField(nb::module_& module) {
                    })
       .def("grid", [](const Field& field) { return describeGrid(field.volumes.front().grid()); })
       .def("info", &infoOf, nb::arg("quantity"))
-      .def("array", &arrayOf<nb::numpy>, nb::arg("quantity"),
+      .def("array", &numpyOf, nb::arg("quantity"),
            nb::sig("def array(self, quantity: str) -> numpy.typing.NDArray[numpy.float32]"))
-      .def("dlpack", &arrayOf<nb::array_api>, nb::arg("quantity"),
-           nb::sig("def dlpack(self, quantity: str) -> typing.Any"))
+      .def("dlpack", &dlpackOf, nb::arg("quantity"), nb::sig("def dlpack(self, quantity: str) -> typing.Any"))
       .def(
           "first_valid",
           [](const nb::handle_t<Field>& self, const std::string& quantity) -> nb::object {

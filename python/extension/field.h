@@ -21,13 +21,17 @@ struct Field {
   std::optional<playback::LoadedScenario> scene;           ///< none: read from a file
   std::shared_ptr<const std::vector<float>> ground_msl_m;  ///< one per column; null: none
   mutable std::vector<std::shared_ptr<const volume::DenseVolume>>
-      on_host;               ///< one per volume; null: not asked for yet
-  mutable std::mutex mutex;  ///< of on_host
+      on_host;  ///< one per volume; null: not asked for yet
+  mutable std::vector<std::shared_ptr<const float>>
+      on_device;             ///< in linear memory; one per volume; null: not asked for yet
+  mutable std::mutex mutex;  ///< of on_host and on_device
 
   /// @param name  empty: the first. @throws Error (usage) that lists the names
   std::size_t indexOf(const std::string& name) const;
   /// The values in host memory; copied from a GPU once.
   const std::shared_ptr<const volume::DenseVolume>& host(std::size_t index) const;
+  /// The values of a volume on a GPU in its linear memory, in the order of host(); copied there once.
+  const std::shared_ptr<const float>& device(std::size_t index) const;
 };
 
 }  // namespace emscape::python

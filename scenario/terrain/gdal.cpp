@@ -1,7 +1,8 @@
+#include "base/gdal.h"
+
 #include <cpl_conv.h>
+#include <cpl_vsi.h>
 #include <gdal_alg.h>
-#include <gdal_priv.h>
-#include <ogr_spatialref.h>
 
 #include <algorithm>
 #include <cctype>
@@ -102,13 +103,11 @@ std::string shortText(double value) {
   return text.str();
 }
 
-using TransformationPtr = std::unique_ptr<OGRCoordinateTransformation>;
-
 /// Points that could not be transformed become NaN.
-void transform(OGRCoordinateTransformation& transformation, std::vector<double>& x, std::vector<double>& y) {
+void transform(const gdal::Transformation& transformation, std::vector<double>& x, std::vector<double>& y) {
   const GdalMessages quiet;
   std::vector<int> done(x.size());
-  transformation.Transform(static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
+  OCTTransformEx(transformation.get(), static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (!done[k] || !std::isfinite(x[k]) || !std::isfinite(y[k])) x[k] = y[k] = std::nan("");
   }
@@ -129,33 +128,33 @@ struct TerrainFile::Impl {
   bool north_first = true;  ///< order of the file's rows
   PostLattice lattice;
   bool is_area = true;
-  OGRSpatialReference crs;
+  gdal::SpatialReference crs;
   bool geographic = false;
   std::string plane_name;
-  TransformationPtr to_wgs84, from_wgs84;
-  std::unique_ptr<void, void (*)(void*)> reprojection{nullptr, GDALDestroyReprojectionTransformer};
-  std::unique_ptr<void, void (*)(void*)> line_transformer{nullptr, GDALDestroyApproxTransformer};
+  gdal::Transformation to_wgs84, from_wgs84;
+  gdal::Owned<GDALDestroyReprojectionTransformer> reprojection;
+  gdal::Owned<GDALDestroyApproxTransformer> line_transformer;
 
   [[noreturn]] void fail(const std::string& problem) const {
     throw Error(ErrorCode::bad_input, location, "elevation file " + name + ": " + problem);
   }
 
-  std::unique_ptr<GDALDataset> open() const;
+  gdal::Dataset open() const;
   void readHead();
-  void readBand(GDALRasterBand& band);
-  void placePosts(GDALDataset& dataset);
-  void placeOnEarth(const OGRSpatialReference* given);
+  void readBand(GDALRasterBandH band);
+  void placePosts(GDALDatasetH dataset);
+  void placeOnEarth(OGRSpatialReferenceH given);
   bool liesOnWgs84() const;
   void crsOfPlane(std::vector<double>& x, std::vector<double>& y) const;
   void planeOfCrs(std::vector<double>& x, std::vector<double>& y) const;
 };
 
-std::unique_ptr<GDALDataset> TerrainFile::Impl::open() const {
+gdal::Dataset TerrainFile::Impl::open() const {
   GdalMessages messages;
   const std::string foreign = foreignSourceOfVrt(name);
   if (!foreign.empty()) fail(foreign);
-  std::unique_ptr<GDALDataset> dataset(GDALDataset::Open(
-      name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, kAllowedDrivers));
+  gdal::Dataset dataset(GDALOpenEx(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                                   kAllowedDrivers, nullptr, nullptr));
   if (!dataset) {
     VSIStatBufL status;
     const bool exists = VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
@@ -167,32 +166,33 @@ std::unique_ptr<GDALDataset> TerrainFile::Impl::open() const {
 void TerrainFile::Impl::readHead() {
   const GdalMessages quiet;  // constructed before the dataset, whose destructor may report errors
   GDALAllRegister();
-  const std::unique_ptr<GDALDataset> dataset = open();
-  if (dataset->GetRasterCount() == 0) {
+  const gdal::Dataset dataset = open();
+  const int bands = GDALGetRasterCount(dataset.get());
+  if (bands == 0) {
     fail("holds no raster band itself; name one of the data sets in it, as gdalinfo lists them");
   }
-  const char* long_name = dataset->GetDriver()->GetMetadataItem(GDAL_DMD_LONGNAME);
-  format = long_name ? long_name : dataset->GetDriverName();
-  columns = dataset->GetRasterXSize();
-  rows = dataset->GetRasterYSize();
+  GDALDriverH driver = GDALGetDatasetDriver(dataset.get());
+  const char* long_name = GDALGetMetadataItem(driver, GDAL_DMD_LONGNAME, nullptr);
+  format = long_name ? long_name : GDALGetDriverShortName(driver);
+  columns = GDALGetRasterXSize(dataset.get());
+  rows = GDALGetRasterYSize(dataset.get());
   if (columns > kMaxPostsPerAxis || rows > kMaxPostsPerAxis) {
     fail("has " + std::to_string(columns) + " x " + std::to_string(rows) + " posts, more than the allowed " +
          std::to_string(kMaxPostsPerAxis) + " in a row or column");
   }
-  if (dataset->GetRasterCount() > 1) {
-    notes.push_back("has " + std::to_string(dataset->GetRasterCount()) +
-                    " bands: heights are taken from the first");
+  if (bands > 1) {
+    notes.push_back("has " + std::to_string(bands) + " bands: heights are taken from the first");
   }
-  readBand(*dataset->GetRasterBand(1));
-  placePosts(*dataset);
-  placeOnEarth(dataset->GetSpatialRef());
+  readBand(GDALGetRasterBand(dataset.get(), 1));
+  placePosts(dataset.get());
+  placeOnEarth(GDALGetSpatialRef(dataset.get()));
 }
 
-void TerrainFile::Impl::readBand(GDALRasterBand& band) {
-  if (GDALDataTypeIsComplex(band.GetRasterDataType())) fail("holds complex numbers, not heights");
-  scale = band.GetScale();
-  offset = band.GetOffset();
-  const std::string unit = band.GetUnitType();
+void TerrainFile::Impl::readBand(GDALRasterBandH band) {
+  if (GDALDataTypeIsComplex(GDALGetRasterDataType(band))) fail("holds complex numbers, not heights");
+  scale = GDALGetRasterScale(band, nullptr);
+  offset = GDALGetRasterOffset(band, nullptr);
+  const std::string unit = GDALGetRasterUnitType(band);
   unit_m = metresOf(unit);
   if (unit_m == 0.0) {
     fail("heights are in '" + unit + "', a unit that is not known; known are m, ft and US survey ft");
@@ -204,9 +204,9 @@ void TerrainFile::Impl::readBand(GDALRasterBand& band) {
   }
 }
 
-void TerrainFile::Impl::placePosts(GDALDataset& dataset) {
+void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
   double* g = pixel_to_crs;
-  if (dataset.GetGeoTransform(g) != CE_None) fail("has no georeference");
+  if (GDALGetGeoTransform(dataset, g) != CE_None) fail("has no georeference");
   const double area = g[1] * g[5] - g[2] * g[4];
   double reach = 0;  // of the raster's corners from the CRS's origin
   for (const double column : {0.0, double(columns)}) {
@@ -228,7 +228,7 @@ void TerrainFile::Impl::placePosts(GDALDataset& dataset) {
     fail("its posts are " + shortText(step) + " apart, less than the allowed " + shortText(kMinCrsStep) +
          " of the coordinates' unit");
   }
-  const char* meaning = dataset.GetMetadataItem(GDALMD_AREA_OR_POINT);
+  const char* meaning = GDALGetMetadataItem(dataset, GDALMD_AREA_OR_POINT, nullptr);
   is_area = meaning == nullptr || !EQUAL(meaning, GDALMD_AOP_POINT);
   turned = g[2] != 0.0 || g[4] != 0.0 || g[1] < 0.0;
   if (turned) {
@@ -242,26 +242,25 @@ void TerrainFile::Impl::placePosts(GDALDataset& dataset) {
   }
 }
 
-void TerrainFile::Impl::placeOnEarth(const OGRSpatialReference* given) {
+void TerrainFile::Impl::placeOnEarth(OGRSpatialReferenceH given) {
   GdalMessages messages;
-  if (given == nullptr || given->IsEmpty()) {
+  if (given == nullptr || OSRGetName(given) == nullptr) {
     fail("has no coordinate reference system (gdal_edit.py -a_srs EPSG:4326 sets latitudes and longitudes)");
   }
-  crs = *given;
-  if (const char* datum = crs.GetAttrValue("VERT_CS")) {
+  crs.reset(OSRClone(given));
+  if (const char* datum = OSRGetAttrValue(crs.get(), "VERT_CS", 0)) {
     notes.push_back(std::string("says that its heights are of '") + datum + "'");
   }
-  crs.StripVertical();
-  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  OGRSpatialReference wgs84;
-  wgs84.SetWellKnownGeogCS("WGS84");
-  wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  to_wgs84.reset(OGRCreateCoordinateTransformation(&crs, &wgs84));
-  from_wgs84.reset(OGRCreateCoordinateTransformation(&wgs84, &crs));
-  reprojection.reset(GDALCreateReprojectionTransformerEx(OGRSpatialReference::ToHandle(&wgs84),
-                                                         OGRSpatialReference::ToHandle(&crs), nullptr));
+  OSRStripVertical(crs.get());
+  OSRSetAxisMappingStrategy(crs.get(), OAMS_TRADITIONAL_GIS_ORDER);
+  const gdal::SpatialReference wgs84(OSRNewSpatialReference(nullptr));
+  OSRSetWellKnownGeogCS(wgs84.get(), "WGS84");
+  OSRSetAxisMappingStrategy(wgs84.get(), OAMS_TRADITIONAL_GIS_ORDER);
+  to_wgs84.reset(OCTNewCoordinateTransformation(crs.get(), wgs84.get()));
+  from_wgs84.reset(OCTNewCoordinateTransformation(wgs84.get(), crs.get()));
+  reprojection.reset(GDALCreateReprojectionTransformerEx(wgs84.get(), crs.get(), nullptr));
   if (!to_wgs84 || !from_wgs84 || !reprojection) {
-    fail(messages.explain(std::string("its coordinate reference system '") + crs.GetName() +
+    fail(messages.explain(std::string("its coordinate reference system '") + OSRGetName(crs.get()) +
                           "' cannot be brought to latitude and longitude"));
   }
   const double* g = pixel_to_crs;
@@ -270,7 +269,7 @@ void TerrainFile::Impl::placeOnEarth(const OGRSpatialReference* given) {
   line_transformer.reset(GDALCreateApproxTransformer(GDALReprojectionTransform, reprojection.get(),
                                                      kLineTolerance_posts * post));
 
-  geographic = crs.IsGeographic() && !turned && liesOnWgs84();
+  geographic = OSRIsGeographic(crs.get()) && !turned && liesOnWgs84();
   if (geographic) {
     snapToDegrees(lattice.x0, lattice.step_x, columns);
     snapToDegrees(lattice.y0, lattice.step_y, rows);
@@ -284,10 +283,10 @@ void TerrainFile::Impl::placeOnEarth(const OGRSpatialReference* given) {
     return;
   }
   char* wkt = nullptr;
-  crs.exportToWkt(&wkt);
+  OSRExportToWkt(crs.get(), &wkt);
   plane_name = turned ? name : std::string(wkt ? wkt : "");
   CPLFree(wkt);
-  notes.push_back(std::string("posts in ") + crs.GetName() + (turned ? ", turned," : "") +
+  notes.push_back(std::string("posts in ") + OSRGetName(crs.get()) + (turned ? ", turned," : "") +
                   " are brought to latitudes and longitudes of WGS84, bilinear");
 }
 
@@ -301,7 +300,7 @@ bool TerrainFile::Impl::liesOnWgs84() const {
     }
   }
   std::vector<double> longitude = x, latitude = y;
-  transform(*to_wgs84, longitude, latitude);
+  transform(to_wgs84, longitude, latitude);
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (!(std::abs(wrapLongitude_deg(longitude[k] - x[k])) <= kSameDatum_posts * lattice.step_x &&
           std::abs(latitude[k] - y[k]) <= kSameDatum_posts * lattice.step_y)) {
@@ -323,9 +322,9 @@ void TerrainFile::Impl::crsOfPlane(std::vector<double>& x, std::vector<double>& 
 
 void TerrainFile::Impl::planeOfCrs(std::vector<double>& x, std::vector<double>& y) const {
   const double* g = pixel_to_crs;
-  if (crs.IsGeographic()) {
+  if (OSRIsGeographic(crs.get())) {
     // The range of longitudes that the file uses, in whole turns.
-    const double turn = 2.0 * kPi / crs.GetAngularUnits();
+    const double turn = 2.0 * kPi / OSRGetAngularUnits(crs.get(), nullptr);
     const double middle = g[0] + 0.5 * (columns * g[1] + rows * g[2]);
     for (double& longitude : x) longitude = middle + std::remainder(longitude - middle, turn);
   }
@@ -353,9 +352,9 @@ const std::string& TerrainFile::format() const {
   return impl_->format;
 }
 std::string TerrainFile::crs() const {
-  const char* authority = impl_->crs.GetAuthorityName(nullptr);
-  const char* code = impl_->crs.GetAuthorityCode(nullptr);
-  std::string text = impl_->crs.GetName();
+  const char* authority = OSRGetAuthorityName(impl_->crs.get(), nullptr);
+  const char* code = OSRGetAuthorityCode(impl_->crs.get(), nullptr);
+  std::string text = OSRGetName(impl_->crs.get());
   if (authority && code) text += std::string(" (") + authority + ":" + code + ")";
   return text;
 }
@@ -383,9 +382,9 @@ const std::string& TerrainFile::planeName() const {
 
 void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
   const GdalMessages messages;  // constructed before the dataset, whose destructor may report errors
-  const std::unique_ptr<GDALDataset> dataset = impl_->open();
-  GDALRasterBand& band = *dataset->GetRasterBand(1);
-  GDALRasterBand* mask_band = (band.GetMaskFlags() & GMF_ALL_VALID) == 0 ? band.GetMaskBand() : nullptr;
+  const gdal::Dataset dataset = impl_->open();
+  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
+  GDALRasterBandH mask_band = (GDALGetMaskFlags(band) & GMF_ALL_VALID) == 0 ? GDALGetMaskBand(band) : nullptr;
   const int columns = static_cast<int>(window.columns);
   const int left = static_cast<int>(window.first_column);
   const long long strip_rows = std::max(1LL, kStripPosts / std::max(1LL, window.columns));
@@ -397,10 +396,10 @@ void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
     const int top = static_cast<int>(impl_->north_first ? impl_->rows - south - rows : south);
     strip.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     mask.assign(strip.size(), 255);
-    if (band.RasterIO(GF_Read, left, top, columns, rows, strip.data(), columns, rows, GDT_Float32, 0, 0,
-                      nullptr) != CE_None ||
-        (mask_band != nullptr && mask_band->RasterIO(GF_Read, left, top, columns, rows, mask.data(), columns,
-                                                     rows, GDT_Byte, 0, 0, nullptr) != CE_None)) {
+    if (GDALRasterIO(band, GF_Read, left, top, columns, rows, strip.data(), columns, rows, GDT_Float32, 0,
+                     0) != CE_None ||
+        (mask_band != nullptr && GDALRasterIO(mask_band, GF_Read, left, top, columns, rows, mask.data(),
+                                              columns, rows, GDT_Byte, 0, 0) != CE_None)) {
       impl_->fail(messages.explain("rows " + std::to_string(top) + " to " + std::to_string(top + rows - 1) +
                                    " cannot be read"));
     }
@@ -419,11 +418,11 @@ void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
 
 void TerrainFile::toGeographic(std::vector<double>& x, std::vector<double>& y) const {
   impl_->crsOfPlane(x, y);
-  transform(*impl_->to_wgs84, x, y);
+  transform(impl_->to_wgs84, x, y);
 }
 
 void TerrainFile::toPlane(std::vector<double>& x, std::vector<double>& y) const {
-  transform(*impl_->from_wgs84, x, y);
+  transform(impl_->from_wgs84, x, y);
   impl_->planeOfCrs(x, y);
 }
 

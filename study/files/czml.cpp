@@ -1,7 +1,5 @@
 #include "study/files/czml.h"
 
-#include <ogr_geometry.h>
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -40,8 +38,7 @@ class Czml : public MapCollection {
     const double duration_s = study.scenarios.front()->clock.duration_s;
     begin_s_ = std::min(0.0, study.times_s.front());
     end_s_ = std::max(duration_s, endOf(study, study.times_s.back()));
-    const OGRSpatialReference map_reference = referenceOf(*study.grid), earth = wgs84Reference();
-    to_earth_.reset(OGRCreateCoordinateTransformation(&map_reference, &earth));
+    to_earth_.reset(OCTNewCoordinateTransformation(referenceOf(*study.grid).get(), wgs84Reference().get()));
     packets_.push_back({{"id", "document"},
                         {"name", study.title},
                         {"version", "1.0"},
@@ -63,12 +60,12 @@ class Czml : public MapCollection {
     const MapShapes shapes = shapesOf(*study_.grid, map, file_);
     int number = 0;
     for (const MapBand& band : shapes.bands) {
-      for (const OGRPolygon* const polygon : *band.geometry->toMultiPolygon()) {
+      for (int n = 0; n < OGR_G_GetGeometryCount(band.geometry.get()); ++n) {
         Json packet{{"id", fileNameOf(map) + "/" + std::to_string(number++)},
                     {"name", map.description},
                     {"parent", "group/" + group}};
         if (map.time_s) packet["availability"] = intervalOf(*map.time_s, endOf(study_, *map.time_s));
-        packet["polygon"] = polygonJson(map, *polygon);
+        packet["polygon"] = polygonJson(map, OGR_G_GetGeometryRef(band.geometry.get(), n));
         packet["polygon"]["show"] = group == groups_.front();
         packet["polygon"]["material"]["solidColor"]["color"] =
             colorJson(band.color.value_or(render::Rgb{}), kPolygonOpacity);
@@ -82,12 +79,6 @@ class Czml : public MapCollection {
   }
 
  private:
-  struct Destroy {
-    void operator()(OGRCoordinateTransformation* transform) const {
-      OGRCoordinateTransformation::DestroyCT(transform);
-    }
-  };
-
   std::string intervalOf(double begin_s, double end_s) const {
     return utcOf(study_, begin_s) + "/" + utcOf(study_, end_s);
   }
@@ -152,22 +143,23 @@ class Czml : public MapCollection {
     }
   }
 
-  Json ringJson(const Map& map, const OGRLinearRing& ring) const {
+  Json ringJson(const Map& map, OGRGeometryH ring) const {
     const bool floats = map.height && map.height->reference == emfield::HeightReference::mean_sea_level;
     Json list = Json::array();
-    for (int n = 0; n + 1 < ring.getNumPoints(); ++n) {  // the last point is the first
-      double x = ring.getX(n), y = ring.getY(n);
-      to_earth_->Transform(1, &x, &y);
+    for (int n = 0; n + 1 < OGR_G_GetPointCount(ring); ++n) {  // the last point is the first
+      double x = OGR_G_GetX(ring, n), y = OGR_G_GetY(ring, n);
+      OCTTransform(to_earth_.get(), 1, &x, &y, nullptr);
       addPlace(list, x, y, floats ? map.height->metres + geoidUndulation_m(y, x) : 0);
     }
     return list;
   }
 
-  Json polygonJson(const Map& map, const OGRPolygon& polygon) const {
-    Json json{{"positions", {{"cartographicDegrees", ringJson(map, *polygon.getExteriorRing())}}}};
+  /// @param polygon  its rings are the outer one, then the holes
+  Json polygonJson(const Map& map, OGRGeometryH polygon) const {
+    Json json{{"positions", {{"cartographicDegrees", ringJson(map, OGR_G_GetGeometryRef(polygon, 0))}}}};
     Json holes = Json::array();
-    for (int n = 0; n < polygon.getNumInteriorRings(); ++n) {
-      holes.push_back(ringJson(map, *polygon.getInteriorRing(n)));
+    for (int n = 1; n < OGR_G_GetGeometryCount(polygon); ++n) {
+      holes.push_back(ringJson(map, OGR_G_GetGeometryRef(polygon, n)));
     }
     if (!holes.empty()) json["holes"] = {{"cartographicDegrees", holes}};
     if (map.height && map.height->reference == emfield::HeightReference::mean_sea_level) {
@@ -179,7 +171,7 @@ class Czml : public MapCollection {
   const std::filesystem::path file_;
   const MapStudy& study_;
   double begin_s_ = 0, end_s_ = 0;
-  std::unique_ptr<OGRCoordinateTransformation, Destroy> to_earth_;
+  gdal::Transformation to_earth_;
   std::vector<std::string> track_names_, groups_;
   Json packets_ = Json::array();
 };

@@ -1,7 +1,7 @@
 #include "study/files/geopackage.h"
 
+#include <cpl_conv.h>
 #include <fmt/format.h>
-#include <ogrsf_frmts.h>
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +36,36 @@ struct Field {
   OGRFieldType type;
 };
 
+/// A new feature of a layer.
+class NewFeature {
+ public:
+  explicit NewFeature(OGRLayerH layer) : layer_(layer), feature_(OGR_F_Create(OGR_L_GetLayerDefn(layer))) {}
+
+  void set(const char* field, const std::string& text) {
+    OGR_F_SetFieldString(feature_.get(), indexOf(field), text.c_str());
+  }
+  void set(const char* field, double number) { OGR_F_SetFieldDouble(feature_.get(), indexOf(field), number); }
+  void setFlag(const char* field, bool flag) {
+    OGR_F_SetFieldInteger(feature_.get(), indexOf(field), flag ? 1 : 0);
+  }
+  /// Copies it.
+  void setGeometry(const gdal::Geometry& geometry) { OGR_F_SetGeometry(feature_.get(), geometry.get()); }
+  /// @return false if it cannot be written
+  bool write() { return OGR_L_CreateFeature(layer_, feature_.get()) == OGRERR_NONE; }
+
+ private:
+  int indexOf(const char* field) const { return OGR_F_GetFieldIndex(feature_.get(), field); }
+
+  OGRLayerH layer_;
+  gdal::Feature feature_;
+};
+
+gdal::Geometry pointAt(const GeodeticPosition& place) {
+  gdal::Geometry point(OGR_G_CreateGeometry(wkbPoint));
+  OGR_G_SetPoint_2D(point.get(), 0, place.longitude_deg, place.latitude_deg);
+  return point;
+}
+
 std::string hexOf(const render::Rgb& color) {
   const auto level = [](float part) { return std::lround(255 * std::clamp(part, 0.0f, 1.0f)); };
   return fmt::format("#{:02x}{:02x}{:02x}", level(color.r), level(color.g), level(color.b));
@@ -45,11 +75,11 @@ class GeoPackage : public MapCollection {
  public:
   GeoPackage(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
     const Scope scope(*this);
-    dataset_.reset(driverOf("GPKG")->Create(file_.temporary(), 0, 0, 0, GDT_Unknown, nullptr));
+    dataset_.reset(GDALCreate(driverOf("GPKG"), file_.temporary(), 0, 0, 0, GDT_Unknown, nullptr));
     check(scope, dataset_ != nullptr);
-    dataset_->StartTransaction();
-    const OGRSpatialReference map_reference = referenceOf(*study.grid), earth = wgs84Reference();
-    bands_ = addLayer(scope, "bands", &map_reference, wkbMultiPolygon,
+    GDALDatasetStartTransaction(dataset_.get(), FALSE);
+    const gdal::SpatialReference map_reference = referenceOf(*study.grid), earth = wgs84Reference();
+    bands_ = addLayer(scope, "bands", map_reference.get(), wkbMultiPolygon,
                       {{"product", OFTString},
                        {"height", OFTReal},
                        {"height_above", OFTString},
@@ -61,7 +91,7 @@ class GeoPackage : public MapCollection {
                        {"label", OFTString},
                        {"color", OFTString},
                        {"description", OFTString}});
-    contours_ = addLayer(scope, "contours", &map_reference, wkbLineString,
+    contours_ = addLayer(scope, "contours", map_reference.get(), wkbLineString,
                          {{"product", OFTString},
                           {"height", OFTReal},
                           {"height_above", OFTString},
@@ -70,9 +100,9 @@ class GeoPackage : public MapCollection {
                           {"level", OFTReal},
                           {"unit", OFTString},
                           {"description", OFTString}});
-    addEmitters(scope, earth);
-    addSites(scope, earth);
-    addTracks(scope, earth);
+    addEmitters(scope, earth.get());
+    addSites(scope, earth.get());
+    addTracks(scope, earth.get());
   }
 
   ~GeoPackage() override {
@@ -84,19 +114,19 @@ class GeoPackage : public MapCollection {
     const MapShapes shapes = shapesOf(*study_.grid, map, file_.file());
     const Scope scope(*this);
     for (const MapBand& band : shapes.bands) {
-      const OGRFeatureUniquePtr feature = featureOf(bands_, map);
-      feature->SetField("min", band.min);
-      feature->SetField("max", band.max);
-      feature->SetField("label", band.label.c_str());
-      feature->SetField("color", band.color ? hexOf(*band.color).c_str() : "#00000000");
-      feature->SetGeometry(band.geometry.get());
-      check(scope, bands_->CreateFeature(feature.get()) == OGRERR_NONE);
+      NewFeature feature = featureOf(bands_, map);
+      feature.set("min", band.min);
+      feature.set("max", band.max);
+      feature.set("label", band.label);
+      feature.set("color", band.color ? hexOf(*band.color) : "#00000000");
+      feature.setGeometry(band.geometry);
+      check(scope, feature.write());
     }
     for (const MapLine& line : shapes.lines) {
-      const OGRFeatureUniquePtr feature = featureOf(contours_, map);
-      feature->SetField("level", line.level);
-      feature->SetGeometry(line.geometry.get());
-      check(scope, contours_->CreateFeature(feature.get()) == OGRERR_NONE);
+      NewFeature feature = featureOf(contours_, map);
+      feature.set("level", line.level);
+      feature.setGeometry(line.geometry);
+      check(scope, feature.write());
     }
     addRule(map);
   }
@@ -105,7 +135,7 @@ class GeoPackage : public MapCollection {
     {
       const Scope scope(*this);
       addStyles(scope);
-      check(scope, dataset_->CommitTransaction() == OGRERR_NONE);
+      check(scope, GDALDatasetCommitTransaction(dataset_.get()) == OGRERR_NONE);
       dataset_.reset();
       check(scope, true);
     }
@@ -125,37 +155,37 @@ class GeoPackage : public MapCollection {
     if (!is_done || scope.messages.hasFailure()) failWriting(scope.messages, file_.file());
   }
 
-  OGRLayer* addLayer(const Scope& scope, const char* name, const OGRSpatialReference* reference,
+  OGRLayerH addLayer(const Scope& scope, const char* name, OGRSpatialReferenceH reference,
                      OGRwkbGeometryType type, const std::vector<Field>& fields) {
     const char* const options[] = {"ASPATIAL_VARIANT=NOT_REGISTERED", nullptr};
-    OGRLayer* const layer = dataset_->CreateLayer(name, const_cast<OGRSpatialReference*>(reference), type,
-                                                  type == wkbNone ? const_cast<char**>(options) : nullptr);
+    OGRLayerH layer = GDALDatasetCreateLayer(dataset_.get(), name, reference, type,
+                                             type == wkbNone ? const_cast<char**>(options) : nullptr);
     check(scope, layer != nullptr);
     for (const Field& field : fields) {
-      const OGRFieldDefn definition(field.name, field.type);
-      check(scope, layer->CreateField(const_cast<OGRFieldDefn*>(&definition)) == OGRERR_NONE);
+      const gdal::FieldDefinition definition(OGR_Fld_Create(field.name, field.type));
+      check(scope, OGR_L_CreateField(layer, definition.get(), TRUE) == OGRERR_NONE);
     }
     return layer;
   }
 
-  OGRFeatureUniquePtr featureOf(OGRLayer* layer, const Map& map) const {
-    OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-    feature->SetField("product", map.name.c_str());
-    feature->SetField("unit", map.unit.c_str());
-    feature->SetField("description", map.description.c_str());
+  NewFeature featureOf(OGRLayerH layer, const Map& map) const {
+    NewFeature feature(layer);
+    feature.set("product", map.name);
+    feature.set("unit", map.unit);
+    feature.set("description", map.description);
     if (map.height) {
-      feature->SetField("height", map.height->metres);
-      feature->SetField("height_above", isAboveGround(map) ? "ground" : "mean sea level");
+      feature.set("height", map.height->metres);
+      feature.set("height_above", isAboveGround(map) ? "ground" : "mean sea level");
     }
-    if (map.time_s) setTimes(*feature, *map.time_s);
+    if (map.time_s) setTimes(feature, *map.time_s);
     return feature;
   }
   static bool isAboveGround(const Map& map) {
     return map.height->reference == emfield::HeightReference::ground;
   }
-  void setTimes(OGRFeature& feature, double time_s) const {
-    feature.SetField("time", utcOf(study_, time_s).c_str());
-    feature.SetField("time_end", utcOf(study_, endOf(study_, time_s)).c_str());
+  void setTimes(NewFeature& feature, double time_s) const {
+    feature.set("time", utcOf(study_, time_s));
+    feature.set("time_end", utcOf(study_, endOf(study_, time_s)));
   }
 
   /// A rule of the style for a product at a height, over all times.
@@ -177,126 +207,124 @@ class GeoPackage : public MapCollection {
     contour_rules_.push_back(rule);
   }
 
-  void addEmitters(const Scope& scope, const OGRSpatialReference& earth) {
-    OGRLayer* const layer = addLayer(scope, "emitters", &earth, wkbPoint,
-                                     {{"name", OFTString},
-                                      {"kind", OFTString},
-                                      {"platform", OFTString},
-                                      {"frequency_hz", OFTReal},
-                                      {"power_w", OFTReal},
-                                      {"height_msl_m", OFTReal},
-                                      {"time", OFTDateTime},
-                                      {"time_end", OFTDateTime},
-                                      {"color", OFTString}});
+  void addEmitters(const Scope& scope, OGRSpatialReferenceH earth) {
+    OGRLayerH layer = addLayer(scope, "emitters", earth, wkbPoint,
+                               {{"name", OFTString},
+                                {"kind", OFTString},
+                                {"platform", OFTString},
+                                {"frequency_hz", OFTReal},
+                                {"power_w", OFTReal},
+                                {"height_msl_m", OFTReal},
+                                {"time", OFTDateTime},
+                                {"time_end", OFTDateTime},
+                                {"color", OFTString}});
     for (const MapEmitter& emitter : emittersOf(study_)) {
       for (const MapPosition& at : emitter.positions) {
-        const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-        feature->SetField("name", emitter.emitter->name.c_str());
-        feature->SetField("kind", scenario::toString(emitter.emitter->kind));
-        feature->SetField("platform", emitter.platform.c_str());
-        feature->SetField("frequency_hz", emitter.emitter->frequency_hz);
-        feature->SetField("power_w", emitter.emitter->power_w);
-        feature->SetField("height_msl_m", at.height_msl_m);
-        feature->SetField("color",
-                          hexOf(render::colorOf(playback::markerKindOf(emitter.emitter->kind))).c_str());
-        if (emitter.positions.size() > 1) setTimes(*feature, at.time_s);
-        OGRPoint point(at.position.longitude_deg, at.position.latitude_deg);
-        feature->SetGeometry(&point);
-        check(scope, layer->CreateFeature(feature.get()) == OGRERR_NONE);
+        NewFeature feature(layer);
+        feature.set("name", emitter.emitter->name);
+        feature.set("kind", scenario::toString(emitter.emitter->kind));
+        feature.set("platform", emitter.platform);
+        feature.set("frequency_hz", emitter.emitter->frequency_hz);
+        feature.set("power_w", emitter.emitter->power_w);
+        feature.set("height_msl_m", at.height_msl_m);
+        feature.set("color", hexOf(render::colorOf(playback::markerKindOf(emitter.emitter->kind))));
+        if (emitter.positions.size() > 1) setTimes(feature, at.time_s);
+        feature.setGeometry(pointAt(at.position));
+        check(scope, feature.write());
       }
     }
   }
 
-  void addSites(const Scope& scope, const OGRSpatialReference& earth) {
-    OGRLayer* const layer = addLayer(scope, "sites", &earth, wkbPoint,
-                                     {{"name", OFTString},
-                                      {"is_moving", OFTInteger},
-                                      {"emitters", OFTString},
-                                      {"receivers", OFTString},
-                                      {"targets", OFTString},
-                                      {"height_msl_m", OFTReal},
-                                      {"height_agl_m", OFTReal},
-                                      {"time", OFTDateTime},
-                                      {"time_end", OFTDateTime}});
+  void addSites(const Scope& scope, OGRSpatialReferenceH earth) {
+    OGRLayerH layer = addLayer(scope, "sites", earth, wkbPoint,
+                               {{"name", OFTString},
+                                {"is_moving", OFTInteger},
+                                {"emitters", OFTString},
+                                {"receivers", OFTString},
+                                {"targets", OFTString},
+                                {"height_msl_m", OFTReal},
+                                {"height_agl_m", OFTReal},
+                                {"time", OFTDateTime},
+                                {"time_end", OFTDateTime}});
     for (const MapSite& site : sitesOf(study_)) {
       for (const MapPosition& at : site.positions) {
-        const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-        feature->SetField("name", site.platform.c_str());
-        feature->SetField("is_moving", site.is_moving ? 1 : 0);
-        feature->SetField("emitters", fmt::format("{}", fmt::join(site.emitters, ", ")).c_str());
-        feature->SetField("receivers", fmt::format("{}", fmt::join(site.receivers, ", ")).c_str());
-        feature->SetField("targets", fmt::format("{}", fmt::join(site.targets, ", ")).c_str());
-        feature->SetField("height_msl_m", at.height_msl_m);
+        NewFeature feature(layer);
+        feature.set("name", site.platform);
+        feature.setFlag("is_moving", site.is_moving);
+        feature.set("emitters", fmt::format("{}", fmt::join(site.emitters, ", ")));
+        feature.set("receivers", fmt::format("{}", fmt::join(site.receivers, ", ")));
+        feature.set("targets", fmt::format("{}", fmt::join(site.targets, ", ")));
+        feature.set("height_msl_m", at.height_msl_m);
         const double ground_msl_m =
             study_.terrain == nullptr
                 ? 0
                 : study_.terrain->heightMsl_m(at.position.latitude_deg, at.position.longitude_deg);
-        if (!std::isnan(ground_msl_m)) feature->SetField("height_agl_m", at.height_msl_m - ground_msl_m);
-        if (site.is_moving) setTimes(*feature, at.time_s);
-        OGRPoint point(at.position.longitude_deg, at.position.latitude_deg);
-        feature->SetGeometry(&point);
-        check(scope, layer->CreateFeature(feature.get()) == OGRERR_NONE);
+        if (!std::isnan(ground_msl_m)) feature.set("height_agl_m", at.height_msl_m - ground_msl_m);
+        if (site.is_moving) setTimes(feature, at.time_s);
+        feature.setGeometry(pointAt(at.position));
+        check(scope, feature.write());
       }
     }
   }
 
-  void addTracks(const Scope& scope, const OGRSpatialReference& earth) {
-    OGRLayer* const layer = addLayer(scope, "tracks", &earth, wkbLineStringZM,
-                                     {{"platform", OFTString}, {"begin", OFTDateTime}, {"end", OFTDateTime}});
+  void addTracks(const Scope& scope, OGRSpatialReferenceH earth) {
+    OGRLayerH layer = addLayer(scope, "tracks", earth, wkbLineStringZM,
+                               {{"platform", OFTString}, {"begin", OFTDateTime}, {"end", OFTDateTime}});
     for (const MapTrack& track : tracksOf(study_)) {
-      const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(layer->GetLayerDefn()));
-      feature->SetField("platform", track.platform.c_str());
-      feature->SetField("begin", utcOf(study_, track.positions.front().time_s).c_str());
-      feature->SetField("end", utcOf(study_, track.positions.back().time_s).c_str());
-      OGRLineString line;
+      NewFeature feature(layer);
+      feature.set("platform", track.platform);
+      feature.set("begin", utcOf(study_, track.positions.front().time_s));
+      feature.set("end", utcOf(study_, track.positions.back().time_s));
+      const gdal::Geometry line(OGR_G_CreateGeometry(wkbLineStringZM));
       for (const MapPosition& at : track.positions) {
-        line.addPoint(at.position.longitude_deg, at.position.latitude_deg, at.height_msl_m, at.time_s);
+        OGR_G_AddPointZM(line.get(), at.position.longitude_deg, at.position.latitude_deg, at.height_msl_m,
+                         at.time_s);
       }
-      feature->SetGeometry(&line);
-      check(scope, layer->CreateFeature(feature.get()) == OGRERR_NONE);
+      feature.setGeometry(line);
+      check(scope, feature.write());
     }
   }
 
   /// The table in which QGIS looks for a layer's style.
   void addStyles(const Scope& scope) {
-    OGRLayer* const table = addLayer(scope, "layer_styles", nullptr, wkbNone,
-                                     {{"f_table_catalog", OFTString},
-                                      {"f_table_schema", OFTString},
-                                      {"f_table_name", OFTString},
-                                      {"f_geometry_column", OFTString},
-                                      {"styleName", OFTString},
-                                      {"styleQML", OFTString},
-                                      {"styleSLD", OFTString},
-                                      {"useAsDefault", OFTInteger},
-                                      {"description", OFTString},
-                                      {"owner", OFTString},
-                                      {"ui", OFTString},
-                                      {"update_time", OFTDateTime}});
+    OGRLayerH table = addLayer(scope, "layer_styles", nullptr, wkbNone,
+                               {{"f_table_catalog", OFTString},
+                                {"f_table_schema", OFTString},
+                                {"f_table_name", OFTString},
+                                {"f_geometry_column", OFTString},
+                                {"styleName", OFTString},
+                                {"styleQML", OFTString},
+                                {"styleSLD", OFTString},
+                                {"useAsDefault", OFTInteger},
+                                {"description", OFTString},
+                                {"owner", OFTString},
+                                {"ui", OFTString},
+                                {"update_time", OFTDateTime}});
     const std::pair<const char*, std::string> styles[] = {{"bands", bandStyle(band_rules_)},
                                                           {"contours", contourStyle(contour_rules_)},
                                                           {"emitters", emitterStyle()},
                                                           {"sites", siteStyle()},
                                                           {"tracks", trackStyle()}};
     for (const auto& [layer, qml] : styles) {
-      const OGRFeatureUniquePtr feature(OGRFeature::CreateFeature(table->GetLayerDefn()));
+      NewFeature feature(table);
       for (const char* empty : {"f_table_catalog", "f_table_schema", "styleSLD", "owner", "ui"}) {
-        feature->SetField(empty, "");
+        feature.set(empty, "");
       }
-      feature->SetField("f_table_name", layer);
-      feature->SetField("f_geometry_column", "geom");
-      feature->SetField("styleName", layer);
-      feature->SetField("styleQML", qml.c_str());
-      feature->SetField("useAsDefault", 1);
-      feature->SetField("description", "emscape");
-      feature->SetField("update_time", utcOf(study_, 0).c_str());
-      check(scope, table->CreateFeature(feature.get()) == OGRERR_NONE);
+      feature.set("f_table_name", layer);
+      feature.set("f_geometry_column", "geom");
+      feature.set("styleName", layer);
+      feature.set("styleQML", qml);
+      feature.setFlag("useAsDefault", true);
+      feature.set("description", "emscape");
+      feature.set("update_time", utcOf(study_, 0));
+      check(scope, feature.write());
     }
   }
 
   UnfinishedFile file_;
   const MapStudy& study_;
-  Dataset dataset_;
-  OGRLayer *bands_ = nullptr, *contours_ = nullptr;
+  gdal::Dataset dataset_;
+  OGRLayerH bands_ = nullptr, contours_ = nullptr;
   std::vector<StyleRule> band_rules_, contour_rules_;
 };
 

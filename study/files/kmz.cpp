@@ -33,14 +33,14 @@ std::array<std::uint8_t, 4> bytesOf(const std::optional<render::Rgb>& color) {
 Overlay overlayOf(const MapGrid& grid, const Map& map, const render::Legend& legend,
                   const std::filesystem::path& file) {
   const scenario::GdalMessages messages;
-  const Dataset raster = memoryRaster(grid, GDT_Byte, file);
-  for (int channel = 1; channel < 4; ++channel) raster->AddBand(GDT_Byte, nullptr);
+  const gdal::Dataset raster = memoryRaster(grid, GDT_Byte, file);
+  for (int channel = 1; channel < 4; ++channel) GDALAddBand(raster.get(), GDT_Byte, nullptr);
   std::vector<std::uint8_t> rgba;
   for (const float value : map.values) {
     for (const std::uint8_t byte : bytesOf(colorOf(map, legend, value))) rgba.push_back(byte);
   }
-  if (raster->RasterIO(GF_Write, 0, 0, grid.width, grid.height, rgba.data(), grid.width, grid.height,
-                       GDT_Byte, 4, nullptr, 4, 4 * grid.width, 1, nullptr) != CE_None) {
+  if (GDALDatasetRasterIO(raster.get(), GF_Write, 0, 0, grid.width, grid.height, rgba.data(), grid.width,
+                          grid.height, GDT_Byte, 4, nullptr, 4, 4 * grid.width, 1) != CE_None) {
     failWriting(messages, file);
   }
   // Longitudes within half a turn of the map, so that one across the antimeridian is not torn.
@@ -49,19 +49,20 @@ Overlay overlayOf(const MapGrid& grid, const Map& map, const render::Legend& leg
       fmt::format("+proj=longlat +datum=WGS84 +no_defs +lon_wrap={:.6f}", grid.places[middle].longitude_deg);
   const char* const arguments[] = {"-t_srs", earth.c_str(), "-r", "near", "-of", "MEM", nullptr};
   GDALWarpAppOptions* const options = GDALWarpAppOptionsNew(const_cast<char**>(arguments), nullptr);
-  GDALDatasetH source = GDALDataset::ToHandle(raster.get());
-  const Dataset warped(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options, nullptr)));
+  GDALDatasetH source = raster.get();
+  const gdal::Dataset warped(GDALWarp("", nullptr, 1, &source, options, nullptr));
   GDALWarpAppOptionsFree(options);
   if (warped == nullptr) failWriting(messages, file);
 
   Overlay overlay;
-  const int width = warped->GetRasterXSize(), height = warped->GetRasterYSize();
+  const int width = GDALGetRasterXSize(warped.get()), height = GDALGetRasterYSize(warped.get());
   overlay.image.size = {width, height};
   overlay.image.rgba.resize(4 * static_cast<std::size_t>(width) * height);
   double transform[6];
-  const bool is_read = warped->GetGeoTransform(transform) == CE_None &&
-                       warped->RasterIO(GF_Read, 0, 0, width, height, overlay.image.rgba.data(), width,
-                                        height, GDT_Byte, 4, nullptr, 4, 4 * width, 1, nullptr) == CE_None;
+  const bool is_read =
+      GDALGetGeoTransform(warped.get(), transform) == CE_None &&
+      GDALDatasetRasterIO(warped.get(), GF_Read, 0, 0, width, height, overlay.image.rgba.data(), width,
+                          height, GDT_Byte, 4, nullptr, 4, 4 * width, 1) == CE_None;
   if (!is_read || messages.hasFailure()) failWriting(messages, file);
   overlay.west_deg = transform[0];
   overlay.east_deg = transform[0] + width * transform[1];

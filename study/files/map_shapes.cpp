@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <gdal_alg.h>
-#include <ogrsf_frmts.h>
 
 #include <algorithm>
 #include <cmath>
@@ -49,40 +48,45 @@ Range rangeOf(const Map& map) {
 class Layer {
  public:
   explicit Layer(const std::filesystem::path& file)
-      : dataset_(driverOf("Memory")->Create("", 0, 0, 0, GDT_Unknown, nullptr)), file_(file) {
-    layer_ = dataset_ == nullptr ? nullptr : dataset_->CreateLayer("shapes");
+      : dataset_(GDALCreate(driverOf("Memory"), "", 0, 0, 0, GDT_Unknown, nullptr)), file_(file) {
+    if (dataset_ != nullptr) {
+      layer_ = GDALDatasetCreateLayer(dataset_.get(), "shapes", nullptr, wkbUnknown, nullptr);
+    }
     if (layer_ == nullptr) failWriting(messages_, file);
   }
   int addField(const char* name, OGRFieldType type) {
-    OGRFieldDefn field(name, type);
-    layer_->CreateField(&field);
-    return layer_->GetLayerDefn()->GetFieldIndex(name);
+    const gdal::FieldDefinition field(OGR_Fld_Create(name, type));
+    OGR_L_CreateField(layer_, field.get(), TRUE);
+    return OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer_), name);
   }
   void check(CPLErr result) const {
     if (result != CE_None || messages_.hasFailure()) failWriting(messages_, file_);
   }
-  OGRLayer* get() const { return layer_; }
+  OGRLayerH get() const { return layer_; }
+  /// The features from the first on.
+  void rewind() const { OGR_L_ResetReading(layer_); }
+  gdal::Feature next() const { return gdal::Feature(OGR_L_GetNextFeature(layer_)); }
 
  private:
   scenario::GdalMessages messages_;
-  Dataset dataset_;
+  gdal::Dataset dataset_;
   std::filesystem::path file_;
-  OGRLayer* layer_ = nullptr;
+  OGRLayerH layer_ = nullptr;
 };
 
 void addContours(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
   const std::vector<double> levels = levelsOf(map);
   const bool by_log_odds = map.kind == MapKind::probability;
   const auto scaled = [&](double value) { return by_log_odds ? logOddsOf(value) : value; };
-  const Dataset raster = memoryRaster(grid, GDT_Float64, file);
-  GDALRasterBand* const band = raster->GetRasterBand(1);
+  const gdal::Dataset raster = memoryRaster(grid, GDT_Float64, file);
+  GDALRasterBandH band = GDALGetRasterBand(raster.get(), 1);
   std::vector<double> values(map.values.size(), NAN);
   for (std::size_t p = 0; p < values.size(); ++p) {
     if (!std::isnan(map.values[p])) values[p] = scaled(static_cast<double>(map.values[p]));
   }
   Layer lines(file), bands(file);
-  lines.check(band->RasterIO(GF_Write, 0, 0, grid.width, grid.height, values.data(), grid.width, grid.height,
-                             GDT_Float64, 0, 0, nullptr));
+  lines.check(GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, values.data(), grid.width,
+                           grid.height, GDT_Float64, 0, 0));
   std::string fixed = "FIXED_LEVELS=";
   for (const double level : levels) {
     fixed += fmt::format("{}{:.17g}", fixed.back() == '=' ? "" : ",", scaled(level));
@@ -99,9 +103,10 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
     const std::string field = fmt::format("ELEV_FIELD={}", level_field);
     const char* const options[] = {fixed.c_str(), field.c_str(), "NODATA=nan", nullptr};
     lines.check(GDALContourGenerateEx(band, lines.get(), options, nullptr, nullptr));
-    for (const OGRFeatureUniquePtr& feature : *lines.get()) {
-      const double level = levels[nearestLevel(feature->GetFieldAsDouble(level_field))];
-      shapes.lines.push_back({level, std::unique_ptr<OGRGeometry>(feature->StealGeometry())});
+    lines.rewind();
+    while (const gdal::Feature feature = lines.next()) {
+      const double level = levels[nearestLevel(OGR_F_GetFieldAsDouble(feature.get(), level_field))];
+      shapes.lines.push_back({level, gdal::Geometry(OGR_F_StealGeometry(feature.get()))});
     }
     std::stable_sort(shapes.lines.begin(), shapes.lines.end(),
                      [](const MapLine& a, const MapLine& b) { return a.level < b.level; });
@@ -113,16 +118,17 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
   bands.check(GDALContourGenerateEx(band, bands.get(), options, nullptr, nullptr));
   const Range range = rangeOf(map);
   const render::Legend legend = legendOf(map);
-  for (const OGRFeatureUniquePtr& feature : *bands.get()) {
+  bands.rewind();
+  while (const gdal::Feature feature = bands.next()) {
     // GDAL 3.6 gives the bands below the first and above the last level no limit of their own.
-    const double max = feature->GetFieldAsDouble(max_field);
+    const double max = OGR_F_GetFieldAsDouble(feature.get(), max_field);
     const bool is_last = levels.empty() || max > scaled(levels.back()) + 1e-6;
     const std::size_t above = is_last ? levels.size() : nearestLevel(max);
     MapBand one;
     one.min = above == 0 ? std::min(range.min, is_last ? range.max : levels[above]) : levels[above - 1];
     one.max = is_last ? range.max : levels[above];
-    one.geometry.reset(feature->StealGeometry());
-    if (one.geometry == nullptr || one.geometry->IsEmpty()) continue;
+    one.geometry.reset(OGR_F_StealGeometry(feature.get()));
+    if (one.geometry == nullptr || OGR_G_IsEmpty(one.geometry.get())) continue;
     const bool is_nothing = isPart(map.kind) && above == 0 && !is_last;
     if (!is_nothing) one.color = colorOf(map, legend, static_cast<float>((one.min + one.max) / 2));
     shapes.bands.push_back(std::move(one));
@@ -134,8 +140,8 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
 void addOutlines(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
   constexpr int kNone = -1;
   const int nothing = map.kind == MapKind::category ? -1 : 0;
-  const Dataset raster = memoryRaster(grid, GDT_Int32, file);
-  GDALRasterBand* const band = raster->GetRasterBand(1);
+  const gdal::Dataset raster = memoryRaster(grid, GDT_Int32, file);
+  GDALRasterBandH band = GDALGetRasterBand(raster.get(), 1);
   std::vector<std::int32_t> numbers(map.values.size(), kNone);
   for (std::size_t p = 0; p < numbers.size(); ++p) {
     const float value = map.values[p];
@@ -143,16 +149,17 @@ void addOutlines(const MapGrid& grid, const Map& map, const std::filesystem::pat
   }
   Layer outlines(file);
   const int field = outlines.addField("value", OFTInteger);
-  outlines.check(band->RasterIO(GF_Write, 0, 0, grid.width, grid.height, numbers.data(), grid.width,
-                                grid.height, GDT_Int32, 0, 0, nullptr));
+  outlines.check(GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, numbers.data(), grid.width,
+                              grid.height, GDT_Int32, 0, 0));
   outlines.check(GDALPolygonize(band, nullptr, outlines.get(), field, nullptr, nullptr, nullptr));
-  std::map<int, std::unique_ptr<OGRMultiPolygon>> by_number;
-  for (const OGRFeatureUniquePtr& feature : *outlines.get()) {
-    const int number = feature->GetFieldAsInteger(field);
+  std::map<int, gdal::Geometry> by_number;
+  outlines.rewind();
+  while (const gdal::Feature feature = outlines.next()) {
+    const int number = OGR_F_GetFieldAsInteger(feature.get(), field);
     if (number == kNone) continue;
-    auto& all = by_number[number];
-    if (all == nullptr) all = std::make_unique<OGRMultiPolygon>();
-    all->addGeometryDirectly(feature->StealGeometry());
+    gdal::Geometry& all = by_number[number];
+    if (all == nullptr) all.reset(OGR_G_CreateGeometry(wkbMultiPolygon));
+    OGR_G_AddGeometryDirectly(all.get(), OGR_F_StealGeometry(feature.get()));
   }
   const render::Legend legend = legendOf(map);
   for (auto& [number, outline] : by_number) {

@@ -1,14 +1,12 @@
 /// Maps as lines and polygons.
 #pragma once
 
-#include <ogr_geometry.h>
-
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/gdal.h"
 #include "emscape/render/transfer_function.h"
 #include "emscape/study/map.h"
 
@@ -20,14 +18,14 @@ std::vector<double> levelsOf(const Map& map);
 
 struct MapLine {
   double level = 0;
-  std::unique_ptr<OGRGeometry> geometry;  ///< line string
+  gdal::Geometry geometry;  ///< line string
 };
 
 struct MapBand {
-  double min = 0, max = 0;                ///< values; of whole numbers both the same
-  std::string label;                      ///< of a class or category
-  std::optional<render::Rgb> color;       ///< by the map's legend; none: nothing to show there
-  std::unique_ptr<OGRGeometry> geometry;  ///< multipolygon
+  double min = 0, max = 0;           ///< values; of whole numbers both the same
+  std::string label;                 ///< of a class or category
+  std::optional<render::Rgb> color;  ///< by the map's legend; none: nothing to show there
+  gdal::Geometry geometry;           ///< multipolygon
 };
 
 struct MapShapes {

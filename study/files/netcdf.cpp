@@ -9,13 +9,11 @@
 #include "emscape/base/error.h"
 #include "study/files/map_metadata.h"
 #include "study/files/map_objects.h"
+#include "study/maps/gdal_arrays.h"
 #include "study/maps/gdal_support.h"
 
 namespace emscape::study {
 namespace {
-
-using Dimension = std::shared_ptr<GDALDimension>;
-using Array = std::shared_ptr<GDALMDArray>;
 
 constexpr std::int16_t kNoNumber = -32768;
 
@@ -45,17 +43,17 @@ class NetCdf : public MapCollection {
   NetCdf(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
     const scenario::GdalMessages messages;
     const char* const options[] = {"FORMAT=NC4", "CONVENTIONS=CF-1.8", nullptr};
-    dataset_.reset(driverOf("netCDF")->CreateMultiDimensional(file_.temporary(), nullptr, options));
-    check(messages, dataset_ != nullptr);
-    root_ = dataset_->GetRootGroup();
-    setText(*root_, "title", study.title);
-    setText(*root_, "source",
+    dataset_ = createArrayFile(file_.temporary(), options);
+    root_ = rootOf(dataset_);
+    check(messages, root_ != nullptr);
+    setText(root_, "title", study.title);
+    setText(root_, "source",
             fmt::format("emscape {}, computed from the scenario {}", EMSCAPE_VERSION,
                         study.scenarios.front()->name));
-    setText(*root_, "history", "emscape " + study.command);
-    setText(*root_, "comment", "Radars look at the target, wherever their scan points.");
+    setText(root_, "history", "emscape " + study.command);
+    setText(root_, "comment", "Radars look at the target, wherever their scan points.");
     for (const auto& [name, value] : metadataOf(study, {})) {
-      if (name != "EMSCAPE_PRODUCT") setText(*root_, name.c_str(), value);
+      if (name != "EMSCAPE_PRODUCT") setText(root_, name.c_str(), value);
     }
     addCoordinates(messages);
   }
@@ -68,7 +66,7 @@ class NetCdf : public MapCollection {
   void add(const Map& map) override {
     const scenario::GdalMessages messages;
     const MapGrid& grid = *study_.grid;
-    const Array variable = variableOf(messages, map);
+    const gdal::Array& variable = variableOf(messages, map);
     std::vector<GUInt64> start;
     std::vector<std::size_t> count;
     if (map.time_s) start.push_back(indexIn(study_.times_s, *map.time_s));
@@ -82,11 +80,9 @@ class NetCdf : public MapCollection {
       for (std::size_t p = 0; p < numbers.size(); ++p) {
         if (!std::isnan(map.values[p])) numbers[p] = static_cast<std::int16_t>(map.values[p]);
       }
-      is_written = variable->Write(start.data(), count.data(), nullptr, nullptr,
-                                   GDALExtendedDataType::Create(GDT_Int16), numbers.data());
+      is_written = writeArray(variable, start, count, numberType(GDT_Int16), numbers.data());
     } else {
-      is_written = variable->Write(start.data(), count.data(), nullptr, nullptr,
-                                   GDALExtendedDataType::Create(GDT_Float32), map.values.data());
+      is_written = writeArray(variable, start, count, numberType(GDT_Float32), map.values.data());
     }
     check(messages, is_written);
   }
@@ -110,12 +106,6 @@ class NetCdf : public MapCollection {
     dimensions_.clear();
     root_.reset();
     dataset_.reset();
-  }
-
-  template <class Holder>
-  static void setText(Holder& holder, const char* name, const std::string& text) {
-    const auto attribute = holder.CreateAttribute(name, {}, GDALExtendedDataType::CreateString());
-    if (attribute != nullptr) attribute->Write(text.c_str());
   }
 
   std::size_t indexIn(const std::vector<double>& values, double value) const {
@@ -143,18 +133,15 @@ class NetCdf : public MapCollection {
                      const std::vector<double>& values, const std::string& unit,
                      const Attributes& attributes) {
     if (values.empty()) return;
-    const Dimension dimension = root_->CreateDimension(name, type, "", values.size());
+    gdal::Dimension& dimension = dimensions_[name];
+    dimension = addDimension(root_, name, type, values.size());
     check(messages, dimension != nullptr);
-    const Array array =
-        root_->CreateMDArray(name, {dimension}, GDALExtendedDataType::Create(GDT_Float64), nullptr);
+    const gdal::ValueType real = numberType(GDT_Float64);
+    const gdal::Array array = addArray(root_, name, {dimension.get()}, real);
     check(messages, array != nullptr);
-    for (const auto& [key, value] : attributes) setText(*array, key, value);
-    array->SetUnit(unit);
-    const GUInt64 start = 0;
-    const std::size_t count = values.size();
-    check(messages, array->Write(&start, &count, nullptr, nullptr, GDALExtendedDataType::Create(GDT_Float64),
-                                 values.data()));
-    dimensions_[name] = dimension;
+    for (const auto& [key, value] : attributes) setText(array, key, value);
+    GDALMDArraySetUnit(array.get(), unit.c_str());
+    check(messages, writeArray(array, {0}, {values.size()}, real, values.data()));
   }
 
   void addCoordinates(const scenario::GdalMessages& messages) {
@@ -194,57 +181,55 @@ class NetCdf : public MapCollection {
   void addPlaces(const scenario::GdalMessages& messages, const char* name, const char* standard_name,
                  const char* unit, const std::vector<float>& values) {
     const char* const options[] = {"COMPRESS=DEFLATE", nullptr};
-    const Array array = root_->CreateMDArray(name, {dimensions_["y"], dimensions_["x"]},
-                                             GDALExtendedDataType::Create(GDT_Float32), options);
+    const gdal::ValueType real = numberType(GDT_Float32);
+    const gdal::Array array =
+        addArray(root_, name, {dimensions_.at("y").get(), dimensions_.at("x").get()}, real, options);
     check(messages, array != nullptr);
-    array->SetNoDataValue(static_cast<double>(NAN));
-    setText(*array, "standard_name", standard_name);
-    setText(*array, "long_name", standard_name + std::string(" of the pixel's centre"));
-    array->SetUnit(unit);
-    const GUInt64 start[] = {0, 0};
-    const std::size_t count[] = {static_cast<std::size_t>(study_.grid->height),
-                                 static_cast<std::size_t>(study_.grid->width)};
-    check(messages, array->Write(start, count, nullptr, nullptr, GDALExtendedDataType::Create(GDT_Float32),
-                                 values.data()));
+    GDALMDArraySetNoDataValueAsDouble(array.get(), NAN);
+    setText(array, "standard_name", standard_name);
+    setText(array, "long_name", standard_name + std::string(" of the pixel's centre"));
+    GDALMDArraySetUnit(array.get(), unit);
+    const std::vector<std::size_t> count{static_cast<std::size_t>(study_.grid->height),
+                                         static_cast<std::size_t>(study_.grid->width)};
+    check(messages, writeArray(array, {0, 0}, count, real, values.data()));
   }
 
   /// The variable of a map, made for the first map of its product and reference of height.
-  Array variableOf(const scenario::GdalMessages& messages, const Map& map) {
+  const gdal::Array& variableOf(const scenario::GdalMessages& messages, const Map& map) {
     std::string name = map.name, z;
     if (map.height) {
       const bool is_above_ground = map.height->reference == emfield::HeightReference::ground;
       z = is_above_ground ? "height_agl" : "height_msl";
       name += is_above_ground ? "_agl" : "_msl";
     }
-    Array& variable = variables_[name];
+    gdal::Array& variable = variables_[name];
     if (variable != nullptr) return variable;
-    std::vector<Dimension> dimensions;
-    if (map.time_s) dimensions.push_back(dimensions_.at("time"));
-    if (map.height) dimensions.push_back(dimensions_.at(z));
-    dimensions.push_back(dimensions_.at("y"));
-    dimensions.push_back(dimensions_.at("x"));
+    ArrayDimensions dimensions;
+    if (map.time_s) dimensions.push_back(dimensions_.at("time").get());
+    if (map.height) dimensions.push_back(dimensions_.at(z).get());
+    dimensions.push_back(dimensions_.at("y").get());
+    dimensions.push_back(dimensions_.at("x").get());
     const bool is_whole = isWhole(map.kind);
     const char* const options[] = {"COMPRESS=DEFLATE", nullptr};
-    variable = root_->CreateMDArray(
-        name, dimensions, GDALExtendedDataType::Create(is_whole ? GDT_Int16 : GDT_Float32), options);
+    variable = addArray(root_, name, dimensions, numberType(is_whole ? GDT_Int16 : GDT_Float32), options);
     check(messages, variable != nullptr);
     const std::string description = map.description.substr(0, map.description.find(" at "));
-    setText(*variable, "long_name", description + (map.unit.empty() ? "" : " (" + map.unit + ")"));
-    setText(*variable, "coordinates", "lat lon");
+    setText(variable, "long_name", description + (map.unit.empty() ? "" : " (" + map.unit + ")"));
+    setText(variable, "coordinates", "lat lon");
     if (is_whole) {
-      variable->SetRawNoDataValue(&kNoNumber);
-      addFlags(*variable, map);
+      GDALMDArraySetRawNoDataValue(variable.get(), &kNoNumber);
+      addFlags(variable, map);
     } else {
-      variable->SetNoDataValue(static_cast<double>(NAN));
+      GDALMDArraySetNoDataValueAsDouble(variable.get(), NAN);
     }
-    if (!is_whole || map.kind == MapKind::count) variable->SetUnit(udunitOf(map.unit));
-    const OGRSpatialReference reference = referenceOf(*study_.grid);
-    check(messages, variable->SetSpatialRef(&reference));
+    if (!is_whole || map.kind == MapKind::count)
+      GDALMDArraySetUnit(variable.get(), udunitOf(map.unit).c_str());
+    check(messages, GDALMDArraySetSpatialRef(variable.get(), referenceOf(*study_.grid).get()) != 0);
     return variable;
   }
 
   /// What the numbers of classes or categories mean.
-  static void addFlags(GDALMDArray& variable, const Map& map) {
+  static void addFlags(const gdal::Array& variable, const Map& map) {
     if (map.kind == MapKind::count) return;
     std::vector<std::int16_t> values;
     std::string words;
@@ -254,18 +239,21 @@ class NetCdf : public MapCollection {
     };
     if (map.kind == MapKind::category) addFlag(-1, "none");
     for (std::size_t n = 0; n < map.labels.size(); ++n) addFlag(static_cast<long long>(n), map.labels[n]);
-    const auto attribute =
-        variable.CreateAttribute("flag_values", {values.size()}, GDALExtendedDataType::Create(GDT_Int16));
-    if (attribute != nullptr) attribute->Write(values.data(), values.size() * sizeof(std::int16_t));
+    const GUInt64 count = values.size();
+    const gdal::Attribute attribute(GDALMDArrayCreateAttribute(variable.get(), "flag_values", 1, &count,
+                                                               numberType(GDT_Int16).get(), nullptr));
+    if (attribute != nullptr) {
+      GDALAttributeWriteRaw(attribute.get(), values.data(), values.size() * sizeof(std::int16_t));
+    }
     setText(variable, "flag_meanings", words);
   }
 
   UnfinishedFile file_;
   const MapStudy& study_;
-  Dataset dataset_;
-  std::shared_ptr<GDALGroup> root_;
-  std::map<std::string, Dimension> dimensions_;
-  std::map<std::string, Array> variables_;
+  gdal::Dataset dataset_;
+  gdal::Group root_;
+  std::map<std::string, gdal::Dimension> dimensions_;
+  std::map<std::string, gdal::Array> variables_;
 };
 
 }  // namespace

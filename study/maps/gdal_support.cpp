@@ -15,15 +15,15 @@ constexpr const char* kAuxiliary = ".aux.xml";
 
 }  // namespace
 
-GDALDriver* driverOf(const char* name) {
+GDALDriverH driverOf(const char* name) {
   static std::once_flag once;
   std::call_once(once, [] { GDALAllRegister(); });
-  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName(name);
+  GDALDriverH driver = GDALGetDriverByName(name);
   if (driver == nullptr) throw Error(ErrorCode::other, fmt::format("GDAL has no driver '{}'", name));
   return driver;
 }
 
-Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file) {
+gdal::Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file) {
   static const char* const kDrivers[] = {"GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf", "KML", "LIBKML",
                                          "GML",  "CSV",     nullptr};
   std::error_code failure;
@@ -33,8 +33,8 @@ Dataset openVectors(const scenario::GdalMessages& messages, const std::string& f
                 std::filesystem::exists(status) ? "not a regular file" : "no such file");
   }
   GDALAllRegister();
-  Dataset dataset(
-      GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, nullptr, nullptr));
+  gdal::Dataset dataset(
+      GDALOpenEx(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, nullptr, nullptr));
   if (dataset == nullptr) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
                 messages.explain("not a file of points or polygons that can be read"));
@@ -68,36 +68,35 @@ void UnfinishedFile::remove() const {
   }
 }
 
-Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {
+gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {
   const scenario::GdalMessages messages;
-  Dataset dataset(driverOf("MEM")->Create("", grid.width, grid.height, 1, type, nullptr));
+  gdal::Dataset dataset(GDALCreate(driverOf("MEM"), "", grid.width, grid.height, 1, type, nullptr));
   if (dataset == nullptr) failWriting(messages, file);
   double transform[6] = {grid.left_m, grid.cell_m, 0, grid.top_m, 0, -grid.cell_m};
-  dataset->SetGeoTransform(transform);
-  dataset->SetProjection(grid.wkt.c_str());
+  GDALSetGeoTransform(dataset.get(), transform);
+  GDALSetProjection(dataset.get(), grid.wkt.c_str());
   return dataset;
 }
 
-std::string wkt2Of(const OGRSpatialReference& reference) {
+std::string wkt2Of(OGRSpatialReferenceH reference) {
   static const char* const kOptions[] = {"FORMAT=WKT2_2019", nullptr};
   char* text = nullptr;
-  reference.exportToWkt(&text, kOptions);
+  OSRExportToWktEx(reference, &text, kOptions);
   std::string wkt = text == nullptr ? "" : text;
   CPLFree(text);
   return wkt;
 }
 
-OGRSpatialReference referenceOf(const MapGrid& grid) {
-  OGRSpatialReference reference;
-  reference.importFromWkt(grid.wkt.c_str());
-  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+gdal::SpatialReference referenceOf(const MapGrid& grid) {
+  gdal::SpatialReference reference(OSRNewSpatialReference(grid.wkt.c_str()));
+  OSRSetAxisMappingStrategy(reference.get(), OAMS_TRADITIONAL_GIS_ORDER);
   return reference;
 }
 
-OGRSpatialReference wgs84Reference() {
-  OGRSpatialReference reference;
-  reference.importFromEPSG(4326);
-  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+gdal::SpatialReference wgs84Reference() {
+  gdal::SpatialReference reference(OSRNewSpatialReference(nullptr));
+  OSRImportFromEPSG(reference.get(), 4326);
+  OSRSetAxisMappingStrategy(reference.get(), OAMS_TRADITIONAL_GIS_ORDER);
   return reference;
 }
 

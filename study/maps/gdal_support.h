@@ -1,32 +1,24 @@
 /// GDAL's datasets, for the writers of this module.
 #pragma once
 
-#include <gdal_priv.h>
-#include <ogr_spatialref.h>
-
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
+#include "base/gdal.h"
 #include "emscape/study/map_grid.h"
 #include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::study {
 
-struct CloseDataset {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
-
 /// @throws Error (other) if GDAL was built without it
-GDALDriver* driverOf(const char* name);
+GDALDriverH driverOf(const char* name);
 
 /// Opens a file of points or polygons: GeoPackage, GeoJSON, shapefile, FlatGeobuf, KML, GML or CSV. No other
 /// format and none of GDAL's virtual file systems: they read further files, databases and network services.
 /// @param messages  in whose scope the data set is also read: it keeps GDAL from the network
 /// @throws Error (bad_input) that names the file and GDAL's reason
-Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file);
+gdal::Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file);
 
 /// @throws Error (other) that names the file and GDAL's reason
 [[noreturn]] void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file);
@@ -53,13 +45,13 @@ class UnfinishedFile {
 
 /// A raster of one band in memory, of a grid's pixels and in its place.
 /// @throws Error (other) naming the file for which it is made
-Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file);
+gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file);
 
 /// As WKT2:2019.
-std::string wkt2Of(const OGRSpatialReference& reference);
+std::string wkt2Of(OGRSpatialReferenceH reference);
 /// x to the east, y to the north, whatever the authority's order.
-OGRSpatialReference referenceOf(const MapGrid& grid);
+gdal::SpatialReference referenceOf(const MapGrid& grid);
 /// WGS84: longitude, latitude.
-OGRSpatialReference wgs84Reference();
+gdal::SpatialReference wgs84Reference();
 
 }  // namespace emscape::study

@@ -1,11 +1,9 @@
 #include "emscape/study/map_grid.h"
 
 #include <fmt/format.h>
-#include <ogr_spatialref.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 
 #include "base/fast_geodesy.h"
 #include "base/simd.h"
@@ -35,16 +33,16 @@ Middle middleOf(const MapArea& area) {
 }
 
 /// @param name  receives the name by which the reference is known
-OGRSpatialReference referenceOf(const std::string& crs, const Middle& middle, std::string& name) {
+gdal::SpatialReference referenceOf(const std::string& crs, const Middle& middle, std::string& name) {
   const scenario::GdalMessages messages;
-  OGRSpatialReference reference;
+  gdal::SpatialReference reference(OSRNewSpatialReference(nullptr));
   name = crs;
   OGRErr found = OGRERR_FAILURE;
   if (crs == "local") {
     const std::string text =
         fmt::format("+proj=aeqd +lat_0={:.9f} +lon_0={:.9f} +datum=WGS84 +units=m +no_defs",
                     middle.latitude_deg, middle.longitude_deg);
-    found = reference.importFromProj4(text.c_str());
+    found = OSRImportFromProj4(reference.get(), text.c_str());
   } else {
     int code = 0;
     if (crs == "utm") {
@@ -54,32 +52,32 @@ OGRSpatialReference referenceOf(const std::string& crs, const Middle& middle, st
     } else if (crs.rfind("EPSG:", 0) == 0 && crs.find_first_not_of("0123456789", 5) == std::string::npos) {
       code = std::atoi(crs.c_str() + 5);
     }
-    if (code > 0) found = reference.importFromEPSG(code);
+    if (code > 0) found = OSRImportFromEPSG(reference.get(), code);
   }
   if (found != OGRERR_NONE) {
     throw Error(ErrorCode::usage,
                 fmt::format("crs '{}': neither utm nor local nor a known EPSG:NUMBER", crs));
   }
-  if (!reference.IsProjected() || std::abs(reference.GetLinearUnits() - 1) > 1e-9) {
+  if (!OSRIsProjected(reference.get()) || std::abs(OSRGetLinearUnits(reference.get(), nullptr) - 1) > 1e-9) {
     throw Error(ErrorCode::usage,
                 fmt::format("crs '{}' is no projection in metres; pixels are squares of metres", crs));
   }
-  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  OSRSetAxisMappingStrategy(reference.get(), OAMS_TRADITIONAL_GIS_ORDER);
   return reference;
 }
 
 /// Between longitude, latitude and a projection.
 class Projection {
  public:
-  Projection(const OGRSpatialReference& from, const OGRSpatialReference& to)
-      : transform_(OGRCreateCoordinateTransformation(&from, &to)) {
+  Projection(const gdal::SpatialReference& from, const gdal::SpatialReference& to)
+      : transform_(OCTNewCoordinateTransformation(from.get(), to.get())) {
     if (transform_ == nullptr) throw Error(ErrorCode::other, "PROJ cannot make the map's projection");
   }
   /// @return false if a point has no image
   bool operator()(std::vector<double>& x, std::vector<double>& y) const {
     const scenario::GdalMessages messages;
     std::vector<int> done(x.size());
-    transform_->Transform(static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
+    OCTTransformEx(transform_.get(), static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (done[i] == 0 || !std::isfinite(x[i]) || !std::isfinite(y[i])) return false;
     }
@@ -87,12 +85,7 @@ class Projection {
   }
 
  private:
-  struct Destroy {
-    void operator()(OGRCoordinateTransformation* transform) const {
-      OGRCoordinateTransformation::DestroyCT(transform);
-    }
-  };
-  std::unique_ptr<OGRCoordinateTransformation, Destroy> transform_;
+  gdal::Transformation transform_;
 };
 
 /// Points along the border of a box, by longitude and latitude.
@@ -332,8 +325,8 @@ void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
 }  // namespace
 
 long long MapGrid::pixelAt(double latitude_deg, double longitude_deg) const {
-  const OGRSpatialReference earth = wgs84Reference();
-  const OGRSpatialReference reference = study::referenceOf(*this);
+  const gdal::SpatialReference earth = wgs84Reference();
+  const gdal::SpatialReference reference = study::referenceOf(*this);
   std::vector<double> x{longitude_deg}, y{latitude_deg};
   if (!Projection(earth, reference)(x, y)) return -1;
   const double column = std::floor((x[0] - left_m) / cell_m), row = std::floor((top_m - y[0]) / cell_m);
@@ -347,9 +340,9 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   }
   MapGrid grid;
   grid.cell_m = cell_m;
-  const OGRSpatialReference earth = wgs84Reference();
-  const OGRSpatialReference reference = referenceOf(crs, middleOf(area), grid.crs);
-  grid.wkt = wkt2Of(reference);
+  const gdal::SpatialReference earth = wgs84Reference();
+  const gdal::SpatialReference reference = referenceOf(crs, middleOf(area), grid.crs);
+  grid.wkt = wkt2Of(reference.get());
   std::vector<double> x, y;
   addBorder(area.box, x, y);
   if (!Projection(earth, reference)(x, y)) {

@@ -89,12 +89,12 @@ CoverageMap mapOf(const Json& record, const CoverageFolder& folder) {
   return map;
 }
 
-Dataset openGeoTiff(const scenario::GdalMessages& messages, const fs::path& file) {
+gdal::Dataset openGeoTiff(const scenario::GdalMessages& messages, const fs::path& file) {
   static const char* const kGeoTiff[] = {"GTiff", nullptr};
   driverOf("GTiff");
-  Dataset dataset(
-      GDALDataset::Open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kGeoTiff, nullptr, nullptr));
-  if (dataset == nullptr || dataset->GetRasterCount() != 1)
+  gdal::Dataset dataset(
+      GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kGeoTiff, nullptr, nullptr));
+  if (dataset == nullptr || GDALGetRasterCount(dataset.get()) != 1)
     fail(file, messages.explain("cannot be read as a map"));
   return dataset;
 }
@@ -104,9 +104,10 @@ struct Pixels {
   double left_m = 0, top_m = 0, cell_m = 0;
   int width = 0, height = 0;
 
-  explicit Pixels(GDALDataset& dataset) : width(dataset.GetRasterXSize()), height(dataset.GetRasterYSize()) {
+  explicit Pixels(const gdal::Dataset& dataset)
+      : width(GDALGetRasterXSize(dataset.get())), height(GDALGetRasterYSize(dataset.get())) {
     double transform[6] = {};
-    dataset.GetGeoTransform(transform);
+    GDALGetGeoTransform(dataset.get(), transform);
     left_m = transform[0];
     cell_m = transform[1];
     top_m = transform[3];
@@ -119,11 +120,11 @@ struct Pixels {
 
 std::shared_ptr<const MapGrid> gridOf(const fs::path& file, const std::string& crs) {
   const scenario::GdalMessages messages;
-  const Dataset dataset = openGeoTiff(messages, file);
-  const Pixels pixels(*dataset);
-  const OGRSpatialReference* const reference = dataset->GetSpatialRef();
+  const gdal::Dataset dataset = openGeoTiff(messages, file);
+  const Pixels pixels(dataset);
+  OGRSpatialReferenceH reference = GDALGetSpatialRef(dataset.get());
   if (!(pixels.cell_m > 0) || reference == nullptr) fail(file, "has no projection");
-  return std::make_shared<const MapGrid>(mapGridAt(wkt2Of(*reference), crs, pixels.cell_m, pixels.left_m,
+  return std::make_shared<const MapGrid>(mapGridAt(wkt2Of(reference), crs, pixels.cell_m, pixels.left_m,
                                                    pixels.top_m, pixels.width, pixels.height));
 }
 
@@ -175,19 +176,20 @@ CoverageMap readMap(const CoverageFolder& folder, std::size_t index) {
   }
   const fs::path file = folder.path / folder.geotiffs[index];
   const scenario::GdalMessages messages;
-  const Dataset dataset = openGeoTiff(messages, file);
+  const gdal::Dataset dataset = openGeoTiff(messages, file);
   const MapGrid& grid = *folder.grid;
-  if (!(Pixels(*dataset) == grid)) fail(file, "its pixels are not those of the folder's other maps");
-  GDALRasterBand* const band = dataset->GetRasterBand(1);
+  if (!(Pixels(dataset) == grid)) fail(file, "its pixels are not those of the folder's other maps");
+  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
   std::vector<float> values(grid.pixels());
-  if (band->RasterIO(GF_Read, 0, 0, grid.width, grid.height, values.data(), grid.width, grid.height,
-                     GDT_Float32, 0, 0, nullptr) != CE_None) {
+  if (GDALRasterIO(band, GF_Read, 0, 0, grid.width, grid.height, values.data(), grid.width, grid.height,
+                   GDT_Float32, 0, 0) != CE_None) {
     fail(file, messages.explain("cannot be read"));
   }
-  if (band->GetUnitType() != map.unit) {
-    fail(file, fmt::format("its unit is '{}', not '{}' as in report.json", band->GetUnitType(), map.unit));
+  const std::string unit = GDALGetRasterUnitType(band);
+  if (unit != map.unit) {
+    fail(file, fmt::format("its unit is '{}', not '{}' as in report.json", unit, map.unit));
   }
-  const auto none = static_cast<float>(band->GetNoDataValue());
+  const auto none = static_cast<float>(GDALGetRasterNoDataValue(band, nullptr));
   for (float& value : values) {
     if (value == none) value = NAN;
   }

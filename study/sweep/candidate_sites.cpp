@@ -1,11 +1,8 @@
 #include "study/sweep/candidate_sites.h"
 
 #include <fmt/format.h>
-#include <gdal_priv.h>
-#include <ogrsf_frmts.h>
 
 #include <cmath>
-#include <memory>
 #include <set>
 
 #include "emscape/base/error.h"
@@ -18,40 +15,35 @@ namespace {
 
 constexpr std::size_t kMaxCandidates = 10000;
 
-/// Longitude and latitude of WGS84 in that order.
-OGRSpatialReference longitudeLatitude() {
-  OGRSpatialReference reference;
-  reference.importFromEPSG(4326);
-  reference.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return reference;
-}
-
 /// To a centimetre, so that names of places stay short.
 double rounded(double degrees) {
   return std::round(degrees * 1e7) / 1e7;
 }
 
-void addLayer(OGRLayer& layer, const std::string& file, std::vector<CandidateSite>& sites) {
-  const OGRSpatialReference wgs84 = longitudeLatitude();
-  std::unique_ptr<OGRCoordinateTransformation> transformation;
-  if (layer.GetSpatialRef() != nullptr) {
-    OGRSpatialReference own = *layer.GetSpatialRef();
-    own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    transformation.reset(OGRCreateCoordinateTransformation(&own, &wgs84));
+void addLayer(OGRLayerH layer, const std::string& file, std::vector<CandidateSite>& sites) {
+  const gdal::SpatialReference wgs84 = wgs84Reference();
+  gdal::Transformation transformation;
+  if (OGR_L_GetSpatialRef(layer) != nullptr) {
+    const gdal::SpatialReference own(OSRClone(OGR_L_GetSpatialRef(layer)));
+    OSRSetAxisMappingStrategy(own.get(), OAMS_TRADITIONAL_GIS_ORDER);
+    transformation.reset(OCTNewCoordinateTransformation(own.get(), wgs84.get()));
   }
-  const int name_field = layer.GetLayerDefn()->GetFieldIndex("name");
-  for (const OGRFeatureUniquePtr& feature : layer) {
-    const OGRGeometry* const geometry = feature->GetGeometryRef();
-    if (geometry == nullptr || wkbFlatten(geometry->getGeometryType()) != wkbPoint) continue;
-    double x = geometry->toPoint()->getX(), y = geometry->toPoint()->getY();
-    const bool is_placed = transformation == nullptr || transformation->Transform(1, &x, &y) != 0;
+  const int name_field = OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer), "name");
+  OGR_L_ResetReading(layer);
+  while (const gdal::Feature feature{OGR_L_GetNextFeature(layer)}) {
+    OGRGeometryH geometry = OGR_F_GetGeometryRef(feature.get());
+    if (geometry == nullptr || wkbFlatten(OGR_G_GetGeometryType(geometry)) != wkbPoint) continue;
+    double x = OGR_G_GetX(geometry, 0), y = OGR_G_GetY(geometry, 0);
+    const bool is_placed =
+        transformation == nullptr || OCTTransform(transformation.get(), 1, &x, &y, nullptr) != 0;
     if (!is_placed || !(std::abs(y) <= 90 && std::abs(x) <= 180)) {
       throw Error(ErrorCode::bad_input, {file, 0, 0},
                   fmt::format("point {} has no longitude and latitude", sites.size() + 1));
     }
-    const bool has_name = name_field >= 0 && feature->IsFieldSetAndNotNull(name_field);
-    sites.push_back(
-        {has_name ? feature->GetFieldAsString(name_field) : fmt::format("site {}", sites.size() + 1), y, x});
+    const bool has_name = name_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature.get(), name_field) != 0;
+    sites.push_back({has_name ? OGR_F_GetFieldAsString(feature.get(), name_field)
+                              : fmt::format("site {}", sites.size() + 1),
+                     y, x});
   }
 }
 
@@ -59,9 +51,11 @@ void addLayer(OGRLayer& layer, const std::string& file, std::vector<CandidateSit
 
 std::vector<CandidateSite> readCandidates(const std::string& file) {
   const scenario::GdalMessages messages;
-  const Dataset dataset = openVectors(messages, file);
+  const gdal::Dataset dataset = openVectors(messages, file);
   std::vector<CandidateSite> sites;
-  for (OGRLayer* layer : dataset->GetLayers()) addLayer(*layer, file, sites);
+  for (int n = 0; n < GDALDatasetGetLayerCount(dataset.get()); ++n) {
+    addLayer(GDALDatasetGetLayer(dataset.get(), n), file, sites);
+  }
   if (sites.empty() || sites.size() > kMaxCandidates) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
                 fmt::format("{} points, outside the allowed 1 to {}", sites.size(), kMaxCandidates));

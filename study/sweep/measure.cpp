@@ -1,8 +1,6 @@
 #include "study/sweep/measure.h"
 
 #include <gdal_alg.h>
-#include <gdal_priv.h>
-#include <ogrsf_frmts.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,39 +12,36 @@ namespace emscape::study {
 
 std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& grid) {
   const scenario::GdalMessages messages;
-  GDALAllRegister();
   const auto fail = [&](const std::string& why) {
     throw Error(ErrorCode::bad_input, {file, 0, 0}, messages.explain(why.c_str()));
   };
-  const Dataset polygons = openVectors(messages, file);
-  const GDALDatasetUniquePtr raster(GetGDALDriverManager()->GetDriverByName("MEM")->Create(
-      "", grid.width, grid.height, 1, GDT_Byte, nullptr));
-  double transform[6] = {grid.left_m, grid.cell_m, 0, grid.top_m, 0, -grid.cell_m};
-  raster->SetGeoTransform(transform);
-  raster->SetProjection(grid.wkt.c_str());
-  OGRSpatialReference map(grid.wkt.c_str());
-  map.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  std::vector<std::unique_ptr<OGRGeometry>> geometries;
-  for (OGRLayer* layer : polygons->GetLayers()) {
-    for (const OGRFeatureUniquePtr& feature : *layer) {
-      const OGRGeometry* const geometry = feature->GetGeometryRef();
-      if (geometry == nullptr || geometry->getDimension() != 2) continue;
-      geometries.emplace_back(geometry->clone());
-      if (layer->GetSpatialRef() != nullptr && geometries.back()->transformTo(&map) != OGRERR_NONE) {
+  const gdal::Dataset polygons = openVectors(messages, file);
+  const gdal::Dataset raster = memoryRaster(grid, GDT_Byte, file);
+  const gdal::SpatialReference map = referenceOf(grid);
+  std::vector<gdal::Geometry> geometries;
+  for (int n = 0; n < GDALDatasetGetLayerCount(polygons.get()); ++n) {
+    OGRLayerH layer = GDALDatasetGetLayer(polygons.get(), n);
+    OGR_L_ResetReading(layer);
+    while (const gdal::Feature feature{OGR_L_GetNextFeature(layer)}) {
+      OGRGeometryH geometry = OGR_F_GetGeometryRef(feature.get());
+      if (geometry == nullptr || OGR_G_GetDimension(geometry) != 2) continue;
+      geometries.emplace_back(OGR_G_Clone(geometry));
+      if (OGR_L_GetSpatialRef(layer) != nullptr &&
+          OGR_G_TransformTo(geometries.back().get(), map.get()) != OGRERR_NONE) {
         fail("a polygon cannot be brought to the map's projection");
       }
     }
   }
   if (geometries.empty()) fail("holds no polygon");
   std::vector<OGRGeometryH> handles;
-  for (const auto& geometry : geometries) handles.push_back(OGRGeometry::ToHandle(geometry.get()));
+  for (const gdal::Geometry& geometry : geometries) handles.push_back(geometry.get());
   const int band = 1;
   const std::vector<double> ones(handles.size(), 1.0);
   std::vector<std::uint8_t> pixels(grid.pixels());
   if (GDALRasterizeGeometries(raster.get(), 1, &band, static_cast<int>(handles.size()), handles.data(),
                               nullptr, nullptr, ones.data(), nullptr, nullptr, nullptr) != CE_None ||
-      raster->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, grid.width, grid.height, pixels.data(), grid.width,
-                                         grid.height, GDT_Byte, 0, 0, nullptr) != CE_None) {
+      GDALRasterIO(GDALGetRasterBand(raster.get(), 1), GF_Read, 0, 0, grid.width, grid.height, pixels.data(),
+                   grid.width, grid.height, GDT_Byte, 0, 0) != CE_None) {
     fail("cannot be drawn on the map");
   }
   if (std::find(pixels.begin(), pixels.end(), 1) == pixels.end()) fail("holds no pixel of the map");

@@ -1,17 +1,16 @@
 #include "study/sweep/result_files.h"
 
 #include <fmt/format.h>
-#include <gdal_priv.h>
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <set>
 
 #include "base/whole_file.h"
 #include "document/schema_check.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/gdal_messages.h"
+#include "study/maps/gdal_arrays.h"
 
 namespace emscape::study {
 namespace {
@@ -19,20 +18,16 @@ namespace {
 /// Writes arrays of a netCDF file.
 class NetcdfWriter {
  public:
-  using Dimensions = std::vector<std::shared_ptr<GDALDimension>>;
-
   explicit NetcdfWriter(const std::string& file) {
-    GDALAllRegister();
-    GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("netCDF");
-    if (driver == nullptr) throw Error(ErrorCode::other, file + ": GDAL has no driver 'netCDF'");
-    const char* const options[] = {"FORMAT=NC4", nullptr};
-    dataset_.reset(driver->CreateMultiDimensional(file.c_str(), nullptr, const_cast<char**>(options)));
-    if (dataset_ != nullptr) root_ = dataset_->GetRootGroup();
+    static const char* const kOptions[] = {"FORMAT=NC4", nullptr};
+    dataset_ = createArrayFile(file, kOptions);
+    root_ = rootOf(dataset_);
     fail_ = root_ == nullptr;
   }
 
   /// Finishes the file. @return false if anything failed
   bool close() {
+    dimensions_.clear();
     root_.reset();
     dataset_.reset();
     return !fail_;
@@ -40,26 +35,26 @@ class NetcdfWriter {
 
   void note(const std::string& name, const std::string& text) {
     if (fail_) return;
-    const auto attribute = root_->CreateAttribute(name, {}, GDALExtendedDataType::CreateString());
-    fail_ = attribute == nullptr || !attribute->Write(text.c_str());
+    fail_ = !setText(root_, name.c_str(), text);
   }
 
-  std::shared_ptr<GDALDimension> dimension(const std::string& name, std::size_t size) {
+  /// @return valid until the file is finished
+  GDALDimensionH dimension(const std::string& name, std::size_t size) {
     if (fail_) return nullptr;
-    auto made = root_->CreateDimension(unique(name, dimensions_), "", "", size);
-    fail_ = made == nullptr;
-    return made;
+    dimensions_.push_back(addDimension(root_, unique(name, dimension_names_), "", size));
+    fail_ = dimensions_.back() == nullptr;
+    return dimensions_.back().get();
   }
 
-  void numbers(const std::string& name, const Dimensions& dimensions, const std::vector<double>& values,
+  void numbers(const std::string& name, const ArrayDimensions& dimensions, const std::vector<double>& values,
                const std::string& long_name, const std::string& unit) {
-    array(name, dimensions, GDALExtendedDataType::Create(GDT_Float64), values.data(), long_name, unit);
+    array(name, dimensions, numberType(GDT_Float64), values.data(), long_name, unit);
   }
-  void texts(const std::string& name, const Dimensions& dimensions, const std::vector<std::string>& values,
-             const std::string& long_name) {
+  void texts(const std::string& name, const ArrayDimensions& dimensions,
+             const std::vector<std::string>& values, const std::string& long_name) {
     std::vector<const char*> pointers;
     for (const std::string& value : values) pointers.push_back(value.c_str());
-    array(name, dimensions, GDALExtendedDataType::CreateString(), pointers.data(), long_name, "");
+    array(name, dimensions, textType(), pointers.data(), long_name, "");
   }
 
  private:
@@ -80,29 +75,28 @@ class NetcdfWriter {
     return own;
   }
 
-  void array(const std::string& name, const Dimensions& dimensions, const GDALExtendedDataType& type,
+  void array(const std::string& name, const ArrayDimensions& dimensions, const gdal::ValueType& type,
              const void* values, const std::string& long_name, const std::string& unit) {
     if (fail_) return;
-    const auto made = root_->CreateMDArray(unique(name, names_), dimensions, type);
+    const gdal::Array made = addArray(root_, unique(name, names_), dimensions, type);
     fail_ = made == nullptr;
     if (fail_) return;
-    std::vector<GUInt64> starts;
+    const std::vector<GUInt64> starts(dimensions.size(), 0);
     std::vector<std::size_t> counts;
-    for (const auto& of_array : dimensions) {
-      starts.push_back(0);
-      counts.push_back(static_cast<std::size_t>(of_array->GetSize()));
+    for (GDALDimensionH of_array : dimensions) {
+      counts.push_back(static_cast<std::size_t>(GDALDimensionGetSize(of_array)));
     }
-    fail_ = !made->Write(starts.data(), counts.data(), nullptr, nullptr, type, values);
+    fail_ = !writeArray(made, starts, counts, type, values);
     for (const auto& [key, text] : {std::pair{"long_name", long_name}, std::pair{"units", unit}}) {
       if (fail_ || text.empty()) continue;
-      const auto attribute = made->CreateAttribute(key, {}, GDALExtendedDataType::CreateString());
-      fail_ = attribute == nullptr || !attribute->Write(text.c_str());
+      fail_ = !setText(made, key, text);
     }
   }
 
-  std::unique_ptr<GDALDataset> dataset_;
-  std::shared_ptr<GDALGroup> root_;
-  std::set<std::string> names_, dimensions_;
+  gdal::Dataset dataset_;
+  gdal::Group root_;
+  std::vector<gdal::Dimension> dimensions_;
+  std::set<std::string> names_, dimension_names_;
   bool fail_ = false;
 };
 
@@ -134,7 +128,7 @@ std::string unitOfPath(const std::string& path) {
 }
 
 /// A parameter's values: numbers where all that are given are.
-void writeParameter(NetcdfWriter& writer, const std::string& path, const NetcdfWriter::Dimensions& dimensions,
+void writeParameter(NetcdfWriter& writer, const std::string& path, const ArrayDimensions& dimensions,
                     const std::vector<std::string>& values) {
   std::vector<double> numbers;
   for (const std::string& value : values) {
@@ -195,7 +189,7 @@ void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& stud
   const bool is_grid =
       std::all_of(variants.factors().begin(), variants.factors().end(),
                   [](const VariantFactor& factor) { return factor.kind == VariantFactor::Kind::sweep; });
-  NetcdfWriter::Dimensions dimensions;
+  ArrayDimensions dimensions;
   if (is_grid) {
     for (const VariantFactor& factor : variants.factors()) {
       dimensions.push_back(writer.dimension(factor.paths.front(), factor.count));

@@ -12,7 +12,7 @@ import pytest
 from conftest import SCENARIOS
 
 import emscape as em
-from emscape import _emscape
+from emscape._native import native as _emscape
 
 
 def test_an_array_is_a_read_only_view_with_the_field_as_owner(quick):
@@ -130,6 +130,23 @@ def test_masked_voxels_are_those_below_ground(jamming):
     assert np.all(mask[below])
     assert 0 < mask.sum() < mask.size
     assert np.all(field.numpy("detection_probability")[mask] == field.info("detection_probability")["floor"])
+
+
+def test_dlpack_of_a_field_on_a_gpu_is_device_memory(jamming):
+    cupy = pytest.importorskip("cupy")
+    try:
+        field = em.Solver(jamming, "cuda").at(0)
+    except em.DeviceError as missing:
+        pytest.skip(str(missing))
+    for name in field.quantities:
+        values = cupy.from_dlpack(field.dlpack(name))
+        assert field.dlpack(name).__dlpack_device__() == (2, 0)
+        assert values.data.ptr == cupy.from_dlpack(field.dlpack(name)).data.ptr, "no copy at later calls"
+        assert np.array_equal(cupy.asnumpy(values), field.numpy(name)), "the floor in masked voxels, too"
+    assert cupy.from_dlpack(field).data.ptr == cupy.from_dlpack(field.dlpack()).data.ptr
+    kept = cupy.asnumpy(values)
+    del field
+    assert np.array_equal(cupy.asnumpy(values), kept), "the array keeps the field's memory"
 
 
 def test_memory_does_not_grow(quick):

@@ -103,8 +103,9 @@ TEST(MapShapes, ContoursLieOnTheirLevels) {
     std::set<double> levels;
     for (const MapLine& line : shapes.lines) {
       levels.insert(line.level);
-      for (const OGRPoint& point : *line.geometry->toLineString()) {
-        const double value = fixture.valueAt(map, point.getX(), point.getY(), scaled);
+      OGRGeometryH points = line.geometry.get();
+      for (int n = 0; n < OGR_G_GetPointCount(points); ++n) {
+        const double value = fixture.valueAt(map, OGR_G_GetX(points, n), OGR_G_GetY(points, n), scaled);
         if (std::isnan(value)) continue;  // beside a pixel without a value
         // A thousandth of a cell, by the steepest slope there is.
         const double slope = (scaled(high) - scaled(low)) / 5;
@@ -126,15 +127,15 @@ TEST(MapShapes, BandsTileThePixelsThatHaveAValue) {
     double expected_m2 = 0, area_m2 = 0;
     for (const float value : map.values) expected_m2 += std::isnan(value) ? 0 : pixel_m2;
     const MapShapes shapes = shapesOf(*fixture.grid, map, "test");
-    std::unique_ptr<OGRGeometry> all = std::make_unique<OGRMultiPolygon>();
+    gdal::Geometry all(OGR_G_CreateGeometry(wkbMultiPolygon));
     for (const MapBand& band : shapes.bands) {
-      EXPECT_TRUE(band.geometry->IsValid());
+      EXPECT_TRUE(OGR_G_IsValid(band.geometry.get()));
       EXPECT_LE(band.min, band.max);
-      area_m2 += band.geometry->toMultiPolygon()->get_Area();
-      all.reset(all->Union(band.geometry.get()));
+      area_m2 += OGR_G_Area(band.geometry.get());
+      all.reset(OGR_G_Union(all.get(), band.geometry.get()));
     }
     EXPECT_NEAR(area_m2 / expected_m2, 1, 1e-6) << "neither overlap";
-    EXPECT_NEAR(OGR_G_Area(OGRGeometry::ToHandle(all.get())) / expected_m2, 1, 1e-6) << "nor gap";
+    EXPECT_NEAR(OGR_G_Area(all.get()) / expected_m2, 1, 1e-6) << "nor gap";
   }
 }
 
@@ -148,7 +149,7 @@ TEST(MapShapes, ClassesHaveTheOutlinesOfTheirPixels) {
   EXPECT_EQ(shapes.bands[0].label, "yes");
   double pixels = 0;
   for (const float value : map.values) pixels += value == 1 ? 1 : 0;
-  EXPECT_NEAR(shapes.bands[0].geometry->toMultiPolygon()->get_Area() / (pixels * 500 * 500), 1, 1e-12);
+  EXPECT_NEAR(OGR_G_Area(shapes.bands[0].geometry.get()) / (pixels * 500 * 500), 1, 1e-12);
   EXPECT_TRUE(shapes.lines.empty());
 }
 

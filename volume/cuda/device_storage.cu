@@ -307,17 +307,27 @@ void DeviceStorage::writeFrom(const float* host_values, cudaStream_t stream) {
   check(cudaStreamSynchronize(stream), "upload of a volume");  // before the slab is freed
 }
 
+/// Layers begin_k .. end_k - 1, in dense order, to device memory.
+void DeviceStorage::loadLayers(int begin_k, int end_k, float floor, float* values,
+                               cudaStream_t stream) const {
+  withSource([&](const auto& source) {
+    loadSlab<<<blocksFor(static_cast<long long>(dims_.x) * dims_.y), kThreads, 0, stream>>>(
+        source, dims_, firstValidK(), floor, begin_k, end_k, values);
+    checkLaunch("loadSlab");
+  });
+}
+
+void DeviceStorage::copyTo(float* device_values, float floor, cudaStream_t stream) const {
+  loadLayers(0, dims_.z, floor, device_values, stream);
+}
+
 void DeviceStorage::readTo(float* host_values, float floor, cudaStream_t stream) const {
   const int layers = slabLayers();
   const long long columns = static_cast<long long>(dims_.x) * dims_.y;
   Buffer<float> slab(static_cast<std::size_t>(columns) * static_cast<std::size_t>(layers));
   for (int begin_k = 0; begin_k < dims_.z; begin_k += layers) {
     const int end_k = std::min(begin_k + layers, dims_.z);
-    withSource([&](const auto& source) {
-      loadSlab<<<blocksFor(columns), kThreads, 0, stream>>>(source, dims_, firstValidK(), floor, begin_k,
-                                                            end_k, slab.data());
-      checkLaunch("loadSlab");
-    });
+    loadLayers(begin_k, end_k, floor, slab.data(), stream);
     check(cudaMemcpyAsync(host_values + columns * begin_k, slab.data(),
                           sizeof(float) * static_cast<std::size_t>(columns * (end_k - begin_k)),
                           cudaMemcpyDeviceToHost, stream),

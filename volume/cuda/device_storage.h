@@ -84,10 +84,13 @@ class DeviceStorage {
   void setSparse(const std::uint8_t* grid, std::size_t bytes, cudaStream_t stream);
   /// On the stream; waits for it. Masked voxels get the floor.
   void readTo(float* host_values, float floor, cudaStream_t stream) const;
+  /// The same into device memory; does not wait.
+  void copyTo(float* device_values, float floor, cudaStream_t stream) const;
 
  private:
   template <class Use>
   void withSource(const Use& use) const;
+  void loadLayers(int begin_k, int end_k, float floor, float* values, cudaStream_t stream) const;
   void allocate();
   void allocateTexels(const cudaChannelFormatDesc& format);
   cudaTextureObject_t makeTexture(cudaTextureFilterMode filter) const;

@@ -60,4 +60,15 @@ DenseVolume DeviceVolume::download() const {
   return volume;
 }
 
+std::shared_ptr<const float> DeviceVolume::linearCopy() const {
+  const auto copy =
+      std::make_shared<emscape::cuda::Buffer<float>>(static_cast<std::size_t>(grid_.dims.count()));
+  const emscape::cuda::Stream stream;
+  storage_->beginReading(stream);
+  storage_->copyTo(copy->data(), info.floor, stream);
+  storage_->endReading(stream);
+  stream.wait();
+  return {copy, copy->data()};
+}
+
 }  // namespace emscape::volume

@@ -56,6 +56,10 @@ class DeviceVolume {
   void upload(const DenseVolume& volume);
   /// A copy in the host's memory, for files. @throws Error (device)
   DenseVolume download() const;
+  /// A copy in the GPU's linear memory, for other programs' kernels: in the order of DenseVolume, the floor
+  /// in masked voxels. Complete when the function returns. The memory is that of CUDA's device 0.
+  /// @throws Error (device)
+  std::shared_ptr<const float> linearCopy() const;
 
   DeviceStorage& storage() { return *storage_; }
   const DeviceStorage& storage() const { return *storage_; }

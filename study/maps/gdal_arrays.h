@@ -1,0 +1,37 @@
+/// GDAL's arrays of many dimensions, for the writers of netCDF files.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/gdal.h"
+
+namespace emscape::study {
+
+using ArrayDimensions = std::vector<GDALDimensionH>;
+
+gdal::ValueType numberType(GDALDataType type);
+gdal::ValueType textType();
+
+/// A file in memory or on disk until it is released. @return null if it cannot be made
+/// @param options  ended by a null pointer
+gdal::Dataset createArrayFile(const std::string& file, const char* const* options);
+gdal::Group rootOf(const gdal::Dataset& dataset);
+
+/// @param type  one of GDAL_DIM_TYPE_...; empty: none. @return null if it cannot be made
+gdal::Dimension addDimension(const gdal::Group& group, const std::string& name, const char* type,
+                             std::size_t size);
+/// @param options  ended by a null pointer, or null. @return null if it cannot be made
+gdal::Array addArray(const gdal::Group& group, const std::string& name, const ArrayDimensions& dimensions,
+                     const gdal::ValueType& type, const char* const* options = nullptr);
+
+/// An attribute of a file or of an array. @return false if it cannot be written
+bool setText(const gdal::Group& group, const char* name, const std::string& text);
+bool setText(const gdal::Array& array, const char* name, const std::string& text);
+
+/// @param start,count  of the part that is written, along the array's dimensions
+/// @return false if it cannot be written
+bool writeArray(const gdal::Array& array, const std::vector<GUInt64>& start,
+                const std::vector<std::size_t>& count, const gdal::ValueType& type, const void* values);
+
+}  // namespace emscape::study
