@@ -92,6 +92,7 @@ std::size_t EmitterGeometry::bytesPerVoxel(const scenario::Scenario& scenario,
   const std::size_t of_excess = on_surface ? sizeof(float) : sizeof(ExcessCode);
   return (hasExcess(scenario, emitter) ? of_excess : 0) +
          (model.has_reflected_ray ? sizeof(ReflectedRayCode) : 0) +
+         (on_surface && model.excess_at != nullptr ? sizeof(float) : 0) +
          (needs.mechanisms && hasMechanisms(model) ? 1 : 0);
 }
 

@@ -50,7 +50,8 @@ class EmitterGeometry {
   unsigned warnings() const { return warnings_; }
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
-  /// Bytes per voxel of an emitter: its excess, its reflected ray and its mechanism, if its model has them.
+  /// Bytes per voxel of an emitter: its excess, its reflected ray and its mechanism, if its model has them,
+  /// and what the model computes of a surface's points beforehand.
   /// @param on_surface  GridColumns::every_height
   static std::size_t bytesPerVoxel(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                    bool on_surface = false, const GeometryNeeds& needs = {});

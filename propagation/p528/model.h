@@ -12,7 +12,8 @@ namespace emscape::propagation {
 std::vector<Setting> p528Settings();
 InputFaults checkP528(const EmitterInputs& inputs);
 std::vector<std::string> p528PathWarnings(const PathInputs& inputs);
-/// Computes the curve of the path's two heights, as p528ExcessAt() does; volumes interpolate between such curves.
+/// Computes the curve of the path's two heights, as p528ExcessAt() does; volumes interpolate between such
+/// curves.
 Explanation explainP528(const PathInputs& inputs, PathColumn& path);
 
 }  // namespace emscape::propagation

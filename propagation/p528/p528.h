@@ -40,7 +40,7 @@ struct P528Terminal {
 };
 
 /// Loss against distance for one pair of heights. The terms that do not depend on the distance are computed
-/// once, at construction; a point then takes about 0.1 ms. Safe to share between threads.
+/// once, at construction; a point then takes about 16 us. Safe to share between threads.
 class P528Curve {
  public:
   /// @param atmosphere  of the same frequency; curves of several heights share it

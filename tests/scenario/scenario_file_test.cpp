@@ -282,6 +282,18 @@ TEST_F(ScenarioYaml, WarnsOfABeamThatStepsOverAzimuths) {
               AllOf(HasSubstr("'search radar', 1.6 deg wide, sweeps 36 deg in a step of 0.5 s"),
                     HasSubstr("4 % are ever lit")));
   EXPECT_EQ(result.problems[0].location.line, 32);
+  // Beams alike are named together.
+  const std::string twin =
+      "  - {name: twin, platform: ridge site, kind: transmitter, frequency_hz: 3.1e9, power_w: 10, "
+      "antenna: {pattern: gaussian, gain_dbi: 30, beamwidth_az_deg: 1.6, beamwidth_el_deg: 4.0}, "
+      "scan: {kind: rotate, rate_rpm: 12}}\n";
+  const ParseResult both =
+      parseScenario(folder_.write("scenario.yaml", replaced(text, "receivers:\n", twin + "receivers:\n")));
+  ASSERT_EQ(both.problems.size(), 1u);
+  EXPECT_THAT(both.problems[0].message,
+              AllOf(HasSubstr("the beams of 'search radar', 'twin', 1.6 deg wide, sweep 36 deg"),
+                    HasSubstr("of their azimuths")));
+  EXPECT_EQ(both.problems[0].location.line, 32);
   // Where radars look at each voxel in turn their scans do not show.
   const std::string coverage =
       replaced(replaced(text, "[power_density_dbwm2, received_power_dbm, snr_db]", "[snr_db]"),

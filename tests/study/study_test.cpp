@@ -198,8 +198,8 @@ sweep:
     csv.push_back(test::readFile(folder.path() / "results.csv"));
     netcdf.push_back(test::readFile(folder.path() / "results.nc"));
     EXPECT_THAT(arraysOf(folder.path() / "results.nc"),
-                ::testing::UnorderedElementsAre("emitters_jammer_power_w", "emitters_search_radar_propagation",
-                                                "covered", "mean"));
+                ::testing::UnorderedElementsAre("emitters_jammer_power_w",
+                                                "emitters_search_radar_propagation", "covered", "mean"));
     html.push_back(test::readFile(folder.path() / "report.html"));
   }
   EXPECT_THAT(csv[0], HasSubstr("variant,name,emitters.jammer.power_w,emitters.search radar.propagation,"
