@@ -11,7 +11,6 @@ namespace emscape::propagation {
 
 /// A column, or the segment of a tilted one above one point of the ground.
 struct ExcessColumn {
-  std::size_t place = 0;   ///< index of the column in its grid
   double range_m = 0;      ///< along the ground from the emitter
   double azimuth_rad = 0;  ///< from the emitter, clockwise from north, -pi .. pi
   float ground_msl_m = 0;  ///< NaN over missing terrain
@@ -20,6 +19,7 @@ struct ExcessColumn {
   int count = 0;
   /// True: models evaluate every height. False: they may interpolate between some.
   bool every_height = false;
+  std::size_t place = 0;  ///< index of the column in its grid
 
   /// The tolerance of an interpolation between heights: none of theirs if every height is evaluated.
   EMSCAPE_HD float tolerance_db(float of_model_db) const { return every_height ? -1.0f : of_model_db; }

@@ -11,6 +11,7 @@
 #include "emscape/base/parallel.h"
 #include "emscape/base/progress.h"
 #include "emscape/base/units.h"
+#include "emscape/base/unset_vector.h"
 #include "emscape/base/vec.h"
 #include "emscape/document/problem.h"
 #include "emscape/emfield/categories.h"

@@ -90,7 +90,8 @@ TEST(Vertical, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", folder / "a.gif"}, 2), HasSubstr(".png, .svg"));
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", file, "--threshold", "1.5"}, 2),
               HasSubstr("between 0 and 1"));
-  EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", file, "--range", "5"}, 2), HasSubstr("range: 5 m"));
+  EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", file, "--range", "5"}, 2),
+              HasSubstr("--range: Value 5 "));
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", folder / "none/a.png"}, 1),
               HasSubstr("none/a.png"));
   EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
