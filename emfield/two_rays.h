@@ -21,42 +21,38 @@ namespace emscape::emfield {
 
 using propagation::ReflectedRay;
 
-/// A reflected ray in 8 bytes.
-/// @accuracy re, im within 1.6e-5, so that a null 40 dB deep is within 0.02 dB and one 60 dB deep within
-/// 0.3 dB; weight within 3.1e-5; the direction within 0.0005 degree below 30 degrees, 0.003 degree at 80,
-/// 0.3 degree at the nadir
-struct ReflectedRayCode {
-  std::int16_t re = 0, im = 0;
-  std::uint16_t depression_sine = 0;
+/// A reflected ray in 16 bytes, for storage between updates. Amplitude and direction keep all digits: near a
+/// null the power is a small difference of the two rays.
+/// @accuracy weight within 3.1e-5
+struct alignas(16) ReflectedRayCode {
+  float re = 0, im = 0;
+  float depression_sine = 0;
   std::uint16_t weight = 0;  ///< the highest bit: is_envelope
 };
 
 namespace two_rays_detail {
-constexpr float kAmplitudeSteps = 32767, kSineSteps = 65535, kWeightSteps = 16384;
+constexpr float kWeightSteps = 16384;
 constexpr unsigned kEnvelopeBit = 0x8000;
 }  // namespace two_rays_detail
 
 EMSCAPE_HD inline ReflectedRayCode reflectedRayCode(const ReflectedRay& ray) {
   using namespace two_rays_detail;
-  const auto within = [](float value, float lowest) {
-    return value < lowest ? lowest : value > 1 ? 1.0f : value;
-  };
+  const float weight = ray.weight < 0 ? 0.0f : ray.weight > 1 ? 1.0f : ray.weight;
+  const auto steps = static_cast<unsigned>(weight * kWeightSteps + 0.5f);
   ReflectedRayCode code;
-  const float re = within(ray.re, -1) * kAmplitudeSteps, im = within(ray.im, -1) * kAmplitudeSteps;
-  code.re = static_cast<std::int16_t>(re < 0 ? re - 0.5f : re + 0.5f);
-  code.im = static_cast<std::int16_t>(im < 0 ? im - 0.5f : im + 0.5f);
-  code.depression_sine = static_cast<std::uint16_t>(within(ray.depression_sine, 0) * kSineSteps + 0.5f);
-  const auto weight = static_cast<unsigned>(within(ray.weight, 0) * kWeightSteps + 0.5f);
-  code.weight = static_cast<std::uint16_t>(weight | (ray.is_envelope ? kEnvelopeBit : 0u));
+  code.re = ray.re;
+  code.im = ray.im;
+  code.depression_sine = ray.depression_sine;
+  code.weight = static_cast<std::uint16_t>(steps | (ray.is_envelope ? kEnvelopeBit : 0u));
   return code;
 }
 
 EMSCAPE_HD inline ReflectedRay reflectedRay(const ReflectedRayCode& code) {
   using namespace two_rays_detail;
   ReflectedRay ray;
-  ray.re = static_cast<float>(code.re) * (1 / kAmplitudeSteps);
-  ray.im = static_cast<float>(code.im) * (1 / kAmplitudeSteps);
-  ray.depression_sine = static_cast<float>(code.depression_sine) * (1 / kSineSteps);
+  ray.re = code.re;
+  ray.im = code.im;
+  ray.depression_sine = code.depression_sine;
   ray.weight = static_cast<float>(code.weight & (kEnvelopeBit - 1)) * (1 / kWeightSteps);
   ray.is_envelope = (code.weight & kEnvelopeBit) != 0;
   return ray;

@@ -31,10 +31,10 @@ TEST(ReflectedRayCode, HoldsARayWithinItsSteps) {
     if (n == 0) ray = {-1, 0, 1, 1, false};
     if (n == 1) ray = {1, -1, 0, 0, true};
     const ReflectedRay read = reflectedRay(reflectedRayCode(ray));
-    EXPECT_NEAR(read.re, ray.re, 1.6e-5f);
-    EXPECT_NEAR(read.im, ray.im, 1.6e-5f);
+    EXPECT_EQ(read.re, ray.re);
+    EXPECT_EQ(read.im, ray.im);
     EXPECT_NEAR(read.weight, ray.weight, 3.1e-5f);
-    EXPECT_NEAR(read.depression_sine, ray.depression_sine, 0.8e-5f);
+    EXPECT_EQ(read.depression_sine, ray.depression_sine);
     EXPECT_EQ(read.is_envelope, ray.is_envelope);
   }
   EXPECT_EQ(reflectedRay(reflectedRayCode({0, 0, 1, 0, false})).weight, 1) << "exactly";

@@ -129,14 +129,12 @@ TEST(PixelsOfMaps, AreThePathsOfProfileWithEveryModel) {
   std::size_t compared = 0;
   for (const ModelInfo& model : propagation::models()) {
     if (model.radial != nullptr) continue;  // the next test
-    // The reflected ray of two_ray has 16 bits.
-    const double tolerance = model.has_reflected_ray ? 2e-4 : 1e-4;
     for (const Site& site : kSites) {
       SCOPED_TRACE(model.name + " at the " + site.name);
       const Differences found = compare(site, model.model, 30, random);
       compared += found.power_db.size();
       EXPECT_LE(Differences::within(found.power_db, 1), 0.01);
-      EXPECT_LE(Differences::within(found.probability, 1), tolerance);
+      EXPECT_LE(Differences::within(found.probability, 1), 1e-4);
     }
   }
   EXPECT_GT(compared, 3000u);
