@@ -43,6 +43,17 @@ VerticalRequest small(int emitter, HeightReference axis) {
   return request;
 }
 
+/// Place below the values of a cut at its i-th range, at height 0.
+GeodeticPosition placeOf(const VerticalDiagram& diagram, const VerticalCut& cut, std::size_t i) {
+  return geodesicDirect(diagram.latitude_deg, diagram.longitude_deg, degToRad(cut.azimuth_deg),
+                        diagram.ranges_m[i]);
+}
+
+emfield::PathEnd endAt(const GeodeticPosition& place, double height_msl_m) {
+  const double undulation_m = geoidUndulation_m(place.latitude_deg, place.longitude_deg);
+  return {{place.latitude_deg, place.longitude_deg, height_msl_m + undulation_m}, height_msl_m};
+}
+
 // The diagram reads the cells of the marches on both sides of each azimuth; `profile` marches to each point.
 TEST(Vertical, OfTheParabolicEquationIsNearThatOfProfile) {
   auto scenario = std::make_shared<scenario::Scenario>(*jacksboro());
@@ -64,12 +75,7 @@ TEST(Vertical, OfTheParabolicEquationIsNearThatOfProfile) {
     const std::size_t i = random() % 50, k = random() % 40;
     const auto value = static_cast<double>(cut.values[k * 50 + i]);
     if (std::isnan(value)) continue;
-    const GeodeticPosition place = geodesicDirect(diagram.latitude_deg, diagram.longitude_deg,
-                                                  degToRad(cut.azimuth_deg), diagram.ranges_m[i]);
-    const double height_m = diagram.heights_m[k];
-    const emfield::PathEnd end{{place.latitude_deg, place.longitude_deg,
-                                height_m + geoidUndulation_m(place.latitude_deg, place.longitude_deg)},
-                               height_m};
+    const emfield::PathEnd end = endAt(placeOf(diagram, cut, i), diagram.heights_m[k]);
     const emfield::PathBudget budget =
         emfield::pathBudget(snapshot, kMast, end, settings.model, terrain.get());
     differences_db.push_back(std::abs(value - std::max(budget.find("power_density_dbwm2")->value, -120.0)));
@@ -101,17 +107,14 @@ TEST(Vertical, AValueIsThatOfProfile) {
         const std::size_t i = random() % 50, k = random() % 40;
         const auto value = static_cast<double>(cut.values[k * 50 + i]);
         if (std::isnan(value)) continue;
-        const GeodeticPosition place = geodesicDirect(diagram.latitude_deg, diagram.longitude_deg,
-                                                      degToRad(cut.azimuth_deg), diagram.ranges_m[i]);
+        const GeodeticPosition place = placeOf(diagram, cut, i);
         const auto ground_m =
             static_cast<double>(terrain->heightMsl_m(place.latitude_deg, place.longitude_deg));
         EXPECT_NEAR(static_cast<double>(cut.ground_msl_m[i]), ground_m, 0.01);
         const double height_m = diagram.heights_m[k] + (axis == HeightReference::ground ? ground_m : 0);
-        const emfield::PathEnd end{{place.latitude_deg, place.longitude_deg,
-                                    height_m + geoidUndulation_m(place.latitude_deg, place.longitude_deg)},
-                                   height_m};
-        const emfield::PathBudget budget = emfield::pathBudget(
-            snapshot, emitter, end, scenario->emitters[emitter].propagation.model, terrain.get());
+        const emfield::PathBudget budget =
+            emfield::pathBudget(snapshot, emitter, endAt(place, height_m),
+                                scenario->emitters[emitter].propagation.model, terrain.get());
         if (emitter == kJammer) {
           EXPECT_NEAR(value, std::max(budget.find("power_density_dbwm2")->value, -120.0), 0.01);
         } else {
