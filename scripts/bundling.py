@@ -1,0 +1,78 @@
+"""What scripts/wheel and scripts/bundle have in common: libraries that are copied into a package, and GDAL, which is not.
+
+GDAL is left to the system, as Debian's contains code under the GPL; a package takes the libgdal that it finds, of any version
+between GDAL_VERSIONS. For that its programs are linked with an empty library GDAL_LIBRARY, of which there is one for each version of
+libgdal, linked with that. This works as Emscape calls the C functions of GDAL alone, which stay the same.
+"""
+
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import venv
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+GDAL_VERSIONS = range(32, 39)  # of the library: GDAL 3.6 to 3.12
+GDAL_LIBRARY = "libemscape_gdal.so"
+
+
+def run(*words, **options):
+    return subprocess.run([str(word) for word in words], check=True, text=True, **options)
+
+
+def output(*words, **options):
+    return run(*words, stdout=subprocess.PIPE, **options).stdout
+
+
+def run_program(main):
+    """Calls main(); a command that fails ends the program with its messages."""
+    try:
+        main()
+    except subprocess.CalledProcessError as error:
+        program = pathlib.Path(sys.argv[0]).name
+        sys.exit(f"scripts/{program}: {' '.join(error.cmd)}: exit status {error.returncode}\n{error.stdout or ''}{error.stderr or ''}".rstrip())
+
+
+def prepare_environment():
+    """Where the tools of packages-wheel.txt are installed; returns a function from a tool's name to its path."""
+    environment, packages = ROOT / "build" / "wheel" / "environment", ROOT / "scripts" / "packages-wheel.txt"
+    installed = environment / "installed.txt"
+    if not installed.exists() or installed.read_text() != packages.read_text():
+        venv.create(environment, with_pip=True, clear=True)
+        run(environment / "bin" / "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement", packages)
+        shutil.copy(packages, installed)
+    return lambda tool: environment / "bin" / tool
+
+
+def make_empty_library(file, soname, needed=None):
+    words = ["cc", "-shared", "-nostdlib", "-s", "-Wl,--no-as-needed", f"-Wl,-soname,{soname}", "-x", "c", os.devnull, "-x", "none"]
+    run(*words, "-o", file, *([needed] if needed else []))
+
+
+def detach_gdal(tool, binaries, folder):
+    """The libgdal of the binaries becomes GDAL_LIBRARY; writes one for each version into the folder, as VERSION.so."""
+    for binary in binaries:
+        for linked in re.findall(r"\[(libgdal\.so\.\d+)\]", output("readelf", "--dynamic", binary)):
+            run(tool("patchelf"), "--replace-needed", linked, GDAL_LIBRARY, binary)
+    folder.mkdir()
+    with tempfile.TemporaryDirectory() as temporary:
+        for version in GDAL_VERSIONS:
+            gdal = pathlib.Path(temporary) / f"libgdal.so.{version}"
+            make_empty_library(gdal, gdal.name)
+            make_empty_library(folder / f"{version}.so", GDAL_LIBRARY, gdal)
+
+
+def copy_copyrights(sonames, folder):
+    """Copies the copyright files of the Debian packages of the libraries into the folder. Returns the packages."""
+    packages = set()
+    folder.mkdir(parents=True, exist_ok=True)
+    for soname in sorted(sonames):
+        package = subprocess.run(["dpkg", "--search", f"*/{soname}"], capture_output=True, text=True).stdout.split(":")[0]
+        if not package:
+            sys.exit(f"{soname}: of no Debian package, so that its licence is not known")
+        packages.add(package)
+        shutil.copy(f"/usr/share/doc/{package}/copyright", folder / f"{package}.txt")
+    return packages
