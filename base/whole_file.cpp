@@ -127,11 +127,12 @@ class Temporary {
  public:
   explicit Temporary(const OutputFile& file) : path_(temporaryFor(file.path)) {
     checkTarget(file.path);
-    errno = 0;
-    std::ofstream stream(path_, std::ios::binary | std::ios::trunc);
-    if (!stream) failWriting(file.path, causeOf(errno));
-    stream.exceptions(std::ios::badbit | std::ios::failbit);
+    std::ofstream stream;
     try {
+      errno = 0;
+      stream.open(path_, std::ios::binary | std::ios::trunc);  // may lack memory when the file is there
+      if (!stream) failWriting(file.path, causeOf(errno));
+      stream.exceptions(std::ios::badbit | std::ios::failbit);
       errno = 0;
       file.write(stream);
       stream.close();

@@ -4,6 +4,8 @@
 #include <exception>
 #include <utility>
 
+#include "base/failure_text.h"
+
 namespace emscape::playback {
 namespace {
 
@@ -21,7 +23,7 @@ EditQueue::EditQueue(std::function<void()> wake)
             try {
               result.edited = edited(request.base, request.edits);
             } catch (const std::exception& error) {
-              result.error = error.what();
+              result.error = failureText(error);
             }
             return result;
           },

@@ -4,6 +4,7 @@
 #include <exception>
 #include <string>
 
+#include "base/failure_text.h"
 #include "emscape/base/error.h"
 
 namespace emscape::playback {
@@ -15,7 +16,7 @@ inline ErrorCode codeOf(const std::exception& failure) {
 
 /// The first line of a failure; for a device, with a remedy.
 inline std::string failureLine(const std::exception& failure) {
-  const std::string what = failure.what();
+  const std::string what = failureText(failure);
   const char* help = codeOf(failure) == ErrorCode::device ? "; --backend cpu computes without the GPU" : "";
   return what.substr(0, what.find('\n')) + help;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/failure_text.h"
 #include "base/json_reading.h"
 #include "emscape/base/error.h"
 #include "playback/series_state.h"
@@ -97,7 +98,7 @@ std::vector<std::optional<StepRecord>> SeriesJournal::read(int steps, std::size_
     } catch (const nlohmann::json::exception& error) {
       fail(faultOf(error));
     } catch (const std::exception& error) {
-      fail(error.what());
+      fail(failureText(error));
     }
     at = line_end + 1;
   }

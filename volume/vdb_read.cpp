@@ -5,6 +5,7 @@
 #include <boost/iostreams/stream.hpp>
 #include <cmath>
 
+#include "base/failure_text.h"
 #include "base/whole_file.h"
 #include "emscape/base/log.h"
 #include "emscape/volume/statistics.h"
@@ -256,8 +257,7 @@ auto withFileNamed(const std::filesystem::path& path, const Body& body) {
     if (!error.location().file.empty()) throw;
     throw Error(error.code(), {path.string()}, error.message());
   } catch (const std::exception& error) {
-    throw Error(ErrorCode::bad_input, {path.string()},
-                std::string("OpenVDB cannot read it: ") + error.what());
+    throw Error(ErrorCode::bad_input, {path.string()}, "OpenVDB cannot read it: " + failureText(error));
   }
 }
 

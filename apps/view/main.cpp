@@ -2,10 +2,10 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <new>
 #include <optional>
 
 #include "apps/view/app.h"
+#include "base/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
@@ -52,10 +52,8 @@ int viewMain(int argc, char** argv) {
     return 0;
   } catch (const Error& error) {
     return fail(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::other, "out of memory");
   } catch (const std::exception& error) {
-    return fail(ErrorCode::other, error.what());
+    return fail(ErrorCode::other, failureText(error));
   }
 }
 

@@ -7,10 +7,13 @@ inputs or outputs, and that call fails (strace --inject). After each run:
 - no temporary file is left;
 - the command again (with --resume where it has it) completes to the same bytes.
 Once every write to a file writes half of its bytes only: the files are as without that.
+Then one allocation after another fails, with the same checks.
 
-usage: fault_walk.py EMSCAPE SHORT_WRITES SCENARIO_FOLDER [--all] [COMMAND...]
-  SHORT_WRITES  the library of short_writes.cpp
-  --all   every occurrence of every call; otherwise the first two, the last two and the middle one
+usage: fault_walk.py EMSCAPE SHORT_WRITES FAILING_ALLOCATIONS SCENARIO_FOLDER [--all] [--allocations N] [--allocation-bytes N] [COMMAND...]
+  SHORT_WRITES, FAILING_ALLOCATIONS  the libraries of short_writes.cpp and failing_allocations.cpp
+  --all          every occurrence of every call; otherwise the first two, the last two and the middle one
+  --allocations  how many allocations of each command fail, spread over its run
+  --allocation-bytes  of how many bytes they are at least. Where little ones fail, nlohmann's JSON ends the program: its destructor allocates
 """
 
 import argparse
@@ -101,9 +104,9 @@ def files_of(folder):
     return found
 
 
-def run(command, out, inject=None, log=None, preload=None):
+def run(command, out, inject=None, log=None, preload=None, **variables):
     arguments = [part.format(out=out) for part in command]
-    environment = dict(os.environ, XDG_STATE_HOME=str(out.parent / "state"), XDG_CONFIG_HOME=str(out.parent / "config"))
+    environment = dict(os.environ, XDG_STATE_HOME=str(out.parent / "state"), XDG_CONFIG_HOME=str(out.parent / "config"), **variables)
     if preload:
         environment["LD_PRELOAD"] = str(preload)
     if inject or log:
@@ -147,8 +150,9 @@ def some_of(numbers, all_of_them):
 
 
 class Walk:
-    def __init__(self, name, command, resume, short_writes):
-        self.name, self.command, self.resume, self.short_writes = name, command, resume, short_writes
+    def __init__(self, name, command, resume, short_writes, failing_allocations):
+        self.name, self.command, self.resume = name, command, resume
+        self.short_writes, self.failing_allocations = short_writes, failing_allocations
         is_window = name == "window"
         self.kinds = WINDOW_FAULTS if is_window else FAULTS
         self.statuses = (1, 3, 5) if is_window else (1, 3)
@@ -191,7 +195,39 @@ class Walk:
         elif re.search(r"std::|basic_|terminate|exception|what\(\)", stderr):
             self.report(inject, "a library's text as the message", stderr)
 
-    def walk(self, root, scenarios, all_of_them):
+    def check_fault(self, fault, out, expected, run_with_fault):
+        """Runs into the fault, and again without it."""
+        try:
+            status, stderr = run_with_fault()
+        except subprocess.TimeoutExpired:
+            self.report(fault, "does not end", "")
+            return
+        self.faults += 1
+        self.check(fault, status, stderr, out, expected)
+        status, stderr = run(self.command + self.resume, out)
+        if status != 0 or files_of(out) != expected:
+            unequal = [n for n, d in expected.items() if files_of(out).get(n) != d]
+            self.report(fault, f"again: status {status}, unequal: {unequal[:5]}", stderr)
+
+    def walk_allocations(self, out, expected, fresh, count, least_bytes):
+        # One thread: the allocations of a run are those of the next.
+        command = [*self.command, "--threads", "1"]
+        counted = out.parent / "allocations"
+        settings = {"preload": self.failing_allocations, "EMSCAPE_FAILING_BYTES": str(least_bytes)}
+        fresh()
+        status, stderr = run(command, out, EMSCAPE_ALLOCATIONS=str(counted), **settings)
+        if status != 0 or files_of(out) != expected:
+            self.report("allocations counted", f"status {status}", stderr)
+            return
+        allocations = int(counted.read_text())
+        for number in sorted({1 + n * (allocations - 1) // max(count - 1, 1) for n in range(count)}):
+            fresh()
+            self.check_fault(
+                f"allocation {number} of {allocations}", out, expected,
+                lambda: run(command, out, EMSCAPE_FAILING_ALLOCATION=str(number), **settings),
+            )
+
+    def walk(self, root, scenarios, options):
         out = root / "out"
         log = root / "log"
 
@@ -216,21 +252,12 @@ class Walk:
             unequal = [n for n, d in expected.items() if files_of(out).get(n) != d]
             self.report("short writes", f"status {status}, unequal: {unequal[:5]}", stderr)
         for call, numbers in occurrences(log, [str(out), str(scenarios)], self.kinds).items():
-            for number in some_of(numbers, all_of_them):
+            for number in some_of(numbers, options.all):
                 for error in FAULTS[call]:
                     inject = f"{call}:error={error}:when={number}"
                     fresh()
-                    try:
-                        status, stderr = run(self.command, out, inject)
-                    except subprocess.TimeoutExpired:
-                        self.report(inject, "does not end", "")
-                        continue
-                    self.faults += 1
-                    self.check(inject, status, stderr, out, expected)
-                    status, stderr = run(self.command + self.resume, out)
-                    if status != 0 or files_of(out) != expected:
-                        unequal = [n for n, d in expected.items() if files_of(out).get(n) != d]
-                        self.report(inject, f"again: status {status}, unequal: {unequal[:5]}", stderr)
+                    self.check_fault(inject, out, expected, lambda: run(self.command, out, inject))
+        self.walk_allocations(out, expected, fresh, options.allocations, options.allocation_bytes)
         return self.findings
 
 
@@ -238,8 +265,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("emscape", type=Path)
     parser.add_argument("short_writes", type=Path)
+    parser.add_argument("failing_allocations", type=Path)
     parser.add_argument("scenarios", type=Path)
     parser.add_argument("--all", action="store_true")
+    parser.add_argument("--allocations", type=int, default=20)
+    parser.add_argument("--allocation-bytes", type=int, default=1024)
     parser.add_argument("commands", nargs="*")
     options = parser.parse_args()
     if not shutil.which("strace"):
@@ -260,8 +290,8 @@ def main():
                     continue
                 stack.enter_context(virtual_display())
                 Path(root, "script.jsonl").write_text(SAVES.format(out=Path(root, "out"), wait=WAIT))
-            walk = Walk(name, [str(options.emscape), *command], resume, options.short_writes.resolve())
-            findings += walk.walk(Path(root), options.scenarios.resolve(), options.all)
+            walk = Walk(name, [str(options.emscape), *command], resume, options.short_writes.resolve(), options.failing_allocations.resolve())
+            findings += walk.walk(Path(root), options.scenarios.resolve(), options)
             faults += walk.faults
             print(f"{name}: {walk.faults} faults, {walk.findings} findings", flush=True)
     print(f"{faults} faults, {findings} findings")

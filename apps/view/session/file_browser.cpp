@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdlib>
 
+#include "base/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/inputs.h"
 
@@ -90,7 +91,7 @@ void FileBrowser::read() {
     try {
       return {folder, listFolder(folder), ""};
     } catch (const std::exception& error) {
-      return {folder, {}, error.what()};
+      return {folder, {}, failureText(error)};
     }
   });
 }

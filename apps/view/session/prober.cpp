@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/emfield/path_report.h"
 #include "emscape/playback/edit_history.h"
@@ -55,7 +56,7 @@ class Prober::Reader {
         result.contributions = contributionsOf(*result.reading, result.quantity);
       }
     } catch (const std::exception& error) {
-      result.error = error.what();
+      result.error = failureText(error);
     }
     return answer;
   }

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/failure_text.h"
 #include "base/thread_arena.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
@@ -68,7 +69,7 @@ void Recorder::start(const RecordJob& job, std::function<void()> wake) {
                           : fmt::format("{} of {} pictures are in {}", counter->pictures.load(),
                                         counter->total.load(), job.output);
     } catch (const std::exception& error) {
-      outcome = {error.what(), true};
+      outcome = {failureText(error), true};
     }
     if (wake) wake();
     return outcome;

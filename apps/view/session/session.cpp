@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/cell_renderer.h"
@@ -82,7 +83,7 @@ void Session::perform(const Command& command) {
   try {
     verb.run(*this, command);
   } catch (const Error& error) {
-    tell(error.what(), true);
+    tell(failureText(error), true);
   }
   noteSteps();
 }
@@ -135,7 +136,7 @@ void Session::finishJobs() {
   try {
     while (jobs_.finish()) touched_ = true;
   } catch (const std::exception& error) {
-    tell(error.what(), true);
+    tell(failureText(error), true);
   }
   noteSteps();
 }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "base/failure_text.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -42,7 +43,7 @@ void SessionOpener::take(Session& session) {
     }
     next_ = make_(opening_.options);
   } catch (const std::exception& error) {
-    giveUp(session, error.what());
+    giveUp(session, failureText(error));
   }
 }
 

@@ -1,0 +1,15 @@
+/// What a user is told of an exception.
+#pragma once
+
+#include <exception>
+#include <new>
+#include <string>
+
+namespace emscape {
+
+/// what(), and plain words for std::bad_alloc.
+inline std::string failureText(const std::exception& failure) {
+  return dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ? "out of memory" : failure.what();
+}
+
+}  // namespace emscape

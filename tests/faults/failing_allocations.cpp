@@ -1,0 +1,138 @@
+// To be preloaded into a program: one allocation by `operator new` fails. Counted are those of
+// EMSCAPE_FAILING_BYTES or more from the beginning of main() to its end; the EMSCAPE_FAILING_ALLOCATION-th of
+// them fails (1, 2, ...; without it none), or the next one that is not within GDAL, a library that it calls,
+// or Mesa's driver: those leave out what they have no memory for, or crash. If EMSCAPE_ALLOCATIONS names a
+// file, the count is written into it. Memory that C libraries take from malloc() is left alone, as they end
+// the program when there is none.
+#include <dlfcn.h>
+#include <execinfo.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <initializer_list>
+#include <new>
+
+namespace {
+
+using Main = int (*)(int, char**, char**);
+
+std::atomic<long long> allocations{0};
+std::atomic<bool> is_counting{false};
+std::atomic<long long> failing{0};  ///< 0: none, or it has failed
+std::size_t least_bytes = 1;
+Main program;
+
+bool isWithinFragileLibrary() {
+  void* frames[128];
+  const int count = backtrace(frames, 128);
+  for (int n = 0; n < count; ++n) {
+    Dl_info found{};
+    if (dladdr(frames[n], &found) == 0 || found.dli_fname == nullptr) continue;
+    for (const char* const library :
+         {"libgdal", "libproj", "libnetcdf", "libhdf5", "libLLVM", "swrast_dri"}) {
+      if (std::strstr(found.dli_fname, library) != nullptr) return true;
+    }
+  }
+  return false;
+}
+
+bool fails(std::size_t bytes) {
+  if (bytes < least_bytes || !is_counting.load(std::memory_order_relaxed)) return false;
+  const long long number = ++allocations;
+  long long first = failing.load(std::memory_order_relaxed);
+  return first != 0 && number >= first && !isWithinFragileLibrary() &&
+         failing.compare_exchange_strong(first, 0);
+}
+
+void* allocate(std::size_t bytes, std::size_t alignment) {
+  if (fails(bytes)) return nullptr;
+  if (bytes == 0) bytes = 1;
+  return alignment <= alignof(std::max_align_t)
+             ? std::malloc(bytes)
+             : std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+}
+
+void* allocateOrThrow(std::size_t bytes, std::size_t alignment) {
+  void* const memory = allocate(bytes, alignment);
+  if (memory == nullptr) throw std::bad_alloc();
+  return memory;
+}
+
+int countedMain(int count, char** arguments, char** environment) {
+  if (const char* const text = std::getenv("EMSCAPE_FAILING_ALLOCATION")) failing = std::atoll(text);
+  if (const char* const text = std::getenv("EMSCAPE_FAILING_BYTES"))
+    least_bytes = static_cast<std::size_t>(std::atoll(text));
+  is_counting = true;
+  const int status = program(count, arguments, environment);
+  is_counting = false;
+  if (const char* const name = std::getenv("EMSCAPE_ALLOCATIONS")) {
+    if (std::FILE* const file = std::fopen(name, "w")) {
+      std::fprintf(file, "%lld\n", allocations.load());
+      std::fclose(file);
+    }
+  }
+  return status;
+}
+
+}  // namespace
+
+void* operator new(std::size_t bytes) {
+  return allocateOrThrow(bytes, 1);
+}
+void* operator new[](std::size_t bytes) {
+  return allocateOrThrow(bytes, 1);
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment) {
+  return allocateOrThrow(bytes, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t bytes, std::align_val_t alignment) {
+  return allocateOrThrow(bytes, static_cast<std::size_t>(alignment));
+}
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  return allocate(bytes, 1);
+}
+void* operator new[](std::size_t bytes, const std::nothrow_t&) noexcept {
+  return allocate(bytes, 1);
+}
+void* operator new(std::size_t bytes, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return allocate(bytes, static_cast<std::size_t>(alignment));
+}
+void* operator new[](std::size_t bytes, std::align_val_t alignment, const std::nothrow_t&) noexcept {
+  return allocate(bytes, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+/// The C library's, which the program's first instructions call: main() is counted.
+extern "C" int __libc_start_main(Main main, int count, char** arguments, void (*begin)(), void (*end)(),
+                                 void (*unload)(), void* stack) {
+  using Start = int (*)(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
+  program = main;
+  const auto original = reinterpret_cast<Start>(dlsym(RTLD_NEXT, "__libc_start_main"));
+  return original(countedMain, count, arguments, begin, end, unload, stack);
+}
