@@ -379,7 +379,7 @@ Examples:
           "Draw M and N against height, of refractivity and of scenarios that have it, into a .png or "
           ".svg")
       ->check([](const std::string& file) {
-        return render::isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+        return render::isPlotFile(file) ? "" : "'" + file + "': plots are written as .png or .svg";
       });
   command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
   command->callback(

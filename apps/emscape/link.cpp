@@ -123,7 +123,7 @@ terrain and a scenario without receivers and targets.)");
   command->add_option("--csv", options->csv, "Write all rows into a CSV file");
   command->add_option("--plot", options->plot, "Draw SINR and probabilities over time into a .png or .svg")
       ->check([](const std::string& file) {
-        return render::isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+        return render::isPlotFile(file) ? "" : "'" + file + "': plots are written as .png or .svg";
       });
   command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
   command->callback(

@@ -176,7 +176,7 @@ or a path over missing terrain.)");
           "--plot", options->plot,
           "Draw the path into a file, .png or .svg; with parabolic_equation the loss over range and height")
       ->check([](const std::string& file) {
-        return render::isPlotFile(file) ? "" : "--plot " + file + ": plots are written as .png or .svg";
+        return render::isPlotFile(file) ? "" : "'" + file + "': plots are written as .png or .svg";
       });
   command->add_option("--size", options->size, "Size of the plot in pixels, WxH");
   command->callback(

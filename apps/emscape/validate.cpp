@@ -55,21 +55,32 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
                    first.longitude_deg)});
 }
 
-/// Checks every step of the clock: no platform is below the ground or over missing terrain.
-void checkSteps(const std::shared_ptr<const scenario::Scenario>& scenario, const scenario::Terrain* terrain,
+/// Checks each platform at every step of the clock: none is below the ground or over missing terrain.
+/// @return true if the first step has no fault
+bool checkSteps(const scenario::Scenario& scenario, const scenario::Terrain* terrain,
                 std::vector<Problem>& problems) {
-  const std::vector<double> times = scenario::timesOf(scenario->clock);
-  int failed = 0;
-  for (const double time_s : times) {
-    stopIfInterrupted();
-    try {
-      scenario::snapshotAt(scenario, terrain, time_s);
-    } catch (const Error& error) {
-      if (failed++ == 0) problems.push_back(problemOf(error, scenario->file));
+  const std::vector<double> times = scenario::timesOf(scenario.clock);
+  const auto alone = std::make_shared<scenario::Scenario>(scenario);  // with one platform at a time
+  alone->emitters.clear();
+  alone->placed_receivers.clear();
+  bool starts = true;
+  for (const scenario::Platform& platform : scenario.platforms) {
+    alone->platforms = {platform};
+    const bool moves = platform.track.size() > 1;
+    std::size_t failed = 0;
+    for (std::size_t i = 0; i < (moves ? times.size() : 1); ++i) {
+      stopIfInterrupted();
+      try {
+        scenario::snapshotAt(alone, terrain, times[i]);
+      } catch (const Error& error) {
+        if (failed++ == 0) problems.push_back(problemOf(error, scenario.file));
+        if (i == 0) starts = false;
+      }
     }
+    if (failed > 0 && moves)
+      problems.back().message += fmt::format(" (at {} of {} steps)", failed, times.size());
   }
-  if (failed > 1)
-    problems.back().message += fmt::format(" (and {} of {} steps like it)", failed, times.size());
+  return starts;
 }
 
 /// Checks that need the whole scenario: the ground, the quantities, the models, every step.
@@ -80,7 +91,7 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
     if (terrain) checkCoverage(*scenario, *terrain, problems);
-    checkSteps(scenario, terrain.get(), problems);
+    const bool starts = checkSteps(*scenario, terrain.get(), problems);
     emfield::FieldOptions options;
     options.allow_missing_terrain = true;  // reported above
     const emfield::FieldSolver solver(scenario, terrain, options);
@@ -92,6 +103,7 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std
       problem.message = warning;
       problems.push_back(problem);
     }
+    if (!starts) return;  // reported above
     choices = emfield::modelChoices(
         scenario::snapshotAt(scenario, terrain.get(), scenario::timesOf(scenario->clock).front()),
         terrain.get());

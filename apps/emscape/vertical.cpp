@@ -17,6 +17,7 @@
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/study/area.h"
+#include "render/annotate/plot.h"
 
 namespace emscape::app {
 namespace {
@@ -34,7 +35,7 @@ struct VerticalCommand {
   double threshold = NAN;
   double time_s = 0;
   std::vector<int> grid{600, 300};
-  std::string size = "1400x800";
+  std::string size;
 };
 
 study::VerticalRequest requestOf(const VerticalCommand& command, const scenario::Scenario& scenario) {
@@ -60,7 +61,10 @@ study::VerticalRequest requestOf(const VerticalCommand& command, const scenario:
 }
 
 int vertical(const VerticalCommand& command, const GlobalOptions& global) {
-  const render::ImageSize size = render::parseImageSize(command.size);
+  const render::ImageSize size = command.size.empty() ? study::verticalPlotSize(command.azimuths_deg.size())
+                                                      : render::parseImageSize(command.size);
+  if (std::any_of(command.outputs.begin(), command.outputs.end(), render::isPlotFile))
+    study::checkVerticalPlot(size, command.azimuths_deg.size());
   const auto scenario = scenario::loadScenario(command.scenario, command.edits);
   const study::VerticalRequest request = requestOf(command, *scenario);
   const scenario::Emitter& emitter = scenario->emitters[request.emitter];
@@ -126,7 +130,7 @@ not have by itself.)");
                    "Distance of the diagram's right edge from the emitter (m); default: the instrumented "
                    "range, else the "
                    "region's edge")
-      ->check(CLI::Range(10.0, 1.99e6))
+      ->check(CLI::Range(study::VerticalRequest::kLeastRange_m, study::VerticalRequest::kLargestRange_m))
       ->default_str("");
   command
       ->add_option("--max-height", options->max_height_m,
@@ -140,7 +144,10 @@ not have by itself.)");
   command->add_option("--grid", options->grid, "Number of points of the grid: RANGES,HEIGHTS")
       ->delimiter(',')
       ->expected(2);
-  command->add_option("--size", options->size, "Size of pictures in pixels, WxH");
+  command
+      ->add_option("--size", options->size,
+                   "Size of pictures in pixels, WxH; default: 1400x800, higher for more than four azimuths")
+      ->default_str("");
   command->callback(
       [options, &global, &action] { action = [options, &global] { return vertical(*options, global); }; });
 }

@@ -44,7 +44,7 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
                                        {profile.range_m, profile.end.height_msl_m, profile.end.height_msl_m});
   propagation::PathColumn path({profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()},
                                profile.range_m, end_msl_m, profile.azimuth_rad);
-  static_cast<propagation::Explanation&>(excess) = model.explain(inputs, path);
+  inModel(emitter, [&] { static_cast<propagation::Explanation&>(excess) = model.explain(inputs, path); });
   if (propagation::hasAirLoss(inputs.emitter)) {
     std::vector<float> tables;
     addAir(propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), tables), profile, excess);

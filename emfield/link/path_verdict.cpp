@@ -67,11 +67,22 @@ std::string pointingText(const PathBudget& budget) {
                      radToDeg(pointing.off_axis_rad), -pointing.pattern_db);
 }
 
+/// The probability of detection, with what lowers it: jamming and clutter that come near the echo or above
+/// it.
 std::string detectionText(const PathBudget& budget) {
+  constexpr double kWorthSaying_db = -20;  // of jamming over the echo
   const BudgetTerm* probability = budget.find("detection_probability");
   if (probability == nullptr) return "";
-  return fmt::format("; a target there is detected with probability {:.2f} (SNR {:.1f} dB)",
-                     probability->value, budget.find("snr_db")->value);
+  const double snr_db = budget.find("snr_db")->value;
+  if (!std::isfinite(snr_db)) return "; a target there gives no echo";
+  std::string ratios = fmt::format("SNR {:.1f} dB", snr_db);
+  const BudgetTerm* with_clutter = budget.find("sclnr_db");
+  if (with_clutter != nullptr && with_clutter->value < snr_db - 0.5)
+    ratios += fmt::format(", with clutter {:.1f} dB", with_clutter->value);
+  const BudgetTerm* jamming = budget.find("jammer_to_signal_db");
+  if (jamming != nullptr && jamming->value > kWorthSaying_db)
+    ratios += fmt::format(", J/S {:.1f} dB", jamming->value);
+  return fmt::format("; a target there is detected with probability {:.2f} ({})", probability->value, ratios);
 }
 
 }  // namespace

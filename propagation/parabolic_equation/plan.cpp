@@ -10,6 +10,7 @@
 #include "emscape/base/error.h"
 #include "propagation/parabolic_equation/direct_ray.h"
 #include "propagation/parabolic_equation/march_lanes.h"
+#include "propagation/parabolic_equation/march_start.h"
 #include "propagation/parabolic_equation/path_air.h"
 
 namespace emscape::propagation {
@@ -293,6 +294,8 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   plan.grid = automatic.grid;
   plan.choices = std::move(automatic.choices);
   plan.surfaces = planSurfaces(inputs.emitter, air);
+  const PeSource source{source_msl_m - radials.site_ground_msl_m, inputs.elevation_pattern};
+  for (const PeSurface& surface : plan.surfaces) checkSource(plan.grid, source, surface);
   if (inputs.emitter.settings.parabolic_equation.source == PeRadiator::pattern)
     plan.choices.push_back({"source", sourceText(inputs.elevation_pattern, plan.max_angle_rad)});
   planCells(radials, inputs.emitter.settings.parabolic_equation.cells, plan);

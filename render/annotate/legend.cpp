@@ -90,10 +90,15 @@ std::vector<std::string> headingOf(const Legend& legend) {
 
 constexpr double kLine = 1.3;  // line height in text sizes
 
+/// Height of all that stands above the bar or the categories at least.
+double leastTop(const Style& style, const Legend& legend) {
+  const double heading = kLine * style.text_px * static_cast<double>(headingOf(legend).size());
+  return headerHeight(style) + heading + 10 * style.unit;
+}
+
 /// Upper end of what stands below the heading.
 double topOf(const Canvas& canvas, const Style& style, const Legend& legend) {
-  const double heading = kLine * style.text_px * static_cast<double>(headingOf(legend).size());
-  return std::max(kBarTop * canvas.size().height, headerHeight(style) + heading + 10 * style.unit);
+  return std::max(kBarTop * canvas.size().height, leastTop(style, legend));
 }
 
 /// Draws the heading so that it ends above `bottom`.
@@ -265,6 +270,12 @@ Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function
 
 double legendWidth(const Style& style, const Legend& legend) {
   return 1.6 * kEdge * style.unit + contentWidth(style, legend);
+}
+
+double legendHeight(const Style& style, const Legend& legend) {
+  if (!legend.function.categorical) return 0;
+  const double rows = kRowHeight * style.unit * (static_cast<double>(legend.categories.size()) + 1);
+  return std::max(rows / (1 - kBarTop), leastTop(style, legend) + rows);
 }
 
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend) {

@@ -41,6 +41,8 @@ void drawNearEdges(Canvas& canvas, const Style& style, const Projector& projecto
 double headerHeight(const Style& style);
 /// Width of the column that a legend takes, with its distance from the picture's edge (pixels).
 double legendWidth(const Style& style, const Legend& legend);
+/// Height of a picture that has room for all entries of a categorical legend; 0 for others, which fit any.
+double legendHeight(const Style& style, const Legend& legend);
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend);
 /// Ways, as far as they lie above the box's bottom face and within its sides.
 void drawTracks(Canvas& canvas, const Style& style, const Projector& projector,

@@ -1,5 +1,7 @@
 #include "render/annotate/plot.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,6 +73,29 @@ void PlotPanel::drawGrid() {
   }
 }
 
+void PlotPanel::drawGround(const std::vector<Point2>& heights) const {
+  std::vector<Point2> surface;
+  const auto drawPiece = [&] {
+    if (surface.size() > 1) {
+      std::vector<Point2> body = surface;
+      const double bottom = frame_.y + frame_.height;
+      body.push_back({surface.back().x, bottom});
+      body.push_back({surface.front().x, bottom});
+      canvas_.polygon(body, kPlotGround);
+      canvas_.outline(surface, kPlotSurface, 1.6 * unit_, false);
+    }
+    surface.clear();
+  };
+  for (const Point2& height : heights) {
+    if (std::isnan(height.y)) {
+      drawPiece();
+    } else {
+      surface.push_back(at(height.x, height.y));
+    }
+  }
+  drawPiece();
+}
+
 void PlotPanel::drawLine(const PlotLine& line) {
   for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
     const PlotLine::Point &a = line.points[i], &b = line.points[i + 1];
@@ -80,13 +105,26 @@ void PlotPanel::drawLine(const PlotLine& line) {
 }
 
 void PlotPanel::drawNames(const std::vector<PlotLine>& lines, double top) {
-  double y = frame_.y + top * unit_;
+  std::vector<const PlotLine*> named;
   for (const PlotLine& line : lines) {
-    if (line.name.empty()) continue;
-    const double x = frame_.x + frame_.width + 14 * unit_;
-    canvas_.line({x, y}, {x + 24 * unit_, y}, line.ink, 2.5 * unit_, line.is_dashed);
-    canvas_.text(line.name, {x + kNameOffset * unit_, y}, kNamePx * unit_, kPlotText);
-    y += 22 * unit_;
+    if (!line.name.empty()) named.push_back(&line);
+  }
+  constexpr double kRow = 22, kBelow = 30;  // room below the frame, of an axis's numbers and title
+  const auto rows = static_cast<std::size_t>(std::max((frame_.height / unit_ + kBelow - top) / kRow, 4.0));
+  const bool fits = named.size() <= rows;
+  const std::size_t tail = 2, head = fits ? named.size() : rows - 1 - tail;
+  const double x = frame_.x + frame_.width + 14 * unit_;
+  double y = frame_.y + top * unit_;
+  for (std::size_t i = 0; i < named.size(); ++i, y += kRow * unit_) {
+    if (i == head) {
+      const std::size_t left_out = named.size() - head - tail;
+      canvas_.text(fmt::format("and {} more", left_out), {x + kNameOffset * unit_, y}, kNamePx * unit_,
+                   kPlotFaintText);
+      y += kRow * unit_;
+      i += left_out;
+    }
+    canvas_.line({x, y}, {x + 24 * unit_, y}, named[i]->ink, 2.5 * unit_, named[i]->is_dashed);
+    canvas_.text(named[i]->name, {x + kNameOffset * unit_, y}, kNamePx * unit_, kPlotText);
   }
 }
 
@@ -94,6 +132,29 @@ double PlotPanel::namesWidth(const Canvas& canvas, const std::vector<PlotLine>& 
   double width = 0;
   for (const PlotLine& line : lines) width = std::max(width, canvas.textBox(line.name, kNamePx * unit).width);
   return width;
+}
+
+double fittedSize_px(const Canvas& canvas, const std::string& text, double size_px, double room_px,
+                     Weight weight) {
+  const double width = canvas.textBox(text, size_px, weight).width;
+  return width > room_px ? size_px * room_px / width : size_px;
+}
+
+std::vector<std::string> wrappedText(const Canvas& canvas, const std::string& text, double width_px,
+                                     double size_px) {
+  std::vector<std::string> lines(1);
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
+    if (canvas.textBox(longer, size_px).width <= width_px) {
+      lines.back() = longer;
+    } else {
+      lines.push_back(word);
+    }
+    begin = end + 1;
+  }
+  return lines;
 }
 
 bool isPlotFile(const std::string& file) {

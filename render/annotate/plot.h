@@ -57,7 +57,11 @@ class PlotPanel {
   /// Lines at round values, their numbers, and the titles of the axes.
   void drawGrid();
   void drawLine(const PlotLine& line);
-  /// Names to the right of the frame, in the lines' colours.
+  /// The ground below a line of heights, in pieces with gaps where a height is NaN.
+  /// @param heights  x, y on the axes
+  void drawGround(const std::vector<Point2>& heights) const;
+  /// Names to the right of the frame, in the lines' colours: the first ones and the last two if there are
+  /// more than stand beside the frame.
   /// @param top  of the first name, below the frame's upper edge (pixels of a 1400 x 800 picture)
   void drawNames(const std::vector<PlotLine>& lines, double top = 8);
   /// Width of the longest name (pixels), of which drawNames() needs 60 pixels of a 1400 x 800 picture more.
@@ -69,6 +73,14 @@ class PlotPanel {
   double unit_;
   PlotAxis x_, y_;
 };
+
+/// The size of a text that is to fit into a room: size_px, or less.
+double fittedSize_px(const Canvas& canvas, const std::string& text, double size_px, double room_px,
+                     Weight weight = Weight::normal);
+
+/// The lines of a text that is broken between words.
+std::vector<std::string> wrappedText(const Canvas& canvas, const std::string& text, double width_px,
+                                     double size_px);
 
 /// True for names of plots: .png and .svg.
 bool isPlotFile(const std::string& file);

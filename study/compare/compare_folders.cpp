@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "emscape/base/error.h"
 #include "emscape/study/compare.h"
@@ -75,6 +76,37 @@ void requireMapsOf(const CoverageFolder& one, const CoverageFolder& other, const
   }
 }
 
+/// @param has    the values of the folder's maps, as text
+/// @param asked  what was chosen and none of them is
+[[noreturn]] void failNotThere(const CoverageFolder& folder, const char* option, const std::string& asked,
+                               const std::set<std::string>& has) {
+  throw Error(ErrorCode::usage, fmt::format("{}: {} has no map {}; it has {}", option, folder.path.string(),
+                                            asked, fmt::join(has, ", ")));
+}
+
+/// Maps for all heights or times belong to every choice: alone they would hide a choice that is not there.
+/// @throws Error (usage) if the folder has no map of a chosen product or height, or of any chosen time
+void requireChoice(const CoverageFolder& folder, const MapChoice& choice) {
+  std::set<std::string> products, heights, times;
+  bool has_time = choice.times_s.empty();
+  for (const CoverageMap& map : folder.maps) {
+    if (map.product != Product::best) products.insert(info(map.product).name);
+    if (map.height) heights.insert(describe(*map.height));
+    if (!map.time_s) continue;
+    times.insert(fmt::format("{:g} s", *map.time_s));
+    has_time = has_time || std::count(choice.times_s.begin(), choice.times_s.end(), *map.time_s) > 0;
+  }
+  for (const Product product : choice.products) {
+    if (products.count(info(product).name) == 0)
+      failNotThere(folder, "--products", fmt::format("of {}", info(product).name), products);
+  }
+  for (const MapHeight& height : choice.heights) {
+    if (!heights.empty() && heights.count(describe(height)) == 0)
+      failNotThere(folder, "--heights", "at " + describe(height), heights);
+  }
+  if (!has_time && !times.empty()) failNotThere(folder, "--times", "at these times", times);
+}
+
 }  // namespace
 
 std::vector<std::pair<std::size_t, std::size_t>> pairsOf(const CoverageFolder& a, const CoverageFolder& b,
@@ -83,6 +115,7 @@ std::vector<std::pair<std::size_t, std::size_t>> pairsOf(const CoverageFolder& a
   checkAlike(a, b);
   requireMapsOf(a, b, choice);
   requireMapsOf(b, a, choice);
+  requireChoice(a, choice);
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t m = 0; m < a.maps.size(); ++m) {
     const CoverageMap& map = a.maps[m];

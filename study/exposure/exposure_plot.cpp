@@ -86,8 +86,11 @@ void plotExposure(const Exposure& exposure, render::ImageSize size, const std::s
     const std::string quantity =
         render::quantityTitle(scenario::info(exposure.request.quantity).name, exposure.unit);
     const std::string in_unit = exposure.unit.empty() ? "" : " (" + render::unitText(exposure.unit) + ")";
-    canvas.text(fmt::format("{}: {} on the way of {}", exposure.scenario, quantity, exposure.platform),
-                {92 * unit, 26 * unit}, 20 * unit, render::kPlotText, Align::left, render::Weight::bold);
+    const std::string title =
+        fmt::format("{}: {} on the way of {}", exposure.scenario, quantity, exposure.platform);
+    canvas.text(title, {92 * unit, 26 * unit},
+                render::fittedSize_px(canvas, title, 20 * unit, width - 112 * unit, render::Weight::bold),
+                render::kPlotText, Align::left, render::Weight::bold);
     Rect frame{92 * unit, 84 * unit, width - right - 152 * unit, 0.62 * height - 100 * unit};
     PlotPanel values(canvas, frame, unit, times, axisOf(lines, exposure.unit));
     values.drawTitle(quantity + in_unit + "; wide where it reaches the threshold");
@@ -109,15 +112,9 @@ void plotExposure(const Exposure& exposure, render::ImageSize size, const std::s
     PlotPanel heights(canvas, frame, unit, times,
                       {lowest_m - 0.05 * span_m, highest_m + 0.1 * span_m, 5, ""});
     heights.drawTitle("Height above mean sea level (m)");
-    std::vector<render::Point2> body;
-    for (const PlotLine::Point& point : ground.points) {
-      if (std::isfinite(point.y)) body.push_back(heights.at(point.x, point.y));
-    }
-    if (body.size() > 1) {
-      body.push_back({body.back().x, frame.y + frame.height});
-      body.push_back({body.front().x, frame.y + frame.height});
-      canvas.polygon(body, render::kPlotGround);
-    }
+    std::vector<render::Point2> surface;
+    for (const PlotLine::Point& point : ground.points) surface.push_back({point.x, point.y});
+    heights.drawGround(surface);
     heights.drawGrid();
     heights.drawLine(ground);
     heights.drawLine(way);

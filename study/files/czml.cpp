@@ -38,7 +38,7 @@ class Czml : public MapCollection {
     const double duration_s = study.scenarios.front()->clock.duration_s;
     begin_s_ = std::min(0.0, study.times_s.front());
     end_s_ = std::max(duration_s, endOf(study, study.times_s.back()));
-    to_earth_.reset(OCTNewCoordinateTransformation(referenceOf(*study.grid).get(), wgs84Reference().get()));
+    to_earth_ = transformationBetween(referenceOf(*study.grid), wgs84Reference());
     packets_.push_back({{"id", "document"},
                         {"name", study.title},
                         {"version", "1.0"},

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "emscape/playback/scene.h"
 #include "emscape/study/map_picture.h"
@@ -270,7 +272,11 @@ class GeoPackage : public MapCollection {
   void addTracks(const Scope& scope, OGRSpatialReferenceH earth) {
     OGRLayerH layer = addLayer(scope, "tracks", earth, wkbLineStringZM,
                                {{"platform", OFTString}, {"begin", OFTDateTime}, {"end", OFTDateTime}});
+    std::vector<MapTrack> tracks;
     for (const MapTrack& track : tracksOf(study_)) {
+      for (MapTrack& part : cutAtAntimeridian(track)) tracks.push_back(std::move(part));
+    }
+    for (const MapTrack& track : tracks) {
       NewFeature feature(layer);
       feature.set("platform", track.platform);
       feature.set("begin", utcOf(study_, track.positions.front().time_s));

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gdal_utils.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -73,7 +74,9 @@ Overlay overlayOf(const MapGrid& grid, const Map& map, const render::Legend& leg
 
 render::Image8 legendPicture(const render::Legend& legend) {
   const render::Style style({1200, 900}, render::Theme::light);
-  const render::ImageSize size{static_cast<int>(std::ceil(render::legendWidth(style, legend))), 420};
+  const double height = std::max(420.0, render::legendHeight(style, legend));
+  const render::ImageSize size{static_cast<int>(std::ceil(render::legendWidth(style, legend))),
+                               static_cast<int>(std::ceil(height))};
   render::Canvas canvas(size);
   canvas.rectangle({0, 0, static_cast<double>(size.width), static_cast<double>(size.height)},
                    {{1, 1, 1}, 0.85});

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace emscape::study {
 namespace {
@@ -22,17 +23,24 @@ render::Legend legendOf(const Map& map) {
   legend.quantity = render::quantityTitle(map.title, map.unit);
   legend.unit = render::unitText(map.unit);
   float least = INFINITY, largest = -INFINITY;
+  std::set<int> present;  // whole numbers
+  float previous = NAN;
   for (const float value : map.values) {
     if (std::isnan(value)) continue;
     least = std::min(least, value);
     largest = std::max(largest, value);
+    if (isWhole(map.kind) && value != previous) present.insert(static_cast<int>(value));
+    previous = value;
   }
   if (isWhole(map.kind)) {
     legend.function.categorical = true;
     const int first = map.kind == MapKind::category ? 0 : 1;
-    int last = std::min(std::isfinite(largest) ? static_cast<int>(largest) : 0, first + 15);
-    if (map.kind == MapKind::classes) last = static_cast<int>(map.labels.size()) - 1;  // those absent too
+    int last = std::isfinite(largest) ? static_cast<int>(largest) : 0;
+    if (map.kind == MapKind::classes) last = static_cast<int>(map.labels.size()) - 1;
+    const bool has_absent =
+        map.kind == MapKind::classes || last < first + 16;  // of many only those on the map
     for (int n = first; n <= last; ++n) {
+      if (!has_absent && present.count(n) == 0) continue;
       const std::string label = n < static_cast<int>(map.labels.size()) ? map.labels[n] : std::to_string(n);
       legend.categories.push_back({categoryOf(map, n), label});
     }

@@ -1,8 +1,10 @@
 #include "study/files/map_objects.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "emscape/base/error.h"
+#include "emscape/base/geo_frame.h"
 #include "emscape/scenario/snapshot.h"
 
 namespace emscape::study {
@@ -82,6 +84,30 @@ std::vector<MapTrack> tracksOf(const MapStudy& study) {
     if (track.positions.size() > 1) tracks.push_back(std::move(track));
   }
   return tracks;
+}
+
+std::vector<MapTrack> cutAtAntimeridian(const MapTrack& track) {
+  std::vector<MapTrack> parts{{track.platform, {}}};
+  for (const MapPosition& to : track.positions) {
+    std::vector<MapPosition>& part = parts.back().positions;
+    const MapPosition from = part.empty() ? to : part.back();
+    const double east_deg = wrapLongitude_deg(to.position.longitude_deg - from.position.longitude_deg);
+    if (std::abs(to.position.longitude_deg - from.position.longitude_deg) > 180 && east_deg != 0) {
+      const double border_deg = std::copysign(180.0, east_deg);
+      const double share = (border_deg - from.position.longitude_deg) / east_deg;
+      const auto between = [&](double begin, double end) { return begin + share * (end - begin); };
+      MapPosition border = from;
+      border.time_s = between(from.time_s, to.time_s);
+      border.position.latitude_deg = between(from.position.latitude_deg, to.position.latitude_deg);
+      border.height_msl_m = between(from.height_msl_m, to.height_msl_m);
+      border.position.longitude_deg = border_deg;
+      part.push_back(border);
+      border.position.longitude_deg = -border_deg;
+      parts.push_back({track.platform, {border}});
+    }
+    parts.back().positions.push_back(to);
+  }
+  return parts;
 }
 
 std::string utcOf(const MapStudy& study, double time_s) {

@@ -43,6 +43,10 @@ std::vector<MapSite> sitesOf(const MapStudy& study);
 /// Points over missing terrain whose height is given above ground are left out.
 std::vector<MapTrack> tracksOf(const MapStudy& study);
 
+/// The parts of a track between its crossings of the antimeridian, which end and begin at +-180 degrees: a
+/// line in longitudes would go round the earth.
+std::vector<MapTrack> cutAtAntimeridian(const MapTrack& track);
+
 /// ISO 8601 UTC of a time, with milliseconds. Time 0 of a scenario without an epoch is 1970-01-01T00:00:00Z.
 std::string utcOf(const MapStudy& study, double time_s);
 /// End of the interval for which the map of a time stands: the next of the study's times; after the last, as

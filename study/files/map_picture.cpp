@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "emscape/base/parallel.h"
 #include "emscape/playback/scene.h"
@@ -18,6 +20,7 @@ using render::Align;
 using render::Canvas;
 using render::Ink;
 using render::Point2;
+using render::Rect;
 using render::Rgb;
 using render::Weight;
 
@@ -68,7 +71,8 @@ class MapPicture {
         options.width - left_ - std::max(190 * style_.unit, render::legendWidth(style_, legend_));
     scale_ = room / grid.width;
     const double height = scale_ * grid.height;
-    size_ = {options.width, static_cast<int>(std::max(top_ + height + 76 * style_.unit, 420 * style_.unit))};
+    size_ = {options.width, static_cast<int>(std::max({top_ + height + 76 * style_.unit, 420 * style_.unit,
+                                                       render::legendHeight(style_, legend_)}))};
   }
 
   render::Image8 draw() {
@@ -159,16 +163,57 @@ class MapPicture {
   }
 
   void drawMarkers(Canvas& canvas) const {
+    std::vector<std::pair<Point2, const MapMarker*>> places;
+    std::vector<Rect> taken;  // by markers and labels
     for (const MapMarker& marker : options_.markers) {
       const long long pixel = grid_.pixelAt(marker.latitude_deg, marker.longitude_deg);
       if (pixel < 0) continue;
       const Point2 at{left_ + (static_cast<double>(pixel % grid_.width) + 0.5) * scale_,
                       top_ + (static_cast<double>(pixel / grid_.width) + 0.5) * scale_};
+      taken.push_back(
+          {at.x - 6.5 * style_.unit, at.y - 6.5 * style_.unit, 13 * style_.unit, 13 * style_.unit});
+      places.push_back({at, &marker});
+    }
+    for (const auto& [at, marker] : places) {
       canvas.disc(at, 6.5 * style_.unit, {{0.1f, 0.12f, 0.15f}});
-      canvas.disc(at, 4.6 * style_.unit, {render::colorOf(marker.kind)});
-      canvas.textWithRim(marker.label, {at.x + 10 * style_.unit, at.y}, style_.small_px,
+      canvas.disc(at, 4.6 * style_.unit, {render::colorOf(marker->kind)});
+    }
+    for (const auto& [at, marker] : places) {
+      const Rect box = labelBox(canvas.textBox(marker->label, style_.small_px), at, taken);
+      taken.push_back(box);
+      canvas.textWithRim(marker->label, {box.x, box.y + box.height / 2}, style_.small_px,
                          {{0.05f, 0.06f, 0.08f}}, {{1, 1, 1}, 0.85});
     }
+  }
+
+  /// Where a marker's label stands: right of it, else left, above or below, where it neither leaves the map
+  /// nor lies on what is there; else where the least of it does.
+  Rect labelBox(const Rect& text, const Point2& at, const std::vector<Rect>& taken) const {
+    const double gap = 10 * style_.unit, width = text.width, height = 1.2 * style_.small_px;
+    const Rect candidates[] = {{at.x + gap, at.y - height / 2, width, height},
+                               {at.x - gap - width, at.y - height / 2, width, height},
+                               {at.x - width / 2, at.y - gap - height, width, height},
+                               {at.x - width / 2, at.y + gap, width, height}};
+    const Rect map{left_, top_, scale_ * grid_.width, scale_ * grid_.height};
+    const auto common = [](const Rect& a, const Rect& b) {
+      const double x = std::min(a.x + a.width, b.x + b.width) - std::max(a.x, b.x);
+      const double y = std::min(a.y + a.height, b.y + b.height) - std::max(a.y, b.y);
+      return std::max(x, 0.0) * std::max(y, 0.0);
+    };
+    const auto hidden = [&](const Rect& box) {
+      double area = width * height - common(box, map);
+      for (const Rect& other : taken) area += common(box, other);
+      return area;
+    };
+    Rect best = candidates[0];
+    double least = hidden(best);
+    for (const Rect& candidate : candidates) {
+      const double area = hidden(candidate);
+      if (area + 1 > least) continue;
+      best = candidate;
+      least = area;
+    }
+    return best;
   }
 
   const MapGrid& grid_;

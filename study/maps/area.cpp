@@ -13,8 +13,21 @@
 
 namespace emscape::study {
 
+namespace {
+
+/// Distance of the nearer pole (m).
+double poleDistance_m(double latitude_deg) {
+  return geodesicInverse(latitude_deg, 0, latitude_deg < 0 ? -90 : 90, 0).distance_m;
+}
+
+}  // namespace
+
 MapArea areaOf(const scenario::Region& region) {
   const GeoFrame frame(region.origin);
+  if (poleDistance_m(region.origin.latitude_deg) <= 0.5 * region.size_m.y) {
+    return circularArea({region.origin.latitude_deg, region.origin.longitude_deg,
+                         0.5 * std::hypot(region.size_m.x, region.size_m.y)});
+  }
   MapArea area;
   area.box = {90, -90, 1e9, -1e9};
   const double middle_deg = region.origin.longitude_deg;
@@ -48,9 +61,16 @@ MapArea circularArea(const MapArea::Circle& circle) {
   };
   area.box.north_deg = towards(0.0).latitude_deg;
   area.box.south_deg = towards(180.0).latitude_deg;
-  // The easternmost point of a circle is a little beyond its azimuth of 90 degrees.
+  const bool is_north = circle.latitude_deg >= 0;
+  if (poleDistance_m(circle.latitude_deg) <= circle.radius_m) {
+    (is_north ? area.box.north_deg : area.box.south_deg) = is_north ? 90 : -90;
+    area.box.west_deg = circle.longitude_deg - 180;
+    area.box.east_deg = circle.longitude_deg + 180;
+    return area;
+  }
+  // The easternmost point of a circle is beyond its azimuth of 90 degrees, toward the nearer pole.
   double half_width_deg = 0;
-  for (double azimuth_deg = 45; azimuth_deg <= 135; azimuth_deg += 0.5) {
+  for (double azimuth_deg = is_north ? 0 : 45; azimuth_deg <= (is_north ? 135 : 180); azimuth_deg += 0.5) {
     half_width_deg = std::max(
         half_width_deg, std::remainder(towards(azimuth_deg).longitude_deg - circle.longitude_deg, 360.0));
   }

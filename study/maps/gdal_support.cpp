@@ -100,4 +100,14 @@ gdal::SpatialReference wgs84Reference() {
   return reference;
 }
 
+gdal::Transformation transformationBetween(const gdal::SpatialReference& from,
+                                           const gdal::SpatialReference& to) {
+  const scenario::GdalMessages messages;
+  gdal::Transformation transformation(OCTNewCoordinateTransformation(from.get(), to.get()));
+  if (transformation == nullptr) {
+    throw Error(ErrorCode::other, messages.explain("PROJ cannot transform between the coordinate systems"));
+  }
+  return transformation;
+}
+
 }  // namespace emscape::study

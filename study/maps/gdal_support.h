@@ -53,5 +53,8 @@ std::string wkt2Of(OGRSpatialReferenceH reference);
 gdal::SpatialReference referenceOf(const MapGrid& grid);
 /// WGS84: longitude, latitude.
 gdal::SpatialReference wgs84Reference();
+/// @throws Error (other) with PROJ's reason if it knows no way
+gdal::Transformation transformationBetween(const gdal::SpatialReference& from,
+                                           const gdal::SpatialReference& to);
 
 }  // namespace emscape::study

@@ -18,8 +18,11 @@ namespace {
 
 constexpr double kMaxPixels = 1 << 26;
 /// Longest side of the patches on which places are interpolated: they are within a millimetre of the
-/// projection's to 80 degrees of latitude.
+/// projection's to 85 degrees of latitude. Beyond, where meridians meet, no place is interpolated.
 constexpr double kPatch_m = 3000;
+/// Longest side of a map: once around the earth.
+constexpr double kLargestSide_m = 4.1e7;
+constexpr double kPolar_deg = 85;
 constexpr int kMaxPatchPixels = 64;
 
 struct Middle {
@@ -30,6 +33,14 @@ Middle middleOf(const MapArea& area) {
   if (area.circle) return {area.circle->latitude_deg, area.circle->longitude_deg};
   return {(area.box.south_deg + area.box.north_deg) / 2,
           wrapLongitude_deg((area.box.west_deg + area.box.east_deg) / 2)};
+}
+
+/// The zone of UTM, with the exceptions of Norway and Svalbard.
+int utmZone(const Middle& at) {
+  const double lat = at.latitude_deg, lon = at.longitude_deg;
+  if (lat >= 56 && lat < 64 && lon >= 3 && lon < 12) return 32;
+  if (lat >= 72 && lat < 84 && lon >= 0 && lon < 42) return lon < 9 ? 31 : lon < 21 ? 33 : lon < 33 ? 35 : 37;
+  return std::clamp(static_cast<int>(std::floor((lon + 180) / 6)) + 1, 1, 60);
 }
 
 /// @param name  receives the name by which the reference is known
@@ -46,8 +57,7 @@ gdal::SpatialReference referenceOf(const std::string& crs, const Middle& middle,
   } else {
     int code = 0;
     if (crs == "utm") {
-      const int zone = std::clamp(static_cast<int>(std::floor((middle.longitude_deg + 180) / 6)) + 1, 1, 60);
-      code = (middle.latitude_deg < 0 ? 32700 : 32600) + zone;
+      code = (middle.latitude_deg < 0 ? 32700 : 32600) + utmZone(middle);
       name = fmt::format("EPSG:{}", code);
     } else if (crs.rfind("EPSG:", 0) == 0 && crs.find_first_not_of("0123456789", 5) == std::string::npos) {
       code = std::atoi(crs.c_str() + 5);
@@ -70,9 +80,7 @@ gdal::SpatialReference referenceOf(const std::string& crs, const Middle& middle,
 class Projection {
  public:
   Projection(const gdal::SpatialReference& from, const gdal::SpatialReference& to)
-      : transform_(OCTNewCoordinateTransformation(from.get(), to.get())) {
-    if (transform_ == nullptr) throw Error(ErrorCode::other, "PROJ cannot make the map's projection");
-  }
+      : transform_(transformationBetween(from, to)) {}
   /// @return false if a point has no image
   bool operator()(std::vector<double>& x, std::vector<double>& y) const {
     const scenario::GdalMessages messages;
@@ -119,6 +127,7 @@ double metres2PerDegree2(double latitude_deg) {
 struct Lattice {
   int side = 2;  ///< pixels along a patch, even: every node is the centre of a pixel
   int patches_x = 0, patches_y = 0;
+  bool is_polar = false;  ///< a node for each pixel
   std::vector<double> longitudes_deg, latitudes_deg;
   std::vector<double> metres2_per_degree2;  ///< of the ellipsoid there
 
@@ -129,9 +138,11 @@ struct Lattice {
   }
 };
 
-Lattice latticeOf(const Projection& toEarth, const MapGrid& grid) {
+Lattice latticeOf(const Projection& toEarth, const MapGrid& grid, bool is_polar = false) {
   Lattice lattice;
-  lattice.side = 2 * static_cast<int>(std::clamp(kPatch_m / 2 / grid.cell_m, 1.0, kMaxPatchPixels / 2.0));
+  lattice.is_polar = is_polar;
+  if (!is_polar)
+    lattice.side = 2 * static_cast<int>(std::clamp(kPatch_m / 2 / grid.cell_m, 1.0, kMaxPatchPixels / 2.0));
   lattice.patches_x = (grid.width + lattice.side - 1) / lattice.side;
   lattice.patches_y = (grid.height + lattice.side - 1) / lattice.side;
   const int step = lattice.side / 2;
@@ -144,7 +155,11 @@ Lattice latticeOf(const Projection& toEarth, const MapGrid& grid) {
   if (!toEarth(lattice.longitudes_deg, lattice.latitudes_deg)) {
     throw Error(ErrorCode::usage, fmt::format("crs '{}' does not reach over the whole area", grid.crs));
   }
-  for (const double latitude_deg : lattice.latitudes_deg) {
+  const auto isPolar = [](double latitude_deg) { return std::abs(latitude_deg) > kPolar_deg; };
+  const std::vector<double>& latitudes_deg = lattice.latitudes_deg;
+  if (!is_polar && std::any_of(latitudes_deg.begin(), latitudes_deg.end(), isPolar))
+    return latticeOf(toEarth, grid, true);
+  for (const double latitude_deg : latitudes_deg) {
     lattice.metres2_per_degree2.push_back(metres2PerDegree2(latitude_deg));
   }
   return lattice;
@@ -283,6 +298,16 @@ EMSCAPE_SIMD_CLONES void fillRow(const Patch::Row& latitude, const Patch::Row& l
   for (int i = 0; i < pixels; ++i) places[i].longitude_deg = wrapLongitude_deg(places[i].longitude_deg);
 }
 
+/// Area of the pixel at a node of a lattice with one for each pixel (m2): that of the parallelogram to the
+/// next ones.
+double areaAt(const Lattice& lattice, std::size_t node) {
+  const auto at = [&](std::size_t n) {
+    return toEcef({lattice.latitudes_deg[n], lattice.longitudes_deg[n], 0});
+  };
+  const Vec3d corner = at(node);
+  return length(cross(at(node + 1) - corner, at(node + lattice.nodesX()) - corner));
+}
+
 /// Sets places and areas, on patches between the nodes of a lattice.
 void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
   grid.places.resize(static_cast<std::size_t>(grid.width) * grid.height);
@@ -309,6 +334,11 @@ void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
         Parabola per_degree2 = scales.row(v).value;
         for (double* const c : {&per_degree2.c0, &per_degree2.c1, &per_degree2.c2}) *c *= step * step;
         fillRow(latitudes.row(v), longitudes.row(v), per_degree2, step, columns, places, areas_m2);
+        if (lattice.is_polar) {
+          for (int i = 0; i < columns; ++i)
+            areas_m2[i] =
+                static_cast<float>(areaAt(lattice, node + static_cast<std::size_t>(j) * nodes_x + i));
+        }
         if (part == PatchPart::inside) continue;
         bool is_inside[kMaxPatchPixels] = {};
         if (part == PatchPart::across) test.markInside(places, columns, is_inside);
@@ -384,6 +414,10 @@ MapGrid mapGridAt(const std::string& wkt, const std::string& crs, double cell_m,
   if (!(static_cast<double>(width) * height <= kMaxPixels)) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("a map of {} x {} pixels has more than {:.0f}", width, height, kMaxPixels));
+  }
+  if (!(std::max(width, height) * cell_m <= kLargestSide_m)) {
+    throw Error(ErrorCode::bad_input, fmt::format("a map of {} x {} pixels of {} m is larger than the earth",
+                                                  width, height, cell_m));
   }
   const MapArea everywhere{{-90, 90, -180, 180}, {}};
   fillPlaces(latticeOf(Projection(study::referenceOf(grid), wgs84Reference()), grid), everywhere, grid);

@@ -7,6 +7,7 @@
 #include "base/quantity_text.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
+#include "emscape/scenario/clock.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/study/geotiff.h"
 #include "emscape/study/map_picture.h"
@@ -126,14 +127,24 @@ struct MapFolder::State {
     if (!is_there) collections.push_back({file, format->make(folder / file, study)});
   }
 
+  /// In seconds, and in UTC if the scenario has an epoch.
+  std::string timesText(const Map& map) const {
+    const double begin_s = map.time_s.value_or(study.times_s.front());
+    const double end_s = map.time_s.value_or(study.times_s.back());
+    const auto from = [&](const auto& begin, const auto& end) {
+      return begin_s == end_s ? fmt::format("{}", begin) : fmt::format("{} to {}", begin, end);
+    };
+    const auto utc = [&](double time_s) { return scenario::utcAt(study.scenarios.front()->clock, time_s); };
+    const std::string seconds = fmt::format("t = {} s", from(begin_s, end_s));
+    return utc(begin_s).empty() ? seconds : seconds + " (" + from(utc(begin_s), utc(end_s)) + ")";
+  }
+
   render::Image8 pictureOf(const Map& map) const {
     const scenario::Scenario& scenario = *study.scenarios.front();
     const double time_s = map.time_s.value_or(study.times_s.front());
     MapPictureOptions options;
     options.title = fmt::format("{}: {}", scenario.name, map.description);
-    options.subtitle = map.time_s
-                           ? fmt::format("t = {} s", time_s)
-                           : fmt::format("t = {} to {} s", study.times_s.front(), study.times_s.back());
+    options.subtitle = timesText(map);
     options.markers = markersOf(scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), time_s));
     options.ground_msl_m = ground_msl_m;
     return drawMap(*study.grid, map, options);
@@ -190,8 +201,7 @@ const MapRecord& MapFolder::add(const Map& map) {
       render::writePng(state.folder / record.files.back(), picture);
     }
     if (is_in_report) {
-      const std::string time = map.time_s ? fmt::format(", t = {} s", *map.time_s) : "";
-      state.pictures.push_back({map.description + time, std::move(picture)});
+      state.pictures.push_back({map.description + ", " + state.timesText(map), std::move(picture)});
     }
   }
   for (const State::Collection& collection : state.collections) collection.content->add(map);

@@ -26,7 +26,7 @@ void addLayer(OGRLayerH layer, const std::string& file, std::vector<CandidateSit
   if (OGR_L_GetSpatialRef(layer) != nullptr) {
     const gdal::SpatialReference own(OSRClone(OGR_L_GetSpatialRef(layer)));
     OSRSetAxisMappingStrategy(own.get(), OAMS_TRADITIONAL_GIS_ORDER);
-    transformation.reset(OCTNewCoordinateTransformation(own.get(), wgs84.get()));
+    transformation = transformationBetween(own, wgs84);
   }
   const int name_field = OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer), "name");
   OGR_L_ResetReading(layer);

@@ -34,6 +34,7 @@ constexpr double kRecent_s = 60;
 std::string holderOf(const fs::path& file) {
   std::ifstream stream(file);
   std::ostringstream text;
+  text.exceptions(std::ios::badbit);
   text << stream.rdbuf();
   return text.str();
 }

@@ -59,7 +59,11 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
   const Section root(file, node.get(), studyFormat());
   StudySpec& spec = reading.spec;
   spec.file = file;
-  spec.base = scenario::loadScenario(reading.resolve(root.text("scenario")), edits);
+  const std::string base = reading.resolve(root.text("scenario"));
+  if (!fs::exists(base)) {
+    throw Error(ErrorCode::bad_input, root.locationOf("scenario"), base + ": no such file; a scenario");
+  }
+  spec.base = scenario::loadScenario(base, edits);
   readMaps(reading, root);
   readMeasures(reading, root);
   readVariants(reading, root);

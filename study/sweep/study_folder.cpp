@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <climits>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -51,6 +53,19 @@ KeptFiles keptOf(const Json& manifest) {
   return KeptFiles::nothing;
 }
 
+/// @throws Error (bad_input) without a place
+std::uint64_t countOf(const Json& record, const char* key, std::uint64_t most) {
+  const Json count = record.value(key, Json(0u));
+  if (!count.is_number_unsigned() || count.get<std::uint64_t>() > most) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{} is {}, not a whole number from 0 to {}", key, count.dump(), most));
+  }
+  return count;
+}
+int partsOf(const Json& record) {
+  return static_cast<int>(countOf(record, "parts", INT_MAX));
+}
+
 }  // namespace
 
 StudyFolder::StudyFolder(fs::path folder, const StudySpec& study, const StudyPlan& plan, std::string version)
@@ -62,7 +77,7 @@ std::optional<StudyFolder::Manifest> StudyFolder::readManifest() const {
   return readRecord(file, [&](const Json& json) {
     const std::string hash = json.value("hash", "");
     if (hash != study_.hash) failForeign(file, hash, study_.hash);
-    const Manifest manifest{json.value("parts", 0), keptOf(json)};
+    const Manifest manifest{partsOf(json), keptOf(json)};
     if (manifest.parts < 1) throw Error(ErrorCode::bad_input, "has no number of parts");
     return std::optional(manifest);
   });
@@ -130,8 +145,9 @@ bool StudyFolder::hasPart(int part) const {
   if (!fs::exists(file)) return false;
   return readRecord(file, [&](const Json& record) {
     const std::string hash = record.value("hash", "");
-    if (hash != study_.hash || record.value("parts", 0) != parts_) {
-      failForeign(file, fmt::format("{} in {} parts", hash, record.value("parts", 0)),
+    const int parts = partsOf(record);
+    if (hash != study_.hash || parts != parts_) {
+      failForeign(file, fmt::format("{} in {} parts", hash, parts),
                   fmt::format("{} in {}", study_.hash, parts_));
     }
     return true;
@@ -195,9 +211,7 @@ void StudyFolder::readPart(int part, StudyResults& results) const {
   const std::size_t pixels = readRecord(partFile(part, "json"), [&](const Json& record) {
     for (const auto& machine : record.value("machines", Json::array())) results.machines.insert(machine);
     for (const auto& warning : record.value("warnings", Json::array())) results.warnings.insert(warning);
-    const Json count = record.value("pixels", Json(0u));
-    if (!count.is_number_unsigned()) throw Error(ErrorCode::bad_input, "'pixels' is no whole number");
-    return count.get<std::size_t>();
+    return countOf(record, "pixels", SIZE_MAX);
   });
   const fs::path file = partFile(part, "csv");
   const std::string text = readWholeText(file);

@@ -60,6 +60,9 @@ void readMeasures(StudyReading& reading, const Section& root) {
     measure.name = item.text("name");
     measure.product = productNamed(item.text("product"));
     const ProductInfo& product = info(measure.product);
+    if (item.has("height") && !product.at_heights) {
+      reading.fault(item.locationOf("height"), fmt::format("product '{}' has no 'height'", product.name));
+    }
     reading.reportAt(item.locationOf("height"), [&] {
       const std::vector<MapHeight> heights = parseHeights(item.text("height"));
       if (heights.size() != 1) throw Error(ErrorCode::usage, "a measure has one height");

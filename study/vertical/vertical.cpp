@@ -31,8 +31,9 @@ void checkRange(double value, double lowest, double highest, const char* what) {
 
 /// @throws Error (usage)
 void checkRequest(const scenario::Scenario& scenario, const VerticalRequest& request) {
-  checkRange(request.range_m, 100, 2e6, "range");
-  checkRange(request.max_height_m, 10, 1e5, "height");
+  checkRange(request.range_m, VerticalRequest::kLeastRange_m, VerticalRequest::kLargestRange_m, "range");
+  const bool is_above_sea = request.axis == HeightReference::mean_sea_level && !request.smooth_earth;
+  checkRange(request.max_height_m, is_above_sea ? -500 : 10, 1e5, "height");  // ground may lie below the sea
   if (std::min(request.ranges, request.heights) < 2 || std::max(request.ranges, request.heights) > 10000) {
     throw Error(ErrorCode::usage,
                 fmt::format("grid: {} x {}; 2 to 10000 points a side", request.ranges, request.heights));
@@ -219,7 +220,7 @@ double defaultRange_m(const scenario::Scenario& scenario, const VerticalRequest&
       range_m = std::max(range_m, at_m);
     }
   }
-  return std::max(range_m > 0 ? range_m : farthest_m, 100.0);
+  return std::max(range_m > 0 ? range_m : farthest_m, VerticalRequest::kLeastRange_m);
 }
 
 VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>& scenario,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/study/vertical.h"
 #include "render/annotate/overlay_parts.h"
@@ -25,6 +26,19 @@ constexpr Ink kContour{{0.84F, 0.10F, 0.12F}};
 constexpr Ink kFreeSpace{{0.10F, 0.12F, 0.16F}};
 constexpr Ink kRay{{0.10F, 0.12F, 0.16F}, 0.45};
 constexpr int kBlock_px = 2;  ///< side of the squares of one colour
+// Of a picture of 1400 x 800 pixels.
+constexpr double kHeader_px = 96;
+constexpr double kPanelMargins_px = 84;  ///< title and abscissa of a panel
+constexpr double kMinFrame_px = 48, kUsualPanel_px = 176;
+
+double unitOf(render::ImageSize size) {
+  return std::min(size.height / 800.0, size.width / 1400.0);
+}
+
+/// Height of the panels, with their margins (pixels).
+double panelHeight_px(render::ImageSize size, std::size_t panels) {
+  return (size.height - kHeader_px * unitOf(size)) / static_cast<double>(panels);
+}
 
 class VerticalPlot {
  public:
@@ -33,7 +47,7 @@ class VerticalPlot {
         request_(diagram.request),
         canvas_(canvas),
         style_(canvas.size(), render::Theme::light),
-        unit_(std::min(canvas.size().height / 800.0, canvas.size().width / 1400.0)),
+        unit_(unitOf(canvas.size())),
         colors_(diagram) {
     legend_.quantity = render::quantityTitle(scenario::info(request_.quantity).name, diagram.unit);
     legend_.unit = render::unitText(diagram.unit);
@@ -44,10 +58,11 @@ class VerticalPlot {
   void draw() {
     const double width = canvas_.size().width, height = canvas_.size().height;
     canvas_.rectangle({0, 0, width, height}, render::kPlotPaper);
-    const double header = 96 * unit_;
-    const double panel_height = (height - header) / static_cast<double>(diagram_.cuts.size());
+    const double header = kHeader_px * unit_;
+    const double panel_height = panelHeight_px(canvas_.size(), diagram_.cuts.size());
     const double right = std::max(render::legendWidth(style_, legend_), 60 * unit_) + 24 * unit_;
-    Rect frame{92 * unit_, header + 28 * unit_, width - 92 * unit_ - right, panel_height - 84 * unit_};
+    Rect frame{92 * unit_, header + 28 * unit_, width - 92 * unit_ - right,
+               panel_height - kPanelMargins_px * unit_};
     for (const VerticalCut& cut : diagram_.cuts) {
       drawCut(cut, frame);
       frame.y += panel_height;
@@ -59,15 +74,25 @@ class VerticalPlot {
  private:
   bool isChart() const { return request_.smooth_earth; }
 
+  std::string heightTitle() const {
+    return isChart()                                  ? "height above the surface (m)"
+           : request_.axis == HeightReference::ground ? "height above ground (m)"
+                                                      : "height above mean sea level (m)";
+  }
+
+  /// True if the title of the heights has room beside a frame.
+  bool hasRoomForTitle(const Rect& frame) const {
+    return canvas_.textBox(heightTitle(), 14 * unit_).width <= frame.height + kPanelMargins_px * unit_;
+  }
+
   void drawCut(const VerticalCut& cut, const Rect& frame) {
     const double end_m =
         isChart() ? diagram_.slantRange_m(request_.range_m, diagram_.station_msl_m) : request_.range_m;
-    const char* heights = isChart()                                  ? "height above the surface (m)"
-                          : request_.axis == HeightReference::ground ? "height above ground (m)"
-                                                                     : "height above mean sea level (m)";
+    const int ticks = std::clamp(static_cast<int>(frame.height / (16 * unit_)), 2, 8);
     PlotPanel panel(canvas_, frame, unit_,
                     {0, end_m / 1000, 10, isChart() ? "slant range (km)" : "distance over the ground (km)"},
-                    {diagram_.heights_m.front(), diagram_.heights_m.back(), 8, heights});
+                    {diagram_.heights_m.front(), diagram_.heights_m.back(), ticks,
+                     hasRoomForTitle(frame) ? heightTitle() : "height (m)"});
     canvas_.rectangle(frame, kSky);
     drawValues(cut, panel, end_m);
     if (!isChart()) drawGround(cut, panel);
@@ -136,20 +161,11 @@ class VerticalPlot {
 
   void drawGround(const VerticalCut& cut, const PlotPanel& panel) {
     if (request_.axis == HeightReference::ground || cut.ground_msl_m.empty()) return;
-    std::vector<Point2> surface;
+    std::vector<Point2> heights{{0, static_cast<double>(cut.ground_msl_m.front())}};
     for (std::size_t i = 0; i < cut.ground_msl_m.size(); ++i) {
-      const float ground_m = cut.ground_msl_m[i];
-      if (std::isnan(ground_m)) continue;
-      if (surface.empty()) surface.push_back(panel.at(0, static_cast<double>(ground_m)));
-      surface.push_back(panel.at(diagram_.ranges_m[i] / 1000, static_cast<double>(ground_m)));
+      heights.push_back({diagram_.ranges_m[i] / 1000, static_cast<double>(cut.ground_msl_m[i])});
     }
-    if (surface.size() < 2) return;
-    std::vector<Point2> body = surface;
-    const double bottom = panel.frame().y + panel.frame().height;
-    body.push_back({surface.back().x, bottom});
-    body.push_back({surface.front().x, bottom});
-    canvas_.polygon(body, render::kPlotGround);
-    canvas_.outline(surface, render::kPlotSurface, 1.6 * unit_, false);
+    panel.drawGround(heights);
   }
 
   /// Lines of constant elevation, which rise from the station.
@@ -249,9 +265,14 @@ class VerticalPlot {
         isChart() ? fmt::format("smooth earth of {:.3g} times its radius, antenna {:.1f} m above it",
                                 diagram_.k_factor, diagram_.station_msl_m)
                   : fmt::format("antenna at {:.0f} m above mean sea level", diagram_.station_msl_m);
-    canvas_.text(fmt::format("{}: {} of {}", diagram_.scenario, legend_.quantity, diagram_.emitter),
-                 {frame.x, 26 * unit_}, 20 * unit_, render::kPlotText, Align::left, render::Weight::bold);
-    canvas_.text(fmt::format("t = {:g} s, {}, {}", request_.time_s, diagram_.model, earth),
+    const std::string title =
+        fmt::format("{}: {} of {}", diagram_.scenario, legend_.quantity, diagram_.emitter);
+    const double room = canvas_.size().width - frame.x - 20 * unit_;
+    canvas_.text(title, {frame.x, 26 * unit_},
+                 render::fittedSize_px(canvas_, title, 20 * unit_, room, render::Weight::bold),
+                 render::kPlotText, Align::left, render::Weight::bold);
+    const std::string heights = hasRoomForTitle(frame) ? "" : "; " + heightTitle();
+    canvas_.text(fmt::format("t = {:g} s, {}, {}{}", request_.time_s, diagram_.model, earth, heights),
                  {frame.x, 52 * unit_}, 15 * unit_, render::kPlotFaintText);
     double x = frame.x;
     const auto entry = [&](const std::string& words, const Ink& ink, bool is_dashed) {
@@ -278,7 +299,23 @@ class VerticalPlot {
 
 }  // namespace
 
+render::ImageSize verticalPlotSize(std::size_t azimuths) {
+  constexpr int kWidth_px = 1400, kHeight_px = 800;
+  const double needed_px = kHeader_px + kUsualPanel_px * static_cast<double>(azimuths);
+  return {kWidth_px, std::max(kHeight_px, static_cast<int>(std::min(needed_px, 32768.0)))};
+}
+
+void checkVerticalPlot(render::ImageSize size, std::size_t azimuths) {
+  const double min_px = (kPanelMargins_px + kMinFrame_px) * unitOf(size);
+  if (panelHeight_px(size, azimuths) >= min_px) return;
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("a picture of {}x{} pixels has no room for {} azimuths, a panel each; at most {}",
+                  size.width, size.height, azimuths, static_cast<int>(panelHeight_px(size, 1) / min_px)));
+}
+
 void plotVertical(const VerticalDiagram& diagram, render::ImageSize size, const std::string& file) {
+  checkVerticalPlot(size, diagram.cuts.size());
   render::drawPlot(size, file, [&](Canvas& canvas) { VerticalPlot(diagram, canvas).draw(); });
 }
 

@@ -41,6 +41,27 @@ TEST(CommandLine, NumbersAreFinite) {
   }
 }
 
+TEST(CommandLine, RefusedValuesAreToldWithWhatIsAllowed) {
+  const auto errorOf = [](const Arguments& more) {
+    Arguments arguments{"render", shippedScenario("quick.yaml"), "-o", "out.png"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, kUsage);
+    return result.err;
+  };
+  EXPECT_THAT(errorOf({"--step", "0"}),
+              StartsWith("emscape: error: --step: '0' must be a number from 0.05 to 10\n"));
+  EXPECT_THAT(errorOf({"--step", "one"}), HasSubstr("--step: 'one' must be a number from 0.05 to 10\n"));
+  EXPECT_THAT(errorOf({"--iso-value", "one"}), HasSubstr("--iso-value: 'one' is no number\n"));
+  EXPECT_THAT(errorOf({"--mode", "xray"}), HasSubstr("--mode: 'xray' must be one of dvr, mida, mip, iso\n"));
+  EXPECT_THAT(errorOf({"--mode", std::string(100000, 'x')}),
+              HasSubstr("' must be one of dvr, mida, mip, iso\n"));
+  EXPECT_THAT(errorOf({"--step", std::string(100000, 'x')}),
+              HasSubstr("' must be a number from 0.05 to 10\n"));
+  EXPECT_THAT(errorOf({"--threads", "-3"}),
+              HasSubstr("--threads: '-3' must be a whole number from 0 to 4096\n"));
+}
+
 /// Exit status of `emscape ARGUMENTS` with its streams redirected by the shell.
 int statusOf(const std::string& arguments_and_redirections) {
   const std::string command = besideThisProgram("emscape") + " " + arguments_and_redirections;

@@ -177,7 +177,11 @@ TEST(Compare, RefusesFoldersThatDoNotFit) {
   EXPECT_THAT(onto_itself.err, HasSubstr("is one of the folders to compare"));
   EXPECT_EQ(readFile(folder / "a/report.json"), report);
   EXPECT_THAT(errorOf("a", {"--products", "best"}, 2), HasSubstr("'best'"));
-  EXPECT_THAT(errorOf("a", {"--products", "count"}, 2), HasSubstr("has no map of these products"));
+  EXPECT_THAT(errorOf("a", {"--products", "count"}, 2),
+              HasSubstr("/a has no map of count; it has covered, value"));
+  EXPECT_THAT(errorOf("a", {"--heights", "agl:77"}, 2),
+              HasSubstr("/a has no map at 77 m above ground; it has 100 m above ground"));
+  EXPECT_THAT(errorOf("a", {"--times", "3"}, 2), HasSubstr("/a has no map at these times; it has 80 s"));
   for (const Arguments& option : {Arguments{"--cell", "200"}, {"--set-b", "a=1"}, {"--quantity", "snr_db"}})
     EXPECT_THAT(errorOf("a", option, 2), HasSubstr(option[0] + ": does not go with folders of maps"));
   std::filesystem::remove_all(folder / "out");

@@ -150,7 +150,70 @@ TEST_F(Validate, FindsPlatformsBelowTheGround) {
   const ProgramResult result = run({"validate", file});
   EXPECT_EQ(result.status, 3);
   EXPECT_THAT(result.out, HasSubstr("ridge site"));
-  EXPECT_THAT(result.out, HasSubstr("steps like it"));
+  EXPECT_EQ(result.out.find("ridge site"), result.out.rfind("ridge site")) << "told once";
+}
+
+TEST_F(Validate, FindsAntennasAtTheGroundThatTheParabolicEquationCannotMarch) {
+  const std::string file = folder_ / "ship.yaml";
+  writeFile(file, R"(schema_version: 1
+name: ship
+region:
+  origin: {latitude_deg: 36, longitude_deg: -60}
+  size_m: [20000, 20000, 100]
+  dims: [10, 10, 10]
+ground: {kind: sea}
+platforms:
+  - {name: ship, position: {latitude_deg: 36, longitude_deg: -60, height_msl_m: 0}}
+emitters:
+  - name: beacon
+    platform: ship
+    kind: transmitter
+    frequency_hz: 1.0e9
+    power_w: 1
+    polarization: horizontal
+    antenna: {pattern: isotropic}
+    propagation: parabolic_equation
+)");
+  const ProgramResult result = run({"validate", file});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.out, HasSubstr("error: emitter 'beacon': 'parabolic_equation': antenna 0 m above the "
+                                    "ground; expected above 0"));
+  const ProgramResult path = run({"profile", file, "--emitter", "beacon", "--to", "36.05,-60,20"});
+  EXPECT_EQ(path.status, 3);
+  EXPECT_THAT(path.err, HasSubstr("emitter 'beacon': 'parabolic_equation': antenna 0 m above the ground"));
+  EXPECT_EQ(run({"validate", file, "--set", "platforms.ship.position.height_msl_m=10"}).status, 0);
+}
+
+TEST_F(Validate, TellsTheFaultOfEachPlatformOnceWithItsSteps) {
+  const std::string dem = shippedScenario("data/jacksboro.tif");
+  writeFile(folder_ / "track.csv",
+            "t_s,latitude_deg,longitude_deg,height_msl_m\n0,36.3,-84.2,3000\n4,36.3,-84.2,-100\n");
+  const std::string file = folder_ / "low.yaml";
+  writeFile(file, R"(schema_version: 1
+name: low
+duration_s: 4
+step_s: 1
+region:
+  origin: {latitude_deg: 36.3, longitude_deg: -84.2}
+  size_m: [2000, 2000, 3000]
+  dims: [4, 4, 4]
+terrain: {files: [')" +
+                      dem + R"(']}
+platforms:
+  - {name: cellar, position: {latitude_deg: 36.3, longitude_deg: -84.2, height_msl_m: 1}}
+  - {name: diver, track: {file: track.csv}}
+  - {name: mine, position: {latitude_deg: 36.301, longitude_deg: -84.2, height_msl_m: 2}}
+emitters:
+  - {name: e, platform: cellar, kind: transmitter, frequency_hz: 1.0e9, power_w: 1, antenna: {pattern: isotropic}}
+)");
+  const ProgramResult result = run({"validate", file});
+  EXPECT_EQ(result.status, 3);
+  for (const char* platform : {"'cellar'", "'diver'", "'mine'"}) {
+    const std::size_t first = result.out.find(platform);
+    EXPECT_NE(first, std::string::npos) << platform;
+    EXPECT_EQ(first, result.out.rfind(platform)) << platform;
+  }
+  EXPECT_THAT(result.out, HasSubstr(" (at 1 of 5 steps)\n"));
 }
 
 }  // namespace

@@ -281,6 +281,32 @@ TEST(PathBudget, VerdictOfARadarThatLooksAtTheTargetDoesNotTellWhereTheScanPoint
   EXPECT_THAT(beside.verdict, HasSubstr("but the scan does not reach there, which costs 40.0 dB"));
 }
 
+TEST(PathBudget, TheVerdictTellsJamming) {
+  auto scenario = whiteMountains(PropagationModel::free_space);
+  scenario->terrain.reset();
+  scenario->emitters[0].kind = scenario::EmitterKind::radar;
+  const PathEnd point{{44.1, -71.4, 400}, 400};
+  const auto verdict = [&] {
+    return pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0, point, PropagationModel::free_space,
+                      nullptr)
+        .verdict;
+  };
+  EXPECT_THAT(verdict(), ::testing::Not(HasSubstr("J/S")));
+  scenario::Platform elsewhere = scenario->platforms[0];
+  elsewhere.track[0].position.latitude_deg += 0.3;
+  elsewhere.track[0].position.height_msl_m = 3000;
+  elsewhere.track[0].position.height_agl_m.reset();
+  scenario->platforms.push_back(elsewhere);
+  scenario::Emitter jammer = scenario->emitters[0];
+  jammer.name = "jammer";
+  jammer.kind = scenario::EmitterKind::jammer;
+  jammer.platform = static_cast<int>(scenario->platforms.size()) - 1;
+  scenario->emitters.push_back(jammer);
+  EXPECT_THAT(verdict(), ::testing::ContainsRegex("\\(SNR -?[0-9.]+ dB, J/S -?[0-9.]+ dB\\)\\."));
+  scenario->emitters[1].power_w = 1e-12;
+  EXPECT_THAT(verdict(), ::testing::Not(HasSubstr("J/S"))) << "too weak to matter";
+}
+
 TEST(PathBudget, RefusesPathsOverMissingTerrainAndOfNoLength) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   const scenario::Snapshot snapshot =

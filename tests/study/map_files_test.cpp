@@ -14,6 +14,7 @@
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/study/geotiff.h"
 #include "emscape/study/map_folder.h"
+#include "study/files/map_objects.h"
 #include "study/files/map_shapes.h"
 #include "study/report/map_report.h"
 #include "tests/support/errors.h"
@@ -410,6 +411,25 @@ TEST_F(MapFiles, UnknownFormatsAndHeightsAreRefused) {
   Map map = mapsOf(70)[0];
   map.height->metres = 77;
   EXPECT_THAT(test::errorOf([&] { maps.add(map); }), HasSubstr("77 is neither a time nor a height"));
+}
+
+TEST(MapObjects, TracksAreCutAtTheAntimeridian) {
+  MapTrack track{"aircraft", {{0, {10, 179, 0}, 100}, {10, {12, -179, 0}, 300}, {20, {12, -178, 0}, 300}}};
+  const std::vector<MapTrack> parts = cutAtAntimeridian(track);
+  ASSERT_EQ(parts.size(), 2u);
+  ASSERT_EQ(parts[0].positions.size(), 2u);
+  ASSERT_EQ(parts[1].positions.size(), 3u);
+  const MapPosition &end = parts[0].positions.back(), &begin = parts[1].positions.front();
+  EXPECT_EQ(end.position.longitude_deg, 180);
+  EXPECT_EQ(begin.position.longitude_deg, -180);
+  for (const MapPosition* at : {&end, &begin}) {
+    EXPECT_NEAR(at->position.latitude_deg, 11, 1e-12);
+    EXPECT_NEAR(at->time_s, 5, 1e-12);
+    EXPECT_NEAR(at->height_msl_m, 200, 1e-9);
+  }
+  EXPECT_EQ(parts[1].platform, "aircraft");
+  track.positions.erase(track.positions.begin());
+  EXPECT_EQ(cutAtAntimeridian(track).size(), 1u);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ int expectPlacesOfUtm(const GeographicPoint& middle, double radius_m, double cel
 
 TEST(MapGrid, PixelsOfUtmAreWhereTheProjectionPutsThem) {
   for (const GeographicPoint& middle :
-       {GeographicPoint{44.3, -71.4}, {-33.9, 151.2}, {0.01, 2.99}, {79.5, 17}}) {
+       {GeographicPoint{44.3, -71.4}, {-33.9, 151.2}, {0.01, 2.99}, {79.5, 17}, {60.4, 5.3}, {78.5, 11}}) {
     EXPECT_GT(expectPlacesOfUtm(middle, 20e3, 90, 37), 3000);
     EXPECT_GT(expectPlacesOfUtm(middle, 100e3, 700, 13), 3000);
     EXPECT_GT(expectPlacesOfUtm(middle, 100e3, 2000, 1), 3000);
@@ -60,6 +60,39 @@ TEST(MapGrid, ACirclesPixelsHaveItsArea) {
     const MapGrid grid = makeMapGrid(circularArea({61.2, 20.9, kRadius_m}), 60, crs);
     const double area_m2 = std::accumulate(grid.areas_m2.begin(), grid.areas_m2.end(), 0.0);
     EXPECT_NEAR(area_m2 / (kPi * kRadius_m * kRadius_m), 1, 2e-4) << crs;
+  }
+}
+
+TEST(MapGrid, ACircleMayHoldAPole) {
+  constexpr double kRadius_m = 20e3;
+  for (const double latitude_deg : {89.97, -89.97, 90.0, 89.0}) {
+    SCOPED_TRACE(latitude_deg);
+    const MapGrid grid = makeMapGrid(circularArea({latitude_deg, 10, kRadius_m}), 100, "local");
+    const double area_m2 = std::accumulate(grid.areas_m2.begin(), grid.areas_m2.end(), 0.0);
+    EXPECT_NEAR(area_m2 / (kPi * kRadius_m * kRadius_m), 1, 3e-4);
+    for (std::size_t p = 0; p < grid.pixels(); p += 7) {
+      const auto [lat, lon] = grid.places[p];
+      if (std::isnan(lat)) continue;
+      const double x = grid.left_m + (static_cast<double>(p % grid.width) + 0.5) * grid.cell_m;
+      const double y = grid.top_m - (static_cast<double>(p / grid.width) + 0.5) * grid.cell_m;
+      ASSERT_NEAR(geodesicInverse(latitude_deg, 10, lat, lon).distance_m, std::hypot(x, y), 0.001);
+    }
+  }
+}
+
+TEST(MapGrid, ARegionWithAPoleIsCoveredWholly) {
+  scenario::Region region;
+  region.origin = {FrameKind::altitude, 89.95, 30, 0};
+  region.size_m = {40e3, 40e3, 1000};
+  const MapGrid grid = makeMapGrid(areaOf(region), 500, "local");
+  const GeoFrame frame(region.origin);
+  for (double x = -19.9e3; x < 20e3; x += 1990) {
+    for (double y = -19.9e3; y < 20e3; y += 1990) {
+      const GeodeticPosition at = frame.toGeodetic({x, y, 0});
+      const long long pixel = grid.pixelAt(at.latitude_deg, at.longitude_deg);
+      ASSERT_GE(pixel, 0);
+      EXPECT_FALSE(std::isnan(grid.places[static_cast<std::size_t>(pixel)].latitude_deg)) << x << ", " << y;
+    }
   }
 }
 

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
+#include "emscape/study/area.h"
 #include "emscape/study/map_grid.h"
 #include "study/files/map_colors.h"
 
@@ -56,6 +58,43 @@ TEST(MapPicture, ClassesThatDoNotOccurAreInTheLegend) {
   const render::Legend legend = legendOf(jamLoss(grid));
   ASSERT_EQ(legend.categories.size(), 1u);
   EXPECT_EQ(legend.categories[0].name, "yes");
+}
+
+TEST(MapPicture, TheLegendOfManyEmittersHoldsAllThatAreOnTheMap) {
+  const MapGrid grid = smallGrid();
+  Map map;
+  map.name = map.title = "best";
+  map.kind = MapKind::category;
+  for (int n = 0; n < 40; ++n) map.labels.push_back("radar " + std::to_string(n));
+  map.values.assign(grid.pixels(), -1.0f);
+  map.values[0] = 2;
+  EXPECT_EQ(legendOf(map).categories.size(), 3u) << "of few also those that win nowhere";
+  map.values[1] = 35;
+  render::Legend legend = legendOf(map);
+  ASSERT_EQ(legend.categories.size(), 2u);
+  EXPECT_EQ(legend.categories[1].name, "radar 35");
+  for (std::size_t p = 0; p < grid.pixels(); ++p) map.values[p] = static_cast<float>(p % 40);
+  legend = legendOf(map);
+  ASSERT_EQ(legend.categories.size(), 40u);
+  const render::Image8 image = drawMap(grid, map, {});
+  const int right = image.size.width - 8, bottom = image.size.height;
+  EXPECT_TRUE(isPlain(image, right - 150, bottom - 10, right, bottom));
+  EXPECT_FALSE(isPlain(image, right - 150, bottom - 60, right, bottom)) << "the last entry";
+}
+
+TEST(MapPicture, LabelsStayOnTheMap) {
+  MapGrid grid = makeMapGrid(circularArea({10, 20, 5000}), 500, "local");
+  Map map = jamLoss(grid);
+  MapPictureOptions options;
+  const render::Image8 without = drawMap(grid, map, options);
+  options.markers = {{10, 20.04, "a radar at the eastern edge of the map", render::MarkerKind::radar}};
+  const render::Image8 with = drawMap(grid, map, options);
+  ASSERT_EQ(with.size, without.size);
+  const int edge = 84 + static_cast<int>((1200 - 84 - 190)) + 12;  // the frame of the map
+  for (int y = 0; y < with.size.height; ++y) {
+    for (int x = edge; x < with.size.width; ++x)
+      ASSERT_TRUE(std::equal(with.at(x, y), with.at(x, y) + 4, without.at(x, y))) << x << ", " << y;
+  }
 }
 
 TEST(MapPicture, ASlopeIsShadedUpToTheEdges) {

@@ -282,7 +282,7 @@ TEST(Study, SitesAreChosenFromCandidates) {
   for (const char* const pixels : {"18446744073709551615", "1e30"}) {
     test::writeFile(record, text.substr(0, value) + pixels + text.substr(text.find_first_of(",\n", value)));
     EXPECT_THAT(test::errorOf([&] { files.read(); }, ErrorCode::bad_input),
-                testing::AnyOf(HasSubstr("wrong size"), HasSubstr("'pixels' is no whole number")));
+                testing::AnyOf(HasSubstr("wrong size"), HasSubstr("pixels is 1e+30, not a whole number")));
   }
 }
 
@@ -324,6 +324,13 @@ TEST(Study, RefusesFaultsWithTheirPlace) {
   EXPECT_THAT(ofMeasure("{name: a, product: fraction}"), HasSubstr("is over time"));
   EXPECT_THAT(ofMeasure("{name: a, product: min_height, unit: km2}"), HasSubstr("has no area"));
   EXPECT_THAT(ofMeasure("{name: a, height: 30}"), HasSubstr("study.yaml:6:"));
+  EXPECT_THAT(ofMeasure("{name: a, product: min_height, height: agl:30}"),
+              HasSubstr("product 'min_height' has no 'height'"));
+  const test::TemporaryFolder folder;
+  const std::string without =
+      folder.write("study.yaml", std::string("schema_version: 1\nscenario: nowhere.yaml\n") + kMeasures);
+  EXPECT_THAT(test::errorOf([&] { loadStudy(without, {}, "test"); }),
+              AllOf(HasSubstr("study.yaml:2:"), HasSubstr("nowhere.yaml: no such file")));
   EXPECT_THAT(ofMeasure("{name: a, quantity: power_density_dbwm2}"), HasSubstr("needs a threshold"));
   EXPECT_THAT(ofMeasure("{name: a, over: nowhere.gpkg}"), HasSubstr("nowhere.gpkg: no such file"));
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <random>
@@ -10,6 +11,7 @@
 #include "emscape/base/geoid.h"
 #include "emscape/base/units.h"
 #include "emscape/emfield/path_budget.h"
+#include "emscape/render/image.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/study/area.h"
@@ -268,6 +270,40 @@ TEST(Vertical, AnglesAndRangesOfTheChartAgree) {
   EXPECT_TRUE(std::isnan(diagram.groundRange_m(1000, 5000))) << "below the zenith";
 }
 
+TEST(Vertical, TheGroundHasGapsWhereTheTerrainIsMissing) {
+  const auto scenario = jacksboro();
+  VerticalRequest request = small(0, HeightReference::mean_sea_level);
+  request.azimuths_deg = {30};
+  VerticalDiagram diagram = computeVertical(scenario, scenario::loadTerrain(*scenario), request, {});
+  std::vector<float>& ground_m = diagram.cuts[0].ground_msl_m;
+  std::fill(ground_m.begin(), ground_m.end(), 1000.0f);
+  std::fill(ground_m.begin() + ground_m.size() / 3, ground_m.end() - ground_m.size() / 3, NAN);
+  std::fill(diagram.cuts[0].values.begin(), diagram.cuts[0].values.end(), NAN);
+  const test::TemporaryFolder folder;
+  plotVertical(diagram, {1400, 800}, folder / "gap.png");
+  const render::Image8 image = render::readPng(folder / "gap.png");
+  const auto isSky = [&](int x) {
+    const std::uint8_t* const pixel = image.at(x, 740);  // just above the abscissa
+    return pixel[2] > pixel[0];
+  };
+  EXPECT_FALSE(isSky(200));
+  EXPECT_TRUE(isSky(676));
+  EXPECT_FALSE(isSky(1150));
+}
+
+TEST(Vertical, PicturesHaveRoomForAllPanels) {
+  for (const std::size_t azimuths : {1, 2, 4})
+    EXPECT_EQ(verticalPlotSize(azimuths), (render::ImageSize{1400, 800}));
+  EXPECT_EQ(verticalPlotSize(20), (render::ImageSize{1400, 3616}));
+  for (const std::size_t azimuths : {1, 20, 180}) checkVerticalPlot(verticalPlotSize(azimuths), azimuths);
+  checkVerticalPlot({1400, 800}, 5);
+  EXPECT_THAT(test::errorOf([] {
+                checkVerticalPlot({1400, 800}, 6);
+              }),
+              HasSubstr("a picture of 1400x800 pixels has no room for 6 azimuths, a panel each; at most 5"));
+  checkVerticalPlot({10, 10}, 1);
+}
+
 TEST(Vertical, RefusesWhatItCannotDo) {
   const auto scenario = jacksboro();
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
@@ -281,13 +317,20 @@ TEST(Vertical, RefusesWhatItCannotDo) {
   EXPECT_THAT(refusalOf(request), HasSubstr("above mean sea level"));
   request = small(0, HeightReference::ground);
   request.range_m = 10;
-  EXPECT_THAT(refusalOf(request), HasSubstr("range: 10 m; 100 to 2000000 m"));
+  EXPECT_THAT(refusalOf(request), HasSubstr("range: 10 m; 100 to 1990000 m"));
   request = small(0, HeightReference::ground);
   request.quantity = scenario::Quantity::emitter_count;
   EXPECT_THAT(refusalOf(request), HasSubstr("no value of one emitter"));
   request = small(0, HeightReference::mean_sea_level);
-  request.max_height_m = 100;
-  EXPECT_THAT(refusalOf(request), HasSubstr("lowest ground"));
+  for (const double max_height_m : {100.0, -100.0}) {
+    request.max_height_m = max_height_m;
+    EXPECT_THAT(refusalOf(request), HasSubstr("lowest ground"));
+  }
+  request.max_height_m = -501;
+  EXPECT_THAT(refusalOf(request), HasSubstr("height: -501 m; -500 to 100000 m"));
+  request.smooth_earth = true;
+  request.max_height_m = 5;
+  EXPECT_THAT(refusalOf(request), HasSubstr("height: 5 m; 10 to 100000 m"));
 }
 
 }  // namespace

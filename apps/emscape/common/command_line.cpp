@@ -6,6 +6,7 @@
 #include <csignal>
 #include <exception>
 #include <new>
+#include <string>
 
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/components.h"
@@ -86,15 +87,63 @@ int run(const Action& action) {
   }
 }
 
+/// A number as users write it: CLI11 writes 360.000000.
+std::string shortNumber(const std::string& text) {
+  double value = 0;
+  return CLI::detail::lexical_cast(text, value) ? fmt::format("{:g}", value) : text;
+}
+
+/// "whole number" for options of integers, else "number".
+/// @param app  the subcommand that the option belongs to, or one of its parents does
+std::string numberName(const CLI::App& app, const std::string& option) {
+  const CLI::Option* found = nullptr;
+  for (const CLI::App* of = &app; of != nullptr && found == nullptr; of = of->get_parent())
+    found = of->get_option_no_throw(option);
+  const bool is_whole = found != nullptr && found->get_type_name().find("INT") != std::string::npos;
+  return is_whole ? "whole number" : "number";
+}
+
+/// CLI11's messages on values, as the program's own are: the option, the value and what is allowed.
+/// @param app  the subcommand that the options belong to
+std::string plainMessage(const CLI::App& app, const std::string& message) {
+  const auto startsWith = [](const std::string& text, const std::string& start) {
+    return text.compare(0, start.size(), start) == 0;
+  };
+  const std::string conversion = "Could not convert: ", value = "Value ";
+  if (const std::size_t equals = message.find(" = ");
+      startsWith(message, conversion) && equals != std::string::npos) {
+    const std::string name = message.substr(conversion.size(), equals - conversion.size());
+    return fmt::format("{}: '{}' is no {}", name, message.substr(equals + 3), numberName(app, name));
+  }
+  const std::size_t colon = message.find(": ");
+  if (!startsWith(message, "--") || colon == std::string::npos) return message;
+  const std::string name = message.substr(0, colon), rest = message.substr(colon + 2);
+  const std::string in_range = " not in range ", to = " to ", in_names = " not in {";
+  const std::size_t range = rest.rfind(in_range), names = rest.rfind(in_names);
+  if (startsWith(rest, value) && range != std::string::npos && range >= value.size()) {
+    const std::string bounds = rest.substr(range + in_range.size());
+    const std::size_t split = bounds.find(to);
+    if (split == std::string::npos) return message;
+    return fmt::format("{}: '{}' must be a {} from {} to {}", name,
+                       rest.substr(value.size(), range - value.size()), numberName(app, name),
+                       shortNumber(bounds.substr(0, split)), shortNumber(bounds.substr(split + to.size())));
+  }
+  if (names == std::string::npos || rest.back() != '}') return message;
+  std::string allowed;
+  for (const char c : rest.substr(names + in_names.size(), rest.size() - names - in_names.size() - 1))
+    allowed += c == ',' ? std::string(", ") : std::string(1, c);
+  return fmt::format("{}: '{}' must be one of {}", name, rest.substr(0, names), allowed);
+}
+
 /// The parser's message. Where CLI11 asks for a subcommand, it names the word that is none.
 std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* last = &app;
   while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
-  if (last->get_require_subcommand_min() == 0) return error.what();
+  if (last->get_require_subcommand_min() == 0) return plainMessage(*last, error.what());
   for (const std::string& word : app.remaining(true)) {
     if (!word.empty() && word.front() != '-') return "there is no subcommand '" + word + "'";
   }
-  return error.what();
+  return plainMessage(*last, error.what());
 }
 
 /// CLI11 takes 'nan' and 'inf' for numbers; no option does.
@@ -118,7 +167,7 @@ int parse(CLI::App& app, int argc, char** argv) {
     checkNumbers(app);
     return -1;
   } catch (const CLI::Success& help) {
-    return run([&] { return app.exit(help); });
+    return app.exit(help);
   } catch (const CLI::ParseError& error) {
     printMessage("emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n",
                  messageOf(app, error));
@@ -180,13 +229,15 @@ std::vector<std::string> program_command;
 
 int runCommandLine(int argc, char** argv) {
   openStandardStreams();
-  CommandLine line;
-  if (const int status = parse(line.app, argc, argv); status >= 0) return status;
-  installLog(line.global);
-  setThreadLimit(line.global.threads);
-  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as an error of the write
-  catchInterrupts();
-  return run(line.action);
+  return run([&] {
+    CommandLine line;
+    if (const int status = parse(line.app, argc, argv); status >= 0) return status;
+    installLog(line.global);
+    setThreadLimit(line.global.threads);
+    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as an error of the write
+    catchInterrupts();
+    return line.action();
+  });
 }
 
 std::shared_ptr<const CLI::App> commandLineParser() {

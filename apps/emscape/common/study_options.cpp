@@ -47,8 +47,9 @@ double thresholdOf(double threshold, scenario::Quantity quantity) {
   const scenario::QuantityInfo& info = scenario::info(quantity);
   if (std::isnan(threshold)) {
     if (const std::optional<double> usual = study::defaultThreshold(quantity)) return *usual;
-    throw Error(ErrorCode::usage, fmt::format("--threshold: quantity '{}' has no usual one; give it in {}",
-                                              info.name, info.unit));
+    const std::string unit = info.unit;
+    throw Error(ErrorCode::usage, fmt::format("--threshold: quantity '{}' has no usual one; give it{}",
+                                              info.name, unit.empty() ? "" : " in " + unit));
   }
   if (quantity == scenario::Quantity::detection_probability && !(threshold > 0 && threshold < 1)) {
     throw Error(ErrorCode::usage,

@@ -64,14 +64,6 @@ void printTable(const study::ReportTable& table) {
   for (const auto& row : table.rows) line(row);
 }
 
-std::string pathText(const study::ExplainedPath& path) {
-  std::string text = path.verdict;
-  if (path.jammer_to_signal_db && std::isfinite(*path.jammer_to_signal_db)) {
-    text += fmt::format(" J/S {:.1f} dB.", *path.jammer_to_signal_db);
-  }
-  return text;
-}
-
 /// "Lost: 12.3 km2 about 36.30000, -84.20000 at 150 m above ground, t = 80 s"
 std::string titleOf(const study::ChangedArea& area) {
   return fmt::format("{}: {} km2 about {:.5f}, {:.5f} at {}, t = {:g} s", area.is_gained ? "Gained" : "Lost",
@@ -159,7 +151,7 @@ void addSections(study::HtmlReport& report, const study::Comparison& comparison,
   }
   for (const study::ChangedArea& area : comparison.changed_areas) {
     report.paragraph(titleOf(area) + (comparison.has_paths ? ". " + valuesText(area, quantity) : "."));
-    if (!area.emitter.empty()) report.facts({{"A", pathText(area.a)}, {"B", pathText(area.b)}});
+    if (!area.emitter.empty()) report.facts({{"A", area.a.verdict}, {"B", area.b.verdict}});
   }
 }
 
@@ -170,7 +162,7 @@ void printComparison(const study::Comparison& comparison, const std::string& qua
   for (const study::ChangedArea& area : comparison.changed_areas) {
     print("\n{}\n", titleOf(area));
     if (comparison.has_paths) print("  {}\n", valuesText(area, quantity));
-    if (!area.emitter.empty()) print("  A: {}\n  B: {}\n", pathText(area.a), pathText(area.b));
+    if (!area.emitter.empty()) print("  A: {}\n  B: {}\n", area.a.verdict, area.b.verdict);
   }
 }
 

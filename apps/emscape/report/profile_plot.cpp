@@ -252,32 +252,18 @@ class ProfilePlot {
 
   void drawTitle() {
     const emfield::PathEnd& end = profile_.end;
-    canvas_.text(
+    const std::string title =
         fmt::format("{} to {:.5f}, {:.5f} deg   ({}, {}, t = {:g} s)", budget_.emitter,
                     end.position.latitude_deg, end.position.longitude_deg,
-                    quantityText(budget_.frequency_hz, "Hz", 4), toString(budget_.model), budget_.time_s),
-        {frame_.x, 26 * unit_}, 20 * unit_, render::kPlotText, Align::left, Weight::bold);
+                    quantityText(budget_.frequency_hz, "Hz", 4), toString(budget_.model), budget_.time_s);
+    canvas_.text(title, {frame_.x, 26 * unit_},
+                 render::fittedSize_px(canvas_, title, 20 * unit_, frame_.width, Weight::bold),
+                 render::kPlotText, Align::left, Weight::bold);
     double y = 54 * unit_;
-    for (const std::string& line : wrapped(budget_.verdict, frame_.width, 16 * unit_)) {
+    for (const std::string& line : render::wrappedText(canvas_, budget_.verdict, frame_.width, 16 * unit_)) {
       canvas_.text(line, {frame_.x, y}, 16 * unit_, render::kPlotText);
       y += 21 * unit_;
     }
-  }
-
-  std::vector<std::string> wrapped(const std::string& text, double width, double size_px) const {
-    std::vector<std::string> lines(1);
-    for (std::size_t begin = 0; begin < text.size();) {
-      const std::size_t end = std::min(text.find(' ', begin), text.size());
-      const std::string word = text.substr(begin, end - begin);
-      const std::string longer = lines.back().empty() ? word : lines.back() + " " + word;
-      if (canvas_.textBox(longer, size_px).width <= width) {
-        lines.back() = longer;
-      } else {
-        lines.push_back(word);
-      }
-      begin = end + 1;
-    }
-    return lines;
   }
 
   const PathBudget& budget_;

@@ -109,9 +109,9 @@ void printBudget(const PathBudget& budget) {
 
 void printCompared(const std::vector<Comparison>& compared, const PathBudget& own) {
   if (compared.empty()) return;
-  print("\nCompared\n  {:<12} {:>10} {:>22}\n", "model", "excess dB", "power density dBW/m2");
+  print("\nCompared\n  {:<18} {:>10} {:>22}\n", "model", "excess dB", "power density dBW/m2");
   const auto row = [](const PathBudget& budget, const char* remark) {
-    print("  {:<12} {:>10} {:>22} {}\n", toString(budget.model), valueText(budget.excess.loss_db),
+    print("  {:<18} {:>10} {:>22} {}\n", toString(budget.model), valueText(budget.excess.loss_db),
           valueText(budget.find("power_density_dbwm2")->value), remark);
   };
   row(own, "the scenario's");
@@ -119,7 +119,7 @@ void printCompared(const std::vector<Comparison>& compared, const PathBudget& ow
     if (comparison.refusal.empty()) {
       row(comparison.budget, "");
     } else {
-      print("  {:<12} {}\n", toString(comparison.model), comparison.refusal);
+      print("  {:<18} {}\n", toString(comparison.model), comparison.refusal);
     }
   }
 }

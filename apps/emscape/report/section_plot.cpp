@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "base/quantity_text.h"
 #include "emscape/render/annotate/legend.h"
@@ -143,18 +145,12 @@ class SectionPlot {
   }
 
   void drawGround(const PlotPanel& panel) {
-    std::vector<Point2> surface;
-    for (int i = 0; i < budget_.profile.count(); ++i) {
-      surface.push_back(
-          panel.at(budget_.profile.ranges_m[static_cast<std::size_t>(i)] / 1000,
-                   static_cast<double>(budget_.profile.ground_msl_m[static_cast<std::size_t>(i)])));
+    std::vector<Point2> heights;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(budget_.profile.count()); ++i) {
+      heights.push_back(
+          {budget_.profile.ranges_m[i] / 1000, static_cast<double>(budget_.profile.ground_msl_m[i])});
     }
-    std::vector<Point2> body = surface;
-    const double bottom = panel.frame().y + panel.frame().height;
-    body.push_back({surface.back().x, bottom});
-    body.push_back({surface.front().x, bottom});
-    canvas_.polygon(body, render::kPlotGround);
-    canvas_.outline(surface, render::kPlotSurface, 1.6 * unit_, false);
+    panel.drawGround(heights);
   }
 
   void drawEnd(const PlotPanel& panel, double range_m, double height_msl_m, const std::string& name,
@@ -175,11 +171,19 @@ class SectionPlot {
 
   void drawTitle() {
     const emfield::PathEnd& end = budget_.profile.end;
-    canvas_.text(
+    const double width = canvas_.size().width - 184 * unit_;
+    const std::string title =
         fmt::format("{} to {:.5f}, {:.5f} deg   ({}, t = {:g} s)", budget_.emitter, end.position.latitude_deg,
-                    end.position.longitude_deg, quantityText(budget_.frequency_hz, "Hz", 4), budget_.time_s),
-        {92 * unit_, 26 * unit_}, 20 * unit_, render::kPlotText, Align::left, Weight::bold);
-    canvas_.text(budget_.verdict, {92 * unit_, 56 * unit_}, 16 * unit_, render::kPlotText);
+                    end.position.longitude_deg, quantityText(budget_.frequency_hz, "Hz", 4), budget_.time_s);
+    canvas_.text(title, {92 * unit_, 26 * unit_},
+                 render::fittedSize_px(canvas_, title, 20 * unit_, width, Weight::bold), render::kPlotText,
+                 Align::left, Weight::bold);
+    const std::vector<std::string> lines = render::wrappedText(canvas_, budget_.verdict, width, 16 * unit_);
+    double y = (lines.size() > 1 ? 50 : 56) * unit_;
+    for (const std::string& line : lines) {
+      canvas_.text(line, {92 * unit_, y}, 16 * unit_, render::kPlotText);
+      y += 20 * unit_;
+    }
   }
 
   const PathBudget& budget_;

@@ -9,7 +9,8 @@
 
 namespace emscape::study {
 
-/// Area of a map: a box, or a circle in it, beyond which pixels are left out.
+/// Area of a map: a box, or a circle in it, beyond which pixels are left out. With a pole in it the box has
+/// all longitudes.
 struct MapArea {
   struct Circle {
     double latitude_deg = 0, longitude_deg = 0, radius_m = 0;
@@ -18,7 +19,7 @@ struct MapArea {
   std::optional<Circle> circle;
 };
 
-/// The area of a scenario's region.
+/// The area of a scenario's region; with a pole in it, the circle around it.
 MapArea areaOf(const scenario::Region& region);
 /// @throws Error (usage) for a position that is none or a radius outside 10 m..2000 km
 MapArea circularArea(const MapArea::Circle& circle);

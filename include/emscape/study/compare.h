@@ -97,7 +97,8 @@ struct MapChoice {
 };
 /// Pairs of maps of two folders, in the order of A's.
 /// @throws Error (bad_input) if the folders differ in pixels, quantity or threshold, or if one has a chosen
-/// map that the other has not; (usage) for Product::best, and if no map is chosen
+/// map that the other has not; (usage) for Product::best, and if there is no map of a chosen product or
+/// height, or of any chosen time
 std::vector<std::pair<std::size_t, std::size_t>> pairsOf(const CoverageFolder& a, const CoverageFolder& b,
                                                          const MapChoice& choice);
 

@@ -27,10 +27,10 @@ struct MapGrid {
 
 /// The pixels that cover an area. Their corners are at whole multiples of cell_m, so that maps of one
 /// projection and cell fit each other.
-/// @param crs  "utm" (the zone of the area's middle), "local" (azimuthal equidistant about it), or "EPSG:N",
-/// a projection in metres
+/// @param crs  "utm" (the zone of the area's middle, with the exceptions of Norway and Svalbard), "local"
+/// (azimuthal equidistant about it), or "EPSG:N", a projection in metres
 /// @throws Error (usage) for an unknown or unsuitable crs, a cell that is not positive, more than 2^26 pixels
-/// @accuracy places within 1 mm of the projection's, to 80 degrees of latitude
+/// @accuracy places within 1 mm of the projection's
 MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs);
 
 /// The pixels of a map that is there, none left out.

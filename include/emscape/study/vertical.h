@@ -15,6 +15,8 @@
 namespace emscape::study {
 
 struct VerticalRequest {
+  static constexpr double kLeastRange_m = 100, kLargestRange_m = 1.99e6;
+
   int emitter = 0;                   ///< index into Scenario::emitters
   std::vector<double> azimuths_deg;  ///< clockwise from true north
   double time_s = 0;
@@ -22,8 +24,8 @@ struct VerticalRequest {
   double threshold = 0.5;  ///< in the quantity's unit
   /// mean_sea_level: heights from the lowest ground up. ground: from the ground below each place.
   emfield::HeightReference axis = emfield::HeightReference::mean_sea_level;
-  double range_m = 0;       ///< over the ground, to the right edge, 100..2e6
-  double max_height_m = 0;  ///< of the upper edge, on the axis, 10..1e5
+  double range_m = 0;       ///< over the ground, to the right edge
+  double max_height_m = 0;  ///< of the upper edge, on the axis, 10..1e5; above mean sea level from -500
   /// Blake's chart: over a smooth earth in place of the terrain, at the height of the ground below the
   /// emitter (or ground.surface_msl_m), from which all heights are then counted; axis must be mean_sea_level.
   bool smooth_earth = false;
@@ -84,8 +86,13 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
                                 const scenario::TerrainPtr& terrain, const VerticalRequest& request,
                                 emfield::FieldOptions options);
 
+/// Size of a picture with so many panels: 1400 x 800, higher for more than four.
+render::ImageSize verticalPlotSize(std::size_t azimuths);
+/// @throws Error (usage) for a picture that has no room for so many panels
+void checkVerticalPlot(render::ImageSize size, std::size_t azimuths);
+
 /// Draws a diagram into a .png or .svg, one panel per azimuth.
-/// @throws Error (other) naming the file
+/// @throws Error (other) naming the file; as checkVerticalPlot() does
 void plotVertical(const VerticalDiagram& diagram, render::ImageSize size, const std::string& file);
 
 }  // namespace emscape::study
