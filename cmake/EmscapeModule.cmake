@@ -64,5 +64,20 @@ function(emscape_test_program target label)
     target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
   endif()
   emscape_warnings(${target})
-  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} ${ARGN})
+  emscape_add_tests(${target} "" LABELS ${label} ${ARGN})
+endfunction()
+
+# emscape_add_tests(TARGET PREFIX PROPERTY VALUE ...): each test of a program of GoogleTest is one of ctest's. Under a sanitizer,
+# where a program takes longer to load than most tests to run, each of ctest's tests is one of six shards of the program; the
+# environment variable GTEST_FILTER then selects tests by name.
+function(emscape_add_tests target prefix)
+  if(NOT EMSCAPE_SANITIZE)
+    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${prefix}" PROPERTIES ${ARGN})
+    return()
+  endif()
+  foreach(shard RANGE 5)
+    set(name "${prefix}${target}.${shard}")
+    add_test(NAME "${name}" COMMAND ${target})
+    set_tests_properties("${name}" PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=6;GTEST_SHARD_INDEX=${shard}" ${ARGN})
+  endforeach()
 endfunction()

@@ -22,10 +22,11 @@ endif()
 
 find_program(EMSCAPE_CCACHE ccache)
 mark_as_advanced(EMSCAPE_CCACHE)
-# Paths below the source folder are hashed as relative ones: build folders of equal depth, such as those of the presets and of
-# `pip install .`, share objects. The sloppiness is needed with precompiled headers.
+# Paths below the source folder are hashed as relative ones, and the working directory is not hashed: checkouts, and build folders
+# of equal depth such as those of the presets and of `pip install .`, share objects. The sloppiness is needed with precompiled
+# headers.
 if(EMSCAPE_CCACHE)
-  set(EMSCAPE_CCACHE_COMMAND "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}"
+  set(EMSCAPE_CCACHE_COMMAND "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1
     CCACHE_SLOPPINESS=pch_defines,time_macros "${EMSCAPE_CCACHE}")
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set(CMAKE_CXX_COMPILER_LAUNCHER "${EMSCAPE_CCACHE_COMMAND}")
