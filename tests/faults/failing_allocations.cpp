@@ -1,8 +1,8 @@
 // To be preloaded into a program: makes one allocation by `operator new` fail. Counts allocations of
 // EMSCAPE_FAILING_BYTES or more during main(); the EMSCAPE_FAILING_ALLOCATION-th one fails (1, 2, ...; unset:
 // none), or the next one outside GDAL, its libraries and Mesa's driver, which omit results for lack of
-// memory, or crash. If EMSCAPE_ALLOCATIONS names a file, the count is written into it. malloc() in C
-// libraries never fails, as these would end the program.
+// memory, or crash. If EMSCAPE_ALLOCATIONS names a file, the count is written into it. malloc() is not
+// affected, since C libraries end the program when it fails.
 #include <dlfcn.h>
 #include <execinfo.h>
 
