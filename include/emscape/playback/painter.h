@@ -18,8 +18,8 @@ namespace emscape::playback {
 
 /// How fields on tetrahedra are drawn.
 enum class CellMethod {
-  automatic,  ///< complete pictures are marched; others are projected if the CPU marches and OpenGL is
-              ///< available
+  automatic,  ///< complete pictures are marched; others are projected if the CPU marches and OpenGL has a
+              ///< GPU
   march,      ///< CellRenderer::render()
   project     ///< CellRenderer::project(); pictures that are not complete by centroids
 };
