@@ -1,4 +1,4 @@
-# Options and what holds for every target of the project.
+# Options, and settings of every target of the project.
 option(EMSCAPE_TESTS "Build the tests" ON)
 option(EMSCAPE_WERROR "Treat warnings as errors" ON)
 option(EMSCAPE_UNITY "Compile the sources of the libraries in groups: half the time of a whole build" ON)
@@ -33,8 +33,8 @@ if(EMSCAPE_CCACHE)
   endif()
 endif()
 
-# object-size: GCC 12 reports loads well inside constant arrays. null, alignment and pointer-overflow check every access,
-# for twice the time of compilation; what they are for, the address sanitizer sees.
+# object-size: GCC 12 reports loads well inside constant arrays. null, alignment and pointer-overflow check every access and
+# double the compilation time; the address sanitizer detects the same errors.
 set(address_sanitizers -fsanitize=address,undefined -fno-sanitize=object-size,null,alignment,pointer-overflow
     -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
 if(EMSCAPE_SANITIZE STREQUAL "address")

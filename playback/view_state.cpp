@@ -45,7 +45,7 @@ ValueSpec text(int min_characters = 0) {
   return value;
 }
 
-/// The table of the format. That of the transfer function depends on how the file writes it.
+/// The table of the format. The table of the transfer function depends on its form in the file.
 class ViewFormat {
  public:
   explicit ViewFormat(const DocumentNode* transfer) : transfer_(transfer) {
@@ -205,7 +205,7 @@ class Reader {
   ProblemList& problems_;
 };
 
-/// A newer version would be a list of unknown keys; one error says it.
+/// Reports a newer version with one error, instead of a list of unknown keys.
 void refuseNewerVersion(const std::string& file, const DocumentNodePtr& root) {
   const DocumentNodePtr version = document::valueAt(root, {"schema_version"});
   const auto number = version && !version->quoted ? document::numberOf(version->text) : std::nullopt;

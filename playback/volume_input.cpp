@@ -65,7 +65,7 @@ bool holdsMeshes(const fs::path& path) {
     try {
       return volume::isMeshFile(volume::seriesOf(path).front());
     } catch (const Error&) {
-      return false;  // reading it reports the fault
+      return false;  // the fault is reported when the file is read
     }
   }
   if (!fs::is_directory(path)) return false;

@@ -8,11 +8,11 @@
 namespace emscape::scenario {
 namespace {
 
-/// Times looked at: longer series have been everywhere by then or repeat themselves.
+/// Limit of the examined times: longer series have covered all azimuths by then, or repeat themselves.
 constexpr double kMaxSampledTimes = 20000;
 
-/// Part of 0..range (deg) that is within half a width of one of the azimuths.
-/// @param closed  0 and range are one azimuth
+/// Fraction of 0..range (deg) that is within half a width of one of the azimuths.
+/// @param closed  0 and range are the same azimuth
 double litShare(std::vector<double> azimuths_deg, double width_deg, double range_deg, bool closed) {
   std::sort(azimuths_deg.begin(), azimuths_deg.end());
   const double half_deg = width_deg / 2;
@@ -49,7 +49,7 @@ std::optional<ScanSampling> scanSampling(const ScanSpec& scan, double beamwidth_
 }
 
 bool leavesGaps(const ScanSampling& sampling, double beamwidth_az_deg) {
-  constexpr double kAll = 0.995;  // the share's percents are whole
+  constexpr double kAll = 0.995;  // shares are printed in whole percent
   return sampling.step_deg > beamwidth_az_deg / 2 && sampling.lit_share < kAll;
 }
 

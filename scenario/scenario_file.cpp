@@ -143,7 +143,7 @@ IntervalSpec parseInterval(const Section& section, ParseContext& context) {
   return interval;
 }
 
-/// The quantities that have a meaning over an interval, with commas between them.
+/// The quantities that are defined for an interval, separated by commas.
 std::string quantitiesOver(IntervalKind interval) {
   std::string names;
   for (const QuantityInfo& row : quantityTable()) {
@@ -242,7 +242,7 @@ void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, Pa
   }
 }
 
-/// Warns of jammers that are in no radar's band, if the output depends on jamming.
+/// Warns about jammers outside the bands of all radars, if the output depends on jamming.
 void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<std::string>& quantities = scenario.output.quantities;
   const bool counts = std::any_of(quantities.begin(), quantities.end(), [](const std::string& quantity) {
@@ -266,7 +266,7 @@ void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseConte
   }
 }
 
-/// An antenna whose gain is more than its pattern can have.
+/// Warns about an antenna whose gain exceeds the directivity of its pattern.
 /// @param section  of the emitter or receiver
 void warnOfGain(const Antenna& antenna, const Section& section, const char* consequence,
                 ParseContext& context) {
@@ -295,7 +295,7 @@ void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& co
   }
 }
 
-/// Whether the output holds a radar's beam, or any other's, where its scan has it at the time.
+/// True if the output depends on the direction of a scan at the time.
 bool showsScans(const OutputSpec& output) {
   return output.interval.kind == IntervalKind::instant &&
          std::any_of(output.quantities.begin(), output.quantities.end(), [&](const std::string& name) {
@@ -307,15 +307,15 @@ bool showsScans(const OutputSpec& output) {
          });
 }
 
-/// Beams that sweep further in a time step than they are wide, so that the series never shows some azimuths;
-/// those of the same width and rate together, at the first.
+/// Warns about beams that sweep more than their width per time step, so that the series never shows some
+/// azimuths. Beams of the same width and rate have one warning, at the first emitter.
 void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseContext& context) {
   struct Beams {
     SourceLocation first;
     std::string names;
     int count = 0;
   };
-  std::map<std::string, Beams> beams;  // by what they do
+  std::map<std::string, Beams> beams;  // by width and rate
   const std::vector<Section> sections = root.sections("emitters");
   for (std::size_t i = 0; i < sections.size() && showsScans(scenario.output); ++i) {
     const Emitter& emitter = scenario.emitters[i];

@@ -1,4 +1,4 @@
-/// emscape compare: what one scenario wins and loses against another.
+/// emscape compare: gains and losses of one scenario against another.
 #include "emscape/study/compare.h"
 
 #include <fmt/core.h>
@@ -37,7 +37,7 @@ struct CompareCommand {
   std::set<std::string> given;  ///< names of the options on the command line
 };
 
-/// Writes B less A in the voxels of A's region.
+/// Writes B minus A in the voxels of A's region.
 void writeVolume(const CompareCommand& command, const study::ComparedScenario& a,
                  const study::ComparedScenario& b, double time_s, emfield::FieldOptions options) {
   options.quantities = {command.maps.quantity};
@@ -131,7 +131,8 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
   return finish(folder, comparison, a, b, command.maps.quantity, global);
 }
 
-/// Of folders of maps only these options make sense: what the maps hold was chosen when they were computed.
+/// For folders of maps only these options are allowed: the contents of the maps were chosen when they were
+/// computed.
 void checkFolderOptions(const CompareCommand& command) {
   static const std::set<std::string> kAllowed{"A",         "B",       "--output", "--products",
                                               "--heights", "--times", "--format", "--explain"};

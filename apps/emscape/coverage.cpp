@@ -1,4 +1,4 @@
-/// emscape coverage: maps of coverage at heights above ground or sea.
+/// emscape coverage: coverage maps at heights above ground or sea level.
 #include "emscape/study/coverage.h"
 
 #include <fmt/core.h>

@@ -26,7 +26,7 @@ Examples:
 
 Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectation of the script was not met.)";
 
-/// Parsed options. Those that are also in a view have an effect only if given.
+/// Parsed options. Those that are also part of a view have an effect only if they are given.
 struct Typed {
   std::string state, size, mode, rays = "auto", camera, range, theme, quantity;
   double time_s = 0, exaggeration = 0, step_voxels = 0, budget_ms = 40;
@@ -85,7 +85,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_flag("--quiet,-q", options.quiet, "Only warnings and errors on standard error");
 }
 
-/// Without INPUT these have nothing to apply to.
+/// Refuses options that apply only to an INPUT.
 void refuseOptionsOfInput(const CLI::App& app) {
   for (const char* name : {"--scenario", "--mesh", "--cells", "--cell-order", "--cell-perspective", "--state",
                            "--set", "--compare", "--time", "--quantity", "--mode", "--camera", "--range",
@@ -95,7 +95,7 @@ void refuseOptionsOfInput(const CLI::App& app) {
   }
 }
 
-/// The first view: that of --state, or the default one, with the given options.
+/// Sets the first view: that of --state, or the default one, changed by the given options.
 void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
   playback::ViewState& view = options.view;
   if (!typed.state.empty()) {
@@ -124,7 +124,7 @@ void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
   take("--set", [&] { view.edits.insert(view.edits.end(), typed.edits.begin(), typed.edits.end()); });
 }
 
-/// The parser, and what it fills.
+/// The parser, and the variables it fills.
 struct CommandLine {
   CLI::App app{"Shows a scenario or volumes in a window.", "emscape view"};
   ViewOptions options;

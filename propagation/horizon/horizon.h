@@ -1,9 +1,9 @@
 /// Model `horizon`: terrain and earth masking along straight rays over an earth of effective radius k a.
 ///
-/// A point is lit if no terrain between it and the emitter reaches above the ray that joins them; behind
-/// terrain there is no field at all (no diffraction: an upper bound of shadow). The refractivity gradient is
-/// taken as linear in height, which makes rays straight over the enlarged earth (ITU-R P.834; k from the
-/// gradient of P.453, 4/3 by default).
+/// A point is in sight if no terrain between it and the emitter is above the ray between them. Behind terrain
+/// there is no field (no diffraction: an upper bound of shadow). Refractivity is assumed to be linear in
+/// height, so that rays are straight over the effective earth (ITU-R P.834; k from the gradient of P.453, 4/3
+/// by default).
 #pragma once
 
 #include <cmath>
@@ -49,8 +49,8 @@ struct HorizonGeometry {
   }
 };
 
-/// Slope of the ray that grazes the terrain along one azimuth: the largest to its samples. A point beyond
-/// them is lit if the slope to it is not below.
+/// Slope of the ray that grazes the terrain along one azimuth: the largest slope to its samples. A point
+/// beyond them is in sight if the slope to it is at least this.
 template <class Real>
 struct GrazingSlope {
   Real highest = -Real(HUGE_VAL), unknown = 0;

@@ -109,7 +109,7 @@ void PlotPanel::drawNames(const std::vector<PlotLine>& lines, double top) {
   for (const PlotLine& line : lines) {
     if (!line.name.empty()) named.push_back(&line);
   }
-  constexpr double kRow = 22, kBelow = 30;  // room below the frame, of an axis's numbers and title
+  constexpr double kRow = 22, kBelow = 30;  // space below the frame for an axis's numbers and title
   const auto rows = static_cast<std::size_t>(std::max((frame_.height / unit_ + kBelow - top) / kRow, 4.0));
   const bool fits = named.size() <= rows;
   const std::size_t tail = 2, head = fits ? named.size() : rows - 1 - tail;

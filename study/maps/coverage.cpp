@@ -97,7 +97,7 @@ struct CoverageSolver::Impl {
   const std::vector<CoverageRequest> requests;
   emfield::FieldOptions options;
   std::vector<OfReference> references;
-  std::vector<std::size_t> with_least;  ///< requests of least heights
+  std::vector<std::size_t> with_least;  ///< requests with minimum heights
   std::optional<LeastHeights> least_heights;
 
   /// @param of_maps  without quantities

@@ -15,9 +15,9 @@
 
 namespace emscape::study {
 
-/// True for products of what each emitter does by itself.
+/// True for products that depend on each emitter separately.
 bool isPerEmitter(Product product);
-/// True for products of what jamming changes.
+/// True for products of the effect of jamming.
 bool isOfJamming(Product product);
 
 /// A map without values.
@@ -35,11 +35,11 @@ struct SurfaceValues {
     FastGeodesy geodesy;  ///< from its position
   };
   std::shared_ptr<const volume::DenseVolume> all;
-  std::vector<OfOne> each;                              ///< if a product asks for them
-  std::shared_ptr<const volume::DenseVolume> unjammed;  ///< if a product asks for it
+  std::vector<OfOne> each;                              ///< if a product needs them
+  std::shared_ptr<const volume::DenseVolume> unjammed;  ///< if a product needs it
 };
 
-/// The field of one reference of height, which is kept from time to time and from scenario to scenario.
+/// The field of one reference of height, which is kept between times and scenarios.
 class SurfaceField {
  public:
   /// @param requests  of one quantity
@@ -57,8 +57,8 @@ class SurfaceField {
 
  private:
   emfield::FieldOptions options_;
-  /// Its channels: all emitters together; each alone, if a product asks for it; all without jamming, if a
-  /// product asks for it.
+  /// Its channels: all emitters together; each alone, if a product needs it; all without jamming, if a
+  /// product needs it.
   std::unique_ptr<emfield::FieldSolver> solver_;
 };
 

@@ -1,4 +1,5 @@
-// emscape compare: files, the keys that others rely on, and what is refused. The figures are study's tests.
+// emscape compare: files, JSON keys on which other programs rely, and errors. The figures are tested in
+// tests/study.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -79,7 +80,7 @@ TEST(Compare, RefusesWhatItCannotDo) {
 }
 
 /// `emscape coverage` into a folder.
-/// @param more  options, also in place of those that are set here
+/// @param more  options; they override those set here
 void cover(const std::string& folder, const Arguments& more) {
   Arguments arguments{"coverage", shippedScenario("jacksboro.yaml"), "-o", folder, "--quiet"};
   const Arguments usual{"--cell",    "1000",    "--times",  "80", "--products", "covered,value,best",

@@ -1,5 +1,5 @@
-// emscape profile: the keys that others rely on, pictures, and what is refused. The figures are emfield's
-// tests.
+// emscape profile: JSON keys on which other programs rely, pictures, and errors. The figures are tested in
+// tests/emfield.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ const std::string& jacksboro() {
   return file;
 }
 
-/// The point lies behind the ridge as the jammer sees it at 40 s.
+/// The point is behind the ridge as seen from the jammer at 40 s.
 Arguments blockedPath(const Arguments& more = {}) {
   Arguments arguments{"profile", jacksboro(), "--emitter",          "jammer", "--time",
                       "40",      "--to",      "36.27,-84.24167,15", "--agl"};

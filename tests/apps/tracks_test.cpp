@@ -1,5 +1,5 @@
-// emscape vertical and exposure: files, the keys that others rely on, and what is refused. The figures are
-// study's tests.
+// emscape vertical and exposure: files, JSON keys on which other programs rely, and errors. The figures are
+// tested in tests/study.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

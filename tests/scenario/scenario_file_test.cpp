@@ -294,7 +294,7 @@ TEST_F(ScenarioYaml, WarnsOfABeamThatStepsOverAzimuths) {
               AllOf(HasSubstr("the beams of 'search radar', 'twin', 1.6 deg wide, sweep 36 deg"),
                     HasSubstr("of their azimuths")));
   EXPECT_EQ(both.problems[0].location.line, 32);
-  // Where radars look at each voxel in turn their scans do not show.
+  // If radars look at every voxel, their scans have no effect.
   const std::string coverage =
       replaced(replaced(text, "[power_density_dbwm2, received_power_dbm, snr_db]", "[snr_db]"),
                "combine: per_band", "combine: per_band\n  radar_look: target");

@@ -91,7 +91,7 @@ TEST(Coverage, APixelIsThePathOfProfileThere) {
   EXPECT_GT(compared, 80);
 }
 
-// Large pixels, on slopes that the beam passes over: two metres beside are 0.05 dB.
+// Large pixels on slopes below the beam: an offset of two metres changes the value by 0.05 dB.
 TEST(Coverage, ALargePixelIsThePathToItsCentreInTheProjection) {
   const CoverageOf coverage("jamming.yaml", 2000,
                             {{kLow}, {Product::value}, scenario::Quantity::snr_db, 10, {40}});
@@ -185,7 +185,7 @@ TEST(Coverage, ProductsFollowFromTheValues) {
 }
 
 TEST(Coverage, TheLeastHeightIsTheLowestThatIsCovered) {
-  // Beside ridges there are places where a lower height is seen and a higher one is not; few.
+  // Near ridges there are a few positions where a lower height is visible and a higher one is not.
   const CoverageOf coverage(
       "jacksboro.yaml", 1000,
       {{kLow}, {Product::min_height}, scenario::Quantity::detection_probability, 0.5, {10}});

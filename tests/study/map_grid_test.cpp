@@ -20,7 +20,7 @@ struct GeographicPoint {
   double latitude_deg, longitude_deg;
 };
 
-/// Compares every so many pixels with GeographicLib's projection. @return the number compared
+/// Compares every n-th pixel with GeographicLib's projection. @return the number compared
 int expectPlacesOfUtm(const GeographicPoint& middle, double radius_m, double cell_m, int every) {
   const auto [latitude_deg, longitude_deg] = middle;
   const MapGrid grid = makeMapGrid(circularArea({latitude_deg, longitude_deg, radius_m}), cell_m, "utm");

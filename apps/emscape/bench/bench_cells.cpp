@@ -64,7 +64,7 @@ class CellScene {
   std::size_t tetrahedra() const { return frame_.cells->field.mesh->cells.size(); }
   std::size_t points() const { return frame_.cells->field.values.size(); }
 
-  /// The n-th view: the camera goes on by 20 degrees.
+  /// Moves to the n-th view: each turns the camera by another 20 degrees.
   void turn(int n) {
     renderer_.setCamera(render::makeCamera(turned(camera_, 20.0 * n), renderer_.sceneBox(), size_));
   }
@@ -84,7 +84,7 @@ class CellScene {
     return times;
   }
 
-  /// The first view, and from where it is seen.
+  /// The first view: drawn box, camera and transfer function.
   Json json() {
     turn(0);
     const render::SceneBox box = renderer_.sceneBox();

@@ -1,4 +1,4 @@
-/// emscape bench coverage: the time of a map of coverage.
+/// emscape bench coverage: time of computing coverage maps.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct BenchCoverageOptions {
   std::string quantity = "detection_probability";
 };
 
-/// Medians of the steps to the maps of some heights (ms).
+/// Median times of the steps that compute maps at some heights (ms).
 struct MapTimes {
   double places_ms = 0, update_ms = 0;
   emfield::StageTimes stages;

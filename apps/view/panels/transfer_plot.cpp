@@ -45,7 +45,7 @@ struct Plot {
   double position(float at) const { return static_cast<double>((bottom() - at) / height); }
 };
 
-/// The interval with its margins. While an end is dragged it is that of the begin of the drag.
+/// The interval with its margins. While an end is dragged, the interval at the start of the drag is used.
 Plot plotOf(const playback::TransferEditor& editor, bool held, ImVec2 at, float width, float scale) {
   ImGuiStorage& storage = *ImGui::GetStateStorage();
   const ImGuiID from = ImGui::GetID("from"), to = ImGui::GetID("to");
@@ -65,7 +65,7 @@ Plot plotOf(const playback::TransferEditor& editor, bool held, ImVec2 at, float 
 
 // --- drawing ---
 
-/// Counts on a logarithmic axis: most values of a field are weak.
+/// Counts on a logarithmic axis, since most values of a field are weak.
 void drawHistogram(ImDrawList& list, const Plot& plot, const volume::Histogram& histogram, ImU32 ink) {
   if (histogram.counts.empty()) return;
   const auto bins = static_cast<double>(histogram.counts.size());
@@ -85,7 +85,8 @@ void drawHistogram(ImDrawList& list, const Plot& plot, const volume::Histogram& 
   }
 }
 
-/// Values at which the curve is drawn: evenly spaced, and the points with jumps as jumps.
+/// Points of the drawn curve: evenly spaced values, and the function's points, so that jumps are drawn as
+/// jumps.
 std::vector<render::TransferFunction::OpacityPoint> curveOf(const render::TransferFunction& function,
                                                             const Plot& plot) {
   constexpr int kParts = 120;
@@ -102,7 +103,7 @@ void drawCurve(ImDrawList& list, const Plot& plot, const render::TransferFunctio
   const auto curve = curveOf(function, plot);
   const ImDrawListFlags flags = list.Flags;
   std::vector<ImVec2> line{{plot.x(curve.front().at), plot.y(curve.front().opacity)}};
-  list.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // its rims would show between the parts
+  list.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // antialiased edges would show between the parts
   for (std::size_t i = 1; i < curve.size(); ++i) {
     const ImVec2 a{plot.x(curve[i - 1].at), plot.y(curve[i - 1].opacity)};
     const ImVec2 b{plot.x(curve[i].at), plot.y(curve[i].opacity)};
@@ -172,7 +173,7 @@ void drawTicks(ImDrawList& list, const Plot& plot, const std::string& unit, rend
   list.AddText({plot.right() - unit_width, top + 3 * scale}, ink, unit.c_str());
 }
 
-/// Opacities of the axis, at its left edge.
+/// Labels of the opacity axis, at the left edge.
 void drawOpacityAxis(ImDrawList& list, const Plot& plot, render::Theme theme, float scale) {
   const ImU32 line = inkOf(mutedColor(theme), 0.25F), ink = inkOf(mutedColor(theme));
   const std::vector<double> opacities =
