@@ -86,8 +86,10 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
   if (!command.volume.empty()) volume::formatOf(command.volume);
   std::vector<scenario::Edit> edits_b = command.edits;
   edits_b.insert(edits_b.end(), command.edits_b.begin(), command.edits_b.end());
-  study::ComparedScenario a{scenario::loadScenario(command.a, command.edits), nullptr};
-  study::ComparedScenario b{scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b),
+  study::ComparedScenario a{scenario::loadScenario(command.a, command.edits, scenario::ReadFor::chosen_times),
+                            nullptr};
+  study::ComparedScenario b{scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b,
+                                                   scenario::ReadFor::chosen_times),
                             nullptr};
   study::CompareRequest request;
   request.coverage = requestOf(command.maps, a.scenario->clock);

@@ -19,14 +19,20 @@ struct ParseResult {
   std::vector<Problem> problems;             ///< in the order of the file
 };
 
+/// What a scenario is read for: all steps of its clock, or times that are chosen otherwise, of which warnings
+/// about the steps do not speak.
+enum class ReadFor { series, chosen_times };
+
 /// Reads a scenario and every file it names (tracks, antennas; elevation files are opened, not read). Faults
 /// in the files do not throw: all are in the result, each with file, line and column.
 /// @param edits  applied before the check; the location of a fault that one causes is the edit, as
 /// "PATH=VALUE"
-ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {});
+ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {},
+                          ReadFor read_for = ReadFor::series);
 
 /// The same, or one Error (bad_input) that lists all problems, one per line. Warnings go to the log.
-std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits = {});
+std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits = {},
+                                             ReadFor read_for = ReadFor::series);
 
 /// A scenario with further edits, as by Scenario::set(), with the warnings and without an exception. The
 /// given scenario is not changed.
