@@ -56,9 +56,13 @@ std::vector<PlotLine> linesOf(const Exposure& exposure) {
 /// Bands between the known times where the value of all emitters together is unknown.
 void drawUnknown(const Exposure& exposure, const PlotPanel& panel) {
   const std::vector<ExposureRow>& rows = exposure.rows;
-  for (std::size_t t = 0; t + 1 < rows.size(); ++t) {
-    if (rows[t].state == ExposureState::unknown || rows[t + 1].state == ExposureState::unknown)
-      panel.drawBand(rows[t].time_s, rows[t + 1].time_s, kUnknown);
+  std::size_t begin = 0;
+  for (std::size_t t = 1; t <= rows.size(); ++t) {
+    const bool goes_on = t < rows.size() && (rows[t - 1].state == ExposureState::unknown ||
+                                             rows[t].state == ExposureState::unknown);
+    if (goes_on) continue;
+    if (t - 1 > begin) panel.drawBand(rows[begin].time_s, rows[t - 1].time_s, kUnknown);
+    begin = t;
   }
 }
 
