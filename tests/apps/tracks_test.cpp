@@ -91,7 +91,7 @@ TEST(Vertical, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", file, "--threshold", "1.5"}, 2),
               HasSubstr("between 0 and 1"));
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", file, "--range", "5"}, 2),
-              HasSubstr("--range: '5' must be a number from 100 to 1.99e+06\n"));
+              HasSubstr("--range: '5' must be a number from 100 to 1990000\n"));
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", folder / "none/a.png"}, 1),
               HasSubstr("none/a.png"));
   EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
