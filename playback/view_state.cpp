@@ -45,6 +45,10 @@ ValueSpec text(int min_characters = 0) {
   return value;
 }
 
+ValueSpec within(const render::SettingLimits& limits, const char* unit = "") {
+  return spec::number(unit).from(limits.min).to(limits.max);
+}
+
 /// The table of the format. The table of the transfer function depends on its form in the file.
 class ViewFormat {
  public:
@@ -73,13 +77,13 @@ class ViewFormat {
          spec::optional("range", spec::object(range_), ""),
          spec::optional("transfer", spec::object(transfer_.object()), ""),
          spec::optional("mode", spec::choice(kModes), ""),
-         spec::optional("step_voxels", spec::number("voxels").from(0.05).to(10), ""),
-         spec::optional("mida_gamma", spec::number().from(-1).to(1), ""),
+         spec::optional("step_voxels", within(render::kStepLimits, "voxels"), ""),
+         spec::optional("mida_gamma", within(render::kMidaGammaLimits), ""),
          spec::optional("exact", boolean, ""),
          spec::optional("shading", boolean, ""),
          spec::optional("iso_value", value, ""),
-         spec::optional("iso_opacity", spec::number().from(0).to(1), ""),
-         spec::optional("vertical_exaggeration", spec::number().from(0).to(100), ""),
+         spec::optional("iso_opacity", within(render::kIsoOpacityLimits), ""),
+         spec::optional("vertical_exaggeration", within(render::kExaggerationLimits), ""),
          spec::optional("planes", spec::listOf(text(1), 0, render::kMaxCutPlanes), ""),
          spec::optional("theme", spec::choice(kThemes), ""),
          spec::optional("show_terrain", boolean, ""),

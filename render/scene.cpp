@@ -11,12 +11,6 @@
 namespace emscape::render {
 namespace {
 
-void requireRange(const char* name, double value, double least, double largest) {
-  if (!(value >= least && value <= largest)) {
-    throw Error(ErrorCode::bad_input, fmt::format("{} {}: expected {}..{}", name, value, least, largest));
-  }
-}
-
 /// Drawn positions to the index space of a grid, axis by axis.
 struct IndexSpace {
   Vec3d origin_m;   ///< drawn position of the centre of voxel (0, 0, 0)
@@ -111,10 +105,10 @@ void Scene::setCamera(const Camera& camera) {
 }
 
 void Scene::setSettings(const RenderSettings& settings) {
-  requireRange("step (voxels)", settings.step_voxels, 0.05, 10);
-  requireRange("MIDA gamma", settings.mida_gamma, -1, 1);
-  requireRange("vertical exaggeration", settings.vertical_exaggeration, 0, 100);
-  requireRange("iso opacity", settings.iso_opacity, 0, 1);
+  kStepLimits.require(settings.step_voxels);
+  kMidaGammaLimits.require(settings.mida_gamma);
+  kExaggerationLimits.require(settings.vertical_exaggeration);
+  kIsoOpacityLimits.require(settings.iso_opacity);
   if (std::isinf(settings.iso_value)) throw Error(ErrorCode::bad_input, "iso value: must be finite");
   checkCutPlanes(settings.planes);
   if (planesOfGround(settings.planes) != planesOfGround(settings_.planes)) ++versions_.view;

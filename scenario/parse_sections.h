@@ -12,6 +12,7 @@
 #include "emscape/scenario/platform.h"
 #include "emscape/scenario/receiver.h"
 #include "emscape/scenario/scenario.h"
+#include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/target.h"
 #include "scenario/schema.h"
 #include "scenario/source.h"
@@ -24,6 +25,7 @@ using document::Section;
 /// Context that the parsers of one file share.
 struct ParseContext {
   std::string file;
+  ReadFor read_for = ReadFor::series;
   ProblemList problems;
   document::ContentHash hash;
   const NamedFiles* before =

@@ -107,7 +107,8 @@ void draw(const ProfileReport& report, const scenario::Snapshot& snapshot, int e
 
 ProfileReport makeReport(const ProfileOptions& options) {
   const scenario::SitePosition to = parsePoint(options.to, options.above_ground);
-  const auto scenario = withPoint(*scenario::loadScenario(options.scenario, options.edits), to);
+  const auto scenario = withPoint(
+      *scenario::loadScenario(options.scenario, options.edits, scenario::ReadFor::chosen_times), to);
   const int emitter = namedIndex(scenario->emitters, options.emitter, "--emitter", "emitter", scenario->file);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain.get(), options.time_s);

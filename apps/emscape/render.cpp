@@ -425,16 +425,16 @@ Examples:
                       "Scenario of the ground and emitters to draw with volumes");
   command
       ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(within(render::kExaggerationLimits));
   addPlaneOption(*command, options->planes);
   command->add_option("--step", options->step_voxels, "Distance of samples, in voxels; default: 1")
-      ->check(CLI::Range(0.05, 10.0));
+      ->check(within(render::kStepLimits));
   command->add_option("--mida-gamma", options->mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
-      ->check(CLI::Range(-1.0, 1.0));
+      ->check(within(render::kMidaGammaLimits));
   command->add_option("--iso-value", options->iso_value,
                       "Value of the isosurface, in the quantity's unit; default: the middle of the colours");
   command->add_option("--iso-opacity", options->iso_opacity, "Opacity of the isosurface")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(within(render::kIsoOpacityLimits));
   command->add_flag("--shading", options->shading, "Shading of dvr and mida; iso is always shaded");
   command->add_option("--theme", options->theme, "Background and labels; default: dark")
       ->check(CLI::IsMember({"dark", "light"}));

@@ -66,10 +66,10 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_option("--budget", typed.budget_ms, "Milliseconds between two pictures while it changes")
       ->check(CLI::Range(1.0, 1e5));
   app.add_option("--exaggeration", typed.exaggeration, "Vertical exaggeration; 0: chosen from the box")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(app::within(render::kExaggerationLimits));
   app::addPlaneOption(app, typed.planes);
   app.add_option("--step", typed.step_voxels, "Distance of samples, in voxels; default: 1")
-      ->check(CLI::Range(0.05, 10.0));
+      ->check(app::within(render::kStepLimits));
   app.add_flag("--shading", typed.shading, "Shading of dvr and mida; iso is always shaded");
   app.add_flag("--allow-missing-terrain", options.allow_missing_terrain,
                "Compute although elevation data is missing; the holes are drawn as such");

@@ -64,7 +64,8 @@ struct GrazingSlope {
   EMSCAPE_HD Real value() const { return highest + unknown; }
 };
 
-/// The slope of that ray over a smooth earth at mean sea level, in closed form.
+/// The slope of that ray over a smooth earth at mean sea level, in closed form. Nearer than the horizon it is
+/// that to a centimetre below the surface, so that rounding does not put places on the surface in shadow.
 /// @param range_m  of the point
 template <class Real>
 EMSCAPE_HD Real smoothGrazingSlope(const HorizonGeometry<Real>& geometry, double range_m) {
@@ -72,7 +73,9 @@ EMSCAPE_HD Real smoothGrazingSlope(const HorizonGeometry<Real>& geometry, double
   const double height_m = double(geometry.station_height_msl_m);
   if (height_m < 0) return Real(HUGE_VAL);
   const double tangent = std::sqrt(height_m * (2 * radius_m + height_m)) / radius_m;  // of the dip
-  if (range_m < radius_m * std::atan(tangent)) return geometry.slopeTo(Real(0), geometry.termsAt(range_m));
+  constexpr double kBelow_m = 0.01;
+  if (range_m < radius_m * std::atan(tangent))
+    return geometry.slopeTo(Real(-kBelow_m), geometry.termsAt(range_m));
   return Real(-tangent);
 }
 

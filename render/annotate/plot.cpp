@@ -96,6 +96,11 @@ void PlotPanel::drawGround(const std::vector<Point2>& heights) const {
   drawPiece();
 }
 
+void PlotPanel::drawBand(double x_begin, double x_end, const Ink& ink) const {
+  const double left = at(x_begin, y_.lowest).x;
+  canvas_.rectangle({left, frame_.y, at(x_end, y_.lowest).x - left, frame_.height}, ink);
+}
+
 void PlotPanel::drawLine(const PlotLine& line) {
   for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
     const PlotLine::Point &a = line.points[i], &b = line.points[i + 1];

@@ -56,6 +56,8 @@ class PlotPanel {
   void drawTitle(const std::string& title);
   /// Lines at round values, their numbers, and the titles of the axes.
   void drawGrid();
+  /// A band over the whole height.
+  void drawBand(double x_begin, double x_end, const Ink& ink) const;
   void drawLine(const PlotLine& line);
   /// The ground below a line of heights, in pieces with gaps where a height is NaN.
   /// @param heights  x, y on the axes

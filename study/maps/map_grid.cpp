@@ -96,7 +96,8 @@ class Projection {
   gdal::Transformation transform_;
 };
 
-/// Points along the border of a box, by longitude and latitude.
+/// Points along the border of a box, by longitude and latitude: those at one part of the southern, northern,
+/// western and eastern side, from part to part.
 void addBorder(const scenario::GeoBox& box, std::vector<double>& longitudes, std::vector<double>& latitudes) {
   constexpr int kPerSide = 32;
   for (int n = 0; n <= kPerSide; ++n) {
@@ -110,6 +111,22 @@ void addBorder(const scenario::GeoBox& box, std::vector<double>& longitudes, std
     for (const double side : {box.west_deg, box.east_deg}) {
       longitudes.push_back(side);
       latitudes.push_back(latitude);
+    }
+  }
+}
+
+/// Refuses a projection that is cut along a meridian of the area, as most are opposite to their middle: the
+/// pixels would run around the earth.
+/// @param x  of the points of addBorder()  @param width_m  of all
+/// @throws Error (usage)
+void checkUncut(const std::vector<double>& x, double width_m, const std::string& crs) {
+  for (std::size_t n = 4; n < x.size(); ++n) {
+    const bool is_on_parallel = n % 4 < 2;
+    if (is_on_parallel && std::abs(x[n] - x[n - 4]) > width_m / 2) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("crs '{}' is cut within the area: places beside each other are {:.0f} km apart "
+                              "on its plane; utm and local have no cut there",
+                              crs, std::abs(x[n] - x[n - 4]) / 1000));
     }
   }
 }
@@ -380,6 +397,7 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   }
   const auto [least_x, largest_x] = std::minmax_element(x.begin(), x.end());
   const auto [least_y, largest_y] = std::minmax_element(y.begin(), y.end());
+  checkUncut(x, *largest_x - *least_x, crs);
   constexpr double kRounding = 1e-6;  // cells
   const double first_column = std::floor(*least_x / cell_m + kRounding),
                end_column = std::ceil(*largest_x / cell_m - kRounding);

@@ -20,6 +20,9 @@ bool isPerEmitter(Product product);
 /// True for products of the effect of jamming.
 bool isOfJamming(Product product);
 
+/// True if a product of the request is over all times.
+bool isOverTime(const CoverageRequest& request);
+
 /// A map without values.
 /// @param height  none: for all heights
 CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& request, Product product,
@@ -90,10 +93,6 @@ class SurfaceMaps {
     std::shared_ptr<const volume::DenseVolume> last;
   };
 
-  bool isOverTime() const {
-    return std::any_of(request_.products.begin(), request_.products.end(),
-                       [](Product product) { return info(product).over_time; });
-  }
   bool isCovered(float value) const { return static_cast<double>(value) >= request_.threshold; }
 
   float valueAt(const volume::DenseVolume& volume, std::size_t k, std::size_t p) const {

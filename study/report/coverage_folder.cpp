@@ -44,7 +44,7 @@ void findInputs(const Json& record, CoverageFolder& folder) {
   std::map<std::string, std::string> digests;
   for (const Json& file : record.at("terrain")) digests[file.at("file")] = file.at("crc32");
   try {
-    const auto scenario = scenario::loadScenario(known->file, edits);
+    const auto scenario = scenario::loadScenario(known->file, edits, scenario::ReadFor::chosen_times);
     if (scenario->hash != known->hash) return;
     if (scenario->terrain) {
       for (const std::string& file : scenario->terrain->files) {

@@ -14,6 +14,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 Arguments compare(const std::string& folder, const Arguments& more) {
   Arguments arguments{"compare",   shippedScenario("jacksboro.yaml"),
@@ -55,6 +56,7 @@ TEST(Compare, TwoRunsWriteTheSameBytes) {
     const ProgramResult result =
         run(compare(*folder / "out", {"--set-b", "emitters.jammer.power_w=1", "--format", "png"}));
     ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.out, StartsWith("B (A with emitters.jammer.power_w=1) against A (jacksboro): "));
   }
   ASSERT_EQ(first.files(), second.files());
   for (const std::string& file : first.files())

@@ -63,6 +63,19 @@ TEST(Profile, ATableEndsWithTheVerdict) {
   EXPECT_EQ(result.out.find('\n', result.out.find("\nBlocked: ") + 1), result.out.size() - 1);
 }
 
+TEST(Profile, WithoutAnEpochATimeIsInSecondsAlone) {
+  const TemporaryFolder folder;
+  const std::string epoch = "epoch: 2026-06-01T06:00:00Z\n";
+  std::string text = readFile(quick());
+  const auto firstLine = [&](const std::string& scenario) {
+    const ProgramResult result =
+        run({"profile", folder.write("a.yaml", scenario), "--emitter", "radar", "--to", "52.05,5,500"});
+    return result.out.substr(0, result.out.find('\n'));
+  };
+  EXPECT_EQ(firstLine(text), "Path from 'radar' at t = 0 s (2026-06-01T06:00:00.000Z), 3 GHz");
+  EXPECT_EQ(firstLine(text.erase(text.find(epoch), epoch.size())), "Path from 'radar' at t = 0 s, 3 GHz");
+}
+
 TEST(Profile, OfARadarTellsItsDetection) {
   const ProgramResult result =
       run({"profile", jacksboro(), "--emitter", "search radar", "--to", "36.35,-84.25,900", "--json"});

@@ -409,7 +409,7 @@ TEST(LiveView, SettingsOutOfTheirRangeAreToldAndThePictureStays) {
   render::RenderSettings settings;
   settings.step_voxels = 99;
   live.view->setSettings(settings);
-  EXPECT_EQ(live.error(), "step (voxels) 99: expected 0.05..10");
+  EXPECT_EQ(live.error(), "step_voxels 99: expected a number 0.05..10");
   EXPECT_EQ(live.settled(), before);
   live.view->setCamera({});
   live.settled();

@@ -30,8 +30,8 @@ class CoverageOf {
         area(areaOf(scenario->region)),
         grid(makeMapGrid(area, cell_m, "utm")),
         terrain(loadTerrain(*scenario, area)) {
-    computeCoverage(scenario, terrain, grid, request, {},
-                    [&](CoverageMap map) { maps.push_back(std::move(map)); });
+    warnings = computeCoverage(scenario, terrain, grid, request, {},
+                               [&](CoverageMap map) { maps.push_back(std::move(map)); });
   }
 
   const CoverageMap& find(Product product, const MapHeight& height, std::optional<double> time_s = {}) const {
@@ -49,10 +49,22 @@ class CoverageOf {
   MapGrid grid;
   scenario::TerrainPtr terrain;
   std::vector<CoverageMap> maps;
+  std::vector<std::string> warnings;
 };
 
 const MapHeight kLow{emfield::HeightReference::ground, 100},
     kHigh{emfield::HeightReference::mean_sea_level, 1500};
+
+TEST(Coverage, WarnsOfBeamsBetweenItsTimesWhereAProductIsOverThem) {
+  const auto warningsOf = [](scenario::Quantity quantity, Product product) {
+    return CoverageOf("jacksboro.yaml", 3000, {{kLow}, {product}, quantity, 0.5, {0, 6, 12}}).warnings;
+  };
+  const auto unlit = ::testing::Contains(HasSubstr("of its azimuths"));
+  EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, Product::fraction), unlit);
+  EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, Product::covered), ::testing::Not(unlit));
+  EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, Product::fraction), ::testing::Not(unlit))
+      << "radars look at the target";
+}
 
 TEST(Coverage, APixelIsThePathOfProfileThere) {
   CoverageRequest request{

@@ -113,6 +113,19 @@ TEST(MapGrid, ABoxMayCrossTheAntimeridian) {
   EXPECT_EQ(grid.pixelAt(-17.1, 178), -1);
 }
 
+TEST(MapGrid, RefusesProjectionsThatAreCutWithinTheArea) {
+  const auto messageOf = [](double longitude_deg, const char* crs) {
+    return test::errorOf([&] { makeMapGrid(circularArea({-17, longitude_deg, 10e3}), 500, crs); });
+  };
+  EXPECT_THAT(messageOf(179.96, "EPSG:3857"), HasSubstr("'EPSG:3857' is cut within the area"));
+  EXPECT_THAT(messageOf(-179.99, "EPSG:3395"), HasSubstr("40074 km apart"));
+  EXPECT_NO_THROW(makeMapGrid(circularArea({-17, 179.9, 10e3}), 500, "EPSG:3857"));
+  EXPECT_NO_THROW(makeMapGrid(circularArea({-17, 179.96, 10e3}), 500, "EPSG:3832"));
+  MapArea earth;
+  earth.box = {-70, 70, -180, 180};
+  EXPECT_EQ(makeMapGrid(earth, 100e3, "EPSG:3857").width, 402);
+}
+
 TEST(MapGrid, RefusesWhatIsNoMap) {
   const MapArea area = circularArea({44, -71, 10e3});
   EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100, "EPSG:4326"); }),

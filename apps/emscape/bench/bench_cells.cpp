@@ -208,7 +208,7 @@ Example:
                       "Colours and opacities (JSON); default: scenarios/transfer/paper.json");
   command
       ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(within(render::kExaggerationLimits));
   command->add_option("--picture", options->picture, "NAME.png: writes the first view, marched, on black");
   command->add_option("--quantity", options->selection.quantity, "Quantity or channel; default: the first");
   command->add_option("--time", options->selection.times, "Instant, in seconds; default: the first");

@@ -148,7 +148,7 @@ Example:
   addSetOption(*command, options->edits);
   command->add_option(
       "--area", options->area,
-      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: the scenario's region");
+      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: the box around the region");
   command->add_option("--cell", options->cell_m, "Side of a pixel (m)");
   command->add_option("--height", options->height_m, "First height above ground (m)")
       ->check(CLI::Range(0.0, 100e3));

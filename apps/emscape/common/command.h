@@ -10,6 +10,7 @@
 #include "emscape/base/progress.h"
 #include "emscape/playback/painter.h"
 #include "emscape/render/cut_plane.h"
+#include "emscape/render/render_settings.h"
 #include "emscape/scenario/edit.h"
 
 namespace emscape::app {
@@ -28,6 +29,11 @@ struct GlobalOptions {
 inline CLI::Option* addListOption(CLI::App& command, const std::string& name,
                                   std::vector<std::string>& values, const std::string& description) {
   return command.add_option(name, values, description)->delimiter(',')->allow_extra_args(false);
+}
+
+/// The check of an option that is a setting of pictures.
+inline CLI::Range within(const render::SettingLimits& limits) {
+  return {limits.min, limits.max};
 }
 
 /// The option that a hint suggests, as " (...)"; empty for Hint::none.

@@ -90,7 +90,7 @@ int run(const Action& action) {
 /// A number without trailing zeros: CLI11 writes 360.000000.
 std::string shortNumber(const std::string& text) {
   double value = 0;
-  return CLI::detail::lexical_cast(text, value) ? fmt::format("{:g}", value) : text;
+  return CLI::detail::lexical_cast(text, value) ? fmt::format("{:.10g}", value) : text;
 }
 
 /// "whole number" for options of integers, else "number".

@@ -19,14 +19,22 @@ struct ParseResult {
   std::vector<Problem> problems;             ///< in the order of the file
 };
 
+/// Times for which a scenario is read. Warnings about the steps of its clock are given for `series` only.
+enum class ReadFor {
+  series,       ///< all steps of the clock
+  chosen_times  ///< times chosen by the caller
+};
+
 /// Reads a scenario and every file it names (tracks, antennas; elevation files are opened but not read).
 /// Faults in the files are not thrown; the result lists all of them, each with file, line and column.
 /// @param edits  applied before the check; a fault that an edit causes has the edit "PATH=VALUE" as its
 /// location
-ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {});
+ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {},
+                          ReadFor read_for = ReadFor::series);
 
 /// The same, but throws one Error (bad_input) that lists all errors, one per line. Warnings are logged.
-std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits = {});
+std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits = {},
+                                             ReadFor read_for = ReadFor::series);
 
 /// Applies further edits as Scenario::set() does, but returns all problems instead of throwing. The given
 /// scenario is not changed.
