@@ -24,7 +24,8 @@ EMSCAPE_HD inline unsigned staircaseWarning(int staircases) {
   return static_cast<unsigned>(staircases < kMost ? staircases : kMost) << kPeStaircaseShift;
 }
 
-/// Interpolates in dB between azimuths, ranges and heights; other models speak outside the equation's limits.
+/// Interpolates in dB between azimuths, ranges (cubic) and heights; other models speak outside the equation's
+/// limits.
 struct PeExcess {
   static constexpr bool kNeedsTerrain = true;
   static constexpr bool kInParts = false;
@@ -69,20 +70,22 @@ struct PeExcess {
     return warnings;
   }
 
-  /// Two of a row and where a place is between them.
+  /// Four of a row; a place is between the first and the second. kNone: there is none.
   struct Neighbours {
-    int first, second;
+    static constexpr int kNone = -1;
+    int before, first, second, behind;
     float part;  ///< of the second
   };
   /// The azimuths beside a column's.
   EMSCAPE_HD Neighbours azimuthsAt(double azimuth_rad) const {
-    if (azimuths == 1) return {0, 0, 0};
+    if (azimuths == 1) return between(0, 1);
     double from_first = azimuth_rad - first_azimuth_rad;
     from_first -= 2 * kPi * std::floor(from_first / (2 * kPi));
     if (is_around) {
       const double at = from_first / azimuth_step_rad;
       const int first = static_cast<int>(at) % azimuths;
-      return {first, (first + 1) % azimuths, static_cast<float>(at - std::floor(at))};
+      return {(first + azimuths - 1) % azimuths, first, (first + 1) % azimuths, (first + 2) % azimuths,
+              static_cast<float>(at - std::floor(at))};
     }
     const double span_rad = azimuth_step_rad * (azimuths - 1);
     if (from_first > span_rad + (2 * kPi - span_rad) / 2) from_first = 0;  // before the first
@@ -121,34 +124,66 @@ struct PeExcess {
   }
 
  private:
+  /// Next to one of the row: that one alone.
   static EMSCAPE_HD Neighbours between(float at, int count) {
-    if (!(at > 0)) return {0, 0, 0};
-    if (at >= static_cast<float>(count - 1)) return {count - 1, count - 1, 0};
-    const int first = static_cast<int>(at);
-    return {first, first + 1, at - static_cast<float>(first)};
+    constexpr float kNext = 1e-3f;
+    constexpr int kNone = Neighbours::kNone;
+    const float limited =
+        at > 0 ? at < static_cast<float>(count - 1) ? at : static_cast<float>(count - 1) : 0;
+    const int first = static_cast<int>(limited + kNext);
+    const float part = limited - static_cast<float>(first);
+    if (!(part > kNext)) return {kNone, first, first, kNone, 0};
+    return {first - 1, first, first + 1, first + 2 < count ? first + 2 : kNone, part};
+  }
+  /// Between the middle two of four losses (dB) at equal distances, by the cubic of Catmull and Rom: at a
+  /// null between two azimuths the loss is larger than at both. By the line between the two where one of the
+  /// others is NaN; that of the two that is known where one of them is NaN.
+  static EMSCAPE_HD float curve_db(float before, float first, float second, float behind, float part) {
+    constexpr float kLargestBend_db = 2;  // from the line: at the edge of a shadow the cubic swings
+    if (!(first == first)) return second;
+    if (!(second == second)) return first;
+    const float line = first + part * (second - first);
+    const float bend = part * (1 - part) / 2 *
+                       ((1 - part) * (2 * first - before - second) + part * (2 * second - first - behind));
+    if (!(bend == bend)) return line;
+    return line + std::fmin(std::fmax(bend, -kLargestBend_db), kLargestBend_db);
   }
   /// NaN where no cell around is known.
   EMSCAPE_HD float cells_db(const Neighbours& a, float range_m, float height_m) const {
     const Neighbours r = between((range_m - first_range_m) / range_step_m, ranges);
-    float sum = 0, weights = 0;
-    for (int i = 0; i < 4; ++i) {
-      const int azimuth = i & 1 ? a.second : a.first, range = i & 2 ? r.second : r.first;
-      const float weight = (i & 1 ? a.part : 1 - a.part) * (i & 2 ? r.part : 1 - r.part);
-      if (!(weight > 0)) continue;
-      const float db =
-          columnOfCells_db(tables + (static_cast<std::size_t>(azimuth) * ranges + range) * heights, height_m);
-      if (!(db == db)) continue;
-      sum += weight * db;
-      weights += weight;
-    }
-    return weights > 0 ? sum / weights : NAN;
-  }
-  /// Below the ground: the lowest cell above it.
-  EMSCAPE_HD float columnOfCells_db(const float* cells, float height_m) const {
     const Neighbours h = between((height_m - bottom_m) / height_step_m - 0.5f, heights);
-    const float low = cells[h.first], high = cells[h.second];
-    if (low == low) return high == high ? low + h.part * (high - low) : low;
-    for (int j = h.second; j < heights; ++j) {
+    if (!(r.part > 0)) return azimuths_db(a, r.first, h);
+    return curve_db(outer_db(a, r.before, h), azimuths_db(a, r.first, h), azimuths_db(a, r.second, h),
+                    outer_db(a, r.behind, h), r.part);
+  }
+  /// Of the cells of a range.
+  EMSCAPE_HD float azimuths_db(const Neighbours& a, int range, const Neighbours& h) const {
+    const float first = known_db(a.first, range, h);
+    if (!(a.part > 0)) return first;
+    return curve_db(cell_db(a.before, range, h), first, known_db(a.second, range, h),
+                    cell_db(a.behind, range, h), a.part);
+  }
+  /// Of the cells of a range that only bends the curve: on the line between two azimuths.
+  EMSCAPE_HD float outer_db(const Neighbours& a, int range, const Neighbours& h) const {
+    const float first = cell_db(a.first, range, h);
+    return a.part > 0 ? first + a.part * (cell_db(a.second, range, h) - first) : first;
+  }
+  EMSCAPE_HD const float* columnOf(int azimuth, int range) const {
+    return tables + (static_cast<std::size_t>(azimuth) * ranges + range) * heights;
+  }
+  /// NaN where there is no such cell, or it is not known.
+  EMSCAPE_HD float cell_db(int azimuth, int range, const Neighbours& h) const {
+    if (azimuth < 0 || range < 0) return NAN;
+    const float* const cells = columnOf(azimuth, range);
+    const float low = cells[h.first];
+    return h.part > 0 ? low + h.part * (cells[h.second] - low) : low;
+  }
+  /// Below the ground: of the lowest cell above it.
+  EMSCAPE_HD float known_db(int azimuth, int range, const Neighbours& h) const {
+    const float db = cell_db(azimuth, range, h);
+    if (db == db) return db;
+    const float* const cells = columnOf(azimuth, range);
+    for (int j = h.first; j < heights; ++j) {
       if (cells[j] == cells[j]) return cells[j];
     }
     return NAN;
