@@ -123,8 +123,8 @@ bool CellRenderer::projectsOnCpu() {
 }
 
 Rasterizer CellRenderer::Impl::rasterizerFor(const ProjectionOptions& options, CellRenderer& renderer) const {
-  const bool is_published = options.projection == CellProjection::published &&
-                            scene.camera().projection == Projection::perspective;
+  const bool is_published =
+      options.projection == CellProjection::published && scene.camera().projection == Projection::perspective;
   if (is_published && options.rasterizer == Rasterizer::tiles) {
     throw Error(ErrorCode::usage,
                 "the published form of cell projection interpolates distances over faces, which OpenGL does; "
@@ -161,20 +161,35 @@ Image CellRenderer::Impl::projectByOpenGl(const RaycastTask& task, const Project
 Image CellRenderer::Impl::projectByTiles(const RaycastTask& task, const ProjectionOptions& options,
                                          const std::vector<GroundHit>& hits, ProjectionReport& report) {
   const bool exact = scene.settings().exact;
-  const std::vector<double> end_depth = depthsOf<double>(hits, task.camera);
-  TileTask tiles{task.camera, DepthAxes(task.camera)};
-  tiles.transfer = transfer->view();
-  if (!exact) tiles.psi = PsiTable::shared().lookup();
-  tiles.through = exact ? 0 : 1 - static_cast<double>(kOpaqueEnough);
-  tiles.end_depth = end_depth.empty() ? nullptr : end_depth.data();
-  report.device = "CPU";
+  TileCast cast{{task.camera, DepthAxes(task.camera)}, !exact, depthsOf<double>(hits, task.camera), nullptr};
+  cast.task.through = exact ? 0 : 1 - static_cast<double>(kOpaqueEnough);
+  report.device = toString(caster ? Backend::cuda : Backend::cpu);
   Stopwatch watch;
-  const CellOrder order = orderOf(cells, task.camera, options.sorting);
-  report.cycles = order.cycles;
-  report.order_ms = watch.lap_ms();
+  CellOrder order;
+  if (!caster || options.sorting == CellSorting::visibility) {
+    order = orderOf(cells, task.camera, options.sorting);
+    cast.order = &order.cells;
+    report.cycles = order.cycles;
+    report.order_ms = watch.lap_ms();
+  }
+  Image image;
+  if (caster) {
+    const TileTimes times = caster->project(cast, image);
+    report.cells = times.cells;
+    report.draw_ms = watch.lap_ms() - times.order_ms;
+    report.order_ms += times.order_ms;
+    report.bin_ms = times.bin_ms;
+    report.device_ms = times.bin_ms + times.draw_ms;
+    report.sent_bytes = sizeof(std::int32_t) * order.cells.size();
+    return image;
+  }
+  TileTask& tiles = cast.task;
+  tiles.transfer = transfer->view();
+  if (cast.table) tiles.psi = PsiTable::shared().lookup();
+  tiles.end_depth = cast.end_depth.empty() ? nullptr : cast.end_depth.data();
   const TileProjection projection(tiles, cells, order.cells);
   report.bin_ms = watch.lap_ms();
-  Image image = projection.composite();
+  image = projection.composite();
   report.draw_ms = report.bin_ms + watch.lap_ms();
   report.cells = projection.cells();
   return image;

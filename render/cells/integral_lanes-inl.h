@@ -1,5 +1,5 @@
-/// The ray integral in the lanes of vector registers; see ray_integral.h. Included once for each kind of vector
-/// register.
+/// The ray integral in the lanes of vector registers; see ray_integral.h. Included once for each kind of
+/// vector register.
 #if defined(EMSCAPE_RENDER_CELLS_INTEGRAL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef EMSCAPE_RENDER_CELLS_INTEGRAL_LANES_INL_H_
 #undef EMSCAPE_RENDER_CELLS_INTEGRAL_LANES_INL_H_

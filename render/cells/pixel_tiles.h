@@ -14,6 +14,7 @@ namespace emscape::render {
 struct PixelBox {
   int first_x = 0, first_y = 0, end_x = 0, end_y = 0;
 
+  EMSCAPE_HD bool holds(int x, int y) const { return x >= first_x && x < end_x && y >= first_y && y < end_y; }
   EMSCAPE_HD bool isEmpty() const { return first_x >= end_x || first_y >= end_y; }
   std::size_t index(int x, int y) const {
     return static_cast<std::size_t>(y - first_y) * (end_x - first_x) + (x - first_x);
@@ -54,7 +55,8 @@ class TileLists {
   /// @param boxOf  the box of each index 0..count - 1; called from several threads
   TileLists(const TileGrid& grid, std::size_t count, const std::function<PixelBox(std::size_t)>& boxOf);
 
-  /// Indices of the boxes that touch a tile, ascending: members()[first(tile)] .. members()[first(tile + 1) - 1].
+  /// Indices of the boxes that touch a tile, ascending: members()[first(tile)] .. members()[first(tile + 1) -
+  /// 1].
   const std::vector<int>& members() const { return members_; }
   std::size_t first(int tile) const { return first_[static_cast<std::size_t>(tile)]; }
 

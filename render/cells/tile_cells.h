@@ -1,11 +1,11 @@
-/// Balanced cell projection for tiles of pixels, without a rasteriser: the numbers of a cell, and what a pixel's
-/// ray makes of them. Host and device.
+/// Balanced cell projection for tiles of pixels, without a rasteriser: the numbers of a cell, and what a
+/// pixel's ray makes of them. Host and device.
 ///
 /// With r = (x, y, 1) in the camera's axes, the ray t r through the place (x, y) of the picture plane crosses
 /// the plane n.p = c of a face at t = c / (n.r): 1/t is linear over the picture plane, and with it the u of
-/// projected_cells.h; with parallel rays t itself is. A ray enters a cell at the farthest of the planes that the
-/// eye is in front of, and leaves it at the nearest of the others. Where cells meet they find the same t. The
-/// value along a ray is (value at the eye) + t (g.r), with its gradient g.
+/// projected_cells.h; with parallel rays t itself is. A ray enters a cell at the farthest of the planes that
+/// the eye is in front of, and leaves it at the nearest of the others. Where cells meet they find the same t.
+/// The value along a ray is (value at the eye) + t (g.r), with its gradient g.
 #pragma once
 
 #include <cmath>
@@ -53,8 +53,8 @@ struct PixelRay {
   double end_depth;  ///< where it ends
 
   EMSCAPE_HD PixelRay(const TileTask& task, int pixel_x, int pixel_y) {
-    // Beside the centre of the pixel by a part of it that no picture shows: a ray within a face or along an edge
-    // of a regular mesh is in none of the cells there, or in several, as rounding has it.
+    // Beside the centre of the pixel by a part of it that no picture shows: a ray within a face or along an
+    // edge of a regular mesh is in none of the cells there, or in several, as rounding has it.
     constexpr double kAsideX = 2.3e-7, kAsideY = 1.7e-7;
     const CameraView& camera = task.camera;
     const double pixel = 2 * camera.half_height / camera.size.height;
@@ -101,11 +101,16 @@ EMSCAPE_HD inline PixelBox pixelsOf(const TileTask& task, const std::int32_t (&c
   // The inverse of CameraView::rayThrough(); the margin is for rounding and PixelRay's step aside.
   constexpr double kMargin = 1e-3;
   const double width = camera.size.width, height = camera.size.height;
-  const auto pixelX = [&](double x) { return 0.5 * ((x / camera.half_height - camera.shift_x) * height + width - 1); };
-  const auto pixelY = [&](double y) { return 0.5 * ((1 - y / camera.half_height + camera.shift_y) * height - 1); };
+  const auto pixelX = [&](double x) {
+    return 0.5 * ((x / camera.half_height - camera.shift_x) * height + width - 1);
+  };
+  const auto pixelY = [&](double y) {
+    return 0.5 * ((1 - y / camera.half_height + camera.shift_y) * height - 1);
+  };
   const auto within = [](double at, double limit) { return static_cast<int>(fmin(fmax(at, 0.0), limit)); };
   return {within(ceil(pixelX(low_x) - kMargin), width), within(ceil(pixelY(high_y) - kMargin), height),
-          within(floor(pixelX(high_x) + kMargin) + 1, width), within(floor(pixelY(low_y) + kMargin) + 1, height)};
+          within(floor(pixelX(high_x) + kMargin) + 1, width),
+          within(floor(pixelY(low_y) + kMargin) + 1, height)};
 }
 
 /// @param vertices  four per cell

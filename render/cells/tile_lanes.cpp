@@ -2,8 +2,8 @@
 #include "render/cells/tile_projection.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cells/tile_lanes.cpp"
-#include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register
 #include <hwy/highway.h>
 //
 #include "render/cells/integral_lanes-inl.h"
@@ -79,9 +79,8 @@ class TileInLanes {
     const double y = y_[row];
     const auto at = [&](double of_x, double constant)
                         HWY_ATTR { return hn::MulAdd(hn::Set(kD, of_x), x, hn::Set(kD, constant)); };
-    const auto nearness = [&](const PlaneFunction& plane) HWY_ATTR {
-      return at(plane.of_x, plane.of_y * y + plane.constant);
-    };
+    const auto nearness = [&](const PlaneFunction& plane)
+                              HWY_ATTR { return at(plane.of_x, plane.of_y * y + plane.constant); };
     D enter = hn::Set(kD, HUGE_VAL), leave = nearness(cell.nearness[3]);
     for (int n = 0; n < cell.entries; ++n) enter = hn::Min(enter, nearness(cell.nearness[n]));
     for (int n = cell.entries; n < 3; ++n) leave = hn::Max(leave, nearness(cell.nearness[n]));

@@ -8,14 +8,12 @@ namespace emscape::render {
 
 TileProjection::TileProjection(const TileTask& task, const CellMesh& mesh,
                                const std::vector<std::int32_t>& order)
-    : grid_{task.camera.size},
-      task_(task),
-      points_(mesh.points.size()),
-      cells_(order.size()) {
+    : grid_{task.camera.size}, task_(task), points_(mesh.points.size()), cells_(order.size()) {
   constexpr int kGrain = 4096;
   parallelFor(static_cast<int>(points_.size()), kGrain, [&](int begin, int end) {
     for (int n = begin; n < end; ++n) {
-      points_[static_cast<std::size_t>(n)] = task.viewOf(mesh.point(n), mesh.values[static_cast<std::size_t>(n)]);
+      points_[static_cast<std::size_t>(n)] =
+          task.viewOf(mesh.point(n), mesh.values[static_cast<std::size_t>(n)]);
     }
   });
   task_.points = points_.data();
@@ -29,7 +27,8 @@ TileProjection::TileProjection(const TileTask& task, const CellMesh& mesh,
 }
 
 long long TileProjection::cells() const {
-  return std::count_if(cells_.begin(), cells_.end(), [](const PlacedCell& cell) { return !cell.pixels.isEmpty(); });
+  return std::count_if(cells_.begin(), cells_.end(),
+                       [](const PlacedCell& cell) { return !cell.pixels.isEmpty(); });
 }
 
 Image TileProjection::composite() const {

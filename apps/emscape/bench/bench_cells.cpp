@@ -169,8 +169,9 @@ int benchCells(const BenchCellsOptions& options, const GlobalOptions& global) {
   render::CellReport report;
   const std::vector<double> marched_ms = scene->march(options.marched_frames, report);
   if (!global.json) {
-    print("{:<40} {:>10.1f} {:>10} {:>10} {:>10} {:>14.3g}\n\nmarched by {}: {} rays passed {} cells\n", "marched",
-          medianOf(marched_ms), "", "", "", perSecond(marched_ms), scene->device(), report.rays, report.cells);
+    print("{:<40} {:>10.1f} {:>10} {:>10} {:>10} {:>14.3g}\n\nmarched by {}: {} rays passed {} cells\n",
+          "marched", medianOf(marched_ms), "", "", "", perSecond(marched_ms), scene->device(), report.rays,
+          report.cells);
     if (!device.empty()) print("projected by {}\n", device);
     return 0;
   }

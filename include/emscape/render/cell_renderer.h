@@ -49,7 +49,8 @@ enum class CellSorting {
 };
 /// What finds the pixels that a projected cell covers.
 enum class Rasterizer {
-  automatic,  ///< tiles with CUDA and where OpenGL has no GPU, else opengl; the published form by opengl alone
+  automatic,  ///< tiles with CUDA and where OpenGL has no GPU, else opengl; the published form by opengl
+              ///< alone
   opengl,     ///< without a window
   tiles       ///< tiles of pixels, computed by the renderer's backend; in perspective the exact form alone
 };
@@ -75,8 +76,8 @@ struct ProjectionOptions {
 /// What a picture by projection took.
 struct ProjectionReport {
   Rasterizer rasterizer = Rasterizer::automatic;  ///< that drew it
-  std::string device;    ///< as OpenGL names it; of tiles "CPU" or "CUDA"
-  long long cells = 0;   ///< drawn
+  std::string device;                             ///< as OpenGL names it; of tiles "CPU" or "CUDA"
+  long long cells = 0;                            ///< drawn
   long long cycles = 0;  ///< faces across which the order is wrong; not counted by centroids
   std::size_t sent_bytes = 0;
   double order_ms = 0, draw_ms = 0;
@@ -125,8 +126,8 @@ class CellRenderer {
   /// @throws Error (device) without OpenGL 3.3, or in a build without libepoxy
   bool projectsOnCpu();
   /// The same by projection of the cells.
-  /// @accuracy exact, visibility: by tiles within 1e-5 of render(), where the order is right; by OpenGL in 98 %
-  /// of the pixels, 2e-6 in the mean; 2e-4 at most where no edge of a cell is within 1/32 pixel, else 2e-2:
+  /// @accuracy exact, visibility: by tiles within 1e-5 of render(), where the order is right; by OpenGL in 98
+  /// % of the pixels, 2e-6 in the mean; 2e-4 at most where no edge of a cell is within 1/32 pixel, else 2e-2:
   /// rasterisers round to 1/256 pixel
   /// @throws Error (usage) for the published form by tiles in perspective; (device) for opengl as
   /// projectsOnCpu()
