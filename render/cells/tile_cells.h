@@ -153,6 +153,7 @@ struct TileCell {
       values[n] = corner.value;
     }
     const double volume6 = dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]);
+    const double per_volume = 1 / fabs(volume6);
     eye_value = values[0];
     gradient = {0, 0, 0};
     int last = 4;
@@ -162,7 +163,7 @@ struct TileCell {
       if (volume6 < 0) outward = outward * -1.0;  // the camera's axes may mirror
       const double at = dot(outward, a);
       // The weight of corner n is (at - outward.p) / |volume6|.
-      const double rise = (values[n] - values[0]) / fabs(volume6);
+      const double rise = (values[n] - values[0]) * per_volume;
       gradient = gradient - outward * rise;
       eye_value += at * rise;
       const bool is_parallel = task.camera.orthographic;

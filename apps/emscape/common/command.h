@@ -44,7 +44,7 @@ void addCompareOption(CLI::App& command, std::string& compare, const std::string
 /// parsed, for a text that is not a plane and for too many
 void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes);
 
-/// --mesh, --cells, --cell-order and --cell-perspective, of pictures.
+/// --mesh, --cells, --cell-rasterizer, --cell-order and --cell-perspective, of pictures.
 /// @throws Error (usage) when they are parsed
 void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& cells);
 

@@ -76,8 +76,8 @@ struct ProjectionOptions {
 /// What a picture by projection took.
 struct ProjectionReport {
   Rasterizer rasterizer = Rasterizer::automatic;  ///< that drew it
-  std::string device;                             ///< as OpenGL names it; of tiles "CPU" or "CUDA"
-  long long cells = 0;                            ///< drawn
+  std::string device;                             ///< as OpenGL names it; of tiles "cpu" or "cuda"
+  long long cells = 0;                            ///< drawn; by tiles those that may cover a pixel
   long long cycles = 0;  ///< faces across which the order is wrong; not counted by centroids
   std::size_t sent_bytes = 0;
   double order_ms = 0, draw_ms = 0;
